@@ -1,0 +1,10 @@
+# One set of compiler options for every target of the project.
+add_library(keyblock_options INTERFACE)
+target_compile_options(keyblock_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
+  # The same bits from every build: no fused multiply-add behind our back, and never -ffast-math.
+  -ffp-contract=off)
+target_include_directories(keyblock_options INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
+if(KEYBLOCK_NATIVE)
+  target_compile_options(keyblock_options INTERFACE -march=native)
+endif()

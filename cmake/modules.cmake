@@ -1,0 +1,34 @@
+# keyblock_module(name DEPENDS module... LINK library...)
+#
+# One static library per folder of src/: every *.cpp of the folder, linked to the modules below it.
+# Third-party libraries that appear only in the sources are given after LINK.
+function(keyblock_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  if(sources)
+    add_library(keyblock_${name} STATIC ${sources})
+    set(scope PUBLIC)
+    target_link_libraries(keyblock_${name} PRIVATE ${ARG_LINK})
+  else()
+    add_library(keyblock_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_link_libraries(keyblock_${name} ${scope} keyblock_options)
+  foreach(module IN LISTS ARG_DEPENDS)
+    target_link_libraries(keyblock_${name} ${scope} keyblock_${module})
+  endforeach()
+endfunction()
+
+# keyblock_tests(module...): tests/unit/<module>/*.cpp become the executable test_<module>.
+function(keyblock_tests)
+  foreach(module IN LISTS ARGN)
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${module}/*.cpp)
+    if(sources)
+      add_executable(test_${module} ${sources})
+      target_link_libraries(test_${module} PRIVATE keyblock_${module} GTest::gtest_main GTest::gmock)
+      target_compile_definitions(test_${module} PRIVATE
+        KEYBLOCK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KEYBLOCK_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+      gtest_discover_tests(test_${module} TEST_PREFIX "unit." DISCOVERY_TIMEOUT 60)
+    endif()
+  endforeach()
+endfunction()

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/polygon.h"
+
+namespace keyblock::cutting {
+
+/// What an edge of a block is a piece of.
+enum class EdgeKind : std::uint8_t {
+  free,        ///< an edge of an explicit block
+  joint_set,   ///< index: of the joint set
+  trace_map,   ///< index: of the trace map
+  excavation,  ///< index: of the excavation whose outline it lies on
+  domain,      ///< the edge of the domain (where the frame is)
+};
+
+struct EdgeLabel {
+  EdgeKind kind = EdgeKind::free;
+  std::int16_t index = 0;
+  friend constexpr bool operator==(EdgeLabel, EdgeLabel) = default;
+};
+
+/// One block as cut, in reference position.
+struct CutBlock {
+  Polygon polygon;
+  /// labels[r][k] belongs to the edge from vertex k to vertex k + 1 of ring r (0: outer ring, then the holes).
+  std::vector<std::vector<EdgeLabel>> labels;
+  /// Excavations (indices into the scenario's) whose outline contains the block, ascending.
+  std::vector<int> excavations;
+};
+
+/// What the cutting did, for the user.
+struct CutStatistics {
+  int traces = 0;               ///< traces that meet the domain
+  int joints_used = 0;          ///< traces of which some piece bounds two blocks
+  double trace_length = 0.0;    ///< m inside the domain
+  double removed_length = 0.0;  ///< m of dead ends and of joints that bound no block (tree cutting)
+  int removed_pieces = 0;
+  int merged_slivers = 0;
+  int merged_vertices = 0;      ///< clustered or near-collinear vertices that were dropped
+  double domain_area = 0.0;     ///< m²
+  double sliver_area = 0.0;     ///< m² that changed its block by merging
+};
+
+struct BlockSystem {
+  std::vector<CutBlock> blocks;
+  CutStatistics statistics;
+  /// Real coordinates of the local origin: block coordinates are real ones minus this. Zero unless the domain lies
+  /// so far from the origin that digits would be lost (a map in national coordinates).
+  Vec2 origin;
+};
+
+}  // namespace keyblock::cutting

@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "geometry/vec2.h"
+
+namespace keyblock::loading {
+
+/// Acceleration of the base in the section plane, linear between samples, zero outside its duration.
+class GroundMotion {
+ public:
+  GroundMotion() = default;
+  /// `time` ascends from 0; one acceleration (m/s²) per time.
+  GroundMotion(std::string name, std::vector<double> time, std::vector<Vec2> acceleration);
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] double duration() const { return time_.empty() ? 0.0 : time_.back(); }
+  [[nodiscard]] Vec2 at(double time) const;
+  /// Mean over [t0, t1], exact for the piecewise linear function: a step driven by it gains the exact velocity.
+  [[nodiscard]] Vec2 mean(double t0, double t1) const;
+  /// Largest |a| over time, m/s².
+  [[nodiscard]] double peak() const;
+  [[nodiscard]] const std::vector<double>& times() const { return time_; }
+  [[nodiscard]] const std::vector<Vec2>& accelerations() const { return acceleration_; }
+
+ private:
+  std::string name_;
+  std::vector<double> time_;
+  std::vector<Vec2> acceleration_;
+  std::vector<Vec2> integral_;  ///< ∫₀^{time_k} a dt
+};
+
+}  // namespace keyblock::loading

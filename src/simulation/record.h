@@ -1,0 +1,198 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cutting/block_system.h"
+#include "geometry/vec2.h"
+#include "simulation/stage.h"
+
+/// What a run tells the outside: plain data, written to the result file and drawn in the report.
+namespace keyblock::simulation {
+
+/// The block system in reference position. Outlines are given by *display vertices*: every vertex of the block, and
+/// for a block of order > 1 further points along its edges, which may curve.
+struct ModelRecord {
+  std::string title;
+  std::string version;
+  std::uint64_t seed = 0;
+  int realization = 0;
+  int threads = 1;
+  double step_size = 0.0;  ///< s
+  Vec2 origin;             ///< real coordinates of the local origin
+  std::string scenario;    ///< the TOML that was run, with overrides listed as comments at its end
+
+  struct Block {
+    std::string name;  ///< empty for cut blocks
+    int order = 1;
+    bool fixed = false;
+    double area = 0.0;     ///< m²
+    double density = 0.0;  ///< kg/m³
+    std::vector<int> excavations;
+    Vec2 centroid;
+    /// Display vertices of ring r are vertices[ring_start[r] … ring_start[r + 1]) of ModelRecord.
+    std::vector<int> ring_start;
+  };
+  std::vector<Block> blocks;
+  std::vector<Vec2> vertices;                  ///< reference positions of all display vertices, m
+  std::vector<cutting::EdgeLabel> edge_label;  ///< of the piece from each display vertex to the next of its ring
+  std::vector<std::string> joint_set_names, trace_map_names, excavation_names;
+  std::vector<std::vector<Vec2>> excavation_outlines;
+  std::vector<std::string> history_names;
+  std::optional<double> opening_width;  ///< m
+  cutting::CutStatistics cutting;
+};
+
+enum class BlockStatus : std::uint8_t { in_place = 0, loosened = 1, fallen = 2, excavated = 3 };
+
+/// One moment of the run.
+struct Frame {
+  double time = 0.0;  ///< s of simulated time; static steps count none
+  int stage = 0;
+  long step = 0;
+  std::vector<std::array<float, 2>> displacement;  ///< of every display vertex since the start, m
+  std::vector<std::array<float, 3>> stress;        ///< mean Cauchy stress of every block: xx, yy, xy, Pa
+  std::vector<BlockStatus> status;                 ///< of every block
+};
+
+enum class ContactState : std::uint8_t { open = 0, sliding = 1, locked = 2 };
+
+struct ContactRecord {
+  int block_a = 0;  ///< the block with the vertex
+  int block_b = 0;  ///< the block with the edge
+  ContactState state = ContactState::open;
+  Vec2 position;              ///< m
+  Vec2 normal;                ///< unit, out of block_b
+  double length = 0.0;        ///< m of joint that belongs to it
+  double gap = 0.0;           ///< m, negative: penetration
+  double slip = 0.0;          ///< m, relative shear displacement since the excavation, signed
+  double normal_force = 0.0;  ///< N per metre thickness, compression positive
+  double shear_force = 0.0;
+  cutting::EdgeLabel label;   ///< of the edge
+};
+
+struct ContactFrame {
+  double time = 0.0;
+  int stage = 0;
+  std::vector<ContactRecord> contacts;
+};
+
+/// One row of DIR/histories.csv: displacement, velocity and Cauchy stress at the chosen points.
+struct HistoryRow {
+  double time = 0.0;
+  struct Point {
+    double ux, uy, vx, vy, sxx, syy, sxy;
+  };
+  std::vector<Point> points;
+};
+
+/// Energies in J per metre thickness. Losses and inputs accumulate from the start of the first stage.
+/// kinetic + strain + gravity + contact + friction + numerical − input = residual ≈ 0.
+struct Energy {
+  double kinetic = 0.0;
+  double strain = 0.0;
+  double gravity = 0.0;    ///< potential, relative to the start
+  double contact = 0.0;    ///< stored in contact and support springs
+  double friction = 0.0;   ///< dissipated
+  double input = 0.0;      ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
+  double numerical = 0.0;  ///< dissipated by the time integration, computed step by step
+  double residual_ratio = 0.0;  ///< |residual| over the largest term
+};
+
+/// How the steps went, one row now and then.
+struct StepRow {
+  double time = 0.0;
+  long step = 0;
+  int stage = 0;
+  int iterations = 0;         ///< open-close iterations of the step
+  double step_size = 0.0;     ///< s
+  double penetration = 0.0;   ///< m, largest depth seen by the contact code
+  double max_displacement = 0.0;  ///< m, largest of a step
+  int closed_contacts = 0;
+  Energy energy;
+};
+
+/// Measures as defined in the user guide; cumulative since the first excavation.
+struct Damage {
+  int fallen_blocks = 0;
+  double fallen_area = 0.0;           ///< m²
+  double opening_filled_ratio = 0.0;
+  double loosened_area = 0.0;         ///< m²
+  double slip_max = 0.0, slip_mean = 0.0;                    ///< m
+  double slipped_length = 0.0, opened_length = 0.0;          ///< m
+  double closure_vertical = 0.0, closure_horizontal = 0.0;   ///< m
+};
+
+struct MovingBlock {
+  int block = 0;
+  double carried = 0.0;  ///< share of its weight that contacts carry
+};
+
+struct StageRecord {
+  Stage stage;
+  long steps = 0;
+  double start_time = 0.0, duration = 0.0;  ///< s
+  double pga = 0.0;                         ///< m/s², of the scaled motion in the section
+  bool equilibrium_reached = false;         ///< settle only
+  double worst_residual_ratio = 0.0;        ///< settle only: over blocks that are not moving
+  std::vector<MovingBlock> moving;
+  Damage damage;
+  double wall_time = 0.0;                   ///< s
+  bool interrupted = false;
+  /// The motion as applied, thinned to what a plot needs: time in the stage (s), acceleration (m/s²).
+  std::vector<double> motion_time;
+  std::vector<Vec2> motion;
+};
+
+struct OpenCloseStatistics {
+  double mean_iterations = 0.0;
+  int max_iterations = 0;
+  long retried_steps = 0;
+  long unconverged_steps = 0;
+};
+
+struct RunRecord {
+  long steps = 0;
+  double wall_time = 0.0;  ///< s
+  int dof = 0;
+  std::string state_hash;  ///< of the final state, hexadecimal
+  OpenCloseStatistics open_close;
+  double max_overlap = 0.0;      ///< m, true polygon overlap
+  double max_area_change = 0.0;  ///< relative
+  Energy energy;
+  std::vector<StageRecord> stages;
+  bool interrupted = false;
+};
+
+/// What a terminal needs to draw a progress bar.
+struct Progress {
+  int stage = 0, stage_count = 0;
+  std::string stage_name;
+  StageKind kind = StageKind::settle;
+  long step = 0;                 ///< of the stage
+  double fraction = 0.0;         ///< of the stage, 0 … 1; an estimate while settling
+  double time = 0.0;             ///< s simulated in the stage
+  double steps_per_second = 0.0;
+  double seconds_left = 0.0;     ///< of the stage; negative: unknown
+  double mean_iterations = 0.0;
+  double worst_residual_ratio = 0.0;  ///< settle
+};
+
+/// Receives a run as it goes on. Calls come from one thread, in the order of simulated time.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void begin(const ModelRecord&) {}
+  virtual void stage_begin(int /*index*/, const StageRecord&) {}
+  virtual void frame(const Frame&) {}
+  virtual void contacts(const ContactFrame&) {}
+  virtual void history(const HistoryRow&) {}
+  virtual void step(const StepRow&) {}
+  virtual void progress(const Progress&) {}
+  virtual void stage_end(int /*index*/, const StageRecord&) {}
+  virtual void end(const RunRecord&) {}
+};
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,91 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "block/material.h"
+#include "contact/joint_properties.h"
+#include "cutting/block_system.h"
+#include "dynamics/options.h"
+#include "loading/ground_motion.h"
+#include "loading/load.h"
+#include "simulation/stage.h"
+
+namespace keyblock::simulation {
+
+/// Properties of one block beside its shape.
+struct BlockProperties {
+  std::string name;  ///< empty for cut blocks
+  Material material;
+  int order = 1;       ///< of the displacement polynomial, ≥ 1
+  bool fixed = false;  ///< neither moves nor deforms
+  Vec2 velocity;       ///< m/s at the start
+  double spin = 0.0;   ///< rad/s at the start, counter-clockwise, about the centroid
+};
+
+/// Joint properties by what an edge is a piece of.
+struct JointTable {
+  JointProperties standard;  ///< [joints]: explicit blocks, excavation outlines, and new contacts between them
+  std::vector<JointProperties> joint_sets;
+  std::vector<JointProperties> trace_maps;
+  JointProperties frame;  ///< between the rock and the frame; frictionless unless given
+};
+
+struct Excavation {
+  std::string name;
+  Ring outline;  ///< counter-clockwise, local coordinates
+};
+
+struct History {
+  std::string name;
+  std::string block;  ///< empty: the block that holds the point
+  Vec2 point;         ///< reference position
+};
+
+/// Limits of the damage measures; see the user guide.
+struct DamageLimits {
+  std::optional<double> fall_distance;  ///< m; default 5 % of the width of the opening
+  double loosened_distance = 0.01;      ///< m
+  double slip = 0.001;                  ///< m; a joint counts as slipped beyond it
+  double opening = 0.001;               ///< m; a joint counts as opened beyond it
+};
+
+/// How often results are recorded.
+struct OutputOptions {
+  double frame_interval = 0.1;      ///< s between frames of dynamic stages
+  int settle_frame_interval = 100;  ///< steps between frames of static stages
+  double contact_interval = 1.0;    ///< s between contact snapshots (always at the ends of stages)
+  double history_interval = 0.0;    ///< s between history rows; 0: every step
+};
+
+/// Everything a run needs. Coordinates are local: real ones minus system.origin.
+struct RunSetup {
+  std::string title;
+  std::string version;
+  std::uint64_t seed = 0;
+  int realization = 0;
+  std::string scenario;  ///< text of the scenario as run
+
+  cutting::BlockSystem system;
+  std::vector<BlockProperties> properties;  ///< one per block of `system`
+  bool frame = false;                       ///< fixed blocks around the domain
+  Box domain;                               ///< where the frame is; unused without one
+  JointTable joints;
+  std::vector<std::string> joint_set_names, trace_map_names;
+  std::vector<Excavation> excavations;
+
+  Vec2 gravity{0.0, -9.81};              ///< m/s²
+  std::optional<InSituStress> in_situ;
+  double time_step = 0.0;                ///< s
+  std::vector<loading::GroundMotion> motions;
+  std::vector<loading::Load> loads;
+  std::vector<loading::Support> supports;
+  std::vector<Stage> stages;
+  std::vector<History> histories;
+  DamageLimits damage;
+  OutputOptions output;
+  dynamics::SolverOptions solver;
+};
+
+}  // namespace keyblock::simulation

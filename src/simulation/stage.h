@@ -1,0 +1,25 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keyblock::simulation {
+
+enum class StageKind {
+  settle,  ///< static: pseudo-time steps without velocity until every block is in equilibrium
+  shake,   ///< dynamic under a ground motion
+  rest,    ///< dynamic without one
+};
+
+struct Stage {
+  std::string name;
+  StageKind kind = StageKind::settle;
+  std::vector<int> excavate;        ///< excavations opened at the start, by index
+  int motion = -1;                  ///< shake: index of the ground motion
+  double scale = 1.0;               ///< shake: factor on the accelerations
+  std::optional<double> duration;   ///< s; shake: default the motion's
+  std::optional<int> max_steps;     ///< settle
+  double tolerance = 0.01;          ///< settle: largest residual of a block over its weight at equilibrium
+};
+
+}  // namespace keyblock::simulation
