@@ -41,7 +41,11 @@ std::string read_file(const std::filesystem::path& path) {
   std::ostringstream content;
   if (in) content << in.rdbuf();
   if (!in || std::filesystem::is_directory(path)) {
-    throw InputError(Diagnostic{{path.string(), 0, 0}, "", "no readable file", "a file that can be read", ""});
+    Diagnostic diagnostic;
+    diagnostic.where.file = path.string();
+    diagnostic.found = "no readable file";
+    diagnostic.expected = "a file that can be read";
+    throw InputError(std::move(diagnostic));
   }
   return std::move(content).str();
 }
