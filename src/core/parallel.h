@@ -5,8 +5,9 @@
 
 namespace keyblock {
 
-/// A fixed team of threads for loops whose iterations are independent. Range [0, n) is cut into one contiguous
-/// piece per thread; as no result depends on which thread computed it, any number of threads gives the same bits.
+/// A fixed team of threads for loops whose iterations are independent. Range [0, n) is cut into one
+/// contiguous piece per thread; as no result depends on which thread computed it, any number of threads gives
+/// the same bits.
 class ThreadTeam {
  public:
   explicit ThreadTeam(int threads);

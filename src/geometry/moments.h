@@ -5,8 +5,8 @@
 
 namespace keyblock {
 
-/// Exact integrals of monomials over a polygon with holes, by Green's theorem edge by edge (simplex integration:
-/// Shi 1994; compact form: Chen & Ohnishi 1999).
+/// Exact integrals of monomials over a polygon with holes, by Green's theorem edge by edge (simplex
+/// integration: Shi 1994; compact form: Chen & Ohnishi 1999).
 ///
 /// moments(p, c, h, d) returns M with M[index(i, j)] = ∫ ((x − c.x)/h)^i ((y − c.y)/h)^j dA for i + j ≤ d.
 /// Centre c and scale h keep the numbers near 1: with raw coordinates every digit is lost by degree 10.

@@ -10,8 +10,8 @@ namespace keyblock {
 /// A closed ring of vertices; the last one is joined to the first and not repeated.
 using Ring = std::vector<Vec2>;
 
-/// A region with holes. Invariant wherever a Polygon is passed on: the outer ring runs counter-clockwise, every
-/// hole clockwise, rings do not cross. The region is on the left of every edge.
+/// A region with holes. Invariant wherever a Polygon is passed on: the outer ring runs counter-clockwise,
+/// every hole clockwise, rings do not cross. The region is on the left of every edge.
 struct Polygon {
   Ring outer;
   std::vector<Ring> holes;
@@ -33,7 +33,8 @@ bool contains(const Polygon& polygon, Vec2 p);
 bool contains(std::span<const Vec2> ring, Vec2 p);
 /// Reverses rings where needed so that the invariant of Polygon holds.
 void orient(Polygon& polygon);
-/// Whether two edges of the polygon cross or touch apart from neighbours at their common vertex; all pairs, O(n²).
+/// Whether two edges of the polygon cross or touch apart from neighbours at their common vertex; all pairs,
+/// O(n²).
 bool self_intersects(const Polygon& polygon);
 
 /// Triangles that cover the polygon exactly (ear clipping after holes are bridged), counter-clockwise.

@@ -8,8 +8,16 @@ struct Vec2 {
   double x = 0.0;
   double y = 0.0;
 
-  constexpr Vec2& operator+=(Vec2 b) { x += b.x; y += b.y; return *this; }
-  constexpr Vec2& operator-=(Vec2 b) { x -= b.x; y -= b.y; return *this; }
+  constexpr Vec2& operator+=(Vec2 b) {
+    x += b.x;
+    y += b.y;
+    return *this;
+  }
+  constexpr Vec2& operator-=(Vec2 b) {
+    x -= b.x;
+    y -= b.y;
+    return *this;
+  }
   friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
   friend constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
   friend constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
@@ -19,15 +27,29 @@ struct Vec2 {
   friend constexpr bool operator==(Vec2, Vec2) = default;
 };
 
-constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
+constexpr double dot(Vec2 a, Vec2 b) {
+  return a.x * b.x + a.y * b.y;
+}
 /// z component of a × b: positive when b lies counter-clockwise of a.
-constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+constexpr double cross(Vec2 a, Vec2 b) {
+  return a.x * b.y - a.y * b.x;
+}
 /// a turned by +90°.
-constexpr Vec2 perpendicular(Vec2 a) { return {-a.y, a.x}; }
-constexpr double squared_norm(Vec2 a) { return dot(a, a); }
-inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
-inline Vec2 normalized(Vec2 a) { return a / norm(a); }
-constexpr Vec2 lerp(Vec2 a, Vec2 b, double s) { return (1.0 - s) * a + s * b; }
+constexpr Vec2 perpendicular(Vec2 a) {
+  return {-a.y, a.x};
+}
+constexpr double squared_norm(Vec2 a) {
+  return dot(a, a);
+}
+inline double norm(Vec2 a) {
+  return std::sqrt(dot(a, a));
+}
+inline Vec2 normalized(Vec2 a) {
+  return a / norm(a);
+}
+constexpr Vec2 lerp(Vec2 a, Vec2 b, double s) {
+  return (1.0 - s) * a + s * b;
+}
 
 /// Axis-aligned box; empty until something is added.
 struct Box {
@@ -38,7 +60,10 @@ struct Box {
     min = {std::fmin(min.x, p.x), std::fmin(min.y, p.y)};
     max = {std::fmax(max.x, p.x), std::fmax(max.y, p.y)};
   }
-  void add(const Box& b) { add(b.min); add(b.max); }
+  void add(const Box& b) {
+    add(b.min);
+    add(b.max);
+  }
   [[nodiscard]] Box grown(double margin) const {
     return {{min.x - margin, min.y - margin}, {max.x + margin, max.y + margin}};
   }

@@ -1,0 +1,219 @@
+#include "geometry/polygon.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace keyblock {
+
+double signed_area(std::span<const Vec2> ring) {
+  double twice = 0.0;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    // Relative to the first vertex: rings far from the origin keep their digits.
+    twice += cross(ring[k] - ring[0], ring[(k + 1) % ring.size()] - ring[0]);
+  }
+  return 0.5 * twice;
+}
+
+double area(const Polygon& polygon) {
+  double sum = 0.0;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) sum += signed_area(polygon.ring(r));
+  return sum;
+}
+
+double perimeter(const Polygon& polygon) {
+  double sum = 0.0;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) sum += norm(ring[(k + 1) % ring.size()] - ring[k]);
+  }
+  return sum;
+}
+
+Vec2 centroid(const Polygon& polygon) {
+  const Vec2 origin = polygon.outer.at(0);
+  Vec2 moment;
+  double twice_area = 0.0;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k] - origin;
+      const Vec2 b = ring[(k + 1) % ring.size()] - origin;
+      moment += cross(a, b) * (a + b);
+      twice_area += cross(a, b);
+    }
+  }
+  return origin + moment / (3.0 * twice_area);
+}
+
+Box bounds(const Polygon& polygon) {
+  Box box;
+  for (const Vec2 p : polygon.outer) box.add(p);
+  return box;
+}
+
+bool contains(std::span<const Vec2> ring, Vec2 p) {
+  bool inside = false;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 a = ring[k];
+    const Vec2 b = ring[(k + 1) % ring.size()];
+    if ((a.y > p.y) != (b.y > p.y) && (cross(b - a, p - a) > 0.0) == (b.y > a.y)) inside = !inside;
+  }
+  return inside;
+}
+
+bool contains(const Polygon& polygon, Vec2 p) {
+  bool inside = contains(polygon.outer, p);
+  for (const Ring& hole : polygon.holes) inside = inside != contains(hole, p);
+  return inside;
+}
+
+void orient(Polygon& polygon) {
+  if (signed_area(polygon.outer) < 0.0) std::reverse(polygon.outer.begin(), polygon.outer.end());
+  for (Ring& hole : polygon.holes) {
+    if (signed_area(hole) > 0.0) std::reverse(hole.begin(), hole.end());
+  }
+}
+
+namespace {
+
+int side(Vec2 a, Vec2 b, Vec2 p) {
+  const double c = cross(b - a, p - a);
+  return (c > 0.0) - (c < 0.0);
+}
+
+bool between(Vec2 a, Vec2 b, Vec2 p) {
+  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
+         p.y <= std::max(a.y, b.y);
+}
+
+bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  const int c_side = side(a, b, c), d_side = side(a, b, d), a_side = side(c, d, a), b_side = side(c, d, b);
+  if (c_side * d_side < 0 && a_side * b_side < 0) return true;
+  return (c_side == 0 && between(a, b, c)) || (d_side == 0 && between(a, b, d)) ||
+         (a_side == 0 && between(c, d, a)) || (b_side == 0 && between(c, d, b));
+}
+
+struct Edge {
+  std::size_t ring, index;
+  Vec2 a, b;
+};
+
+std::vector<Edge> edges_of(const Polygon& polygon) {
+  std::vector<Edge> edges;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      edges.push_back({r, k, ring[k], ring[(k + 1) % ring.size()]});
+  }
+  return edges;
+}
+
+}  // namespace
+
+bool self_intersects(const Polygon& polygon) {
+  const std::vector<Edge> edges = edges_of(polygon);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Edge& e = edges[i];
+    if (e.a == e.b) return true;
+    const std::size_t size = polygon.ring(e.ring).size();
+    for (std::size_t j = i + 1; j < edges.size(); ++j) {
+      const Edge& f = edges[j];
+      const bool next = e.ring == f.ring && (e.index + 1) % size == f.index;
+      const bool previous = e.ring == f.ring && (f.index + 1) % size == e.index;
+      if (next || previous) {
+        // Neighbours meet at their common vertex; they must not fold back onto each other.
+        const Edge& first = next ? e : f;
+        const Edge& second = next ? f : e;
+        if (side(first.a, first.b, second.b) == 0 && dot(first.b - first.a, second.b - second.a) < 0.0)
+          return true;
+      } else if (segments_meet(e.a, e.b, f.a, f.b)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+namespace {
+
+bool in_triangle(Vec2 a, Vec2 b, Vec2 c, Vec2 p) {
+  return cross(b - a, p - a) >= 0.0 && cross(c - b, p - b) >= 0.0 && cross(a - c, p - c) >= 0.0;
+}
+
+/// Joins a hole to the ring by a double edge from the hole's rightmost vertex to a ring vertex that it sees.
+void bridge_hole(Ring& ring, const Ring& hole) {
+  const auto start = static_cast<std::size_t>(
+      std::max_element(hole.begin(), hole.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; }) - hole.begin());
+  const Vec2 p = hole[start];
+  std::size_t best = ring.size();
+  double best_distance = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const double distance = squared_norm(ring[k] - p);
+    if (distance >= best_distance || ring[k].x < p.x) continue;
+    bool visible = true;
+    for (std::size_t e = 0; e < ring.size() && visible; ++e) {
+      const Vec2 a = ring[e], b = ring[(e + 1) % ring.size()];
+      visible = a == ring[k] || b == ring[k] || !segments_meet(a, b, p, ring[k]);
+    }
+    if (visible) {
+      best = k;
+      best_distance = distance;
+    }
+  }
+  if (best == ring.size()) throw std::invalid_argument("triangulate: a hole lies outside its outer ring");
+  Ring joined(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+  for (std::size_t k = 0; k <= hole.size(); ++k) joined.push_back(hole[(start + k) % hole.size()]);
+  joined.insert(joined.end(), ring.begin() + static_cast<std::ptrdiff_t>(best), ring.end());
+  ring = std::move(joined);
+}
+
+bool is_ear(const Ring& ring, std::size_t k) {
+  const std::size_t n = ring.size();
+  const Vec2 a = ring[(k + n - 1) % n], b = ring[k], c = ring[(k + 1) % n];
+  if (cross(b - a, c - b) <= 0.0) return false;
+  return std::none_of(ring.begin(), ring.end(),
+                      [&](Vec2 p) { return !(p == a) && !(p == b) && !(p == c) && in_triangle(a, b, c, p); });
+}
+
+}  // namespace
+
+std::vector<std::array<Vec2, 3>> triangulate(const Polygon& polygon) {
+  if (polygon.outer.size() < 3 || !(area(polygon) > 0.0)) {
+    throw std::invalid_argument("triangulate: a polygon needs three vertices and an area");
+  }
+  std::vector<Ring> holes = polygon.holes;
+  const auto right = [](const Ring& h) {
+    return std::max_element(h.begin(), h.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; })->x;
+  };
+  std::sort(holes.begin(), holes.end(), [&](const Ring& a, const Ring& b) { return right(a) > right(b); });
+  Ring ring = polygon.outer;
+  for (const Ring& hole : holes) bridge_hole(ring, hole);
+
+  std::vector<std::array<Vec2, 3>> triangles;
+  while (ring.size() > 3) {
+    const std::size_t n = ring.size();
+    std::size_t ear = 0;
+    while (ear < n && !is_ear(ring, ear)) ++ear;
+    if (ear == n) {
+      // No strict ear is left: a flat vertex (collinear neighbours) is cut off without a triangle.
+      std::size_t flattest = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < n; ++k) {
+        const double c = std::abs(cross(ring[k] - ring[(k + n - 1) % n], ring[(k + 1) % n] - ring[k]));
+        if (c < least) {
+          least = c;
+          flattest = k;
+        }
+      }
+      ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(flattest));
+      continue;
+    }
+    triangles.push_back({ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]});
+    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  if (cross(ring[1] - ring[0], ring[2] - ring[1]) > 0.0) triangles.push_back({ring[0], ring[1], ring[2]});
+  return triangles;
+}
+
+}  // namespace keyblock
