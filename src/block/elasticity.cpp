@@ -1,0 +1,184 @@
+#include "block/elasticity.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace keyblock::block {
+
+Stress in_situ_at(const std::optional<InSituStress>& in_situ, Vec2 point) {
+  if (!in_situ) return {};
+  const double height = point.y - in_situ->reference_y;
+  return {in_situ->sxx + in_situ->sxx_gradient * height, in_situ->syy + in_situ->syy_gradient * height,
+          in_situ->sxy};
+}
+
+Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material& material,
+                       const std::optional<InSituStress>& in_situ)
+    : size_(basis.size()), in_situ_(in_situ) {
+  const double e = material.young, nu = material.poisson;
+  if (material.state == PlaneState::plane_stress) {
+    c11_ = e / (1.0 - nu * nu);
+    c12_ = nu * c11_;
+  } else {
+    c11_ = e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    c12_ = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  }
+  c33_ = e / (2.0 * (1.0 + nu));
+  // A linear S₀ times the quadratic E has degree 2(n − 1) + 1, above 4(n − 1) only at n = 1.
+  const int degree = std::max(4 * (basis.order() - 1), in_situ ? 2 * (basis.order() - 1) + 1 : 0);
+  for (const WeightedPoint& w : polygon_rule(region, degree)) {
+    weight_.push_back(w.weight);
+    initial_.push_back(in_situ_at(in_situ, w.point));
+    gradient_.resize(gradient_.size() + static_cast<std::size_t>(size_));
+    basis.gradients(w.point, gradient_.data() + gradient_.size() - size_);
+  }
+}
+
+Elasticity::Gradient2 Elasticity::deformation(const double* a, const Vec2* gradients) const {
+  Gradient2 f{0.0, 0.0, 0.0, 0.0};
+  for (int k = 1; k < size_; ++k) {
+    f.xx += a[2 * k] * gradients[k].x;
+    f.xy += a[2 * k] * gradients[k].y;
+    f.yx += a[2 * k + 1] * gradients[k].x;
+    f.yy += a[2 * k + 1] * gradients[k].y;
+  }
+  return f;
+}
+
+Stress Elasticity::second_piola(const Gradient2& f, const Stress& initial) const {
+  const double exx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0);
+  const double eyy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0);
+  const double two_exy = f.xx * f.xy + f.yx * f.yy;
+  return {initial.xx + c11_ * exx + c12_ * eyy, initial.yy + c12_ * exx + c11_ * eyy,
+          initial.xy + c33_ * two_exy};
+}
+
+double Elasticity::density(const Gradient2& f, const Stress& initial) const {
+  const Stress s = second_piola(f, initial);
+  const double exx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0);
+  const double eyy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0);
+  const double two_exy = f.xx * f.xy + f.yx * f.yy;
+  return 0.5 * ((s.xx + initial.xx) * exx + (s.yy + initial.yy) * eyy + (s.xy + initial.xy) * two_exy);
+}
+
+double Elasticity::energy(const double* a) const {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < weight_.size(); ++q) {
+    sum += weight_[q] * density(deformation(a, &gradient_[q * static_cast<std::size_t>(size_)]), initial_[q]);
+  }
+  return sum;
+}
+
+double Elasticity::add_force(const double* a, double* force) const {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < weight_.size(); ++q) {
+    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
+    const Gradient2 f = deformation(a, g);
+    const Stress s = second_piola(f, initial_[q]);
+    sum += weight_[q] * density(f, initial_[q]);
+    // P = F S
+    const double pxx = weight_[q] * (f.xx * s.xx + f.xy * s.xy),
+                 pxy = weight_[q] * (f.xx * s.xy + f.xy * s.yy);
+    const double pyx = weight_[q] * (f.yx * s.xx + f.yy * s.xy),
+                 pyy = weight_[q] * (f.yx * s.xy + f.yy * s.yy);
+    for (int k = 1; k < size_; ++k) {
+      force[2 * k] += pxx * g[k].x + pxy * g[k].y;
+      force[2 * k + 1] += pyx * g[k].x + pyy * g[k].y;
+    }
+  }
+  return sum;
+}
+
+namespace {
+
+/// Raises the eigenvalues of a symmetric matrix to at least −floor; does nothing when a bound shows that none
+/// is below.
+void floor_eigenvalues(Eigen::MatrixXd& g, double floor) {
+  double bound = 0.0;
+  for (Eigen::Index i = 0; i < g.rows(); ++i) {
+    bound = std::max(bound, g.row(i).cwiseAbs().sum() - std::abs(g(i, i)) - g(i, i));
+  }
+  if (bound <= floor) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(g);
+  if (solver.eigenvalues().minCoeff() >= -floor) return;
+  const Eigen::VectorXd raised = solver.eigenvalues().cwiseMax(-floor);
+  g = solver.eigenvectors() * raised.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+void Elasticity::add_tangent(const double* a, double floor, double* tangent, int stride) const {
+  Eigen::MatrixXd geometric = Eigen::MatrixXd::Zero(size_ - 1, size_ - 1);
+  std::vector<std::array<double, 6>> b(
+      static_cast<std::size_t>(size_));  // B_k, columns x and y of three rows
+  for (std::size_t q = 0; q < weight_.size(); ++q) {
+    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
+    const Gradient2 f = deformation(a, g);
+    const Stress s = second_piola(f, initial_[q]);
+    for (int k = 1; k < size_; ++k) {
+      b[static_cast<std::size_t>(k)] = {f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x,
+                                        f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x};
+    }
+    for (int l = 1; l < size_; ++l) {
+      const Vec2 sg{weight_[q] * (s.xx * g[l].x + s.xy * g[l].y),
+                    weight_[q] * (s.xy * g[l].x + s.yy * g[l].y)};
+      const auto& bl = b[static_cast<std::size_t>(l)];
+      std::array<double, 6> cb;
+      for (std::size_t c = 0; c < 6; c += 3) {
+        cb[c] = weight_[q] * (c11_ * bl[c] + c12_ * bl[c + 1]);
+        cb[c + 1] = weight_[q] * (c12_ * bl[c] + c11_ * bl[c + 1]);
+        cb[c + 2] = weight_[q] * c33_ * bl[c + 2];
+      }
+      double* column_x = tangent + static_cast<std::ptrdiff_t>(2 * l) * stride;
+      double* column_y = column_x + stride;
+      for (int k = l; k < size_; ++k) {
+        const auto& bk = b[static_cast<std::size_t>(k)];
+        geometric(k - 1, l - 1) += dot(g[k], sg);
+        column_x[2 * k] += bk[0] * cb[0] + bk[1] * cb[1] + bk[2] * cb[2];
+        column_x[2 * k + 1] += bk[3] * cb[0] + bk[4] * cb[1] + bk[5] * cb[2];
+        column_y[2 * k + 1] += bk[3] * cb[3] + bk[4] * cb[4] + bk[5] * cb[5];
+        if (k > l) column_y[2 * k] += bk[0] * cb[3] + bk[1] * cb[4] + bk[2] * cb[5];
+      }
+    }
+  }
+  geometric.triangularView<Eigen::StrictlyUpper>() = geometric.transpose();
+  floor_eigenvalues(geometric, floor);
+  for (int l = 1; l < size_; ++l) {
+    for (int k = l; k < size_; ++k) {
+      tangent[static_cast<std::ptrdiff_t>(2 * l) * stride + 2 * k] += geometric(k - 1, l - 1);
+      tangent[static_cast<std::ptrdiff_t>(2 * l + 1) * stride + 2 * k + 1] += geometric(k - 1, l - 1);
+    }
+  }
+}
+
+namespace {
+Stress push_forward(double fxx, double fxy, double fyx, double fyy, const Stress& s) {
+  const double j = fxx * fyy - fxy * fyx;
+  const double pxx = fxx * s.xx + fxy * s.xy, pxy = fxx * s.xy + fxy * s.yy;
+  const double pyx = fyx * s.xx + fyy * s.xy, pyy = fyx * s.xy + fyy * s.yy;
+  return {(pxx * fxx + pxy * fxy) / j, (pyx * fyx + pyy * fyy) / j, (pxx * fyx + pxy * fyy) / j};
+}
+}  // namespace
+
+Stress Elasticity::cauchy(const double* a, const Basis& basis, Vec2 point) const {
+  std::vector<Vec2> g(static_cast<std::size_t>(size_));
+  basis.gradients(point, g.data());
+  const Gradient2 f = deformation(a, g.data());
+  return push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, in_situ_at(in_situ_, point)));
+}
+
+Stress Elasticity::mean_cauchy(const double* a) const {
+  Stress mean;
+  double total = 0.0;
+  for (std::size_t q = 0; q < weight_.size(); ++q) {
+    const Gradient2 f = deformation(a, &gradient_[q * static_cast<std::size_t>(size_)]);
+    const Stress s = push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, initial_[q]));
+    mean.xx += weight_[q] * s.xx;
+    mean.yy += weight_[q] * s.yy;
+    mean.xy += weight_[q] * s.xy;
+    total += weight_[q];
+  }
+  return {mean.xx / total, mean.yy / total, mean.xy / total};
+}
+
+}  // namespace keyblock::block

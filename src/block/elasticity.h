@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "block/basis.h"
+#include "block/material.h"
+
+namespace keyblock::block {
+
+/// Symmetric tensor of the plane.
+struct Stress {
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+};
+
+/// Stress before excavation at a point; zero without one.
+Stress in_situ_at(const std::optional<InSituStress>& in_situ, Vec2 point);
+
+/// Strain energy of one block of any order: St. Venant-Kirchhoff, E = ½(FᵀF − I), S = S₀ + C : E.
+///
+///     U(a) = ∫ S₀ : E + ½ E : C : E dA,     F = Σ_k a_k ⊗ ∇φ_k
+///     f_k  = ∂U/∂a_k = ∫ F S ∇φ_k dA                                         (N vectors)
+///     K    = ∂²U/∂a² = ∫ Bᵀ C B dA + ∫ (∇φ_k · S ∇φ_l) I dA                    (2N × 2N)
+///
+/// Invariant under rotation. Integrals are exact: the rule has degree 4(n − 1), one more with a stress
+/// gradient. Per unit thickness. Coefficients are ordered a_0x, a_0y, a_1x, … as everywhere.
+class Elasticity {
+ public:
+  Elasticity(const Polygon& region, const Basis& basis, const Material& material,
+             const std::optional<InSituStress>& in_situ);
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] double energy(const double* a) const;
+  /// force[2k + c] += f_k; returns U.
+  double add_force(const double* a, double* force) const;
+  /// tangent: 2N × 2N with leading dimension `stride`, lower triangle added to (symmetric). The geometric
+  /// part is kept above −floor (1/s² · kg/m³, as inertia): a block under extreme pressure then keeps a
+  /// positive definite step.
+  void add_tangent(const double* a, double floor, double* tangent, int stride) const;
+  /// Cauchy stress σ = F S Fᵀ / det F at a point of the region.
+  [[nodiscard]] Stress cauchy(const double* a, const Basis& basis, Vec2 point) const;
+  /// Mean of the Cauchy stress over the region, weighted by reference area.
+  [[nodiscard]] Stress mean_cauchy(const double* a) const;
+
+ private:
+  struct Gradient2 {
+    double xx, xy, yx, yy;  ///< F_ij
+  };
+  [[nodiscard]] Gradient2 deformation(const double* a, const Vec2* gradients) const;
+  [[nodiscard]] Stress second_piola(const Gradient2& f, const Stress& initial) const;
+  [[nodiscard]] double density(const Gradient2& f, const Stress& initial) const;
+
+  int size_;
+  double c11_, c12_, c33_;  ///< plane elasticity matrix; c22 = c11
+  std::optional<InSituStress> in_situ_;
+  std::vector<double> weight_;   ///< m², per point of the rule
+  std::vector<Vec2> gradient_;   ///< ∇φ_k at point q: gradient_[q N + k]
+  std::vector<Stress> initial_;  ///< S₀ per point
+};
+
+}  // namespace keyblock::block

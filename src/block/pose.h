@@ -1,0 +1,34 @@
+#pragma once
+#include <vector>
+
+#include "block/basis.h"
+
+namespace keyblock::block {
+
+/// cos w and sin w from series in +, − and × alone, so that every machine gets the same bits. Any w.
+void rotation(double w, double& cosine, double& sine);
+
+/// Area and mean spin of a block of any order, and the pose update that keeps rotation exact.
+///
+/// With W_kl = ∫ (∂φ_k/∂X ∂φ_l/∂Y − ∂φ_k/∂Y ∂φ_l/∂X) dA (antisymmetric, constant):
+///     current area   A = a_xᵀ W a_y
+///     mean spin of D w = (D_xᵀ W a_x + D_yᵀ W a_y) / 2A   (skew part of the mean of ∇D over the current
+///     configuration)
+class Pose {
+ public:
+  Pose(const Polygon& region, const Basis& basis);
+
+  [[nodiscard]] double area(const double* a) const;
+  [[nodiscard]] double mean_spin(const double* increment, const double* a) const;
+  /// Formulation, equation (5). With c the centroid and r = x − c, the increment is D = D_c + w × r + D_def,
+  /// and
+  ///     x ← c + D_c + R(w)(r + D_def),      relative part of v ← R(w) v.
+  /// a, v: coefficients of position and velocity (2N values each), changed in place. Returns w.
+  double update(const double* increment, double* a, double* v) const;
+
+ private:
+  int size_;
+  std::vector<double> w_;  ///< N × N
+};
+
+}  // namespace keyblock::block

@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "block/basis.h"
+#include "block/elasticity.h"
+#include "block/pose.h"
+#include "geometry/quadrature.h"
+
+namespace keyblock::block {
+namespace {
+
+const Polygon l_shape{{{3, 0}, {5, 0.2}, {5, 1}, {4, 1}, {4.1, 3}, {3, 2.8}}, {}};
+const Polygon holed{{{-2, -2}, {4, -2}, {4, 3}, {-2, 3}}, {{{0, 0}, {0, 1}, {2, 1}, {2, 0}}}};
+const Material rock{2270.0, 3.0e9, 0.21, PlaneState::plane_stress};
+const InSituStress stress{-1e6, -2e6, 1e5, 1e4, 2e4, 1.0};
+
+TEST(Basis, IsOrthonormalAtEveryOrder) {
+  for (const Polygon& region : {l_shape, holed}) {
+    for (int order : {1, 2, 3, 5, 10}) {
+      const Basis basis(region, order);
+      const auto n = static_cast<std::size_t>(basis.size());
+      std::vector<double> phi(n), gram(n * n, 0.0);
+      for (const WeightedPoint& w : polygon_rule(region, 2 * order)) {
+        basis.evaluate(w.point, phi.data());
+        for (std::size_t i = 0; i < n; ++i) {
+          for (std::size_t j = 0; j < n; ++j) gram[i * n + j] += w.weight * phi[i] * phi[j];
+        }
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) EXPECT_NEAR(gram[i * n + j], i == j ? 1.0 : 0.0, 1e-11) << order;
+      }
+    }
+  }
+}
+
+TEST(Basis, ReproducesTheIdentity) {
+  const Basis basis(l_shape, 4);
+  const std::vector<Vec2> a = basis.identity();
+  std::vector<double> phi(a.size());
+  for (const Vec2 p : l_shape.outer) {
+    basis.evaluate(p, phi.data());
+    Vec2 x;
+    for (std::size_t k = 0; k < a.size(); ++k) x += phi[k] * a[k];
+    EXPECT_NEAR(norm(x - p), 0.0, 1e-13);
+  }
+  basis.evaluate(centroid(l_shape), phi.data());
+  EXPECT_NEAR(phi[0], 1.0 / std::sqrt(area(l_shape)), 1e-14);
+  EXPECT_NEAR(phi[1], 0.0, 1e-13);
+  EXPECT_NEAR(phi[2], 0.0, 1e-13);
+  EXPECT_THROW(Basis(l_shape, 0), std::invalid_argument);
+}
+
+std::vector<double> coefficients(const Basis& basis) {
+  std::vector<double> a;
+  for (const Vec2 c : basis.identity()) a.insert(a.end(), {c.x, c.y});
+  return a;
+}
+
+std::vector<double> disturbed(const Basis& basis, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  std::vector<double> a = coefficients(basis);
+  for (double& x : a) x += uniform(random);
+  return a;
+}
+
+class ElasticityOrder : public ::testing::TestWithParam<int> {};
+
+TEST_P(ElasticityOrder, ForceAndTangentAreDerivatives) {
+  const Basis basis(l_shape, GetParam());
+  const Elasticity elasticity(l_shape, basis, rock, stress);
+  const std::vector<double> a = disturbed(basis, 0.02, 1);
+  const int n = 2 * basis.size();
+  std::vector<double> force(a.size(), 0.0), tangent(a.size() * a.size(), 0.0);
+  EXPECT_NEAR(elasticity.add_force(a.data(), force.data()) / elasticity.energy(a.data()), 1.0, 1e-14);
+  elasticity.add_tangent(a.data(), 1e30, tangent.data(), n);
+  double force_scale = 0.0, tangent_scale = 0.0;
+  for (const double f : force) force_scale = std::max(force_scale, std::abs(f));
+  for (const double k : tangent) tangent_scale = std::max(tangent_scale, std::abs(k));
+  const double h = 1e-5;
+  for (int j = 0; j < n; ++j) {
+    std::vector<double> up = a, down = a, force_up(a.size(), 0.0), force_down(a.size(), 0.0);
+    up[static_cast<std::size_t>(j)] += h;
+    down[static_cast<std::size_t>(j)] -= h;
+    const double slope = (elasticity.add_force(up.data(), force_up.data()) -
+                          elasticity.add_force(down.data(), force_down.data())) /
+                         (2 * h);
+    EXPECT_NEAR(slope / force_scale, force[static_cast<std::size_t>(j)] / force_scale, 1e-6);
+    for (int i = j; i < n; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const double expected = (force_up[row] - force_down[row]) / (2 * h);
+      EXPECT_NEAR(tangent[static_cast<std::size_t>(j * n + i)] / tangent_scale, expected / tangent_scale,
+                  1e-7);
+    }
+  }
+}
+
+TEST_P(ElasticityOrder, EnergyIsInvariantUnderRotationAndStressTurns) {
+  const Basis basis(l_shape, GetParam());
+  const Elasticity elasticity(l_shape, basis, rock, stress);
+  const std::vector<double> a = disturbed(basis, 0.01, 2);
+  const double angle = 1.1, c = std::cos(angle), s = std::sin(angle);
+  std::vector<double> turned = a;
+  for (std::size_t k = 0; k + 1 < a.size(); k += 2) {
+    turned[k] = c * a[k] - s * a[k + 1];
+    turned[k + 1] = s * a[k] + c * a[k + 1];
+  }
+  EXPECT_NEAR(elasticity.energy(turned.data()) / elasticity.energy(a.data()), 1.0, 1e-12);
+  const Stress before = elasticity.mean_cauchy(a.data()), after = elasticity.mean_cauchy(turned.data());
+  EXPECT_NEAR((before.xx + before.yy) / (after.xx + after.yy), 1.0, 1e-12);
+  EXPECT_NEAR((c * c * before.xx - 2 * s * c * before.xy + s * s * before.yy) / after.xx, 1.0, 1e-10);
+}
+
+TEST_P(ElasticityOrder, FloorKeepsTheTangentPositive) {
+  const Basis basis(l_shape, GetParam());
+  const InSituStress crushing{-1e9, -1e9, 0.0, 0.0, 0.0, 0.0};
+  const Elasticity elasticity(l_shape, basis, rock, crushing);
+  const std::vector<double> a = coefficients(basis);
+  const int n = 2 * basis.size();
+  std::vector<double> tangent(a.size() * a.size(), 0.0);
+  elasticity.add_tangent(a.data(), 1e6, tangent.data(), n);
+  // Pure rotation is resisted by the geometric part alone.
+  double along = 0.0;
+  std::vector<double> spin(a.size());
+  for (std::size_t k = 2; k + 1 < a.size(); k += 2) {
+    spin[k] = -a[k + 1];
+    spin[k + 1] = a[k];
+  }
+  double squared = 0.0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const auto lower = static_cast<std::size_t>(std::min(i, j) * n + std::max(i, j));
+      along += spin[static_cast<std::size_t>(i)] * tangent[lower] * spin[static_cast<std::size_t>(j)];
+    }
+    squared += spin[static_cast<std::size_t>(i)] * spin[static_cast<std::size_t>(i)];
+  }
+  EXPECT_GE(along / squared, -1.001e6);
+  EXPECT_LT(along / squared, -0.9e6);
+}
+
+TEST_P(ElasticityOrder, FreeSpinKeepsAreaAndEnergy) {
+  const Basis basis(l_shape, GetParam());
+  const Pose pose(l_shape, basis);
+  std::vector<double> a = coefficients(basis), v(a.size(), 0.0);
+  const double omega = 10.0;
+  for (int steps : {314, 63}) {
+    const double dt = 2.0 * std::numbers::pi / omega / steps;
+    for (std::size_t k = 2; k + 1 < a.size(); k += 2) {
+      v[k] = -omega * a[k + 1];
+      v[k + 1] = omega * a[k];
+    }
+    const double area_before = pose.area(a.data());
+    double energy_before = 0.0, energy_after = 0.0;
+    for (const double x : v) energy_before += x * x;
+    const std::vector<double> start = a;
+    for (int step = 0; step < steps; ++step) {
+      std::vector<double> increment = v;
+      for (double& d : increment) d *= dt;
+      EXPECT_NEAR(pose.update(increment.data(), a.data(), v.data()), omega * dt, 1e-12);
+    }
+    for (const double x : v) energy_after += x * x;
+    EXPECT_NEAR(pose.area(a.data()) / area_before, 1.0, 1e-12);
+    EXPECT_NEAR(energy_after / energy_before, 1.0, 1e-12);
+    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], start[k], 1e-10);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, ElasticityOrder, ::testing::Values(1, 2, 3, 5));
+
+TEST(Pose, RotationAgreesWithTheLibrary) {
+  for (double w : {0.0, 1e-9, 0.01, 0.3, -2.0, 7.5}) {
+    double c, s;
+    rotation(w, c, s);
+    EXPECT_NEAR(c, std::cos(w), 4e-15);
+    EXPECT_NEAR(s, std::sin(w), 4e-15);
+  }
+}
+
+}  // namespace
+}  // namespace keyblock::block
