@@ -1,0 +1,241 @@
+#include <amd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "linalg/block_kernels.h"
+#include "linalg/block_solver.h"
+
+namespace keyblock::linalg {
+
+namespace {
+
+/// Order of elimination of the graph of blocks: order[k] is the block eliminated as k-th.
+std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int, int>> pairs) {
+  std::vector<int> start(static_cast<std::size_t>(n) + 1, 0), neighbour(2 * pairs.size() + 1);
+  for (const auto& [i, j] : pairs) {
+    ++start[static_cast<std::size_t>(i) + 1];
+    ++start[static_cast<std::size_t>(j) + 1];
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) start[k + 1] += start[k];
+  std::vector<int> next(start.begin(), start.end() - 1);
+  for (const auto& [i, j] : pairs) {
+    neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(i)]++)] = j;
+    neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(j)]++)] = i;
+  }
+  std::vector<int> order(static_cast<std::size_t>(n));
+  double control[AMD_CONTROL];
+  amd_defaults(control);
+  if (n > 0 && amd_order(n, start.data(), neighbour.data(), order.data(), control, nullptr) < 0) {
+    throw std::logic_error("amd_order refused the pattern");
+  }
+  return order;
+}
+
+class BlockCholesky final : public BlockSolver {
+ public:
+  void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
+  void clear() override { std::fill(values_.begin(), values_.end(), 0.0); }
+  double* diagonal(int block) override { return &values_[column_value_[position_[index(block)]]]; }
+  BlockSlot slot(int pair) override { return slots_[index(pair)]; }
+  bool factor() override;
+  void solve(std::span<double> x) override;
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  void find_structure(std::span<const std::pair<int, int>> pairs);
+  void place_values();
+  void update_column(std::size_t j);
+
+  // Column j of the factor has its diagonal block first, then rows_[row_start_[j] … row_start_[j+1]),
+  // ascending.
+  std::vector<std::size_t> position_;   ///< block → column
+  std::vector<int> size_, stride_;      ///< per column
+  std::vector<std::size_t> row_start_;  ///< per column, into rows_ and row_value_
+  std::vector<std::size_t> rows_;
+  std::vector<std::size_t> row_value_;      ///< per row entry, into values_
+  std::vector<std::size_t> column_value_;   ///< per column: the diagonal block, into values_
+  std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_
+  struct Update {
+    std::size_t column;  ///< k < j with a block in row j
+    std::size_t entry;   ///< that block, into rows_
+  };
+  std::vector<std::size_t> update_start_;  ///< per column, into updates_
+  std::vector<Update> updates_;
+  std::vector<double> values_, inverse_;
+  std::vector<std::size_t> offset_;  ///< per column: start of its unknowns in x, as the caller orders them
+  std::vector<std::size_t> work_start_;  ///< per column: start in work_, padded
+  std::vector<double> work_;
+  std::vector<double*> target_;  ///< scratch of update_column: row → block of the column at hand
+  std::vector<BlockSlot> slots_;
+};
+
+void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
+  const std::size_t n = sizes.size();
+  const std::vector<int> order = approximate_minimum_degree(static_cast<int>(n), pairs);
+  position_.assign(n, 0);
+  size_.assign(n, 0);
+  stride_.assign(n, 0);
+  offset_.assign(n, 0);
+  std::vector<std::size_t> start(n + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) start[i + 1] = start[i] + index(sizes[i]);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t block = index(order[k]);
+    position_[block] = k;
+    size_[k] = sizes[block];
+    stride_[k] = padded_rows(sizes[block]);
+    offset_[k] = start[block];
+  }
+  find_structure(pairs);
+  place_values();
+  slots_.clear();
+  for (const auto& [i, j] : pairs) {
+    const bool i_below = position_[index(i)] > position_[index(j)];
+    const std::size_t row = position_[index(i_below ? i : j)], column = position_[index(i_below ? j : i)];
+    const auto first = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[column]);
+    const auto last = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[column + 1]);
+    const auto entry = static_cast<std::size_t>(std::lower_bound(first, last, row) - rows_.begin());
+    slots_.push_back({&values_[row_value_[entry]], stride_[row], i_below ? i : j, i_below ? j : i});
+  }
+}
+
+// Row structure of every column: its own entries and those of the columns whose parent it is (elimination
+// tree).
+void BlockCholesky::find_structure(std::span<const std::pair<int, int>> pairs) {
+  const std::size_t n = size_.size();
+  std::vector<std::vector<std::size_t>> below(n), children(n);
+  for (const auto& [i, j] : pairs) {
+    const auto [low, high] = std::minmax(position_[index(i)], position_[index(j)]);
+    below[low].push_back(high);
+  }
+  row_start_.assign(1, 0);
+  rows_.clear();
+  std::vector<std::size_t> seen(n, n);
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<std::size_t> rows;
+    seen[j] = j;
+    const auto add = [&](std::size_t row) {
+      if (seen[row] == j) return;
+      seen[row] = j;
+      rows.push_back(row);
+    };
+    for (const std::size_t row : below[j]) add(row);
+    for (const std::size_t child : children[j]) {
+      for (std::size_t e = row_start_[child]; e < row_start_[child + 1]; ++e) add(rows_[e]);
+    }
+    std::sort(rows.begin(), rows.end());
+    if (!rows.empty()) children[rows.front()].push_back(j);
+    rows_.insert(rows_.end(), rows.begin(), rows.end());
+    row_start_.push_back(rows_.size());
+  }
+  std::vector<std::size_t> count(n + 1, 0);
+  for (const std::size_t row : rows_) ++count[row + 1];
+  for (std::size_t j = 0; j < n; ++j) count[j + 1] += count[j];
+  update_start_ = count;
+  updates_.resize(rows_.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t e = row_start_[k]; e < row_start_[k + 1]; ++e) updates_[count[rows_[e]]++] = {k, e};
+  }
+}
+
+void BlockCholesky::place_values() {
+  const std::size_t n = size_.size();
+  std::size_t value = 0, inverse = 0, work = 0;
+  column_value_.resize(n);
+  inverse_start_.resize(n);
+  work_start_.resize(n);
+  row_value_.resize(rows_.size());
+  for (std::size_t j = 0; j < n; ++j) {
+    column_value_[j] = value;
+    inverse_start_[j] = inverse;
+    work_start_[j] = work;
+    value += index(stride_[j] * size_[j]);
+    inverse += index(size_[j]);
+    work += index(stride_[j]);
+    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+      row_value_[e] = value;
+      value += index(stride_[rows_[e]] * size_[j]);
+    }
+  }
+  values_.assign(value, 0.0);
+  inverse_.assign(inverse, 0.0);
+  work_.assign(work, 0.0);
+  target_.assign(n, nullptr);
+}
+
+/// A_ij −= Σ_k L_ik L_jkᵀ for all rows i of column j.
+void BlockCholesky::update_column(std::size_t j) {
+  target_[j] = &values_[column_value_[j]];
+  for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) target_[rows_[e]] = &values_[row_value_[e]];
+  for (std::size_t u = update_start_[j]; u < update_start_[j + 1]; ++u) {
+    const auto [k, first] = updates_[u];
+    const double* l_jk = &values_[row_value_[first]];
+    for (std::size_t e = first; e < row_start_[k + 1]; ++e) {
+      const std::size_t i = rows_[e];
+      const double* l_ik = &values_[row_value_[e]];
+      if (size_[j] == 6 && size_[k] == 6 && size_[i] == 6) {
+        subtract_product_6(l_ik, l_jk, target_[i]);
+      } else {
+        subtract_product(stride_[i] / row_padding, size_[j], size_[k], l_ik, l_jk, stride_[j], target_[i]);
+      }
+    }
+  }
+}
+
+bool BlockCholesky::factor() {
+  for (std::size_t j = 0; j < size_.size(); ++j) {
+    update_column(j);
+    double* diagonal = &values_[column_value_[j]];
+    double* inverse = &inverse_[inverse_start_[j]];
+    if (!factor_dense(size_[j], diagonal, inverse)) return false;
+    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+      solve_right(stride_[rows_[e]] / row_padding, size_[j], diagonal, inverse, &values_[row_value_[e]]);
+    }
+  }
+  return true;
+}
+
+void BlockCholesky::solve(std::span<double> x) {
+  const std::size_t n = size_.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(offset_[j]), size_[j], &work_[work_start_[j]]);
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    double* y = &work_[work_start_[j]];
+    const double* l = &values_[column_value_[j]];
+    const double* inverse = &inverse_[inverse_start_[j]];
+    for (int c = 0; c < size_[j]; ++c) {
+      y[c] *= inverse[c];
+      for (int r = c + 1; r < size_[j]; ++r) y[r] -= l[c * stride_[j] + r] * y[c];
+    }
+    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+      const std::size_t i = rows_[e];
+      subtract_times(stride_[i] / row_padding, size_[j], &values_[row_value_[e]], y, &work_[work_start_[i]]);
+    }
+  }
+  for (std::size_t j = n; j-- > 0;) {
+    double* y = &work_[work_start_[j]];
+    const double* l = &values_[column_value_[j]];
+    const double* inverse = &inverse_[inverse_start_[j]];
+    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+      const std::size_t i = rows_[e];
+      subtract_transposed_times(stride_[i] / row_padding, size_[j], &values_[row_value_[e]],
+                                &work_[work_start_[i]], y);
+    }
+    for (int c = size_[j] - 1; c >= 0; --c) {
+      for (int r = c + 1; r < size_[j]; ++r) y[c] -= l[c * stride_[j] + r] * y[r];
+      y[c] *= inverse[c];
+    }
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    std::copy_n(&work_[work_start_[j]], size_[j], x.begin() + static_cast<std::ptrdiff_t>(offset_[j]));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<BlockSolver> make_block_cholesky() {
+  return std::make_unique<BlockCholesky>();
+}
+
+}  // namespace keyblock::linalg

@@ -1,0 +1,54 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace keyblock::linalg {
+
+/// Rows of a dense block are padded to a multiple of this, so that a column starts a SIMD register.
+inline constexpr int row_padding = 8;
+constexpr int padded_rows(int rows) {
+  return (rows + row_padding - 1) / row_padding * row_padding;
+}
+
+/// Where an off-diagonal block is added to: entry (r, c) of the block is values[c · stride + r]. `row` is the
+/// block whose unknowns run along the rows, `column` the other one of the pair.
+struct BlockSlot {
+  double* values = nullptr;
+  int stride = 0;
+  int row = 0;
+  int column = 0;
+};
+
+/// A symmetric positive definite matrix of dense blocks, of sizes that may differ, and its factorization.
+///
+///     analyse(sizes, pairs)   once per pattern
+///     clear(); add to diagonal(i) (lower triangle) and slot(k); factor(); solve(x)   as often as wanted
+///
+/// factor() destroys what was added. solve() may be called any number of times after it.
+class BlockSolver {
+ public:
+  virtual ~BlockSolver() = default;
+
+  /// sizes[i]: unknowns of block i. pairs: (i, j), i ≠ j, each unordered pair once; slot(k) belongs to
+  /// pairs[k].
+  virtual void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) = 0;
+  virtual void clear() = 0;
+  /// Values of the diagonal block, column by column with stride padded_rows(size).
+  [[nodiscard]] virtual double* diagonal(int block) = 0;
+  [[nodiscard]] virtual BlockSlot slot(int pair) = 0;
+  /// False when the matrix is not positive definite.
+  [[nodiscard]] virtual bool factor() = 0;
+  /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j].
+  virtual void solve(std::span<double> x) = 0;
+};
+
+/// The block Cholesky factorization of this project: left-looking by block columns, ordered by AMD on the
+/// graph of blocks.
+std::unique_ptr<BlockSolver> make_block_cholesky();
+
+/// CHOLMOD on the scalar matrix: slower at the sizes of a block system, kept as the oracle.
+std::unique_ptr<BlockSolver> make_cholmod();
+
+}  // namespace keyblock::linalg
