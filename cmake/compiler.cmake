@@ -10,3 +10,10 @@ target_include_directories(keyblock_options INTERFACE ${PROJECT_SOURCE_DIR}/src 
 if(KEYBLOCK_NATIVE)
   target_compile_options(keyblock_options INTERFACE -march=native)
 endif()
+
+# ccache where there is one, unless another launcher was asked for.
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()

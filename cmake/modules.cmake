@@ -19,8 +19,10 @@ function(keyblock_module name)
   endforeach()
 endfunction()
 
-# keyblock_tests(module...): tests/unit/<module>/*.cpp become the executable test_<module>.
+# keyblock_tests(module...): tests/unit/<module>/*.cpp become the executable test_<module>; the target unit_tests
+# builds them all, `ctest -L unit` runs them.
 function(keyblock_tests)
+  add_custom_target(unit_tests)
   foreach(module IN LISTS ARGN)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${module}/*.cpp)
     if(sources)
@@ -28,7 +30,8 @@ function(keyblock_tests)
       target_link_libraries(test_${module} PRIVATE keyblock_${module} GTest::gtest_main GTest::gmock Eigen3::Eigen)
       target_compile_definitions(test_${module} PRIVATE EIGEN_DONT_VECTORIZE
         KEYBLOCK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KEYBLOCK_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
-      gtest_discover_tests(test_${module} TEST_PREFIX "unit." DISCOVERY_TIMEOUT 60)
+      gtest_discover_tests(test_${module} TEST_PREFIX "unit." DISCOVERY_TIMEOUT 60 PROPERTIES LABELS unit)
+      add_dependencies(unit_tests test_${module})
     endif()
   endforeach()
 endfunction()

@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Includes go downwards only: the order of the modules, and what each may use, is src/CMakeLists.txt."""
+
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Heavy third-party headers stay in sources, so that a module's users do not pay for them.
+HEAVY = re.compile(r"^(toml\+\+/|nlohmann/|geos|hdf5|H5|CLI/|cholmod|amd\.h)")
+
+MODULE = re.compile(r"^keyblock_module\((?P<words>[^)]*)\)", re.MULTILINE)
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?P<quote>["<])(?P<header>[^">]+)[">]', re.MULTILINE)
+
+
+def declared_modules(root):
+    """{module: modules it names after DEPENDS}, in the order of src/CMakeLists.txt."""
+    modules = {}
+    for match in MODULE.finditer((root / "src/CMakeLists.txt").read_text()):
+        name, *words = match["words"].split()
+        depends = words[words.index("DEPENDS") + 1 :] if "DEPENDS" in words else []
+        modules[name] = depends[: depends.index("LINK")] if "LINK" in depends else depends
+    return modules
+
+
+def may_use(modules, name):
+    """The module itself and all it depends on, directly or not."""
+    reached = set()
+    pending = [name]
+    while pending:
+        module = pending.pop()
+        if module not in reached:
+            reached.add(module)
+            pending += modules.get(module, [])
+    return reached
+
+
+def declaration_problems(root, modules):
+    order = list(modules)
+    for name, depends in modules.items():
+        for other in depends:
+            if other not in modules:
+                yield f"src/CMakeLists.txt: {name} depends on {other}, which is no module"
+            elif order.index(other) > order.index(name):
+                yield f"src/CMakeLists.txt: {name} depends on {other}, which comes after it"
+    for folder in sorted(p.name for p in (root / "src").iterdir() if p.is_dir()):
+        if folder not in modules:
+            yield f"src/{folder}: not listed in src/CMakeLists.txt"
+
+
+def include_problems(root, modules):
+    for path in sorted((root / "src").rglob("*")):
+        if path.suffix not in (".h", ".cpp"):
+            continue
+        where = path.relative_to(root)
+        module = where.parts[1]
+        allowed = may_use(modules, module)
+        for match in INCLUDE.finditer(path.read_text()):
+            header = match["header"]
+            if path.suffix == ".h" and HEAVY.match(header):
+                yield f"{where}: includes {header}; heavy third-party headers belong into sources"
+            used = header.split("/")[0]
+            if match["quote"] == "<" or used not in modules:
+                continue
+            if used not in allowed:
+                yield f"{where}: includes {header}, but {module} does not depend on {used}"
+            elif not (root / "src" / header).is_file():
+                yield f"{where}: includes {header}, which does not exist"
+
+
+def page_problems(root, modules):
+    page = root / "docs/architecture.md"
+    text = page.read_text() if page.is_file() else ""
+    for name in modules:
+        if f"`{name}/`" not in text:
+            yield f"docs/architecture.md: does not name `{name}/`"
+
+
+def problems(root):
+    modules = declared_modules(root)
+    return [
+        *declaration_problems(root, modules),
+        *include_problems(root, modules),
+        *page_problems(root, modules),
+    ]
+
+
+class Repository(unittest.TestCase):
+    def test_includes_go_downwards(self):
+        self.assertGreater(len(declared_modules(ROOT)), 10)
+        self.assertEqual(problems(ROOT), [])
+
+
+class Checker(unittest.TestCase):
+    """The check itself, on a tree of three modules."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        self.write("src/CMakeLists.txt", "keyblock_module(a LINK fmt::fmt)\nkeyblock_module(b DEPENDS a)\nkeyblock_module(c\n  DEPENDS b LINK x)\n")
+        self.write("docs/architecture.md", "`a/` `b/` `c/`")
+        for name in "abc":
+            self.write(f"src/{name}/{name}.h", "#pragma once\n#include <vector>\n")
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def assert_problem(self, pattern):
+        found = problems(self.root)
+        self.assertEqual(len(found), 1, found)
+        self.assertRegex(found[0], pattern)
+
+    def test_a_clean_tree_passes(self):
+        self.write("src/c/c.cpp", '#include "c/c.h"\n#include "b/b.h"\n#include "a/a.h"\n#include <nlohmann/json.hpp>\n')
+        self.assertEqual(problems(self.root), [])
+
+    def test_upward_include(self):
+        self.write("src/a/a.cpp", '#include "a/a.h"\n#  include "b/b.h"\n')
+        self.assert_problem(r"^src/a/a\.cpp: includes b/b\.h")
+
+    def test_include_beside_the_dependencies(self):
+        self.write("src/CMakeLists.txt", "keyblock_module(a)\nkeyblock_module(b DEPENDS a)\nkeyblock_module(c DEPENDS a)\n")
+        self.write("src/c/c.cpp", '#include "b/b.h"\n')
+        self.assert_problem(r"c does not depend on b")
+
+    def test_dependency_on_a_later_module(self):
+        self.write("src/CMakeLists.txt", "keyblock_module(a DEPENDS b)\nkeyblock_module(b)\nkeyblock_module(c)\n")
+        self.assert_problem(r"a depends on b, which comes after it")
+
+    def test_missing_header(self):
+        self.write("src/b/b.cpp", '#include "a/gone.h"\n')
+        self.assert_problem(r"a/gone\.h, which does not exist")
+
+    def test_folder_that_is_no_module(self):
+        self.write("src/d/d.h", "")
+        self.assert_problem(r"src/d: not listed")
+
+    def test_heavy_header(self):
+        self.write("src/b/b.h", "#include <nlohmann/json.hpp>\n")
+        self.assert_problem(r"src/b/b\.h: includes nlohmann/json\.hpp")
+
+    def test_page_without_a_module(self):
+        self.write("docs/architecture.md", "`a/` `c/`")
+        self.assert_problem(r"does not name `b/`")
+
+
+if __name__ == "__main__":
+    unittest.main()

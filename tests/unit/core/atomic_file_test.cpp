@@ -1,0 +1,101 @@
+#include "core/atomic_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+#include "core/error.h"
+
+namespace keyblock {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Property;
+using ::testing::Throws;
+
+class AtomicFile : public ::testing::Test {
+ protected:
+  AtomicFile() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~AtomicFile() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::ptrdiff_t files() const {
+    using std::filesystem::directory_iterator;
+    return std::distance(directory_iterator(folder_), directory_iterator());
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() /
+      fmt::format("keyblock-{}-{}", ::testing::UnitTest::GetInstance()->current_test_info()->name(),
+                  ::getpid());
+};
+
+TEST_F(AtomicFile, WritesAndReadsBackAllBytes) {
+  std::string content(300000, '\0');
+  for (std::size_t i = 0; i < content.size(); ++i) content[i] = static_cast<char>(i * 7);
+  write_file_atomically(folder_ / "data", content);
+  EXPECT_EQ(read_file(folder_ / "data"), content);
+  write_file_atomically(folder_ / "data", "");
+  EXPECT_EQ(read_file(folder_ / "data"), "");
+  EXPECT_EQ(files(), 1) << "temporary files were left";
+}
+
+TEST_F(AtomicFile, FullDiskLeavesTheOldFile) {
+  const auto path = folder_ / "data";
+  write_file_atomically(path, "old");
+  // Every write to /dev/full fails as on a full disk; the temporary file is made to lead there.
+  std::filesystem::create_symlink("/dev/full", path.string() + fmt::format(".{}.tmp", ::getpid()));
+  const auto write = [&] { write_file_atomically(path, "new"); };
+  EXPECT_THAT(write, Throws<RunError>(Property(&RunError::what, HasSubstr("No space left"))));
+  EXPECT_EQ(read_file(path), "old");
+  EXPECT_EQ(files(), 1) << "temporary files were left";
+}
+
+TEST_F(AtomicFile, FolderThatIsNotThere) {
+  const auto path = folder_ / "gone" / "data";
+  const auto write = [&] { write_file_atomically(path, "new"); };
+  EXPECT_THAT(write,
+              Throws<RunError>(Property(&RunError::what, HasSubstr(path.string() + ": cannot create"))));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "gone"));
+}
+
+TEST_F(AtomicFile, FolderThatCannotBeWritten) {
+  const auto path = folder_ / "data";
+  write_file_atomically(path, "old");
+  std::filesystem::permissions(folder_,
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  const bool root_writes_anyway = ::access(folder_.c_str(), W_OK) == 0;
+  const auto write = [&] { write_file_atomically(path, "new"); };
+  if (root_writes_anyway) {
+    EXPECT_NO_THROW(write());
+  } else {
+    EXPECT_THAT(write, Throws<RunError>(Property(&RunError::what, HasSubstr("Permission denied"))));
+    EXPECT_EQ(read_file(path), "old");
+  }
+  std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
+}
+
+TEST_F(AtomicFile, TargetThatIsAFolder) {
+  std::filesystem::create_directories(folder_ / "data" / "inside");
+  const auto write = [&] { write_file_atomically(folder_ / "data", "new"); };
+  EXPECT_THAT(write, Throws<RunError>(Property(&RunError::what, HasSubstr("cannot rename"))));
+  EXPECT_TRUE(std::filesystem::is_directory(folder_ / "data" / "inside"));
+  EXPECT_EQ(files(), 1) << "temporary files were left";
+}
+
+TEST_F(AtomicFile, ReadingWhatIsNoFileIsAnInputError) {
+  const auto missing = [&] { static_cast<void>(read_file(folder_ / "gone")); };
+  EXPECT_THAT(missing,
+              Throws<InputError>(Property(&InputError::what, HasSubstr((folder_ / "gone").string()))));
+  EXPECT_THROW(static_cast<void>(read_file(folder_)), InputError);
+}
+
+}  // namespace
+}  // namespace keyblock
