@@ -39,9 +39,9 @@ struct CutStatistics {
   double removed_length = 0.0;  ///< m of dead ends and of joints that bound no block (tree cutting)
   int removed_pieces = 0;
   int merged_slivers = 0;
-  int merged_vertices = 0;      ///< clustered or near-collinear vertices that were dropped
-  double domain_area = 0.0;     ///< m²
-  double sliver_area = 0.0;     ///< m² that changed its block by merging
+  int merged_vertices = 0;   ///< clustered or near-collinear vertices that were dropped
+  double domain_area = 0.0;  ///< m²
+  double sliver_area = 0.0;  ///< m² that changed its block by merging
 };
 
 struct BlockSystem {

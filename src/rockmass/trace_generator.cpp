@@ -102,7 +102,7 @@ class Generator {
     const double spacing = factor_ * truncated_mean(set_.spacing);
     const double length = truncated_mean(set_.length);
     const double cycle = length + truncated_mean(set_.gap);
-    return (2.0 * half_across_ / spacing + 1.0) * ((2.0 * half_along_ + length) / cycle + 1.0);
+    return (2.0 * half_across_ / spacing) * ((2.0 * half_along_ + length) / cycle);
   }
 
   std::vector<Trace> run() {

@@ -1,0 +1,19 @@
+#pragma once
+#include "cutting/cut.h"
+#include "cutting/planar_graph.h"
+
+namespace keyblock::cutting {
+
+/// Merges every face of less than the sliver area or thickness into the neighbour with which it shares the
+/// longest border, the smallest first, until none is left that has a neighbour to go to. Borders that lie on the
+/// domain's edge or on an excavation outline are not removed. Counts into `statistics`.
+void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics);
+
+/// Moves vertices onto others closer than `distance` (m) that lie at the same face, the closest pairs first. Of a pair
+/// the one moves that sweeps the smaller area. A vertex on the domain's edge or on an outline moves only to a vertex on
+/// the same ones, so that the domain keeps its shape. A move is made only if no vertex lies in the triangles that the
+/// edges sweep and the way crosses no edge: then no face turns over and no edges cross. Every face at the vertex
+/// changes alike, so neighbours stay conforming.
+void cluster_vertices(PlanarGraph& graph, double distance, CutStatistics& statistics);
+
+}  // namespace keyblock::cutting

@@ -1,0 +1,153 @@
+#include "cutting/cut.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "cutting/cleaning.h"
+#include "cutting/linework.h"
+#include "cutting/noding.h"
+#include "cutting/outline.h"
+
+namespace keyblock::cutting {
+
+CutTolerances CutTolerances::for_domain(double domain_area) {
+  const double size = std::sqrt(domain_area);
+  CutTolerances t;
+  t.snapping = 5e-5 * size;
+  t.sliver_area = 2.5e-6 * domain_area;
+  t.sliver_thickness = 2.5e-4 * size;
+  t.cluster = 2.5e-4 * size;
+  t.collinear = 5e-8 * size;
+  return t;
+}
+
+namespace {
+
+/// Share of the domain's area by which the blocks may miss it.
+constexpr double area_tolerance = 1e-9;
+/// A domain farther from the origin than this many times its size gets a local origin.
+constexpr double far_away = 1000.0;
+
+bool is_joint(EdgeLabel label) {
+  return label.kind == EdgeKind::joint_set || label.kind == EdgeKind::trace_map;
+}
+
+/// Takes away what bounds no block, and counts it.
+PlanarGraph bounded_blocks(NodedLinework noded, CutStatistics& statistics) {
+  PlanarGraph& graph = noded.graph;
+  std::set<int> meeting, used;
+  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+    meeting.insert(noded.traces[e].begin(), noded.traces[e].end());
+    if (is_joint(graph.edges[e].label)) statistics.trace_length += graph.length(graph.edges[e]);
+  }
+  std::vector<std::pair<int, int>> ends;
+  for (const GraphEdge& edge : graph.edges) ends.emplace_back(edge.from, edge.to);
+  const std::vector<GraphEdge> removed = graph.remove_trees();
+  for (const GraphEdge& edge : removed) statistics.removed_length += graph.length(edge);
+  statistics.removed_pieces += static_cast<int>(removed.size());
+  // What is left keeps its order.
+  std::size_t e = 0;
+  for (const GraphEdge& edge : graph.edges) {
+    while (ends[e] != std::pair(edge.from, edge.to)) ++e;
+    used.insert(noded.traces[e].begin(), noded.traces[e].end());
+  }
+  statistics.traces = static_cast<int>(meeting.size());
+  statistics.joints_used = static_cast<int>(used.size());
+  return std::move(graph);
+}
+
+/// A point inside the face: the middle of the widest stretch of a horizontal line through it.
+Vec2 interior_point(const PlanarGraph& graph, const Face& face) {
+  std::vector<double> heights;
+  for (const HalfEdge h : face.rings.front()) heights.push_back(to_vec2(graph.point(graph.origin(h))).y);
+  std::sort(heights.begin(), heights.end());
+  heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+  const std::size_t middle = (heights.size() - 1) / 2;
+  const double y = 0.5 * (heights[middle] + heights[middle + 1]);
+  std::vector<double> crossings;
+  for (const auto& ring : face.rings) {
+    for (const HalfEdge h : ring) {
+      const Vec2 a = to_vec2(graph.point(graph.origin(h))), b = to_vec2(graph.point(graph.target(h)));
+      if ((a.y > y) != (b.y > y)) crossings.push_back(a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)));
+    }
+  }
+  std::sort(crossings.begin(), crossings.end());
+  Vec2 best{0.0, y};
+  double widest = -1.0;
+  for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+    if (crossings[k + 1] - crossings[k] > widest) {
+      widest = crossings[k + 1] - crossings[k];
+      best.x = 0.5 * (crossings[k] + crossings[k + 1]);
+    }
+  }
+  return best;
+}
+
+void find_excavations(PlanarGraph& graph, const std::vector<Ring>& outlines) {
+  for (Face& face : graph.faces) {
+    const Vec2 inside = interior_point(graph, face);
+    for (std::size_t k = 0; k < outlines.size(); ++k) {
+      if (contains(outlines[k], inside)) face.excavations.push_back(static_cast<int>(k));
+    }
+  }
+}
+
+void check_area(const PlanarGraph& graph, double domain_area) {
+  double sum = 0.0;
+  for (const Face& face : graph.faces) sum += face.area;
+  if (!(std::abs(sum - domain_area) <= area_tolerance * domain_area)) {
+    throw RunError(
+        fmt::format("cutting failed: the blocks have an area of {} m², the domain {} m²", sum, domain_area));
+  }
+}
+
+void sort_blocks(std::vector<CutBlock>& blocks) {
+  struct Key {
+    Vec2 centroid;
+    std::size_t index;
+  };
+  std::vector<Key> keys;
+  for (std::size_t k = 0; k < blocks.size(); ++k) keys.push_back({centroid(blocks[k].polygon), k});
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return std::tie(a.centroid.y, a.centroid.x, a.index) < std::tie(b.centroid.y, b.centroid.x, b.index);
+  });
+  std::vector<CutBlock> sorted;
+  sorted.reserve(blocks.size());
+  for (const Key& key : keys) sorted.push_back(std::move(blocks[key.index]));
+  blocks = std::move(sorted);
+}
+
+}  // namespace
+
+BlockSystem cut(const CutInput& input) {
+  const double rough_area = std::abs(signed_area(input.domain));
+  const CutTolerances tolerances = input.tolerances.value_or(CutTolerances::for_domain(rough_area));
+  const Linework work = make_linework(input, tolerances.snapping);
+
+  BlockSystem system;
+  CutStatistics& statistics = system.statistics;
+  statistics.domain_area = work.domain_area;
+  const double size =
+      work.grid * std::max(bounds({work.domain, {}}).size().x, bounds({work.domain, {}}).size().y);
+  if (norm(work.shift) > far_away * size) system.origin = work.shift;
+
+  PlanarGraph graph = bounded_blocks(node(work), statistics);
+  graph.trace_faces();
+  find_excavations(graph, work.excavations);
+  check_area(graph, work.domain_area);
+
+  merge_slivers(graph, tolerances, statistics);
+  cluster_vertices(graph, tolerances.cluster, statistics);
+  merge_slivers(graph, tolerances, statistics);
+  check_area(graph, work.domain_area);
+
+  system.blocks = outlines_of(graph, tolerances.collinear, work.shift - system.origin, statistics);
+  sort_blocks(system.blocks);
+  return system;
+}
+
+}  // namespace keyblock::cutting

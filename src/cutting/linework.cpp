@@ -1,0 +1,244 @@
+#include "cutting/linework.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "cutting/segment_index.h"
+
+namespace keyblock::cutting {
+
+namespace {
+
+constexpr int grid_bits = 44;  ///< steps of the grid across the domain, as a power of two
+
+Ring checked_ring(const Ring& ring, const std::string& key, std::vector<Diagnostic>& mistakes) {
+  Polygon polygon{ring, {}};
+  if (polygon.outer.size() > 1 && polygon.outer.front() == polygon.outer.back()) polygon.outer.pop_back();
+  const auto finite = [](Vec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); };
+  Diagnostic mistake;
+  mistake.key = key;
+  if (polygon.outer.size() < 3 || polygon.outer.size() > std::numeric_limits<std::int16_t>::max()) {
+    mistake.found = fmt::format("a ring of {} vertices", polygon.outer.size());
+    mistake.expected = "3 to 32767 vertices";
+  } else if (!std::all_of(polygon.outer.begin(), polygon.outer.end(), finite)) {
+    mistake.found = "a coordinate that is not finite";
+    mistake.expected = "finite coordinates";
+  } else if (self_intersects(polygon) || signed_area(polygon.outer) == 0.0) {
+    mistake.found = "a ring that crosses or touches itself";
+    mistake.expected = "a simple polygon";
+  } else {
+    orient(polygon);
+    return polygon.outer;
+  }
+  mistakes.push_back(std::move(mistake));
+  return {};
+}
+
+void add_ring(std::vector<SourceLine>& lines, const Ring& ring, EdgeKind kind, int index) {
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const auto number = static_cast<std::int16_t>(kind == EdgeKind::domain ? static_cast<int>(k) : index);
+    const GridPoint a = nearest_grid_point(ring[k]);
+    const GridPoint b = nearest_grid_point(ring[(k + 1) % ring.size()]);
+    if (!(a == b)) lines.push_back({a, b, {kind, number}});
+  }
+}
+
+/// Clips segment ab to the box; false when nothing is left (Liang & Barsky 1984).
+bool clip(const Box& box, Vec2& a, Vec2& b) {
+  const Vec2 d = b - a;
+  double from = 0.0, to = 1.0;
+  const std::array<std::array<double, 2>, 4> sides{
+      {{-d.x, a.x - box.min.x}, {d.x, box.max.x - a.x}, {-d.y, a.y - box.min.y}, {d.y, box.max.y - a.y}}};
+  for (const auto& [p, q] : sides) {
+    if (p == 0.0 && q < 0.0) return false;
+    if (p < 0.0) from = std::max(from, q / p);
+    if (p > 0.0) to = std::min(to, q / p);
+  }
+  if (from > to) return false;
+  const Vec2 start = a;
+  if (to < 1.0) b = start + to * d;
+  if (from > 0.0) a = start + from * d;
+  return true;
+}
+
+double distance_to_segment(Vec2 p, Vec2 a, Vec2 b, Vec2& foot) {
+  const Vec2 d = b - a;
+  const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
+  foot = a + s * d;
+  return norm(p - foot);
+}
+
+struct GridPointHash {
+  std::size_t operator()(GridPoint p) const {
+    const auto mixed =
+        static_cast<std::uint64_t>(p.x) * 0x9E3779B97F4A7C15u ^ static_cast<std::uint64_t>(p.y);
+    return static_cast<std::size_t>((mixed ^ mixed >> 29) * 0xBF58476D1CE4E5B9u);
+  }
+};
+
+/// Puts loose ends of traces on the lines they nearly reach, one end after the other in the order of the input.
+class EndSnapper {
+ public:
+  EndSnapper(std::vector<SourceLine>& lines, const Box& domain, double reach)
+      : lines_(lines), near_domain_(domain.grown(reach)), reach_(reach), index_(domain, columns(lines)) {
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      index_.add(static_cast<int>(k), to_vec2(lines[k].a), to_vec2(lines[k].b));
+      ++ends_[lines[k].a];
+      ++ends_[lines[k].b];
+    }
+  }
+
+  void run() {
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      if (lines_[k].trace < 0) continue;
+      snap(static_cast<int>(k), lines_[k].a, lines_[k].b);
+      snap(static_cast<int>(k), lines_[k].b, lines_[k].a);
+    }
+  }
+
+ private:
+  static int columns(const std::vector<SourceLine>& lines) {
+    return std::clamp(static_cast<int>(2.0 * std::sqrt(static_cast<double>(lines.size()))), 8, 1024);
+  }
+
+  /// The line nearest to p within reach, the lower one of equals; −1 if there is none.
+  [[nodiscard]] int nearest_line(int own, Vec2 p) const {
+    const SourceLine& line = lines_[static_cast<std::size_t>(own)];
+    int best = -1;
+    double best_distance = reach_;
+    index_.near({{p.x - reach_, p.y - reach_}, {p.x + reach_, p.y + reach_}}, [&](int id) {
+      const SourceLine& other = lines_[static_cast<std::size_t>(id)];
+      const bool joined = other.a == line.a || other.a == line.b || other.b == line.a || other.b == line.b;
+      if (id == own || joined || other.a == other.b) return;
+      Vec2 foot;
+      const double distance = distance_to_segment(p, to_vec2(other.a), to_vec2(other.b), foot);
+      if (distance < best_distance || (distance == best_distance && (best < 0 || id < best))) {
+        best = id;
+        best_distance = distance;
+      }
+    });
+    return best;
+  }
+
+  void snap(int own, GridPoint& end, GridPoint start) {
+    const Vec2 p = to_vec2(end);
+    if (end == start || !near_domain_.contains(p) || ends_[end] > 1) return;
+    const int target = nearest_line(own, p);
+    if (target < 0) return;
+    SourceLine& other = lines_[static_cast<std::size_t>(target)];
+    const Vec2 a = to_vec2(other.a), b = to_vec2(other.b);
+    Vec2 place;
+    distance_to_segment(p, a, b, place);
+    // Along the trace itself where that is not much farther, so that it is not turned.
+    const Vec2 u = b - a, v = p - to_vec2(start);
+    if (const double sine = cross(u, v); sine != 0.0) {
+      const double s = cross(to_vec2(start) - a, v) / sine;
+      const Vec2 meeting = a + s * u;
+      if (s >= 0.0 && s <= 1.0 && norm(meeting - p) <= 2.0 * reach_) place = meeting;
+    }
+    const GridPoint node = nearest_grid_point(place);
+    if (!(node == other.a) && !(node == other.b)) other.nodes.push_back(node);
+    --ends_[end];
+    ++ends_[node];
+    end = node;
+  }
+
+  std::vector<SourceLine>& lines_;
+  Box near_domain_;
+  double reach_;  ///< grid steps
+  SegmentIndex index_;
+  std::unordered_map<GridPoint, int, GridPointHash> ends_;  ///< looked up only, never walked through
+};
+
+/// Puts vertices of an outline that lie within reach of the domain's edge on it.
+void snap_outline(Ring& outline, const Ring& domain, double reach) {
+  for (Vec2& p : outline) {
+    double best = reach;
+    Vec2 place = p, foot;
+    for (std::size_t k = 0; k < domain.size(); ++k) {
+      const double distance = distance_to_segment(p, domain[k], domain[(k + 1) % domain.size()], foot);
+      if (distance <= best) {
+        best = distance;
+        place = foot;
+      }
+    }
+    p = place;
+  }
+}
+
+EdgeLabel label_of(rockmass::TraceSource source) {
+  const bool statistical = source.kind == rockmass::TraceSource::Kind::joint_set;
+  return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map, static_cast<std::int16_t>(source.index)};
+}
+
+}  // namespace
+
+Linework make_linework(const CutInput& input, double snapping) {
+  Linework work;
+  std::vector<Diagnostic> mistakes;
+  const Ring domain = checked_ring(input.domain, "domain", mistakes);
+  std::vector<Ring> outlines;
+  for (std::size_t k = 0; k < input.excavations.size(); ++k) {
+    outlines.push_back(checked_ring(input.excavations[k], fmt::format("excavation[{}]", k), mistakes));
+  }
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+
+  const Box box = bounds({domain, {}});
+  const int exponent = std::ilogb(std::max(box.size().x, box.size().y)) + 1;
+  const double unit = std::ldexp(1.0, exponent - 8);
+  const Vec2 centre = 0.5 * (box.min + box.max);
+  work.grid = std::ldexp(1.0, exponent - grid_bits);
+  work.shift = {std::nearbyint(centre.x / unit) * unit, std::nearbyint(centre.y / unit) * unit};
+  work.domain_area = signed_area(domain);
+  const auto on_grid = [&](const Ring& ring) {
+    Ring rounded;
+    for (const Vec2 p : ring) rounded.push_back(to_vec2(work.to_grid(p)));
+    return rounded;
+  };
+  work.domain = on_grid(domain);
+  add_ring(work.lines, work.domain, EdgeKind::domain, 0);
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    Ring outline = on_grid(outlines[k]);
+    snap_outline(outline, work.domain, snapping / work.grid);
+    add_ring(work.lines, outline, EdgeKind::excavation, static_cast<int>(k));
+    work.excavations.push_back(std::move(outline));
+  }
+  const Box window = box.grown(1e-2 * std::max(box.size().x, box.size().y) + 4.0 * snapping);
+  for (std::size_t k = 0; k < input.traces.size(); ++k) {
+    Vec2 a = input.traces[k].a, b = input.traces[k].b;
+    if (!clip(window, a, b)) continue;
+    const GridPoint from = work.to_grid(a), to = work.to_grid(b);
+    if (!(from == to))
+      work.lines.push_back({from, to, label_of(input.traces[k].source), static_cast<int>(k)});
+  }
+  EndSnapper(work.lines, bounds({work.domain, {}}), std::max(snapping / work.grid, 2.0)).run();
+  std::erase_if(work.lines, [](const SourceLine& line) { return line.a == line.b && line.nodes.empty(); });
+  return work;
+}
+
+std::vector<SourceLine> split_at_nodes(const std::vector<SourceLine>& lines) {
+  std::vector<SourceLine> pieces;
+  for (const SourceLine& line : lines) {
+    std::vector<GridPoint> points = line.nodes;
+    const Vec2 a = to_vec2(line.a), d = to_vec2(line.b) - a;
+    std::sort(points.begin(), points.end(), [&](GridPoint p, GridPoint q) {
+      const double s = dot(to_vec2(p) - a, d), t = dot(to_vec2(q) - a, d);
+      return s != t ? s < t : p < q;
+    });
+    points.push_back(line.b);
+    GridPoint from = line.a;
+    for (const GridPoint to : points) {
+      if (!(from == to)) pieces.push_back({from, to, line.label, line.trace});
+      from = to;
+    }
+  }
+  return pieces;
+}
+
+}  // namespace keyblock::cutting

@@ -1,0 +1,119 @@
+#include <map>
+#include <queue>
+#include <tuple>
+
+#include "cutting/cleaning.h"
+
+namespace keyblock::cutting {
+
+namespace {
+
+class SliverMerger {
+ public:
+  SliverMerger(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics)
+      : graph_(graph), tolerances_(tolerances), statistics_(statistics), regions_(graph.faces.size()) {
+    for (std::size_t f = 0; f < regions_.size(); ++f) {
+      regions_[f].area = graph.faces[f].area;
+      regions_[f].perimeter = graph.faces[f].perimeter;
+      regions_[f].into = f;
+    }
+    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+      for (const int side : {graph.edges[e].left, graph.edges[e].right}) {
+        if (side >= 0) regions_[static_cast<std::size_t>(side)].edges.push_back(e);
+      }
+    }
+    for (std::size_t f = 0; f < regions_.size(); ++f) consider(f);
+  }
+
+  void run() {
+    const int before = statistics_.merged_slivers;
+    while (!queue_.empty()) {
+      const auto [area, f] = queue_.top();
+      queue_.pop();
+      if (regions_[f].into == f && regions_[f].area == area) merge(f);
+    }
+    if (statistics_.merged_slivers == before) return;
+    std::erase_if(graph_.edges, [&](const GraphEdge& e) {
+      return e.left >= 0 && e.right >= 0 && root(e.left) == root(e.right);
+    });
+    graph_.trace_faces();
+  }
+
+ private:
+  struct Region {
+    double area = 0.0, perimeter = 0.0;
+    std::size_t into = 0;  ///< the region it became a part of; itself while alive
+    std::vector<std::size_t> edges;
+  };
+
+  void consider(std::size_t f) {
+    const Region& r = regions_[f];
+    if (r.area < tolerances_.sliver_area || r.area < tolerances_.sliver_thickness * r.perimeter) {
+      queue_.emplace(r.area, f);
+    }
+  }
+
+  std::size_t root(int face) {
+    auto f = static_cast<std::size_t>(face);
+    while (regions_[f].into != f) f = regions_[f].into = regions_[regions_[f].into].into;
+    return f;
+  }
+
+  /// The region across edge e as seen from f; f itself where there is none to merge with.
+  std::size_t neighbour(std::size_t f, const GraphEdge& e) {
+    if (e.label.kind == EdgeKind::domain || e.label.kind == EdgeKind::excavation) return f;
+    if (e.left < 0 || e.right < 0) return f;
+    const std::size_t left = root(e.left), right = root(e.right);
+    return left == f ? right : left;
+  }
+
+  void merge(std::size_t f) {
+    std::map<std::size_t, double> shared;
+    for (const std::size_t e : regions_[f].edges) {
+      const std::size_t other = neighbour(f, graph_.edges[e]);
+      if (other != f && same_excavations(f, other)) shared[other] += graph_.length(graph_.edges[e]);
+    }
+    std::size_t best = f;
+    double longest = 0.0;
+    for (const auto& [other, length] : shared) {
+      if (length > longest) {
+        best = other;
+        longest = length;
+      }
+    }
+    if (best == f) return;
+    statistics_.merged_slivers += 1;
+    statistics_.sliver_area += regions_[f].area;
+    Region& target = regions_[best];
+    regions_[f].into = best;
+    target.area += regions_[f].area;
+    target.perimeter += regions_[f].perimeter - 2.0 * longest;
+    target.edges.insert(target.edges.end(), regions_[f].edges.begin(), regions_[f].edges.end());
+    std::erase_if(target.edges, [&](std::size_t e) {
+      const GraphEdge& edge = graph_.edges[e];
+      return edge.left >= 0 && edge.right >= 0 && root(edge.left) == root(edge.right);
+    });
+    consider(best);
+  }
+
+  [[nodiscard]] bool same_excavations(std::size_t f, std::size_t g) const {
+    return graph_.faces[f].excavations == graph_.faces[g].excavations;
+  }
+
+  PlanarGraph& graph_;
+  const CutTolerances& tolerances_;
+  CutStatistics& statistics_;
+  std::vector<Region> regions_;
+  using Entry = std::tuple<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics) {
+  if (tolerances.sliver_area > 0.0 || tolerances.sliver_thickness > 0.0) {
+    SliverMerger(graph, tolerances, statistics).run();
+  }
+}
+
+}  // namespace keyblock::cutting
