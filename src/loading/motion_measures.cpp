@@ -1,0 +1,88 @@
+#include "loading/motion_measures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace keyblock::loading {
+namespace {
+
+// Time at which the ascending cumulative sum reaches `level`, linear between samples.
+double time_of(const MotionComponent& component, const std::vector<double>& cumulative, double level) {
+  const auto next = static_cast<std::size_t>(std::lower_bound(cumulative.begin(), cumulative.end(), level) -
+                                             cumulative.begin());
+  if (next == 0) return component.time(0);
+  if (next == cumulative.size()) return component.end();
+  const double s = (level - cumulative[next - 1]) / (cumulative[next] - cumulative[next - 1]);
+  return (1.0 - s) * component.time(next - 1) + s * component.time(next);
+}
+
+std::string direction(const MotionComponent& component) {
+  if (component.vertical) return "up";
+  return component.azimuth ? fmt::format("azimuth {}°", *component.azimuth) : "direction not stated";
+}
+
+}  // namespace
+
+MotionMeasures measure(const MotionComponent& component) {
+  const std::vector<double>& a = component.acceleration;
+  MotionMeasures m;
+  const std::size_t peak = component.peak_index();
+  m.peak = a[peak];
+  m.peak_time = component.time(peak);
+  std::vector<double> squares{0.0};
+  double velocity = 0.0;
+  for (std::size_t k = 1; k < a.size(); ++k) {
+    const double h = component.time(k) - component.time(k - 1);
+    // Velocity is largest where acceleration passes through zero.
+    if (a[k - 1] * a[k] < 0.0) {
+      const double turn = velocity + 0.5 * h * a[k - 1] * a[k - 1] / (a[k - 1] - a[k]);
+      m.peak_velocity = std::max(m.peak_velocity, std::abs(turn));
+    }
+    velocity += 0.5 * h * (a[k - 1] + a[k]);
+    m.peak_velocity = std::max(m.peak_velocity, std::abs(velocity));
+    squares.push_back(squares.back() + h / 3.0 * (a[k - 1] * a[k - 1] + a[k - 1] * a[k] + a[k] * a[k]));
+  }
+  m.final_velocity = velocity;
+  m.arias_intensity = std::numbers::pi / (2.0 * standard_gravity) * squares.back();
+  if (squares.back() > 0.0) {
+    m.significant_duration = time_of(component, squares, 0.95 * squares.back()) -
+                             time_of(component, squares, 0.05 * squares.back());
+  }
+  return m;
+}
+
+std::string describe_motion(const std::vector<MotionComponent>& components) {
+  std::string text;
+  std::string file;
+  for (const MotionComponent& c : components) {
+    if (c.file != file) {
+      file = c.file;
+      text += fmt::format("{}{}: {}\n", text.empty() ? "" : "\n",
+                          std::filesystem::path(file).filename().string(), c.format);
+      if (!c.event.empty()) text += fmt::format("  event      {}\n", c.event);
+      if (!c.station.empty()) text += fmt::format("  station    {}\n", c.station);
+    }
+    const MotionMeasures m = measure(c);
+    const std::string step = c.times.empty() ? fmt::format("dt {:.6g} s", c.dt) : "uneven steps";
+    text += fmt::format("  component  {}{}\n", direction(c),
+                        c.label.empty() ? "" : fmt::format("  ({})", c.label));
+    text +=
+        fmt::format("    samples              {}, {}, {:.6g} s\n", c.acceleration.size(), step, c.duration());
+    const std::string as_read =
+        c.file_unit == "m/s2" ? "" : fmt::format("{:.6g} {} = ", m.peak / c.file_unit_in_si, c.file_unit);
+    text += fmt::format("    peak acceleration    {}{:.4g} m/s2 = {:.3g} g at {:.6g} s\n", as_read, m.peak,
+                        m.peak / standard_gravity, m.peak_time);
+    text += fmt::format("    peak velocity        {:.4g} m/s (integrated from rest; {:.4f} m/s at the end)\n",
+                        m.peak_velocity, m.final_velocity);
+    text += fmt::format("    Arias intensity      {:.4g} m/s; 5-95 % duration {:.4g} s\n", m.arias_intensity,
+                        m.significant_duration);
+    for (const std::string& note : c.notes) text += fmt::format("    note                 {}\n", note);
+  }
+  return text;
+}
+
+}  // namespace keyblock::loading

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "loading/motion_file.h"
+
+namespace keyblock::loading {
+
+/// What engineers compare records by. All integrals are exact for acceleration linear between samples.
+struct MotionMeasures {
+  double peak = 0.0;       ///< m/s², of largest magnitude, with its sign (PGA)
+  double peak_time = 0.0;  ///< s
+  double peak_velocity =
+      0.0;  ///< m/s, largest |∫a dt| from rest at the first sample, no baseline correction (PGV)
+  double final_velocity = 0.0;   ///< m/s, ∫a dt over the whole record; far from 0: the record drifts
+  double arias_intensity = 0.0;  ///< m/s, π/(2g) ∫a² dt (Arias 1970)
+  double significant_duration =
+      0.0;  ///< s, between 5 % and 95 % of the Arias intensity (Trifunac & Brady 1975)
+};
+MotionMeasures measure(const MotionComponent& component);
+
+/// What a file holds, for people: one paragraph per component, then the notes.
+std::string describe_motion(const std::vector<MotionComponent>& components);
+
+/// Accelerations over time, one panel per component to one scale, as an SVG document.
+std::string plot_motion_svg(const std::vector<MotionComponent>& components);
+
+}  // namespace keyblock::loading

@@ -1,0 +1,300 @@
+#include "loading/motion_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace keyblock::loading {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path data = std::filesystem::path(KEYBLOCK_TEST_DATA) / "motions";
+const std::filesystem::path records = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "../shared/data/motions";
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return std::move(text).str();
+}
+
+// Reads `text` as a file of its own.
+std::vector<MotionComponent> read_text(const std::string& text) {
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    testing::UnitTest::GetInstance()->current_test_info()->name();
+  std::ofstream(path, std::ios::binary) << text;
+  return read_motion_file(path);
+}
+
+Diagnostic error_of(const std::string& text) {
+  try {
+    read_text(text);
+  } catch (const InputError& error) {
+    return error.diagnostics().front();
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+const std::string classical_at2 =
+    "PEER STRONG MOTION DATABASE RECORD\n"
+    "IMPERIAL VALLEY 10/15/79 2319, EL CENTRO ARRAY 6, 230\n"
+    "ACCELERATION TIME HISTORY IN UNITS OF G\n"
+    "NPTS=     7, DT= .00500 SEC\n"
+    "  -.1000000E-02   .2000000E-02  -.3000000E-02   .4000000E-02   .5000000E-02\n"
+    "   .6000000E-02  -.7000000E-02\n";
+
+// Acceleration and velocity of one channel, then acceleration of a second one that is positive downwards.
+// Full columns leave no blank between numbers.
+std::string cosmos_section(const std::string& quantity, int azimuth, const std::string& unit,
+                           const std::string& samples) {
+  std::string text =
+      "Corrected " + quantity + "    (Format v01.20 with 13 text lines)\nSome Earthquake\n3\n4\n";
+  text += "Statn No: 02-    0  Code:NP-1743   USGS CA:Petaluma;FS 2\n6\n7\n8\n";
+  text += "Sta Chan   1: " + std::to_string(azimuth) + " deg (Rcrdr Chan  1) Location:\n10\n11\n12\n13\n";
+  text += " 100  Integer-header values follow on 10 lines, Format= (10I8)\n";
+  for (int k = 0; k < 100; ++k) {
+    std::string field = std::to_string(k == 53 ? azimuth : -999);
+    text += std::string(8 - field.size(), ' ') + field + (k % 10 == 9 ? "\n" : "");
+  }
+  text += " 100 Real-header values follow on 17 lines, Format= (6F13.6)\n";
+  for (int k = 0; k < 100; ++k) {
+    const std::string field = k == 61 ? "    10.000000" : k == 33 ? "     0.005000" : "  -999.000000";
+    text += field + (k % 6 == 5 || k == 99 ? "\n" : "");
+  }
+  text += "   1 Comment line(s) follow, each starting with a \"|\":\n|\n";
+  text += "       3 " + quantity + " pts, approx    0 secs, units=" + unit + ",Format=(8F8.3)\n" + samples;
+  return text + "\nEnd-of-data for Chan  1 " + quantity + "\n";
+}
+const std::string cosmos = cosmos_section("acceleration", 270, "cm/sec2(04)", "1000.500-200.2501000.125") +
+                           cosmos_section("velocity", 270, "cm/sec(05)", "   1.000   2.000   3.000") +
+                           cosmos_section("acceleration", 401, "cm/s^2 (4)", "   1.000   2.000   3.000");
+
+TEST(MotionFile, SmcExcerpt) {
+  const auto components = read_motion_file(data / "excerpt.smc");
+  ASSERT_EQ(components.size(), 1U);
+  const MotionComponent& c = components[0];
+  EXPECT_EQ(c.format, "USGS SMC");
+  EXPECT_EQ(c.event, "1989 10 18 0004 Loma Prieta, CA");
+  EXPECT_EQ(c.station, "San Francisco, 1295 Shafter, F");
+  EXPECT_TRUE(c.vertical);
+  EXPECT_FALSE(c.azimuth);
+  EXPECT_DOUBLE_EQ(c.dt, 0.005);
+  EXPECT_EQ(c.file_unit, "cm/s2");
+  ASSERT_EQ(c.acceleration.size(), 20U);
+  EXPECT_DOUBLE_EQ(c.acceleration[0], -0.12518);
+  EXPECT_DOUBLE_EQ(c.acceleration[19], 0.087130);
+  EXPECT_EQ(c.peak_index(), 0U);
+  EXPECT_TRUE(c.notes.empty());
+}
+
+TEST(MotionFile, CsmipExcerptTakesTheAccelerationOfEveryChannel) {
+  const auto components = read_motion_file(data / "excerpt.V2");
+  ASSERT_EQ(components.size(), 2U);
+  EXPECT_EQ(components[0].station, "PARKFIELD FAULT ZONE 14");
+  EXPECT_EQ(components[0].event, "COALINGA EARTHQUAKE");
+  EXPECT_EQ(components[0].azimuth, 90.0);
+  EXPECT_TRUE(components[1].vertical);
+  for (const MotionComponent& c : components) {
+    EXPECT_DOUBLE_EQ(c.dt, 0.02);
+    EXPECT_EQ(c.acceleration.size(), 16U);
+    EXPECT_TRUE(c.notes.empty());
+  }
+  EXPECT_DOUBLE_EQ(components[0].acceleration[0], -0.03038);
+  EXPECT_DOUBLE_EQ(components[0].acceleration[15], -0.00955);
+  EXPECT_DOUBLE_EQ(components[1].acceleration[15], -0.30532);
+}
+
+TEST(MotionFile, At2WithFreeText) {
+  const auto components = read_motion_file(data / "excerpt_free_text.AT2");
+  ASSERT_EQ(components.size(), 1U);
+  EXPECT_EQ(components[0].format, "PEER AT2");
+  EXPECT_EQ(components[0].file_unit, "g");
+  EXPECT_DOUBLE_EQ(components[0].dt, 0.02);
+  EXPECT_FALSE(components[0].azimuth);
+  ASSERT_EQ(components[0].acceleration.size(), 24U);
+  EXPECT_DOUBLE_EQ(components[0].acceleration[0], 0.00630 * standard_gravity);
+  EXPECT_DOUBLE_EQ(components[0].acceleration[23], -0.00992 * standard_gravity);
+}
+
+TEST(MotionFile, At2Classical) {
+  for (const auto& text : {classical_at2, replaced(classical_at2, "NPTS=     7, DT= .00500 SEC",
+                                                   "    7   0.0050    NPTS, DT")}) {
+    const auto components = read_text(text);
+    ASSERT_EQ(components.size(), 1U);
+    EXPECT_EQ(components[0].station, "EL CENTRO ARRAY 6");
+    EXPECT_EQ(components[0].azimuth, 230.0);
+    EXPECT_DOUBLE_EQ(components[0].dt, 0.005);
+    ASSERT_EQ(components[0].acceleration.size(), 7U);
+    EXPECT_DOUBLE_EQ(components[0].acceleration[6], -0.007 * standard_gravity);
+  }
+  const auto down = read_text(replaced(classical_at2, "6, 230", "6, DWN"));
+  EXPECT_TRUE(down[0].vertical);
+  EXPECT_DOUBLE_EQ(down[0].acceleration[6], 0.007 * standard_gravity);
+  EXPECT_THAT(down[0].notes, testing::ElementsAre(HasSubstr("downwards")));
+}
+
+TEST(MotionFile, CosmosReadsAccelerationsByTheStatedColumns) {
+  const auto components = read_text(cosmos);
+  ASSERT_EQ(components.size(), 2U);
+  EXPECT_EQ(components[0].format, "COSMOS V2");
+  EXPECT_EQ(components[0].azimuth, 270.0);
+  EXPECT_DOUBLE_EQ(components[0].dt, 0.01);  // of the series in the file, not of the recorder
+  EXPECT_THAT(components[0].acceleration, testing::ElementsAre(10.005, -2.0025, 10.00125));
+  EXPECT_TRUE(components[1].vertical);
+  EXPECT_THAT(components[1].acceleration, testing::ElementsAre(-0.01, -0.02, -0.03));
+}
+
+TEST(MotionFile, Csv) {
+  const auto plain = read_text("0,1\n0.5,2\n1.0,-3\n");
+  EXPECT_EQ(plain[0].format, "CSV");
+  EXPECT_DOUBLE_EQ(plain[0].dt, 0.5);
+  EXPECT_THAT(plain[0].acceleration, testing::ElementsAre(1.0, 2.0, -3.0));
+  EXPECT_THAT(plain[0].notes, testing::ElementsAre(HasSubstr("m/s2 is assumed")));
+
+  const auto gal = read_text("# a comment\nt (s); a (cm/s2)\r\n0; 100\r\n0.1; -200\r\n");
+  EXPECT_EQ(gal[0].file_unit, "cm/s2");
+  EXPECT_THAT(gal[0].acceleration, testing::ElementsAre(1.0, -2.0));
+  EXPECT_TRUE(gal[0].notes.empty());
+
+  const auto g = read_text("time\tacceleration_g\n 1 1\n 2 0.5\n 4 0\n");
+  EXPECT_DOUBLE_EQ(g[0].acceleration[1], 0.5 * standard_gravity);
+  EXPECT_DOUBLE_EQ(g[0].dt, 0.0);
+  EXPECT_THAT(g[0].times, testing::ElementsAre(1.0, 2.0, 4.0));
+  EXPECT_DOUBLE_EQ(g[0].duration(), 3.0);
+}
+
+TEST(MotionFile, FilesCutShortNameTheLineAndTheCount) {
+  struct Case {
+    std::string text;
+    int line;
+    std::string found;
+    std::string expected;
+  };
+  const std::string smc = content(data / "excerpt.smc"), v2 = content(data / "excerpt.V2");
+  const auto until = [](const std::string& text, const std::string& mark) {
+    return text.substr(0, text.find(mark));
+  };
+  const std::vector<Case> cases{
+      {until(smc, " 7.9232E+0"), 37, "16 samples", "20 samples"},
+      {until(smc, "  0.3772800E+02"), 19, "10 reals of the header", "50 reals"},
+      {until(classical_at2, "   .6000000E-02"), 5, "5 samples", "7 samples"},
+      {until(classical_at2, "0E-02   .2"), 5, "1 samples", "7 samples"},
+      {until(v2, "/&  ----------  END OF DATA FOR CHANNEL  2"), 109, "the end of the file", "END OF DATA"},
+      {until(v2, "    -8.412"), 102, "8 samples", "16 samples"},
+      {until(cosmos, "\nEnd-of-data"), 46, "the end of the file", "end-of-data"},
+      {"0,1\n", 1, "0,1", "at least two rows"},
+      {"", 1, "the end of the file", "USGS SMC"},
+  };
+  for (const Case& c : cases) {
+    const Diagnostic d = error_of(c.text);
+    SCOPED_TRACE(d.to_string());
+    EXPECT_EQ(d.where.line, c.line);
+    EXPECT_FALSE(d.where.file.empty());
+    EXPECT_THAT(d.found, HasSubstr(c.found));
+    EXPECT_THAT(d.expected, HasSubstr(c.expected));
+  }
+}
+
+TEST(MotionFile, DamagedSamplesNameLineAndColumn) {
+  const std::string smc = content(data / "excerpt.smc");
+  const Diagnostic letter = error_of(replaced(smc, " 1.3291E+0", " 1.32X1E+0"));
+  EXPECT_EQ(letter.where.line, 37);
+  EXPECT_EQ(letter.where.column, 31);
+  EXPECT_EQ(letter.found, "\"1.32X1E+0\"");
+  EXPECT_THAT(error_of(replaced(smc, " 1.3291E+0", "          ")).found, HasSubstr("blank"));
+  EXPECT_THAT(error_of(replaced(classical_at2, ".4000000E-02", "         NaN")).expected,
+              HasSubstr("finite number"));
+  EXPECT_THAT(error_of(replaced(classical_at2, ".4000000E-02", ".4000000E999")).expected,
+              HasSubstr("finite number"));
+  EXPECT_THAT(error_of(classical_at2 + "  0.1\n").expected, HasSubstr("the end of the file after 7 samples"));
+  EXPECT_THAT(error_of("0,1\n1,2\n1,3\n").expected, HasSubstr("after 1"));
+  EXPECT_THAT(error_of("0,1\n1,2\n2,x\n").expected, HasSubstr("two finite numbers"));
+}
+
+TEST(MotionFile, OtherQuantitiesAndUnitsAreRefused) {
+  EXPECT_THAT(error_of(replaced(classical_at2, "ACCELERATION TIME HISTORY IN UNITS OF G",
+                                "VELOCITY TIME HISTORY IN UNITS OF CM/S"))
+                  .expected,
+              HasSubstr("acceleration"));
+  EXPECT_THAT(error_of(replaced(classical_at2, "UNITS OF G", "UNITS OF FURLONGS")).expected,
+              HasSubstr("g, cm/s2 or m/s2"));
+  EXPECT_THAT(error_of(replaced(content(data / "excerpt.smc"), "2 CORRECTED ACCELEROGRAM",
+                                "3 VELOCITY              "))
+                  .expected,
+              HasSubstr("an accelerogram"));
+  EXPECT_THAT(error_of("time [s],acceleration [ft/s2]\n0,1\n1,2\n").expected, HasSubstr("m/s2, cm/s2 or g"));
+  EXPECT_THAT(error_of("Once upon a time\nthere was a\nfile\n").expected, HasSubstr("PEER AT2"));
+  EXPECT_THROW(read_motion_file(data / "no-such-file"), InputError);
+}
+
+TEST(MotionFile, AWrongPeakInTheHeaderIsNoted) {
+  const auto components = read_text(replaced(content(data / "excerpt.V2"), "PEAK ACCELERATION =    -5.659",
+                                             "PEAK ACCELERATION =    -7.659"));
+  EXPECT_THAT(components[0].notes, testing::ElementsAre(HasSubstr("-7.659")));
+}
+
+// The whole records. They are not shipped with the program.
+struct Fact {
+  std::string file;
+  std::size_t component, count, points;
+  double dt;
+  std::string unit;
+  double peak, peak_time;  // peak in the unit of the file
+  std::optional<double> first, last;
+  std::optional<double> azimuth;
+};
+
+TEST(MotionFile, WholeRecords) {
+  if (!std::filesystem::exists(records)) GTEST_SKIP() << "the records are not at " << records;
+  const std::vector<Fact> facts{
+      {"0111a.smc", 0, 1, 6001, 0.005, "cm/s2", 104.41, 10.17, 1.5057, -0.28745, 360.0},
+      {"0111b.smc", 0, 1, 6002, 0.005, "cm/s2", 48.347, 10.345, -12.518, -1.6806, {}},
+      {"0111c.smc", 0, 1, 6004, 0.005, "cm/s2", 70.437, {}, -5.8486, -1.1594, 270.0},
+      {"ELC1940_NS_Peknold.AT2", 0, 1, 1559, 0.02, "g", -0.31882, 2.02, 0.00630, 0.0, {}},
+      {"ce36456p_CE36456.V2", 0, 3, 3251, 0.02, "cm/s2", -267.957, 10.94, -3.038, {}, 90.0},
+      {"ce36456p_CE36456.V2", 1, 3, 3250, 0.02, "cm/s2", {}, {}, 2.335, {}, {}},
+      {"ce36456p_CE36456.V2", 2, 3, 3250, 0.02, "cm/s2", {}, {}, {}, {}, 0.0},
+  };
+  for (const Fact& fact : facts) {
+    SCOPED_TRACE(fact.file);
+    const auto components = read_motion_file(records / fact.file);
+    ASSERT_EQ(components.size(), fact.count);
+    const MotionComponent& c = components[fact.component];
+    EXPECT_EQ(c.acceleration.size(), fact.points);
+    EXPECT_DOUBLE_EQ(c.dt, fact.dt);
+    EXPECT_EQ(c.file_unit, fact.unit);
+    EXPECT_EQ(c.azimuth, fact.azimuth);
+    EXPECT_EQ(c.vertical, fact.file == "0111b.smc" || fact.component == 1);
+    EXPECT_TRUE(c.notes.empty()) << c.notes.front();
+    const auto in_file_unit = [&](double a) { return a / c.file_unit_in_si; };
+    if (fact.peak != 0.0) {
+      EXPECT_NEAR(in_file_unit(c.acceleration[c.peak_index()]), fact.peak, 1e-5 * std::abs(fact.peak));
+    }
+    if (fact.peak_time != 0.0) {
+      EXPECT_NEAR(c.time(c.peak_index()), fact.peak_time, 1e-9);
+    }
+    if (fact.first) {
+      EXPECT_NEAR(in_file_unit(c.acceleration.front()), *fact.first, 1e-9);
+    }
+    if (fact.last) {
+      EXPECT_NEAR(in_file_unit(c.acceleration.back()), *fact.last, 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keyblock::loading

@@ -1,0 +1,85 @@
+#include "loading/motion_measures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace keyblock::loading {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+MotionComponent sine_record(double amplitude, double frequency, int cycles, int per_cycle) {
+  MotionComponent c;
+  c.file = "folder/<sine>.csv";
+  c.format = "CSV";
+  c.dt = 1.0 / frequency / per_cycle;
+  c.file_unit = "m/s2";
+  for (int k = 0; k <= cycles * per_cycle; ++k) {
+    c.acceleration.push_back(amplitude * std::sin(2.0 * std::numbers::pi * k / per_cycle));
+  }
+  return c;
+}
+
+TEST(MotionMeasures, OfASine) {
+  const double amplitude = 3.0, frequency = 2.0;
+  const MotionMeasures m = measure(sine_record(amplitude, frequency, 10, 4000));
+  EXPECT_DOUBLE_EQ(m.peak, amplitude);
+  EXPECT_DOUBLE_EQ(m.peak_time, 0.125);
+  EXPECT_NEAR(m.peak_velocity, amplitude / (std::numbers::pi * frequency), 1e-6);
+  EXPECT_NEAR(m.final_velocity, 0.0, 1e-12);
+  EXPECT_NEAR(m.arias_intensity,
+              std::numbers::pi / (2.0 * standard_gravity) * amplitude * amplitude / 2.0 * 5.0, 1e-5);
+  EXPECT_NEAR(m.significant_duration, 0.9 * 5.0, 1e-3);
+}
+
+TEST(MotionMeasures, VelocityPeaksBetweenSamples) {
+  MotionComponent c;
+  c.dt = 1.0;
+  c.acceleration = {1.0, -1.0};
+  const MotionMeasures m = measure(c);
+  EXPECT_DOUBLE_EQ(m.peak_velocity, 0.25);
+  EXPECT_DOUBLE_EQ(m.final_velocity, 0.0);
+  EXPECT_NEAR(m.arias_intensity, std::numbers::pi / (2.0 * standard_gravity) / 3.0, 1e-15);
+}
+
+TEST(MotionMeasures, OfSilence) {
+  MotionComponent c;
+  c.dt = 1.0;
+  c.acceleration = {0.0, 0.0, 0.0};
+  const MotionMeasures m = measure(c);
+  EXPECT_EQ(m.arias_intensity, 0.0);
+  EXPECT_EQ(m.significant_duration, 0.0);
+  EXPECT_THAT(plot_motion_svg({c}), Not(HasSubstr("nan")));
+}
+
+TEST(MotionDescription, NamesWhatAnEngineerAsks) {
+  MotionComponent c = sine_record(3.0, 2.0, 10, 100);
+  c.azimuth = 270.0;
+  c.notes.push_back("the file names no unit; m/s2 is assumed");
+  const std::string text = describe_motion({c});
+  for (const char* words :
+       {"<sine>.csv: CSV", "azimuth 270°", "1001, dt 0.005 s, 5 s", "3 m/s2", "0.306 g at 0.125 s",
+        "0.4773 m/s", "Arias", "5-95 % duration 4.5 s", "m/s2 is assumed"}) {
+    EXPECT_THAT(text, HasSubstr(words));
+  }
+}
+
+TEST(MotionPlot, IsAnSvgWithAPanelPerComponent) {
+  MotionComponent up = sine_record(1.0, 1.0, 5, 100), east = sine_record(3.0, 2.0, 10, 100);
+  up.vertical = true;
+  east.azimuth = 90.0;
+  const std::string svg = plot_motion_svg({up, east});
+  EXPECT_THAT(svg, testing::StartsWith("<svg xmlns"));
+  EXPECT_THAT(svg, HasSubstr("&lt;sine&gt;.csv, up"));
+  EXPECT_THAT(svg, HasSubstr("&lt;sine&gt;.csv, 90°"));
+  EXPECT_THAT(svg, HasSubstr("0.306 g"));
+  EXPECT_THAT(svg, testing::EndsWith("</svg>\n"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+}  // namespace
+}  // namespace keyblock::loading
