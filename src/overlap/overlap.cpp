@@ -1,0 +1,235 @@
+#include "overlap/overlap.h"
+
+#define GEOS_USE_ONLY_R_API
+#include <geos_c.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "overlap/width.h"
+
+namespace keyblock::overlap {
+namespace {
+
+// Depths below this many units in the last place of the largest coordinate count as touching.
+constexpr double resolution_ulps = 16.0;
+// Grid of the second attempt at an intersection, in the same units.
+constexpr double grid_ulps = 4096.0;
+
+using Context = std::unique_ptr<GEOSContextHandle_HS, decltype(&GEOS_finish_r)>;
+
+struct GeometryDeleter {
+  GEOSContextHandle_t context;
+  void operator()(GEOSGeometry* geometry) const { GEOSGeom_destroy_r(context, geometry); }
+};
+using Geometry = std::unique_ptr<GEOSGeometry, GeometryDeleter>;
+
+struct Pair {
+  double bound = 0.0;  // of the depth, from above
+  int a = 0, b = 0;
+};
+
+class Finder {
+ public:
+  explicit Finder(std::span<const Polygon> blocks)
+      : blocks_(blocks), context_(GEOS_init_r(), GEOS_finish_r), geometries_(blocks.size()) {
+    for (const Polygon& block : blocks) {
+      boxes_.push_back(bounds(block));
+      hulls_.push_back(convex_hull(block.outer));
+      for (const Vec2 p : block.outer) largest_ = std::max({largest_, std::abs(p.x), std::abs(p.y)});
+    }
+  }
+
+  // Pairs whose hulls overlap by more than `least`, widest bound first.
+  [[nodiscard]] std::vector<Pair> candidates(double least) const;
+  // Connected regions that a pair shares.
+  std::vector<Overlap> regions(const Pair& pair);
+  [[nodiscard]] double resolution() const { return unit() * resolution_ulps; }
+
+ private:
+  [[nodiscard]] double unit() const { return std::numeric_limits<double>::epsilon() * largest_; }
+  [[nodiscard]] Geometry own(GEOSGeometry* geometry) const {
+    return {geometry, GeometryDeleter{context_.get()}};
+  }
+  [[nodiscard]] GEOSGeometry* geos_ring(const Ring& ring) const;
+  const GEOSGeometry* geometry(int block);
+  Ring read_ring(const GEOSGeometry* ring) const;
+  void add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur,
+                   std::vector<Overlap>& found) const;
+  [[nodiscard]] Overlap region(const GEOSGeometry* polygon, const Pair& pair, double blur) const;
+
+  std::span<const Polygon> blocks_;
+  Context context_;
+  std::vector<std::optional<Geometry>> geometries_;
+  std::vector<Box> boxes_;
+  std::vector<Ring> hulls_;
+  double largest_ = 0.0;
+};
+
+std::vector<Pair> Finder::candidates(double least) const {
+  std::vector<int> order(blocks_.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
+  const auto box = [this](int k) -> const Box& { return boxes_[static_cast<std::size_t>(k)]; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return box(a).min.x < box(b).min.x || (box(a).min.x == box(b).min.x && a < b);
+  });
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const int a = order[i];
+    for (std::size_t j = i + 1; j < order.size() && box(order[j]).min.x < box(a).max.x; ++j) {
+      const int b = order[j];
+      if (!box(a).overlaps(box(b))) continue;
+      const double bound =
+          hull_penetration(hulls_[static_cast<std::size_t>(a)], hulls_[static_cast<std::size_t>(b)]);
+      if (bound > least) pairs.push_back({bound, std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
+    if (p.bound != q.bound) return p.bound > q.bound;
+    return p.a != q.a ? p.a < q.a : p.b < q.b;
+  });
+  return pairs;
+}
+
+GEOSGeometry* Finder::geos_ring(const Ring& ring) const {
+  std::vector<double> xy;
+  for (std::size_t k = 0; k <= ring.size(); ++k) {
+    xy.push_back(ring[k % ring.size()].x);
+    xy.push_back(ring[k % ring.size()].y);
+  }
+  GEOSCoordSequence* sequence =
+      GEOSCoordSeq_copyFromBuffer_r(context_.get(), xy.data(), static_cast<unsigned>(ring.size() + 1), 0, 0);
+  return sequence == nullptr ? nullptr : GEOSGeom_createLinearRing_r(context_.get(), sequence);
+}
+
+// Null when GEOS refuses the block.
+const GEOSGeometry* Finder::geometry(int block) {
+  std::optional<Geometry>& known = geometries_[static_cast<std::size_t>(block)];
+  if (known) return known->get();
+  known = own(nullptr);
+  const Polygon& polygon = blocks_[static_cast<std::size_t>(block)];
+  GEOSGeometry* outer = geos_ring(polygon.outer);
+  if (outer == nullptr) return nullptr;
+  std::vector<GEOSGeometry*> holes;
+  for (const Ring& hole : polygon.holes) {
+    if (GEOSGeometry* ring = geos_ring(hole)) holes.push_back(ring);
+  }
+  Geometry made =
+      own(GEOSGeom_createPolygon_r(context_.get(), outer, holes.data(), static_cast<unsigned>(holes.size())));
+  if (made && GEOSisValid_r(context_.get(), made.get()) != 1)
+    made = own(GEOSMakeValid_r(context_.get(), made.get()));
+  known = std::move(made);
+  return known->get();
+}
+
+Ring Finder::read_ring(const GEOSGeometry* ring) const {
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(context_.get(), ring);
+  unsigned size = 0;
+  GEOSCoordSeq_getSize_r(context_.get(), sequence, &size);
+  Ring points(size);
+  for (unsigned k = 0; k < size; ++k)
+    GEOSCoordSeq_getXY_r(context_.get(), sequence, k, &points[k].x, &points[k].y);
+  if (!points.empty()) points.pop_back();
+  return points;
+}
+
+Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blur) const {
+  Polygon piece{read_ring(GEOSGetExteriorRing_r(context_.get(), polygon)), {}};
+  const int holes = GEOSGetNumInteriorRings_r(context_.get(), polygon);
+  for (int k = 0; k < holes; ++k) {
+    piece.holes.push_back(read_ring(GEOSGetInteriorRingN_r(context_.get(), polygon, k)));
+  }
+  orient(piece);
+  const Ring hull = convex_hull(piece.outer);
+  Overlap found{convex_width(hull), pair.a, pair.b, centroid(piece), area(piece)};
+  try {
+    const std::vector<Ring> parts = convex_parts(piece);
+    if (parts.size() > 1) {
+      double widest = 0.0;
+      for (const Ring& part : parts) {
+        const double width = convex_width(part);
+        if (width <= widest) continue;
+        widest = width;
+        found.where = centroid({part, {}});
+      }
+      found.depth = std::min(found.depth, widest);
+    }
+  } catch (const std::invalid_argument&) {
+    // Too thin to be cut up; the hull stands.
+  }
+  found.depth = std::min(found.depth + blur, pair.bound);
+  return found;
+}
+
+void Finder::add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur,
+                         std::vector<Overlap>& found) const {
+  const int type = GEOSGeomTypeId_r(context_.get(), geometry);
+  if (type == GEOS_POLYGON && GEOSisEmpty_r(context_.get(), geometry) == 0) {
+    found.push_back(region(geometry, pair, blur));
+  } else if (type == GEOS_MULTIPOLYGON || type == GEOS_GEOMETRYCOLLECTION) {
+    const int count = GEOSGetNumGeometries_r(context_.get(), geometry);
+    for (int k = 0; k < count; ++k) {
+      add_regions(GEOSGetGeometryN_r(context_.get(), geometry, k), pair, blur, found);
+    }
+  }
+}
+
+std::vector<Overlap> Finder::regions(const Pair& pair) {
+  const GEOSGeometry* a = geometry(pair.a);
+  const GEOSGeometry* b = geometry(pair.b);
+  double blur = 0.0;
+  Geometry shared = own(nullptr);
+  if (a != nullptr && b != nullptr) {
+    shared = own(GEOSIntersection_r(context_.get(), a, b));
+    if (!shared) {
+      blur = grid_ulps * unit();
+      shared = own(GEOSIntersectionPrec_r(context_.get(), a, b, blur));
+    }
+  }
+  std::vector<Overlap> found;
+  if (shared) {
+    add_regions(shared.get(), pair, blur, found);
+    if (!found.empty() || blur == 0.0) return found;
+  }
+  Box both = boxes_[static_cast<std::size_t>(pair.a)];
+  const Box& other = boxes_[static_cast<std::size_t>(pair.b)];
+  both.min = {std::max(both.min.x, other.min.x), std::max(both.min.y, other.min.y)};
+  both.max = {std::min(both.max.x, other.max.x), std::min(both.max.y, other.max.y)};
+  const double depth = shared ? std::min(blur, pair.bound) : pair.bound;
+  found.push_back({depth, pair.a, pair.b, lerp(both.min, both.max, 0.5), 0.0});
+  return found;
+}
+
+}  // namespace
+
+Overlap largest_overlap(std::span<const Polygon> blocks) {
+  Finder finder(blocks);
+  Overlap largest;
+  for (const Pair& pair : finder.candidates(finder.resolution())) {
+    if (pair.bound <= largest.depth) break;
+    for (const Overlap& found : finder.regions(pair)) {
+      if (found.depth > largest.depth) largest = found;
+    }
+  }
+  return largest.depth > finder.resolution() ? largest : Overlap{};
+}
+
+std::vector<Overlap> all_overlaps(std::span<const Polygon> blocks, double least_depth) {
+  Finder finder(blocks);
+  const double least = std::max(least_depth, finder.resolution());
+  std::vector<Overlap> all;
+  for (const Pair& pair : finder.candidates(least)) {
+    for (const Overlap& found : finder.regions(pair)) {
+      if (found.depth > least) all.push_back(found);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Overlap& a, const Overlap& b) { return a.depth > b.depth; });
+  return all;
+}
+
+}  // namespace keyblock::overlap
