@@ -107,7 +107,7 @@ void floor_eigenvalues(Eigen::MatrixXd& g, double floor) {
 
 }  // namespace
 
-void Elasticity::add_tangent(const double* a, double floor, double* tangent, int stride) const {
+void Elasticity::add_tangent(const double* a, double viscous, double floor, double* tangent, int stride) const {
   Eigen::MatrixXd geometric = Eigen::MatrixXd::Zero(size_ - 1, size_ - 1);
   std::vector<std::array<double, 6>> b(
       static_cast<std::size_t>(size_));  // B_k, columns x and y of three rows
@@ -115,6 +115,7 @@ void Elasticity::add_tangent(const double* a, double floor, double* tangent, int
     const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
     const Gradient2 f = deformation(a, g);
     const Stress s = second_piola(f, initial_[q]);
+    const double weight = (1.0 + viscous) * weight_[q];
     for (int k = 1; k < size_; ++k) {
       b[static_cast<std::size_t>(k)] = {f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x,
                                         f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x};
@@ -125,9 +126,9 @@ void Elasticity::add_tangent(const double* a, double floor, double* tangent, int
       const auto& bl = b[static_cast<std::size_t>(l)];
       std::array<double, 6> cb;
       for (std::size_t c = 0; c < 6; c += 3) {
-        cb[c] = weight_[q] * (c11_ * bl[c] + c12_ * bl[c + 1]);
-        cb[c + 1] = weight_[q] * (c12_ * bl[c] + c11_ * bl[c + 1]);
-        cb[c + 2] = weight_[q] * c33_ * bl[c + 2];
+        cb[c] = weight * (c11_ * bl[c] + c12_ * bl[c + 1]);
+        cb[c + 1] = weight * (c12_ * bl[c] + c11_ * bl[c + 1]);
+        cb[c + 2] = weight * c33_ * bl[c + 2];
       }
       double* column_x = tangent + static_cast<std::ptrdiff_t>(2 * l) * stride;
       double* column_y = column_x + stride;

@@ -33,10 +33,11 @@ class Elasticity {
   [[nodiscard]] double energy(const double* a) const;
   /// force[2k + c] += f_k; returns U.
   double add_force(const double* a, double* force) const;
+  /// The material part is multiplied by 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt.
   /// tangent: 2N × 2N with leading dimension `stride`, lower triangle added to (symmetric). The geometric
   /// part is kept above −floor (1/s² · kg/m³, as inertia): a block under extreme pressure then keeps a
   /// positive definite step.
-  void add_tangent(const double* a, double floor, double* tangent, int stride) const;
+  void add_tangent(const double* a, double viscous, double floor, double* tangent, int stride) const;
   /// Cauchy stress σ = F S Fᵀ / det F at a point of the region.
   [[nodiscard]] Stress cauchy(const double* a, const Basis& basis, Vec2 point) const;
   /// Mean of the Cauchy stress over the region, weighted by reference area.

@@ -9,12 +9,19 @@ enum class LinearSolver { block, direct };
 struct SolverOptions {
   /// Weight of the end of the step in the family M(1+θ)/Δt², v ← (1+θ)D/Δt − θv: 1 Shi, 0 backward Euler.
   double theta = 1.0;
+  /// Damping of elastic vibration, as shares of critical: of the rock at the first elastic frequency of each block
+  /// (stiffness-proportional, so slower motion feels less), and of each contact spring with its two blocks. Rigid motion,
+  /// falling blocks and Coulomb sliding are not slowed. Without any, a block on a frictional contact feeds vibrations from
+  /// its own sliding (mode coupling) as soon as Δt resolves them, and creeps below its friction angle.
+  double rock_damping = 0.1;
+  double contact_damping = 0.05;
   /// Largest residual of a block over its weight for a step to count as converged.
   double tolerance = 1e-4;
-  int max_iterations = 60;     ///< open-close iterations before the step is retried with half of Δt
+  int max_iterations = 60;  ///< open-close iterations before the step is retried with half of Δt
   int max_halvings = 6;
-  int max_bound_updates = 4;   ///< times the Coulomb bound is taken anew within a step
-  double bound_tolerance = 0.01;  ///< L2 error of the Coulomb bounds over their norm that asks for another
+  int max_bound_updates = 8;  ///< times the Coulomb bound is taken anew within a step
+  /// L2 norm of what new Coulomb bounds would change in the shear forces, over that of the bounds, that asks for another.
+  double bound_tolerance = 1e-5;
   LinearSolver linear = LinearSolver::block;
 };
 

@@ -76,7 +76,7 @@ TEST_P(ElasticityOrder, ForceAndTangentAreDerivatives) {
   const int n = 2 * basis.size();
   std::vector<double> force(a.size(), 0.0), tangent(a.size() * a.size(), 0.0);
   EXPECT_NEAR(elasticity.add_force(a.data(), force.data()) / elasticity.energy(a.data()), 1.0, 1e-14);
-  elasticity.add_tangent(a.data(), 1e30, tangent.data(), n);
+  elasticity.add_tangent(a.data(), 0.0, 1e30, tangent.data(), n);
   double force_scale = 0.0, tangent_scale = 0.0;
   for (const double f : force) force_scale = std::max(force_scale, std::abs(f));
   for (const double k : tangent) tangent_scale = std::max(tangent_scale, std::abs(k));
@@ -121,7 +121,7 @@ TEST_P(ElasticityOrder, FloorKeepsTheTangentPositive) {
   const std::vector<double> a = coefficients(basis);
   const int n = 2 * basis.size();
   std::vector<double> tangent(a.size() * a.size(), 0.0);
-  elasticity.add_tangent(a.data(), 1e6, tangent.data(), n);
+  elasticity.add_tangent(a.data(), 0.0, 1e6, tangent.data(), n);
   // Pure rotation is resisted by the geometric part alone.
   double along = 0.0;
   std::vector<double> spin(a.size());

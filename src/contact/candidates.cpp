@@ -1,0 +1,211 @@
+#include "contact/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyblock::contact {
+
+double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 d = b - a;
+  const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
+  return norm(p - a - s * d);
+}
+
+Candidates::Key Candidates::key(const Surface& surface, const Candidate& c) {
+  const auto [low, high] = std::minmax(surface.block[static_cast<std::size_t>(c.vertex)],
+                                       surface.block[static_cast<std::size_t>(c.edge)]);
+  return {low, high, c.vertex, c.edge};
+}
+
+bool Candidates::update(const Surface& surface, std::span<const double> reach, std::vector<Candidate>& list) {
+  const auto blocks = static_cast<std::size_t>(surface.blocks());
+  std::vector<std::uint8_t> dirty(blocks, looked_at_.empty());
+  bool any = looked_at_.empty();
+  if (any) {
+    looked_at_.assign(surface.position.size(), Vec2{});
+    margin_.assign(blocks, 0.0);
+    box_.assign(blocks, Box{});
+  }
+  for (std::size_t b = 0; b < blocks; ++b) {
+    if (!dirty[b]) {
+      if (surface.fixed[b] || !surface.present[b]) continue;
+      double moved = 0.0;
+      for (auto v = static_cast<std::size_t>(surface.block_begin[b]);
+           v < static_cast<std::size_t>(surface.block_begin[b + 1]); ++v) {
+        moved = std::max(moved, squared_norm(surface.position[v] - looked_at_[v]));
+      }
+      if (std::sqrt(moved) + reach[b] <= margin_[b]) continue;
+      dirty[b] = 1;
+      any = true;
+    }
+    margin_[b] = surface.fixed[b] ? 0.0 : tolerances_.margin + 4.0 * reach[b];
+    box_[b] = {};
+    for (auto v = static_cast<std::size_t>(surface.block_begin[b]);
+         v < static_cast<std::size_t>(surface.block_begin[b + 1]); ++v) {
+      looked_at_[v] = surface.position[v];
+      box_[b].add(surface.position[v]);
+    }
+    box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
+  }
+  if (any) look_at(surface, dirty, list);
+  return any;
+}
+
+namespace {
+
+/// Cells of equal size over all boxes; finds the boxes that overlap a given one.
+class Grid {
+ public:
+  explicit Grid(std::span<const Box> boxes, std::span<const std::uint8_t> present)
+      : boxes_(boxes), present_(present) {
+    Box all;
+    double mean = 0.0;
+    std::size_t count = 0;
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+      if (!present[b]) continue;
+      all.add(boxes[b]);
+      mean += boxes[b].size().x + boxes[b].size().y;
+      ++count;
+    }
+    if (count == 0) return;
+    cell_ = std::max(mean / static_cast<double>(count), 1e-300);
+    origin_ = all.min;
+    columns_ = std::clamp(static_cast<int>(all.size().x / cell_) + 1, 1, 4096);
+    rows_ = std::clamp(static_cast<int>(all.size().y / cell_) + 1, 1, 4096);
+    members_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+      if (!present[b]) continue;
+      const Range r = range(boxes[b]);
+      if ((r.x1 - r.x0 + 1) * (r.y1 - r.y0 + 1) > huge) {
+        huge_.push_back(static_cast<int>(b));
+        continue;
+      }
+      for (int y = r.y0; y <= r.y1; ++y) {
+        for (int x = r.x0; x <= r.x1; ++x) members_[cell(x, y)].push_back(static_cast<int>(b));
+      }
+    }
+  }
+
+  /// Blocks whose boxes overlap that of block b, each once, not b itself; ascending.
+  void query(int b, std::vector<int>& found) const {
+    found.clear();
+    const Box& box = boxes_[static_cast<std::size_t>(b)];
+    const Range r = range(box);
+    const auto add = [&](int other) {
+      if (other != b && boxes_[static_cast<std::size_t>(other)].overlaps(box)) found.push_back(other);
+    };
+    if ((r.x1 - r.x0 + 1) * (r.y1 - r.y0 + 1) > huge) {
+      for (std::size_t other = 0; other < boxes_.size(); ++other) {
+        if (present_[other]) add(static_cast<int>(other));
+      }
+      return;
+    }
+    for (int y = r.y0; y <= r.y1; ++y) {
+      for (int x = r.x0; x <= r.x1; ++x) {
+        for (const int other : members_[cell(x, y)]) add(other);
+      }
+    }
+    for (const int other : huge_) add(other);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+  }
+
+ private:
+  static constexpr int huge = 256;  ///< cells beyond which a box is kept apart
+  struct Range {
+    int x0, x1, y0, y1;
+  };
+  [[nodiscard]] Range range(const Box& box) const {
+    const auto index = [&](double t, double from, int count) {
+      return std::clamp(static_cast<int>(std::floor((t - from) / cell_)), 0, count - 1);
+    };
+    return {index(box.min.x, origin_.x, columns_), index(box.max.x, origin_.x, columns_),
+            index(box.min.y, origin_.y, rows_), index(box.max.y, origin_.y, rows_)};
+  }
+  [[nodiscard]] std::size_t cell(int x, int y) const { return static_cast<std::size_t>(y * columns_ + x); }
+
+  std::span<const Box> boxes_;
+  std::span<const std::uint8_t> present_;
+  double cell_ = 1.0;
+  Vec2 origin_;
+  int columns_ = 0, rows_ = 0;
+  std::vector<std::vector<int>> members_;
+  std::vector<int> huge_;
+};
+
+}  // namespace
+
+void Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
+                         std::vector<Candidate>& list) const {
+  const auto is_dirty = [&](int vertex) {
+    return dirty[static_cast<std::size_t>(surface.block[static_cast<std::size_t>(vertex)])] != 0;
+  };
+  std::vector<Candidate> kept, old, found;
+  for (const Candidate& c : list) (is_dirty(c.vertex) || is_dirty(c.edge) ? old : kept).push_back(c);
+
+  const Grid grid(box_, surface.present);
+  std::vector<int> neighbours;
+  for (int a = 0; a < surface.blocks(); ++a) {
+    const auto ia = static_cast<std::size_t>(a);
+    if (!dirty[ia] || !surface.present[ia]) continue;
+    grid.query(a, neighbours);
+    for (const int b : neighbours) {
+      const auto ib = static_cast<std::size_t>(b);
+      if (dirty[ib] && b < a) continue;  // done from the other side
+      if (surface.fixed[ia] && surface.fixed[ib]) continue;
+      collect_pair(surface, a, b, found);
+      collect_pair(surface, b, a, found);
+    }
+  }
+  const auto before = [&](const Candidate& x, const Candidate& y) {
+    return key(surface, x) < key(surface, y);
+  };
+  std::sort(found.begin(), found.end(), before);
+  auto memory = old.begin();
+  for (Candidate& c : found) {
+    while (memory != old.end() && before(*memory, c)) ++memory;
+    if (memory != old.end() && !before(c, *memory)) c.memory = memory->memory;
+  }
+  list.resize(kept.size() + found.size());
+  std::merge(kept.begin(), kept.end(), found.begin(), found.end(), list.begin(), before);
+}
+
+/// Vertices of a near edges of b.
+void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const {
+  const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+  // Positions are those at the last look, which the margins refer to.
+  const double reach = margin_[ia] + margin_[ib] + tolerances_.activation + tolerances_.depth_limit;
+  for (int v = surface.block_begin[ia]; v < surface.block_begin[ia + 1]; ++v) {
+    const auto iv = static_cast<std::size_t>(v);
+    if (surface.reflex[iv] || !box_[ib].grown(margin_[ia] + tolerances_.depth_limit).contains(looked_at_[iv]))
+      continue;
+    for (int e = surface.block_begin[ib]; e < surface.block_begin[ib + 1]; ++e) {
+      const auto ie = static_cast<std::size_t>(e);
+      if (distance_to_segment(looked_at_[iv], looked_at_[ie],
+                              looked_at_[static_cast<std::size_t>(surface.next[ie])]) < reach) {
+        found.push_back({v, e, {}});
+      }
+    }
+  }
+}
+
+std::vector<Candidate> all_pairs_within(const Surface& surface, double distance) {
+  std::vector<Candidate> found;
+  for (int v = 0; v < surface.vertices(); ++v) {
+    for (int e = 0; e < surface.vertices(); ++e) {
+      const auto iv = static_cast<std::size_t>(v), ie = static_cast<std::size_t>(e);
+      const auto a = static_cast<std::size_t>(surface.block[iv]),
+                 b = static_cast<std::size_t>(surface.block[ie]);
+      if (a == b || surface.reflex[iv] || !surface.present[a] || !surface.present[b] ||
+          (surface.fixed[a] && surface.fixed[b]))
+        continue;
+      if (distance_to_segment(surface.position[iv], surface.position[ie],
+                              surface.position[static_cast<std::size_t>(surface.next[ie])]) < distance) {
+        found.push_back({v, e, {}});
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace keyblock::contact

@@ -1,0 +1,72 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "contact/candidates.h"
+#include "contact/surface.h"
+
+namespace keyblock::contact {
+
+/// A contact of this step: vertex V of block a against edge AB of block b, linear in the displacements of both.
+///
+///     gap  g = n · (V − A),     g(D) = gap + n · r,     r = D_a(V) − D_b(P),   P = (1 − s) A + s B
+///     slip u(D) = shear + t · r
+///
+/// n is the outward unit normal of the edge, t its direction (A to B).
+struct Contact {
+  int candidate = 0;  ///< where its memory is
+  int block_a = 0, block_b = 0;
+  int vertex = 0, edge = 0;
+  Vec2 normal, tangent;
+  double position = 0.0;  ///< s, 0 at A, 1 at B; a little outside near the ends
+  double gap = 0.0;       ///< m, of the geometry
+  double length = 0.0;    ///< m of joint that belongs to it: half of what each facing pair of edges shares
+  double depth = 0.0;     ///< m, −(gap + offset): what the normal spring sees at the start of the step
+  double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
+  double friction_coefficient = 0.0;
+  double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
+  bool fused = false;
+};
+
+/// Geometry of candidates turned into the contacts of a step.
+///
+/// A candidate takes part when its vertex lies over the edge (or within a zone of its ends), not deeper than the depth
+/// limit, and both edges of the vertex lie outside. Where two corners meet, up to four candidates describe the same
+/// corner pair; they compete, so that one contact remains (vertex-vertex contact with a unique entrance line):
+///   - all lines parallel: the end of an edge-edge contact. The vertex that lies over the other's edge; the one that
+///     already was in contact stays until it has clearly left, and then hands its memory over.
+///   - otherwise corner to corner: the line of the largest gap is the shortest way out; none while that is a tie.
+class Detection {
+ public:
+  /// young[b]: Pa, for the stiffness of joints that give none. laws[k]: by Surface::joint.
+  Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> young)
+      : tolerances_(tolerances), laws_(std::move(laws)), young_(std::move(young)) {}
+
+  /// Contacts of the step in the order of the candidates, whose memory is brought up to date (tracked, offsets).
+  /// reach[b]: m, bound on the motion of block b in the step.
+  void find(const Surface& surface, std::span<const double> reach, std::vector<Candidate>& candidates,
+            std::vector<Contact>& contacts);
+
+  [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
+  [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
+
+ private:
+  struct Member {
+    int low, high;  ///< the two corners
+    int index;      ///< into contacts
+    double inside;  ///< m by which the vertex lies over the edge; negative: beyond the end
+  };
+  bool evaluate(const Surface& surface, std::span<const double> reach, int candidate, const Candidate& c,
+                Contact& contact, Member& member) const;
+  void compete(std::span<const Member> members, std::vector<Candidate>& candidates);
+  void complete(const Surface& surface, const Candidate& c, Contact& contact) const;
+
+  Tolerances tolerances_;
+  std::vector<JointLaw> laws_;
+  std::vector<double> young_;
+  std::vector<Contact> found_;      ///< scratch: all that pass the geometry
+  std::vector<Member> members_;     ///< scratch: those near corners
+  std::vector<std::uint8_t> drop_;  ///< scratch, per found_
+};
+
+}  // namespace keyblock::contact

@@ -1,0 +1,89 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "contact/detection.h"
+
+namespace keyblock::contact {
+
+/// The potential of one contact in one step, convex in D: a one-sided normal spring with a dashpot (two-sided for a bond
+/// in tension) and a shear spring with a dashpot, cut off at the Coulomb bound, which is frozen during a solve. With the
+/// displacements x = depth − n·r and u = shear + t·r at the end of the step, x₀ and u₀ at its start, and c = dashpot/Δt:
+///
+///     N = max(k_n x + c_n (x − max(x₀, 0)), 0)          T = clamp(k_s u + c_s (u − u₀), ±bound)
+///     force on block a: N n − T t, on block b the opposite;  bound = μ N_frozen + c L
+///
+/// Spring and dashpot together are a spring of stiffness k + c about a shifted origin, so everything else sees one spring.
+class Spring {
+ public:
+  struct Constants {
+    double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
+    double normal_damping = 0.0, shear_damping = 0.0;      ///< dashpot over Δt, N/m per thickness
+    double depth = 0.0, shear = 0.0;                       ///< m, x₀ and u₀
+    double bound = 0.0;                                    ///< N, largest |T|
+    bool tensile = false;                                  ///< the normal spring also pulls
+  };
+  Spring() = default;
+  explicit Spring(const Constants& c)
+      : k_(c),
+        normal_(c.normal_stiffness + c.normal_damping),
+        shear_(c.shear_stiffness + c.shear_damping),
+        depth_(c.depth - c.normal_damping * (c.tensile ? c.depth : std::max(c.depth, 0.0)) / normal_),
+        origin_(c.shear - c.shear_damping * c.shear / shear_) {}
+
+  // The one spring: penetration y and shear w about the shifted origin.
+  [[nodiscard]] double normal_stiffness() const { return normal_; }
+  [[nodiscard]] double shear_stiffness() const { return shear_; }
+  [[nodiscard]] double depth() const { return depth_; }   ///< y at D = 0
+  [[nodiscard]] double shear() const { return origin_; }  ///< w at D = 0
+  [[nodiscard]] double bound() const { return k_.bound; }
+  [[nodiscard]] bool tensile() const { return k_.tensile; }
+  void set_bound(double bound) { k_.bound = bound; }
+  void break_bond() { k_.tensile = false; }
+
+  [[nodiscard]] bool closed(double y) const { return k_.tensile || y > 0.0; }
+  [[nodiscard]] bool locked(double w) const { return std::abs(shear_ * w) <= k_.bound; }
+  [[nodiscard]] double normal_force(double y) const { return closed(y) ? normal_ * y : 0.0; }
+  [[nodiscard]] double shear_force(double w) const { return std::clamp(shear_ * w, -k_.bound, k_.bound); }
+  /// Minus the integral of the forces: ∂potential/∂y = N, ∂potential/∂w = T.
+  [[nodiscard]] double potential(double y, double w) const {
+    const double force = shear_force(w);
+    return 0.5 * normal_force(y) * y + std::abs(force) * (std::abs(w) - 0.5 * std::abs(force) / shear_);
+  }
+
+  /// x at the end of the step, from y.
+  [[nodiscard]] double penetration(double y) const { return y + (k_.depth - depth_); }
+  /// The part of the shear displacement that comes back, from w; the rest has slipped.
+  [[nodiscard]] double elastic_shear(double w) const {
+    return shear_force(w) / shear_ + (k_.shear - origin_);
+  }
+
+  /// Where the energy of a contact goes in a step: work of its forces on the blocks + stored − before + friction + damping
+  /// + numerical = 0; the last is what end-of-step forces lose against the potential.
+  struct Balance {
+    double stored = 0.0, friction = 0.0, damping = 0.0, numerical = 0.0;
+  };
+  [[nodiscard]] Balance balance(double y, double w) const {
+    const double x = penetration(y), normal = normal_force(y), shear = shear_force(w),
+                 elastic = elastic_shear(w);
+    const double x_force = k_.tensile || x > 0.0 ? k_.normal_stiffness * x : 0.0;
+    const double before =
+        0.5 * (k_.tensile || k_.depth > 0.0 ? k_.normal_stiffness * k_.depth * k_.depth : 0.0) +
+        0.5 * k_.shear_stiffness * k_.shear * k_.shear;
+    Balance b;
+    b.stored = 0.5 * x_force * x + 0.5 * k_.shear_stiffness * elastic * elastic;
+    b.friction = std::abs(shear) * std::abs(w - shear / shear_);
+    b.damping =
+        (normal - x_force) * (x - k_.depth) + (shear - k_.shear_stiffness * elastic) * (elastic - k_.shear);
+    const double work = -normal * (y - depth_) - shear * (w - origin_);
+    b.numerical = before - work - b.stored - b.friction - b.damping;
+    return b;
+  }
+
+ private:
+  Constants k_;
+  double normal_ = 0.0, shear_ = 0.0;
+  double depth_ = 0.0, origin_ = 0.0;
+};
+
+}  // namespace keyblock::contact

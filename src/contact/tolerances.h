@@ -1,0 +1,47 @@
+#pragma once
+
+namespace keyblock::contact {
+
+/// Lengths of the contact geometry. All scale with the block size ℓ = √(mean block area), so that a model in any unit and
+/// of any size meets the same rules; the comment gives the share of ℓ and the value at ℓ = 0.67 m (a jointed tunnel).
+struct Tolerances {
+  explicit Tolerances(double block_size)
+      : activation(0.0015 * block_size),
+        end_zone(0.003 * block_size),
+        depth_limit(0.03 * block_size),
+        margin(0.04 * block_size),
+        least_length(0.05 * block_size),
+        corner_tie(0.00075 * block_size),
+        corner_depth(0.00015 * block_size),
+        in_place(1e-4 * block_size) {}
+
+  /// A gap below which a contact takes part in the step although it is open (1 mm), beside what motion adds. Too small:
+  /// a contact is met only after it has been penetrated. Too large: more contacts to evaluate.
+  double activation;
+  /// Distance from the end of an edge within which the contacts of two corners compete (2 mm), beside what motion adds.
+  double end_zone;
+  /// Depth up to which a vertex behind an edge is in contact with it (2 cm). Must stay below the thickness of a block:
+  /// beyond it a vertex is grabbed by the far edge. Also how far an edge reaches past a reflex end, where a vertex
+  /// nested in a concave corner may slip by.
+  double depth_limit;
+  /// How far candidates are collected beyond the activation distance (3 cm), each block on its own. Larger: fewer
+  /// rebuilds, more candidates.
+  double margin;
+  /// Least length of joint that gives a contact its stiffness (3 cm): a corner on an edge has no length of its own.
+  double least_length;
+  /// Two corners tip to tip: while the gaps to their two entrance lines differ by less than `corner_tie` (0.5 mm) and
+  /// neither is deeper than `corner_depth` (0.1 mm) there is no telling which side they pass, and no contact.
+  double corner_tie;
+  double corner_depth;
+  /// Largest gap of a joint in place at the start (0.07 mm): such a contact has the joint's cohesion and tension.
+  double in_place;
+
+  /// A vertex touches an edge only when both its own edges lie outside it, up to this angle (sin 2°).
+  static constexpr double sine_inside = 0.0349;
+  /// Entrance lines within this angle are one line (sin 4°).
+  static constexpr double sine_parallel = 0.0698;
+  /// Edges within this angle share a length of joint (sin 5°).
+  static constexpr double sine_facing = 0.0872;
+};
+
+}  // namespace keyblock::contact

@@ -1,0 +1,69 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "block/basis.h"
+#include "block/elasticity.h"
+#include "block/pose.h"
+#include "contact/surface.h"
+#include "contact/tolerances.h"
+#include "dynamics/options.h"
+#include "loading/time_table.h"
+
+namespace keyblock::dynamics {
+
+/// One block as mechanics sees it; constant during a run.
+struct Block {
+  Polygon reference;
+  block::Basis basis;
+  block::Elasticity elasticity;
+  block::Pose pose;
+  Material material;
+  bool fixed = false;
+  double area = 0.0;  ///< m², of the reference polygon
+  std::size_t first =
+      0;         ///< its coefficients start here in State::position: a_0x, a_0y, a_1x, …; fixed blocks last
+  int size = 0;  ///< N, number of basis functions; 2N unknowns
+  int unknown = -1;  ///< number among the blocks that move; −1: fixed
+  /// Force per unit acceleration on coefficient 0, ρ √A; the others feel no uniform body force.
+  [[nodiscard]] double body_force() const { return material.density * std::sqrt(area); }
+  [[nodiscard]] double mass() const { return material.density * area; }
+};
+
+/// A force that follows its block: vector Q of 2N generalized forces times a factor table.
+struct GeneralizedLoad {
+  int block = 0;
+  std::vector<double> force;  ///< N/m per thickness, ∫ φ_k q dΓ
+  loading::TimeTable factor;  ///< empty: 1
+};
+
+/// A spring from a material point to the ground in one direction; edges are many of them, with Gauss weights.
+struct GroundSpring {
+  int block = 0;
+  int axis = 0;               ///< 0: x, 1: y
+  std::vector<double> phi;    ///< N values at the point
+  double anchor = 0.0;        ///< m, coordinate of the point at the start
+  double stiffness = 0.0;     ///< N/m per thickness
+  loading::TimeTable motion;  ///< m; empty: none
+};
+
+/// Everything that does not change during a run but by excavation.
+struct Model {
+  std::vector<Block> blocks;
+  contact::Surface surface;  ///< topology and basis values; positions are those of the start
+  std::vector<contact::JointLaw> laws;
+  std::vector<GeneralizedLoad> loads;
+  std::vector<GroundSpring> springs;
+  std::optional<InSituStress> in_situ;
+  Vec2 gravity;             ///< m/s²
+  double block_size = 1.0;  ///< m, √(mean area of the blocks that move)
+  SolverOptions solver;
+
+  std::size_t unknowns = 0;      ///< coefficients of the blocks that are not fixed; they come first
+  std::size_t coefficients = 0;  ///< of all blocks
+
+  [[nodiscard]] bool moves(std::size_t b) const { return !blocks[b].fixed && surface.present[b] != 0; }
+};
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,60 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "dynamics/options.h"
+#include "dynamics/step_problem.h"
+#include "linalg/block_solver.h"
+
+namespace keyblock::dynamics {
+
+/// What an open-close iteration did.
+struct OpenCloseResult {
+  bool converged = false;
+  bool bond_broken = false;     ///< some contact lost its cohesion and tension on the way
+  int iterations = 0;           ///< linear solves
+  int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
+  double residual_ratio = 0.0;  ///< at the end
+};
+
+/// Open-close iteration: a Newton method with an exact line search on the convex, piecewise quadratic Π(D) of a step.
+///
+///     1. solve with the springs that acted in the last step; if the same springs act at the solution, it is exact;
+///     2. otherwise repeat: solve ∇²Π p = −∇Π with the springs acting at D, and go to the minimum of Π(D + αp), which
+///        is the root of a piecewise linear function of α;
+///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
+///        (a new contact has no friction otherwise, in its first step);
+///     4. bonds whose strength is exceeded break, and the iteration goes on. A broken bond stays broken.
+class OpenClose {
+ public:
+  /// start: springs assumed in the first solve, one per row. d: the increment, overwritten. Bonds that break are cleared
+  /// in `memory` (one per row) and in the rows of the problem.
+  OpenCloseResult solve(StepProblem& problem, std::span<const contact::Contact> contacts,
+                        std::span<contact::Memory* const> memory, linalg::BlockSolver& solver,
+                        const SolverOptions& options, std::span<double> d);
+
+  /// r of every row at the solution.
+  [[nodiscard]] std::span<const Vec2> relative() const { return r_; }
+  [[nodiscard]] std::span<const double> gradient() const { return gradient_; }
+
+ private:
+  using Active = StepProblem::Active;
+
+  bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
+                bool warm, std::span<double> d, OpenCloseResult& result);
+  bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> d,
+                   OpenCloseResult& result);
+  double line_search(const StepProblem& problem, std::span<const double> d);
+  void evaluate(const StepProblem& problem, std::span<const double> d);
+  bool update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
+                     std::span<contact::Memory* const> memory, const SolverOptions& options);
+  bool break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
+                   std::span<contact::Memory* const> memory);
+
+  std::vector<Active> assumed_, active_;
+  std::vector<Vec2> r_, r_direction_;
+  std::vector<double> gradient_, direction_, h_direction_;
+  double stalled_error_ = 0.0;  ///< bound error at which taking the bounds anew did not help
+};
+
+}  // namespace keyblock::dynamics

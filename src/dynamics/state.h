@@ -1,0 +1,29 @@
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "contact/candidates.h"
+#include "geometry/vec2.h"
+
+namespace keyblock::dynamics {
+
+/// Sums over the run, J per thickness.
+struct EnergyLedger {
+  double friction = 0.0;   ///< dissipated
+  double damping = 0.0;    ///< dissipated by the dashpots of contacts
+  double input = 0.0;      ///< done by ground motion, loads and moved supports
+  double numerical = 0.0;  ///< dissipated by the time integration
+};
+
+/// Everything that changes from step to step, and all that a restart needs.
+struct State {
+  double time = 0.0;  ///< s; static steps count none
+  long step = 0;
+  std::vector<double> position;  ///< coefficients a, by Block::first
+  std::vector<double> velocity;
+  std::vector<contact::Candidate> contacts;  ///< candidates with their memory
+  std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for
+  EnergyLedger ledger;
+};
+
+}  // namespace keyblock::dynamics

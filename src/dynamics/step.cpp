@@ -1,0 +1,380 @@
+#include "dynamics/step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace keyblock::dynamics {
+
+namespace {
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// x(X) at a vertex from the coefficients of its block.
+Vec2 map_point(const double* phi, int size, const double* a) {
+  Vec2 x;
+  for (int k = 0; k < size; ++k) x += phi[k] * Vec2{a[2 * k], a[2 * k + 1]};
+  return x;
+}
+
+std::vector<double> young_of(const Model& model) {
+  std::vector<double> young;
+  for (const Block& block : model.blocks) young.push_back(block.material.young);
+  return young;
+}
+}  // namespace
+
+Stepper::Stepper(Model& model, ThreadTeam& team)
+    : model_(model),
+      team_(team),
+      tolerances_(model.block_size),
+      candidates_(tolerances_),
+      detection_(tolerances_, model.laws, young_of(model)),
+      solver_(model.solver.linear == LinearSolver::block ? linalg::make_block_cholesky()
+                                                         : linalg::make_cholmod()),
+      reach_(model.blocks.size(), 0.0),
+      moved_(model.blocks.size(), 0.0),
+      increment_(model.coefficients, 0.0),
+      balance_(model.blocks.size()) {
+  for (const Block& block : model.blocks) {
+    if (block.unknown >= 0) unknown_sizes_.push_back(2 * block.size);
+  }
+}
+
+void Stepper::place(const State& state) {
+  contact::Surface& surface = model_.surface;
+  team_.for_range(model_.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const Block& block = model_.blocks[b];
+      double moved = 0.0;
+      for (std::size_t v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
+        const Vec2 x =
+            map_point(&surface.phi[surface.phi_begin[v]], block.size, &state.position[block.first]);
+        moved = std::max(moved, squared_norm(x - surface.position[v]));
+        surface.position[v] = x;
+      }
+      moved_[b] = std::sqrt(moved);
+    }
+  });
+}
+
+void Stepper::start(State& state) {
+  place(state);
+  std::fill(moved_.begin(), moved_.end(), 0.0);
+  std::fill(reach_.begin(), reach_.end(), 0.0);
+  candidates_.update(model_.surface, reach_, state.contacts);
+  detection_.find(model_.surface, reach_, state.contacts, contacts_);
+  for (const contact::Contact& c : contacts_) {
+    contact::Memory& memory = state.contacts[at(c.candidate)].memory;
+    if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
+    const contact::JointLaw& law = model_.laws[at(model_.surface.joint[at(c.edge)])];
+    memory.bonded = law.fused || law.cohesion > 0.0 || law.tension > 0.0;
+    if (!model_.in_situ) continue;
+    // The joint carries the stress of the rock from the start: traction on block a is −σ n.
+    const int end = model_.surface.next[at(c.edge)];
+    const Vec2 where =
+        lerp(model_.surface.position[at(c.edge)], model_.surface.position[at(end)], c.position);
+    const block::Stress s = block::in_situ_at(model_.in_situ, where);
+    const Vec2 traction{s.xx * c.normal.x + s.xy * c.normal.y, s.xy * c.normal.x + s.yy * c.normal.y};
+    const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
+    const double bound = law.fused ? HUGE_VAL : law.friction_coefficient * normal + law.cohesion * c.length;
+    const double shear = std::clamp(dot(traction, c.tangent) * c.length, -bound, bound);
+    memory.normal_force = normal;
+    memory.offset = -c.gap - normal / c.normal_stiffness;
+    memory.shear = shear / c.shear_stiffness;
+    memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
+  }
+  ensure_pattern(state, true);
+}
+
+void Stepper::resume(State& state) {
+  place(state);
+  candidates_.invalidate();
+  std::fill(moved_.begin(), moved_.end(), 0.0);
+  analysed_ = false;
+}
+
+void Stepper::remove_absent(State& state) {
+  candidates_.invalidate();
+  std::fill(reach_.begin(), reach_.end(), 0.0);
+  candidates_.update(model_.surface, reach_, state.contacts);
+  analysed_ = false;
+  state.pattern.clear();
+}
+
+/// Bound on how far each block moves in the step: twice what its velocity and the body force make of it.
+void Stepper::predict_reach(const State& state, const Drive& drive) {
+  const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    if (drive.is_static) {
+      reach_[b] = 2.0 * moved_[b];
+      continue;
+    }
+    const Block& block = model_.blocks[b];
+    double fastest = 0.0;
+    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
+      fastest = std::max(fastest, squared_norm(map_point(&model_.surface.phi[model_.surface.phi_begin[v]],
+                                                         block.size, &state.velocity[block.first])));
+    }
+    reach_[b] = 2.0 * std::sqrt(fastest) * drive.step + 2.0 * acceleration;
+  }
+}
+
+void Stepper::detect(State& state, const Drive& drive) {
+  (void)drive;
+  const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
+  detection_.find(model_.surface, reach_, state.contacts, contacts_);
+  ensure_pattern(state, changed);
+}
+
+/// Room in the matrix for every pair of blocks that has candidates; analysed anew only when a pair is missing.
+void Stepper::ensure_pattern(State& state, bool candidates_changed) {
+  if (!candidates_changed && analysed_) return;
+  const std::vector<contact::Candidate>& list = state.contacts;
+  const auto pair_of = [&](const contact::Candidate& c) {
+    const int a = model_.blocks[at(model_.surface.block[at(c.vertex)])].unknown;
+    const int b = model_.blocks[at(model_.surface.block[at(c.edge)])].unknown;
+    return std::minmax({a, b});
+  };
+  const auto has_room = [&](std::pair<int, int> pair) {
+    return std::binary_search(state.pattern.begin(), state.pattern.end(), pair);
+  };
+  std::vector<std::pair<int, int>> wanted;
+  for (const contact::Candidate& c : list) {
+    const std::pair<int, int> pair = pair_of(c);
+    if (pair.first >= 0 && (wanted.empty() || wanted.back() != pair)) wanted.push_back(pair);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  if (!std::all_of(wanted.begin(), wanted.end(), has_room)) {
+    state.pattern = std::move(wanted);
+    analysed_ = false;
+  }
+  if (!analysed_) {
+    solver_->analyse(unknown_sizes_, state.pattern);
+    analysed_ = true;
+  }
+  pair_of_candidate_.resize(list.size());
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::pair<int, int> pair = pair_of(list[k]);
+    pair_of_candidate_[k] =
+        pair.first < 0 ? -1
+                       : static_cast<int>(std::lower_bound(state.pattern.begin(), state.pattern.end(), pair) -
+                                          state.pattern.begin());
+  }
+}
+
+bool Stepper::attempt(State& state, const Drive& drive, StepReport& report) {
+  predict_reach(state, drive);
+  for (int look = 0; look < 3; ++look) {
+    detect(state, drive);
+    problem_.build(model_, state, drive, model_.surface, contacts_, team_);
+    memory_.clear();
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      memory_.push_back(&state.contacts[at(contacts_[c].candidate)].memory);
+      problem_.rows()[c].pair = pair_of_candidate_[at(contacts_[c].candidate)];
+    }
+    const OpenCloseResult result =
+        open_close_.solve(problem_, contacts_, memory_, *solver_, model_.solver, increment_);
+    report.iterations += result.iterations;
+    if (!result.converged) return false;
+    if (!moved_too_far()) return true;
+  }
+  return true;
+}
+
+/// Whether a block moved beyond the reach within which its contacts were looked for; the reach is then raised.
+bool Stepper::moved_too_far() {
+  bool any = false;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    double moved = 0.0;
+    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
+      moved = std::max(moved, squared_norm(map_point(&model_.surface.phi[model_.surface.phi_begin[v]],
+                                                     block.size, &increment_[block.first])));
+    }
+    moved = std::sqrt(moved);
+    if (moved > reach_[b] + 0.5 * tolerances_.activation) {
+      reach_[b] = 1.5 * moved;
+      any = true;
+    }
+  }
+  return any;
+}
+
+void Stepper::account(State& state, const Drive& drive) {
+  EnergyLedger& ledger = state.ledger;
+  ledger.numerical += problem_.elastic_loss(increment_);
+  const double theta = model_.solver.theta;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    const double* d = &increment_[block.first];
+    const double* v = &state.velocity[block.first];
+    double jump = 0.0, squared = 0.0;
+    for (int k = 0; k < 2 * block.size; ++k) {
+      const double change = (1.0 + theta) * (d[k] / drive.step - v[k]);
+      jump += change * change;
+      squared += d[k] * d[k];
+    }
+    ledger.numerical += drive.is_static ? problem_.inertia(b) * squared
+                                        : 0.5 * (1.0 - theta) / (1.0 + theta) * block.material.density * jump;
+    ledger.input -= block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
+  }
+  for (const GeneralizedLoad& load : model_.loads) {
+    if (!model_.moves(at(load.block))) continue;
+    const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
+    for (std::size_t k = 0; k < load.force.size(); ++k)
+      ledger.input += f * load.force[k] * increment_[model_.blocks[at(load.block)].first + k];
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const StepProblem::Row& row = problem_.rows()[c];
+    const Vec2 r = open_close_.relative()[c];
+    const contact::Spring::Balance balance = row.spring.balance(row.depth(r), row.shear(r));
+    ledger.friction += balance.friction;
+    ledger.damping += balance.damping;
+    ledger.numerical += balance.numerical;
+  }
+}
+
+/// Contact memory for the next step.
+void Stepper::remember(StepReport& report) {
+  forces_.resize(contacts_.size());
+  contact_energy_ = 0.0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const StepProblem::Row& row = problem_.rows()[c];
+    const contact::Spring& s = row.spring;
+    contact::Memory& memory = *memory_[c];
+    const Vec2 r = open_close_.relative()[c];
+    const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
+    contact_energy_ += s.balance(depth, shear).stored;
+    memory.normal_force = std::max(0.0, normal_force);
+    memory.shear = s.closed(depth) ? s.elastic_shear(shear) : 0.0;
+    memory.slip += dot(row.tangent, r);
+    memory.state = !s.closed(depth)  ? contact::State::open
+                   : s.locked(shear) ? contact::State::locked
+                                     : contact::State::sliding;
+    forces_[c] = {normal_force, s.closed(depth) ? s.shear_force(shear) : 0.0};
+    if (memory.state != contact::State::open) ++report.closed_contacts;
+    report.penetration = std::max(report.penetration, s.penetration(depth));
+  }
+  report.contact_energy = contact_energy_;
+}
+
+void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
+  account(state, drive);
+  remember(report);
+  const double theta = model_.solver.theta, g = norm(model_.gravity);
+  const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    const double* d = &increment_[block.first];
+    double* v = &state.velocity[block.first];
+    double squared = 0.0;
+    for (int k = 0; k < 2 * block.size; ++k) {
+      v[k] = drive.is_static ? 0.0 : (1.0 + theta) * d[k] / drive.step - theta * v[k];
+      squared += d[k] * d[k];
+    }
+    if (drive.is_static) {
+      const double weight = std::max(problem_.weight(b), 1e-300);
+      balance_[b] = {problem_.inertia(b) * std::sqrt(squared) / weight,
+                     problem_.inertia(b) * dot(down, {d[0], d[1]}) / weight};
+    }
+    block.pose.update(d, &state.position[block.first], v);
+  }
+  place(state);
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (model_.moves(b)) report.max_displacement = std::max(report.max_displacement, moved_[b]);
+  }
+}
+
+void Stepper::substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
+                      StepReport& report) {
+  Drive drive;
+  drive.step = t1 - t0;
+  drive.end_time = t1;
+  if (ground != nullptr) drive.ground_acceleration = ground->mean(t0, t1);
+  const std::vector<contact::Candidate> before = state.contacts;
+  const bool converged = attempt(state, drive, report);
+  if (converged || halvings >= model_.solver.max_halvings) {
+    report.converged = report.converged && converged;
+    accept(state, drive, report);
+    return;
+  }
+  state.contacts = before;
+  candidates_.invalidate();
+  report.substeps += 1;
+  const double middle = 0.5 * (t0 + t1);
+  substep(state, t0, middle, ground, halvings + 1, report);
+  substep(state, middle, t1, ground, halvings + 1, report);
+}
+
+StepReport Stepper::advance(State& state, double dt, const GroundAcceleration* ground) {
+  StepReport report;
+  substep(state, state.time, state.time + dt, ground, 0, report);
+  state.time += dt;
+  ++state.step;
+  return report;
+}
+
+StepReport Stepper::relax(State& state, double dt, std::span<const double> inertia_scale) {
+  StepReport report;
+  Drive drive;
+  drive.end_time = state.time;
+  drive.is_static = true;
+  drive.inertia_scale = inertia_scale;
+  drive.step = dt;
+  const std::vector<contact::Candidate> before = state.contacts;
+  for (int halvings = 0;; ++halvings) {
+    const bool converged = attempt(state, drive, report);
+    if (converged || halvings >= model_.solver.max_halvings) {
+      report.converged = converged;
+      break;
+    }
+    state.contacts = before;
+    candidates_.invalidate();
+    report.substeps += 1;
+    drive.step *= 0.5;
+  }
+  accept(state, drive, report);
+  ++state.step;
+  return report;
+}
+
+double Stepper::kinetic_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    double squared = 0.0;
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      squared += state.velocity[k] * state.velocity[k];
+    sum += 0.5 * block.material.density * squared;
+  }
+  return sum;
+}
+
+double Stepper::strain_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (model_.moves(b)) sum += model_.blocks[b].elasticity.energy(&state.position[model_.blocks[b].first]);
+  }
+  return sum;
+}
+
+double Stepper::gravity_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    sum -= block.body_force() *
+           dot(model_.gravity, {state.position[block.first], state.position[block.first + 1]});
+  }
+  return sum;
+}
+
+}  // namespace keyblock::dynamics

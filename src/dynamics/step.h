@@ -1,0 +1,108 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "contact/detection.h"
+#include "core/parallel.h"
+#include "dynamics/model.h"
+#include "dynamics/open_close.h"
+#include "dynamics/state.h"
+#include "dynamics/step_problem.h"
+
+namespace keyblock::dynamics {
+
+/// Acceleration of the base as the stepper asks for it: mean over [t0, t1].
+class GroundAcceleration {
+ public:
+  virtual ~GroundAcceleration() = default;
+  [[nodiscard]] virtual Vec2 mean(double t0, double t1) const = 0;
+};
+
+/// How a step went; data, not log lines.
+struct StepReport {
+  int iterations = 0;  ///< linear solves, over all substeps
+  int substeps = 1;    ///< > 1: the step did not settle and was repeated in smaller ones
+  bool converged = true;
+  double penetration = 0.0;       ///< m, largest depth of a contact
+  double max_displacement = 0.0;  ///< m, of a vertex
+  int closed_contacts = 0;
+  double contact_energy = 0.0;  ///< J, stored in contact and support springs at the end
+};
+
+/// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
+///
+/// A step, in order: detect contacts; build the minimization; open-close iteration; take over the increment (pose update,
+/// contact memory, energies). When the iteration does not settle, the step is cut in two from where it started.
+class Stepper {
+ public:
+  Stepper(Model& model, ThreadTeam& team);
+
+  /// Brings the surface to the state and finds the contacts of joints in place; once, before the first step.
+  void start(State& state);
+  /// Brings everything derived to a state read from a checkpoint.
+  void resume(State& state);
+  /// After excavation: forgets the contacts of blocks that are gone.
+  void remove_absent(State& state);
+
+  /// One dynamic step of length dt.
+  StepReport advance(State& state, double dt, const GroundAcceleration* ground);
+  /// One static step: velocities are zero before and after. inertia_scale: factor on the inertia of each block.
+  /// residual[b]: what is out of balance, |force| over weight, of each block, as vector of coefficient 0 and as norm.
+  StepReport relax(State& state, double dt, std::span<const double> inertia_scale);
+
+  /// Unbalanced force of each block in the last static step over its weight (all coefficients), and its share that is
+  /// translation along gravity.
+  struct Balance {
+    double ratio = 0.0;
+    double falling = 0.0;
+  };
+  [[nodiscard]] std::span<const Balance> balance() const { return balance_; }
+  /// Largest displacement of a vertex of each block in the last step, m.
+  [[nodiscard]] std::span<const double> moved() const { return moved_; }
+  [[nodiscard]] const contact::Surface& surface() const { return model_.surface; }
+  [[nodiscard]] std::span<const contact::Contact> contacts() const { return contacts_; }
+  /// Normal and shear force of contact k at the end of the last step, N per thickness.
+  struct Force {
+    double normal = 0.0, shear = 0.0;
+  };
+  [[nodiscard]] std::span<const Force> forces() const { return forces_; }
+
+  [[nodiscard]] double kinetic_energy(const State& state) const;
+  [[nodiscard]] double strain_energy(const State& state) const;
+  [[nodiscard]] double gravity_energy(const State& state) const;
+  [[nodiscard]] double contact_energy() const { return contact_energy_; }
+
+ private:
+  void place(const State& state);
+  void predict_reach(const State& state, const Drive& drive);
+  void detect(State& state, const Drive& drive);
+  void ensure_pattern(State& state, bool candidates_changed);
+  bool attempt(State& state, const Drive& drive, StepReport& report);
+  bool moved_too_far();
+  void accept(State& state, const Drive& drive, StepReport& report);
+  void account(State& state, const Drive& drive);
+  void remember(StepReport& report);
+  void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
+               StepReport& report);
+
+  Model& model_;
+  ThreadTeam& team_;
+  contact::Tolerances tolerances_;
+  contact::Candidates candidates_;
+  contact::Detection detection_;
+  StepProblem problem_;
+  OpenClose open_close_;
+  std::unique_ptr<linalg::BlockSolver> solver_;
+  std::vector<contact::Contact> contacts_;
+  std::vector<contact::Memory*> memory_;
+  std::vector<int> unknown_sizes_;
+  std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
+  bool analysed_ = false;
+  std::vector<double> reach_, moved_, increment_;
+  std::vector<Force> forces_;
+  std::vector<Balance> balance_;
+  double contact_energy_ = 0.0;
+};
+
+}  // namespace keyblock::dynamics

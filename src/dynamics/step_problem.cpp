@@ -1,0 +1,301 @@
+#include "dynamics/step_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace keyblock::dynamics {
+
+namespace {
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+}  // namespace
+
+void StepProblem::build(const Model& model, const State& state, const Drive& drive,
+                        const contact::Surface& surface, std::span<const contact::Contact> contacts,
+                        ThreadTeam& team) {
+  if (model_ != &model) {
+    model_ = &model;
+    h_first_.clear();
+    std::size_t used = 0;
+    for (const Block& block : model.blocks) {
+      h_first_.push_back(used);
+      used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
+    }
+    h_.assign(used, 0.0);
+    b_.assign(model.coefficients, 0.0);
+    inertia_.assign(model.blocks.size(), 0.0);
+    weight_.assign(model.blocks.size(), 0.0);
+    block_energy_.assign(model.blocks.size(), 0.0);
+  }
+  build_blocks(state, drive, team);
+  add_supports(state, drive);
+  build_rows(drive, surface, contacts, state.contacts);
+}
+
+void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
+  const double factor = (1.0 + model_->solver.theta) / (drive.step * drive.step);
+  const Vec2 acceleration = model_->gravity - drive.ground_acceleration;
+  team.for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Block& block = model_->blocks[i];
+      const int n = 2 * block.size, stride = linalg::padded_rows(n);
+      double* b = &b_[block.first];
+      std::fill(b, b + n, 0.0);
+      if (!model_->moves(i)) continue;
+      const double* a = &state.position[block.first];
+      const double* v = &state.velocity[block.first];
+      double* h = &h_[h_first_[i]];
+      std::fill(h, h + stride * n, 0.0);
+      inertia_[i] = factor * block.material.density * (drive.is_static ? drive.inertia_scale[i] : 1.0);
+      block_energy_[i] = block.elasticity.add_force(a, b);
+      for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+      b[0] += block.body_force() * acceleration.x;
+      b[1] += block.body_force() * acceleration.y;
+      const double frequency =
+          std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
+      const double viscous =
+          drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
+      block.elasticity.add_tangent(a, viscous, 0.5 * inertia_[i], h, stride);
+      for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
+    }
+  });
+  strain_energy_ = 0.0;
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    if (model_->moves(i)) strain_energy_ += block_energy_[i];
+  }
+  const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) weight_[i] = model_->blocks[i].body_force() * g;
+  for (const GeneralizedLoad& load : model_->loads) {
+    if (!model_->moves(at(load.block))) continue;
+    const Block& block = model_->blocks[at(load.block)];
+    const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < load.force.size(); ++k) {
+      b_[block.first + k] += f * load.force[k];
+      largest = std::max(largest, std::abs(load.force[k]));
+    }
+    weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
+  }
+}
+
+void StepProblem::add_supports(const State& state, const Drive& drive) {
+  for (const GroundSpring& spring : model_->springs) {
+    if (!model_->moves(at(spring.block))) continue;
+    const Block& block = model_->blocks[at(spring.block)];
+    double coordinate = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k)
+      coordinate += spring.phi[k] * state.position[block.first + 2 * k + at(spring.axis)];
+    const double target = spring.anchor + (spring.motion.empty() ? 0.0 : spring.motion(drive.end_time));
+    const double force = -spring.stiffness * (coordinate - target);
+    const int stride = linalg::padded_rows(2 * block.size);
+    double* h = &h_[h_first_[at(spring.block)]];
+    for (int l = 0; l < block.size; ++l) {
+      b_[block.first + at(2 * l + spring.axis)] += force * spring.phi[at(l)];
+      for (int k = l; k < block.size; ++k) {
+        h[(2 * l + spring.axis) * stride + 2 * k + spring.axis] +=
+            spring.stiffness * spring.phi[at(k)] * spring.phi[at(l)];
+      }
+    }
+  }
+}
+
+void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
+                             std::span<const contact::Contact> contacts,
+                             std::span<const contact::Candidate> candidates) {
+  rows_.resize(contacts.size());
+  std::size_t used = 0;
+  for (const contact::Contact& c : contacts) used += at(model_->blocks[at(c.block_b)].size);
+  phi_b_.resize(used);
+  used = 0;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const contact::Contact& c = contacts[k];
+    const Block& a = model_->blocks[at(c.block_a)];
+    const Block& b = model_->blocks[at(c.block_b)];
+    const contact::Memory& memory = candidates[at(c.candidate)].memory;
+    Row& row = rows_[k];
+    row.first_a = a.fixed ? -1 : static_cast<std::ptrdiff_t>(a.first);
+    row.first_b = b.fixed ? -1 : static_cast<std::ptrdiff_t>(b.first);
+    row.size_a = a.size;
+    row.size_b = b.size;
+    row.unknown_a = a.unknown;
+    row.unknown_b = b.unknown;
+    row.phi_a = &surface.phi[surface.phi_begin[at(c.vertex)]];
+    row.phi_b = used;
+    const double* from = &surface.phi[surface.phi_begin[at(c.edge)]];
+    const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(c.edge)])]];
+    for (int i = 0; i < b.size; ++i) phi_b_[used + at(i)] = (1.0 - c.position) * from[i] + c.position * to[i];
+    used += at(b.size);
+    row.normal = c.normal;
+    row.tangent = c.tangent;
+    const double mass = a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
+    const auto dashpot = [&](double stiffness) {
+      return drive.is_static
+                 ? 0.0
+                 : 2.0 * model_->solver.contact_damping * std::sqrt(stiffness * mass) / drive.step;
+    };
+    row.spring =
+        contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
+                         dashpot(c.shear_stiffness), c.depth, memory.shear,
+                         c.fused ? HUGE_VAL : c.friction_coefficient * memory.normal_force + c.cohesion,
+                         c.fused || (memory.bonded && c.tension > 0.0)});
+  }
+}
+
+Vec2 StepProblem::relative(const Row& row, std::span<const double> d) const {
+  Vec2 r;
+  if (row.first_a >= 0) {
+    const double* da = &d[static_cast<std::size_t>(row.first_a)];
+    for (int k = 0; k < row.size_a; ++k) r += row.phi_a[k] * Vec2{da[2 * k], da[2 * k + 1]};
+  }
+  if (row.first_b >= 0) {
+    const double* db = &d[static_cast<std::size_t>(row.first_b)];
+    const double* phi = &phi_b_[row.phi_b];
+    for (int k = 0; k < row.size_b; ++k) r -= phi[k] * Vec2{db[2 * k], db[2 * k + 1]};
+  }
+  return r;
+}
+
+void StepProblem::add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
+  if (row.first_a >= 0) {
+    double* oa = &out[static_cast<std::size_t>(row.first_a)];
+    for (int k = 0; k < row.size_a; ++k) {
+      oa[2 * k] += row.phi_a[k] * force.x;
+      oa[2 * k + 1] += row.phi_a[k] * force.y;
+    }
+  }
+  if (row.first_b >= 0) {
+    double* ob = &out[static_cast<std::size_t>(row.first_b)];
+    const double* phi = &phi_b_[row.phi_b];
+    for (int k = 0; k < row.size_b; ++k) {
+      ob[2 * k] -= phi[k] * force.x;
+      ob[2 * k + 1] -= phi[k] * force.y;
+    }
+  }
+}
+
+void StepProblem::multiply(std::span<const double> x, std::span<double> y) const {
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    const Block& block = model_->blocks[i];
+    const int n = 2 * block.size, stride = linalg::padded_rows(n);
+    double* out = &y[block.first];
+    std::fill(out, out + n, 0.0);
+    if (!model_->moves(i)) continue;
+    const double* h = &h_[h_first_[i]];
+    const double* in = &x[block.first];
+    for (int c = 0; c < n; ++c) {
+      const double* column = h + c * stride;
+      double sum = column[c] * in[c];
+      for (int r = c + 1; r < n; ++r) {
+        out[r] += column[r] * in[c];
+        sum += column[r] * in[r];
+      }
+      out[c] += sum;
+    }
+  }
+}
+
+void StepProblem::gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const {
+  multiply(d, g);
+  for (std::size_t k = 0; k < g.size(); ++k) g[k] -= b_[k];
+  for (std::size_t c = 0; c < rows_.size(); ++c) {
+    const Row& row = rows_[c];
+    const double normal = row.spring.normal_force(row.depth(r[c]));
+    const double shear = row.spring.shear_force(row.shear(r[c]));
+    if (normal == 0.0 && shear == 0.0) continue;
+    add_contact_force(row, shear * row.tangent - normal * row.normal, g);
+  }
+}
+
+namespace {
+
+/// target += scale · (φ_r φ_cᵀ) ⊗ C, C symmetric; the lower triangle alone when rows and columns are the same block.
+void add_outer(const double* phi_r, int size_r, const double* phi_c, int size_c, double cxx, double cxy,
+               double cyy, double scale, bool lower, double* target, int stride) {
+  for (int c = 0; c < size_c; ++c) {
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
+    double* y = x + stride;
+    const double f = scale * phi_c[c];
+    for (int r = lower ? c : 0; r < size_r; ++r) {
+      const double w = f * phi_r[r];
+      x[2 * r] += w * cxx;
+      x[2 * r + 1] += w * cxy;
+      y[2 * r] += w * cxy;
+      y[2 * r + 1] += w * cyy;
+    }
+  }
+}
+
+}  // namespace
+
+void StepProblem::assemble(std::span<const Active> active, linalg::BlockSolver& solver) const {
+  solver.clear();
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    if (!model_->moves(i)) {
+      if (const int u = model_->blocks[i].unknown; u >= 0) {
+        const int n = 2 * model_->blocks[i].size, stride = linalg::padded_rows(n);
+        for (int k = 0; k < n; ++k) solver.diagonal(u)[k * stride + k] = 1.0;
+      }
+      continue;
+    }
+    const Block& block = model_->blocks[i];
+    const int n = 2 * block.size;
+    std::copy_n(&h_[h_first_[i]], linalg::padded_rows(n) * n, solver.diagonal(block.unknown));
+  }
+  for (std::size_t c = 0; c < rows_.size(); ++c) {
+    const Row& row = rows_[c];
+    if (!active[c].normal && !active[c].shear) continue;
+    const double kn = active[c].normal ? row.spring.normal_stiffness() : 0.0;
+    const double ks = active[c].shear ? row.spring.shear_stiffness() : 0.0;
+    const Vec2 n = row.normal, t = row.tangent;
+    const double cxx = kn * n.x * n.x + ks * t.x * t.x, cxy = kn * n.x * n.y + ks * t.x * t.y,
+                 cyy = kn * n.y * n.y + ks * t.y * t.y;
+    const double* phi_b = &phi_b_[row.phi_b];
+    if (row.unknown_a >= 0) {
+      add_outer(row.phi_a, row.size_a, row.phi_a, row.size_a, cxx, cxy, cyy, 1.0, true,
+                solver.diagonal(row.unknown_a), linalg::padded_rows(2 * row.size_a));
+    }
+    if (row.unknown_b >= 0) {
+      add_outer(phi_b, row.size_b, phi_b, row.size_b, cxx, cxy, cyy, 1.0, true,
+                solver.diagonal(row.unknown_b), linalg::padded_rows(2 * row.size_b));
+    }
+    if (row.pair < 0) continue;
+    const linalg::BlockSlot slot = solver.slot(row.pair);
+    if (slot.row == row.unknown_a) {
+      add_outer(row.phi_a, row.size_a, phi_b, row.size_b, cxx, cxy, cyy, -1.0, false, slot.values,
+                slot.stride);
+    } else {
+      add_outer(phi_b, row.size_b, row.phi_a, row.size_a, cxx, cxy, cyy, -1.0, false, slot.values,
+                slot.stride);
+    }
+  }
+}
+
+double StepProblem::residual_ratio(std::span<const double> g) const {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    const Block& block = model_->blocks[i];
+    if (!model_->moves(i) || weight_[i] <= 0.0) continue;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < 2 * at(block.size); ++k)
+      largest = std::max(largest, std::abs(g[block.first + k]));
+    worst = std::max(worst, largest / weight_[i]);
+  }
+  return worst;
+}
+
+double StepProblem::elastic_loss(std::span<const double> d) const {
+  std::vector<double> hd(d.size());
+  multiply(d, hd);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    if (!model_->moves(i)) continue;
+    const Block& block = model_->blocks[i];
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      sum += d[k] * (hd[k] - inertia_[i] * d[k]);
+  }
+  return 0.5 * sum;
+}
+
+}  // namespace keyblock::dynamics

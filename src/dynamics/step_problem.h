@@ -1,0 +1,103 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "contact/detection.h"
+#include "contact/law.h"
+#include "core/parallel.h"
+#include "dynamics/model.h"
+#include "dynamics/state.h"
+#include "linalg/block_solver.h"
+
+namespace keyblock::dynamics {
+
+/// What drives one step.
+struct Drive {
+  double step = 0.0;         ///< s, Δt
+  double end_time = 0.0;     ///< s, at which loads and supports are taken
+  Vec2 ground_acceleration;  ///< m/s², mean over the step
+  bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
+  /// Static only: factor on the inertia of each block.
+  std::span<const double> inertia_scale;
+};
+
+/// The minimization that a step is (formulation, equation 3), with the Coulomb bounds frozen:
+///
+///     Π(D) = ½ Dᵀ H D − bᵀ D + Σ_contacts ψ_c(r_c(D)),      H = (1+θ)/Δt² M + K_t + K_support  (block diagonal)
+///     b = f_ext − f_int + f_support + (1+θ)/Δt M v
+///
+/// Π is convex and piecewise quadratic. This class holds its data and evaluates it; it does not know how to minimize.
+class StepProblem {
+ public:
+  /// r_c = φ_V · D_a − φ_P · D_b; a block that does not move contributes nothing.
+  struct Row {
+    std::ptrdiff_t first_a, first_b;  ///< of the block's coefficients; −1: fixed
+    int size_a, size_b;
+    int unknown_a, unknown_b;
+    int pair = -1;  ///< of the solver's pattern; −1: one block is fixed
+    const double* phi_a;
+    std::size_t phi_b;  ///< into phi_b_
+    Vec2 normal, tangent;
+    contact::Spring spring;
+
+    [[nodiscard]] double depth(Vec2 r) const { return spring.depth() - dot(normal, r); }
+    [[nodiscard]] double shear(Vec2 r) const { return spring.shear() + dot(tangent, r); }
+  };
+
+  /// The springs of a contact that resist further displacement.
+  struct Active {
+    bool normal = false;
+    bool shear = false;
+    friend bool operator==(Active, Active) = default;
+  };
+
+  void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,
+             std::span<const contact::Contact> contacts, ThreadTeam& team);
+
+  [[nodiscard]] std::vector<Row>& rows() { return rows_; }
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  [[nodiscard]] std::size_t size() const { return b_.size(); }
+
+  /// r of a contact for increment D.
+  [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const;
+  /// g = ∇Π(D), given r of every contact.
+  void gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const;
+  /// y = H x.
+  void multiply(std::span<const double> x, std::span<double> y) const;
+  /// Adds H and the springs that act to the solver's matrix: ∇²Π where `active` is what active(r) gives.
+  void assemble(std::span<const Active> active, linalg::BlockSolver& solver) const;
+  /// Which springs act at relative displacement r.
+  [[nodiscard]] static Active active(const Row& row, Vec2 r) {
+    return {row.spring.closed(row.depth(r)), row.spring.locked(row.shear(r)) && row.spring.bound() > 0.0};
+  }
+  /// out += scale · (∂r/∂D)ᵀ force.
+  void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const;
+
+  [[nodiscard]] std::span<const double> right() const { return b_; }
+  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
+  [[nodiscard]] double residual_ratio(std::span<const double> g) const;
+  [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
+  [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
+  /// ½ Dᵀ K_t D and ½ D·K_support·D: what the end-of-step forces lose against the potential.
+  [[nodiscard]] double elastic_loss(std::span<const double> d) const;
+  [[nodiscard]] double strain_energy() const { return strain_energy_; }
+
+ private:
+  void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
+  void add_supports(const State& state, const Drive& drive);
+  void build_rows(const Drive& drive, const contact::Surface& surface,
+                  std::span<const contact::Contact> contacts, std::span<const contact::Candidate> candidates);
+
+  const Model* model_ = nullptr;
+  std::vector<Row> rows_;
+  std::vector<double> phi_b_;
+  std::vector<std::size_t> h_first_;  ///< per block, into h_
+  std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
+  std::vector<double> b_;
+  std::vector<double> inertia_;  ///< per block, (1+θ)ρ/Δt²
+  std::vector<double> weight_;   ///< per block, N-like scale of its coefficients
+  std::vector<double> block_energy_;
+  double strain_energy_ = 0.0;
+};
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,290 @@
+#include "simulation/build_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "geometry/quadrature.h"
+
+namespace keyblock::simulation {
+
+using dynamics::Block;
+using dynamics::Model;
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+[[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& expected) {
+  Diagnostic diagnostic;
+  diagnostic.key = key;
+  diagnostic.found = found;
+  diagnostic.expected = expected;
+  throw InputError(std::move(diagnostic));
+}
+
+contact::JointLaw law_of(const JointProperties& joint) {
+  return {std::tan(joint.friction * std::numbers::pi / 180.0),
+          joint.cohesion,
+          joint.tension,
+          joint.normal_stiffness.value_or(0.0),
+          joint.stiffness_ratio,
+          false};
+}
+
+Polygon frame_polygon(const Box& domain) {
+  const double width = 0.05 * std::max(domain.size().x, domain.size().y);
+  const Vec2 a = domain.min, b = domain.max;
+  const Box outer = domain.grown(width);
+  return {{outer.min, {outer.max.x, outer.min.y}, outer.max, {outer.min.x, outer.max.y}},
+          {{a, {a.x, b.y}, b, {b.x, a.y}}}};
+}
+
+Block make_block(const Polygon& polygon, const BlockProperties& properties,
+                 const std::optional<InSituStress>& in_situ) {
+  const int order = properties.fixed ? 1 : properties.order;
+  const block::Basis basis(polygon, order);
+  Block block{polygon, basis, block::Elasticity(polygon, basis, properties.material, in_situ),
+              block::Pose(polygon, basis), properties.material};
+  block.fixed = properties.fixed;
+  block.area = area(polygon);
+  block.size = basis.size();
+  return block;
+}
+
+void add_to_surface(Model& model, const Block& block, const std::vector<std::vector<int>>& joints) {
+  contact::Surface& surface = model.surface;
+  const int number = surface.blocks();
+  for (std::size_t r = 0; r < block.reference.ring_count(); ++r) {
+    const Ring& ring = block.reference.ring(r);
+    const int first = surface.vertices();
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
+                 after = ring[(k + 1) % ring.size()];
+      const int pieces = edge_pieces(norm(after - here), block.area, block.basis.order());
+      for (int piece = 0; piece < pieces; ++piece) {
+        surface.block.push_back(number);
+        surface.joint.push_back(joints[r][k]);
+        surface.position.push_back(lerp(here, after, static_cast<double>(piece) / pieces));
+        surface.reflex.push_back(piece == 0 && cross(here - before, after - here) < 0.0);
+        surface.phi_begin.push_back(surface.phi.size());
+        surface.phi.resize(surface.phi.size() + at(block.size));
+        block.basis.evaluate(surface.position.back(), surface.phi.data() + surface.phi_begin.back());
+      }
+    }
+    const int count = surface.vertices() - first;
+    for (int k = 0; k < count; ++k) {
+      surface.next.push_back(first + (k + 1) % count);
+      surface.previous.push_back(first + (k + count - 1) % count);
+    }
+  }
+  surface.block_begin.push_back(surface.vertices());
+  surface.present.push_back(1);
+  surface.fixed.push_back(block.fixed);
+}
+
+std::size_t block_named(const RunSetup& setup, const std::string& name, const std::string& key) {
+  for (std::size_t b = 0; b < setup.properties.size(); ++b) {
+    if (setup.properties[b].name == name) return b;
+  }
+  refuse(key, fmt::format("'{}'", name), "the name of a block");
+}
+
+bool on_or_in(const Polygon& polygon, Vec2 p) {
+  if (contains(polygon, p)) return true;
+  const double tolerance = 1e-6 * std::sqrt(area(polygon));
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], d = ring[(k + 1) % ring.size()] - a;
+      const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
+      if (norm(p - a - s * d) <= tolerance) return true;
+    }
+  }
+  return false;
+}
+
+void require_on_block(const Polygon& polygon, Vec2 p, const std::string& key, const std::string& block) {
+  if (!on_or_in(polygon, p)) {
+    refuse(key, fmt::format("the point ({}, {})", p.x, p.y), fmt::format("a point of block '{}'", block));
+  }
+}
+
+void add_loads(const RunSetup& setup, Model& model) {
+  for (std::size_t k = 0; k < setup.loads.size(); ++k) {
+    const loading::Load& load = setup.loads[k];
+    const std::string key = fmt::format("load[{}]", k);
+    const std::size_t b = block_named(setup, load.block, key + ".block");
+    const Block& block = model.blocks[b];
+    require_on_block(block.reference, load.from, key, load.block);
+    if (load.is_line) require_on_block(block.reference, load.to, key, load.block);
+    dynamics::GeneralizedLoad g{static_cast<int>(b), std::vector<double>(2 * at(block.size), 0.0),
+                                load.factor};
+    std::vector<double> phi(at(block.size));
+    const auto add = [&](Vec2 where, Vec2 force) {
+      block.basis.evaluate(where, phi.data());
+      for (std::size_t i = 0; i < phi.size(); ++i) {
+        g.force[2 * i] += phi[i] * force.x;
+        g.force[2 * i + 1] += phi[i] * force.y;
+      }
+    };
+    if (!load.is_line) {
+      add(load.from, load.value);
+    } else {
+      const LineRule& rule =
+          gauss_legendre((block.basis.order() + 3) / 2);  // degree n of φ, plus 1 of the traction
+      const double length = norm(load.to - load.from);
+      for (std::size_t q = 0; q < rule.points.size(); ++q) {
+        add(lerp(load.from, load.to, rule.points[q]),
+            rule.weights[q] * length * lerp(load.value, load.value_end, rule.points[q]));
+      }
+    }
+    model.loads.push_back(std::move(g));
+  }
+}
+
+void add_supports(const RunSetup& setup, Model& model) {
+  for (std::size_t k = 0; k < setup.supports.size(); ++k) {
+    const loading::Support& support = setup.supports[k];
+    const std::string key = fmt::format("support[{}]", k);
+    const std::size_t b = block_named(setup, support.block, key + ".block");
+    const Block& block = model.blocks[b];
+    for (const Vec2 p : support.points) require_on_block(block.reference, p, key, support.block);
+    const double stiffness = support.stiffness.value_or(1000.0 * block.material.young);
+    const auto add = [&](Vec2 where, double share) {
+      for (int axis = 0; axis < 2; ++axis) {
+        if (!(axis == 0 ? support.along_x : support.along_y)) continue;
+        dynamics::GroundSpring spring{static_cast<int>(b),
+                                      axis,
+                                      std::vector<double>(at(block.size)),
+                                      axis == 0 ? where.x : where.y,
+                                      stiffness * share,
+                                      axis == 0 ? support.motion_x : support.motion_y};
+        block.basis.evaluate(where, spring.phi.data());
+        model.springs.push_back(std::move(spring));
+      }
+    };
+    if (!support.is_edge) {
+      for (const Vec2 p : support.points) add(p, 1.0);
+    } else {
+      const LineRule& rule = gauss_legendre(block.basis.order() + 1);  // φφᵀ has degree 2n
+      const double length = norm(support.points[1] - support.points[0]);
+      for (std::size_t q = 0; q < rule.points.size(); ++q) {
+        add(lerp(support.points[0], support.points[1], rule.points[q]), rule.weights[q] * length);
+      }
+    }
+  }
+}
+
+/// Blocks that move first, so that their coefficients are the unknowns.
+void number_coefficients(Model& model) {
+  for (const bool fixed : {false, true}) {
+    for (Block& block : model.blocks) {
+      if (block.fixed != fixed) continue;
+      block.first = model.coefficients;
+      model.coefficients += 2 * at(block.size);
+    }
+    if (!fixed) model.unknowns = model.coefficients;
+  }
+  int next = 0;
+  double moving_area = 0.0;
+  for (Block& block : model.blocks) {
+    if (block.fixed) continue;
+    block.unknown = next++;
+    moving_area += block.area;
+  }
+  if (next > 0) model.block_size = std::sqrt(moving_area / next);
+}
+
+}  // namespace
+
+int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
+  const int sets = static_cast<int>(setup.joints.joint_sets.size());
+  const int maps = static_cast<int>(setup.joints.trace_maps.size());
+  switch (label.kind) {
+    case cutting::EdgeKind::free:
+      return 0;
+    case cutting::EdgeKind::domain:
+      return 1;
+    case cutting::EdgeKind::excavation:
+      return 2;
+    case cutting::EdgeKind::joint_set:
+      return 3 + label.index;
+    case cutting::EdgeKind::trace_map:
+      return 3 + sets + std::min<int>(label.index, maps - 1);
+  }
+  return 0;
+}
+
+int edge_pieces(double edge_length, double block_area, int order) {
+  if (order == 1) return 1;
+  const double shortest = 0.15 * std::sqrt(block_area);
+  return std::clamp(static_cast<int>(edge_length / shortest), 1, order);
+}
+
+Model build_model(const RunSetup& setup) {
+  Model model;
+  model.gravity = setup.gravity;
+  model.in_situ = setup.in_situ;
+  model.solver = setup.solver;
+  model.laws.push_back(law_of(setup.joints.standard));
+  model.laws.push_back(law_of(setup.joints.frame));
+  model.laws.push_back(law_of(setup.joints.standard));
+  model.laws.back().fused = true;
+  for (const JointProperties& joint : setup.joints.joint_sets) model.laws.push_back(law_of(joint));
+  for (const JointProperties& joint : setup.joints.trace_maps) model.laws.push_back(law_of(joint));
+
+  model.surface.block_begin.push_back(0);
+  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
+    const cutting::CutBlock& cut = setup.system.blocks[b];
+    model.blocks.push_back(make_block(cut.polygon, setup.properties[b], setup.in_situ));
+    std::vector<std::vector<int>> joints;
+    for (const auto& ring : cut.labels) {
+      joints.emplace_back();
+      for (const cutting::EdgeLabel label : ring) joints.back().push_back(joint_law(setup, label));
+    }
+    add_to_surface(model, model.blocks.back(), joints);
+  }
+  if (setup.frame) {
+    BlockProperties properties;
+    properties.fixed = true;
+    properties.material = setup.properties.empty() ? Material{} : setup.properties.front().material;
+    model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, {}));
+    add_to_surface(model, model.blocks.back(), {std::vector<int>(4, 1), std::vector<int>(4, 1)});
+  }
+  number_coefficients(model);
+  add_loads(setup, model);
+  add_supports(setup, model);
+  return model;
+}
+
+dynamics::State initial_state(const RunSetup& setup, const Model& model) {
+  dynamics::State state;
+  state.position.assign(model.coefficients, 0.0);
+  state.velocity.assign(model.coefficients, 0.0);
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const Block& block = model.blocks[b];
+    const std::vector<Vec2> identity = block.basis.identity();
+    for (std::size_t k = 0; k < identity.size(); ++k) {
+      state.position[block.first + 2 * k] = identity[k].x;
+      state.position[block.first + 2 * k + 1] = identity[k].y;
+    }
+    if (block.fixed || b >= setup.properties.size()) continue;
+    // v(X) = v₀ + ω × (X − c): coefficient 0 holds the mean, the others the turned identity.
+    const BlockProperties& properties = setup.properties[b];
+    state.velocity[block.first] = properties.velocity.x * std::sqrt(block.area);
+    state.velocity[block.first + 1] = properties.velocity.y * std::sqrt(block.area);
+    for (std::size_t k = 1; k < identity.size(); ++k) {
+      state.velocity[block.first + 2 * k] = -properties.spin * identity[k].y;
+      state.velocity[block.first + 2 * k + 1] = properties.spin * identity[k].x;
+    }
+  }
+  return state;
+}
+
+}  // namespace keyblock::simulation

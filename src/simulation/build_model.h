@@ -1,0 +1,21 @@
+#pragma once
+#include "dynamics/model.h"
+#include "dynamics/state.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// Index of the joint law of an edge label in Model::laws.
+int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
+
+/// The mechanical model of a setup. Blocks keep their order; with a frame, one more block, fixed, stands last.
+/// Throws InputError for loads and supports that lie off their block and for blocks that no polynomial can be built on.
+dynamics::Model build_model(const RunSetup& setup);
+
+/// Reference position, with the velocities of the setup.
+dynamics::State initial_state(const RunSetup& setup, const dynamics::Model& model);
+
+/// Number of pieces into which contact divides an edge of a block, so that its curvature is followed.
+int edge_pieces(double edge_length, double block_area, int order);
+
+}  // namespace keyblock::simulation

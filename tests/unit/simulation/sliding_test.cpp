@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene.h"
+
+namespace keyblock::simulation {
+namespace {
+
+constexpr double g = 9.81;
+constexpr double degree = std::numbers::pi / 180.0;
+const std::vector<double> all_steps{0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0001};
+
+/// A block of 1 m on a long incline of angle α, that runs down to the left. The formulas are for rigid blocks: set down on
+/// the incline at once, a soft block swings for a few milliseconds and gains about g sin α / ω of velocity.
+Scene incline(double alpha, double phi, double length = 20.0, double young = 5e10) {
+  Scene scene(young, phi);
+  scene.rectangle({-length * std::cos(alpha * degree), -length * std::sin(alpha * degree)}, length + 4.0,
+                  -1.0, alpha, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5, alpha);
+  return scene;
+}
+
+double slid(const Simulator& s, Vec2 from, double alpha) {
+  const Vec2 down{-std::cos(alpha * degree), -std::sin(alpha * degree)};
+  return dot(s.centroid(1) - from, down);
+}
+
+TEST(FreeFall, IsExactForAnyStep) {
+  for (int order : {1, 2, 4}) {
+    for (double dt : {0.1, 0.02, 0.001}) {
+      Scene scene(1e9, 0.0);
+      scene.rectangle({0, 0}, 1.0, 0.5, 20.0, false, order);
+      scene.setup.properties[0].velocity = {3.0, 20.0};
+      Simulator s(scene);
+      const Vec2 from = s.centroid(0);
+      s.run(10.0, dt);
+      const Vec2 expected = from + Vec2{30.0, 200.0 - 0.5 * g * 100.0};
+      EXPECT_LT(norm(s.centroid(0) - expected) / norm(expected), 1e-10) << order << ' ' << dt;
+      const block::Stress stress =
+          s.model.blocks[0].elasticity.mean_cauchy(&s.state.position[s.model.blocks[0].first]);
+      EXPECT_LT(std::abs(stress.xx) / 1e9, 1e-12);
+    }
+  }
+}
+
+class Incline : public ::testing::TestWithParam<double> {};
+
+TEST_P(Incline, SlidesAsCoulombSays) {
+  struct Case {
+    double alpha, phi, expected;
+  };
+  for (const auto& [alpha, phi, expected] : {Case{28, 15, 1.142308},
+                                             {30, 0, 2.45250},
+                                             {30, 10, 1.70349},
+                                             {30, 20, 0.906407},
+                                             {30, 25, 0.471693},
+                                             {45, 20, 2.205979}}) {
+    Simulator s(incline(alpha, phi));
+    const Vec2 from = s.centroid(1);
+    s.run(1.0, GetParam());
+    EXPECT_NEAR(slid(s, from, alpha) / expected, 1.0, 1e-3) << alpha << ' ' << phi;
+    EXPECT_EQ(s.unconverged, 0);
+    EXPECT_LT(std::abs(s.residual()),
+              0.01 * std::abs(s.state.ledger.friction + s.stepper.kinetic_energy(s.state)));
+  }
+}
+
+TEST_P(Incline, Sticks) {
+  for (double phi : {31.0, 35.0}) {
+    Simulator s(incline(30.0, phi));
+    const Vec2 from = s.centroid(1);
+    s.run(1.0, GetParam());
+    EXPECT_LT(std::abs(slid(s, from, 30.0)), 1e-4) << phi;
+    EXPECT_EQ(s.unconverged, 0);
+  }
+}
+
+TEST_P(Incline, StackOfNineKeepsItsPlace) {
+  Scene scene(1e9, 35.0);
+  scene.rectangle({-1.0, -1.0}, 6.0, 1.0, 0.0, true);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) scene.rectangle({1.0 * column, 0.5 * row}, 1.0, 0.5);
+  }
+  Simulator s(scene);
+  s.run(1.0, GetParam());
+  for (int b = 1; b < 10; ++b) {
+    const Vec2 start = keyblock::centroid(scene.setup.system.blocks[static_cast<std::size_t>(b)].polygon);
+    EXPECT_LT(norm(s.centroid(b) - start), 1e-4) << b;
+  }
+  EXPECT_EQ(s.unconverged, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, Incline, ::testing::ValuesIn(all_steps));
+
+}  // namespace
+}  // namespace keyblock::simulation
