@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keyblock::scenario {
+
+/// A step of a key path: a key of a table, or the name or place of an element of a list.
+struct PathSegment {
+  std::string key;  ///< the key or name; digits of an index, too
+  /// Place in a list, counted from 0: written `[2]`, or `.2` where no element bears that name.
+  std::optional<std::size_t> index;
+};
+
+/// Parses `stage.'first earthquake'.scale`, `stage.0.scale`, `stage[0].scale`: segments separated by points, bare
+/// or in single or double quotes. Empty when the text is no path.
+std::optional<std::vector<PathSegment>> parse_key_path(std::string_view text);
+
+/// One segment as parse_key_path reads it: quoted where needed.
+std::string path_segment(std::string_view key);
+/// `path.key`, or the key alone when the path is empty.
+std::string join_path(std::string_view path, std::string_view key);
+std::string join_index(std::string_view path, std::size_t index);
+
+/// The candidate that `word` was probably meant to be: smallest number of letters put in, left out, replaced or
+/// swapped with a neighbour, at most a third of the word's length (at least 1); capitals do not count.
+/// Empty when there is none.
+std::string closest_word(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `did you mean 'friction'?`, or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `"a", "b" or "c"`.
+std::string list_words(const std::vector<std::string>& words, std::string_view last = " or ");
+
+}  // namespace keyblock::scenario

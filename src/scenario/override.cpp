@@ -1,0 +1,150 @@
+#include "scenario/override.h"
+
+#include <algorithm>
+
+namespace keyblock::scenario {
+namespace {
+
+void move_to(Value& value, const SourcePosition& where) {
+  value.where = where;
+  value.key_where = where;
+  for (Value& item : value.items) move_to(item, where);
+}
+
+std::size_t find_equals_sign(const std::string& text) {
+  char quote = 0;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (quote == 0 && c == '=') return k;
+    if (quote == 0 && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = 0;
+    }
+  }
+  return std::string::npos;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+Value value_of_text(const std::string& text) {
+  if (text.find('\n') == std::string::npos) {
+    try {
+      Value document = parse_toml("value = " + text, "");
+      if (document.items.size() == 1) return std::move(document.items.front());
+    } catch (const InputError&) {
+      // A word without quotes.
+    }
+  }
+  Value word;
+  word.type = Value::Type::string;
+  word.text = text;
+  return word;
+}
+
+Diagnostic no_path(const SourcePosition& where, const std::string& text) {
+  Diagnostic diagnostic;
+  diagnostic.where = where;
+  diagnostic.found = text.empty() ? "no key" : "'" + text + "', which is no key path";
+  diagnostic.expected = "a key path as in rock.order or stage.'first earthquake'.scale";
+  return diagnostic;
+}
+
+// Element of a list by name or place, or null.
+Value* find_element(Value& list, const PathSegment& segment) {
+  for (Value& item : list.items) {
+    const std::string* name = item.name();
+    if (name != nullptr && *name == segment.key) return &item;
+  }
+  return segment.index && *segment.index < list.items.size() ? &list.items[*segment.index] : nullptr;
+}
+
+Diagnostic no_element(const Value& list, const PathSegment& segment, const std::string& path) {
+  std::vector<std::string> names;
+  for (const Value& item : list.items) {
+    if (item.name() != nullptr) names.push_back(*item.name());
+  }
+  Diagnostic diagnostic;
+  diagnostic.key = path;
+  diagnostic.found = "no element '" + segment.key + "'";
+  if (list.items.empty()) {
+    diagnostic.expected = "an element that exists (the list is empty)";
+  } else {
+    const std::string last = std::to_string(list.items.size() - 1);
+    diagnostic.expected = names.empty() ? "a place" : list_words(names) + ", or a place";
+    diagnostic.expected += " from 0 to " + last;
+  }
+  diagnostic.hint = suggestion(segment.key, names);
+  return diagnostic;
+}
+
+// Puts `value` where `slot` is, which keeps its key.
+void replace(Value& slot, const Value& value) {
+  std::string key = std::move(slot.key);
+  slot = value;
+  slot.key = std::move(key);
+  slot.key_where = value.where;
+}
+
+}  // namespace
+
+Override parse_override(const std::string& text) {
+  const SourcePosition where{"--set " + text, 0, 0};
+  const std::size_t equals = find_equals_sign(text);
+  if (equals == std::string::npos) {
+    Diagnostic diagnostic;
+    diagnostic.where = where;
+    diagnostic.found = "no '='";
+    diagnostic.expected = "key=value";
+    throw InputError(std::move(diagnostic));
+  }
+  Value value = value_of_text(trimmed(text.substr(equals + 1)));
+  move_to(value, where);
+  return make_override(trimmed(text.substr(0, equals)), std::move(value));
+}
+
+Override make_override(const std::string& path, Value value) {
+  auto segments = parse_key_path(path);
+  if (!segments) throw InputError(no_path(value.where, path));
+  return {std::move(*segments), std::move(value)};
+}
+
+std::optional<Diagnostic> apply_override(const Override& override_, Value& document) {
+  Value* node = &document;
+  std::string path;
+  const auto failed = [&](Diagnostic diagnostic) {
+    diagnostic.where = override_.value.where;
+    return diagnostic;
+  };
+  for (const PathSegment& segment : override_.path) {
+    if (node->is(Value::Type::array)) {
+      Value* element = find_element(*node, segment);
+      if (element == nullptr) return failed(no_element(*node, segment, path));
+      path = join_index(path, static_cast<std::size_t>(element - node->items.data()));
+      node = element;
+    } else if (node->is(Value::Type::table)) {
+      Value* member = node->find(segment.key);
+      if (member == nullptr) {
+        member = &node->items.emplace_back();
+        member->key = segment.key;
+        member->where = member->key_where = override_.value.where;
+      }
+      path = join_path(path, segment.key);
+      node = member;
+    } else {
+      Diagnostic diagnostic;
+      diagnostic.key = path;
+      diagnostic.found = describe(*node) + ", which has no '" + segment.key + "'";
+      diagnostic.expected = "a table or a list where the key path goes on";
+      return failed(std::move(diagnostic));
+    }
+  }
+  replace(*node, override_.value);
+  return std::nullopt;
+}
+
+}  // namespace keyblock::scenario

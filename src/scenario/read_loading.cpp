@@ -1,0 +1,312 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenario/key_path.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using loading::Baseline;
+using loading::Load;
+using loading::Support;
+
+// How far a point may lie off the block it acts on, over the block's perimeter.
+constexpr double point_tolerance = 1e-6;
+
+constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
+                                        {"demean", Baseline::demean},
+                                        {"linear", Baseline::linear},
+                                        {"taper", Baseline::taper}};
+
+double distance_to_boundary(const Polygon& polygon, Vec2 p) {
+  double nearest = HUGE_VAL;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], ab = ring[(k + 1) % ring.size()] - a;
+      const double s = std::clamp(dot(p - a, ab) / squared_norm(ab), 0.0, 1.0);
+      nearest = std::min(nearest, norm(p - a - s * ab));
+    }
+  }
+  return nearest;
+}
+
+const BlockSpec* find_block(const Scenario& scenario, const std::string& name) {
+  const auto block = std::find_if(scenario.blocks.begin(), scenario.blocks.end(),
+                                  [&](const BlockSpec& b) { return b.name == name; });
+  return name.empty() || block == scenario.blocks.end() || block->polygon.outer.size() < 3 ? nullptr
+                                                                                           : &*block;
+}
+
+void check_point(TableReader& t, std::string_view key, const BlockSpec* block, Vec2 p) {
+  if (block == nullptr || contains(block->polygon, p)) return;
+  if (distance_to_boundary(block->polygon, p) <= point_tolerance * perimeter(block->polygon)) return;
+  t.fail(key, fmt::format("[{}, {}], outside the block", p.x, p.y),
+         fmt::format("a point of the block '{}'", block->name));
+}
+
+void check_stretch(TableReader& t, const BlockSpec* block, Vec2 from, Vec2 to) {
+  if (from == to) {
+    t.fail("to", "the same point as from", "the other end of a stretch of boundary");
+    return;
+  }
+  if (block == nullptr) return;
+  for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const Vec2 p = lerp(from, to, s);
+    if (distance_to_boundary(block->polygon, p) <= point_tolerance * perimeter(block->polygon)) continue;
+    t.fail(s == 0.0 ? "from" : "to", fmt::format("a stretch that leaves the boundary at [{}, {}]", p.x, p.y),
+           fmt::format("two points on one straight edge of the block '{}'", block->name));
+    return;
+  }
+}
+
+void read_in_situ(TableReader& t, Scenario& scenario) {
+  InSituSpec& in_situ = scenario.in_situ.emplace();
+  const bool documenting = t.documenting();
+  const bool by_depth = t.find("depth") != nullptr || t.find("k0") != nullptr;
+  const bool constant =
+      !by_depth && (t.find("sxx") != nullptr || t.find("syy") != nullptr || t.find("sxy") != nullptr);
+  t.number("depth", in_situ.depth,
+           {.meaning =
+                "Rock above the top of the domain: the vertical stress grows downwards by density × gravity.",
+            .unit = "m",
+            .required = !constant && !documenting,
+            .at_least = 0.0,
+            .fallback = "required, or a constant stress"});
+  t.number("k0", in_situ.k0,
+           {.meaning = "Horizontal over vertical stress.",
+            .required = !constant && !documenting,
+            .at_least = 0.0,
+            .fallback = "required with depth"});
+  const Rule rule{.unit = "Pa", .applies = documenting || !by_depth, .condition = "neither depth nor k0"};
+  const auto stress = [&](std::string_view meaning) {
+    Rule r = rule;
+    r.meaning = meaning;
+    return r;
+  };
+  t.number("sxx", in_situ.sxx, stress("Constant horizontal stress, compression negative."));
+  t.number("syy", in_situ.syy, stress("Constant vertical stress, compression negative."));
+  t.number("sxy", in_situ.sxy, stress("Constant shear stress."));
+  if (in_situ.depth && scenario.gravity.y >= 0.0) {
+    t.fail("depth", "a depth without gravity downwards",
+           "gravity = [x, y] with y below 0, or a constant stress");
+  }
+}
+
+void read_component(TableReader& t, MotionComponentSpec& component) {
+  component.path = t.path();
+  t.file("file", component.file,
+         {.meaning = "Record: USGS SMC, PEER AT2, CSMIP or COSMOS V2, or two columns (time s, acceleration).",
+          .required = true});
+  t.integer("channel", component.channel,
+            {.meaning = "Which component of a file that holds several, from 1.", .at_least = 1.0});
+  const Value* azimuth = t.find("azimuth");
+  constexpr std::string_view type = "number from 0 to 360, or \"up\"";
+  const Rule rule{
+      .meaning = "Direction in which the acceleration is positive: clockwise from north, or upwards.",
+      .unit = "°",
+      .at_least = 0.0,
+      .at_most = 360.0,
+      .fallback = "as the file says"};
+  if (azimuth != nullptr && azimuth->is_number()) {
+    t.number("azimuth", component.azimuth, rule);
+  } else if (const Value* found = t.any("azimuth", type, rule); found != nullptr) {
+    component.vertical = found->is(Value::Type::string) && found->text == "up";
+    if (!component.vertical) t.fail("azimuth", describe(*found), "a number from 0 to 360, or \"up\"");
+  }
+}
+
+// One direction of a motion: rows, or a sine.
+void read_direction(TableReader& t, std::string_view key, loading::AccelerationTable& rows,
+                    std::optional<loading::Sine>& sine, bool applies) {
+  Rule rule{.meaning =
+                "Acceleration of the base over time in this direction: rows `[[t, a], …]`, linear between "
+                "rows and zero outside, or a sine.",
+            .unit = "s, m/s²",
+            .applies = applies,
+            .condition = "no components"};
+  const Value* value = t.find(key);
+  if (!t.documenting() && (value == nullptr || !value->is(Value::Type::table))) {
+    if (t.time_rows(key, rows, true, rule) && rows.front().first < 0.0) {
+      t.fail(key, fmt::format("a first time of {}", rows.front().first), "times of at least 0");
+    }
+    return;
+  }
+  rule.group = "Sine";
+  rule.group_meaning = "a(t) = amplitude · sin(2π frequency t), for a number of cycles.";
+  t.table(key, rule, [&](TableReader& s) {
+    loading::Sine& read = sine.emplace();
+    s.number("amplitude", read.amplitude, {.meaning = "Amplitude.", .unit = "m/s²", .required = true});
+    s.number("frequency", read.frequency,
+             {.meaning = "Frequency.", .unit = "Hz", .required = true, .above = 0.0});
+    s.number("cycles", read.cycles,
+             {.meaning = "Number of cycles, whole or not.", .required = true, .above = 0.0});
+  });
+}
+
+void read_motion(TableReader& t, MotionSpec& motion) {
+  motion.path = t.path();
+  t.name("name", motion.name, "motion", {.meaning = "Name, for the stages that use it.", .required = true});
+  const bool record = t.find("components") != nullptr;
+  const bool documenting = t.documenting();
+  t.tables("components", motion.components,
+           {.meaning = "The components of a record. Horizontal ones are projected on the section: "
+                       "a_x = Σ a_i cos(azimuth_i − section azimuth).",
+            .condition = "neither x nor y"},
+           [](TableReader& c, MotionComponentSpec& component) { read_component(c, component); });
+  if (record && t.find("components")->items.empty())
+    t.fail("components", "an empty array", "at least one component");
+  t.interval("window", motion.window,
+             {.meaning = "Part of the record that is used.",
+              .unit = "s",
+              .fallback = "the whole record",
+              .applies = record || documenting,
+              .condition = "components"});
+  t.word("baseline", motion.baseline, baselines,
+         {.meaning =
+              "What is done to the window: nothing; its mean taken off; a straight line taken off so that "
+              "the ground ends at rest where it was; a cosine taper at both ends (5 % each).",
+          .applies = record || documenting,
+          .condition = "components"});
+  read_direction(t, "x", motion.x, motion.sine_x, !record || documenting);
+  read_direction(t, "y", motion.y, motion.sine_y, !record || documenting);
+  if (!record && t.find("x") == nullptr && t.find("y") == nullptr) {
+    t.missing("components", "components of a record, or x or y");
+  }
+}
+
+void read_load(TableReader& t, Load& load, const Scenario& scenario) {
+  load.is_line = t.find("from") != nullptr || t.find("to") != nullptr || t.find("traction") != nullptr;
+  const bool documenting = t.documenting();
+  const bool line = load.is_line || documenting, point = !load.is_line || documenting;
+  const auto of_point = [&](Rule r) {
+    r.applies = point;
+    r.condition = "a point load";
+    return r;
+  };
+  const auto of_line = [&](Rule r) {
+    r.applies = line;
+    r.condition = "a line load";
+    return r;
+  };
+  t.reference("block", load.block, "block",
+              {.meaning = "The block it acts on and follows.", .required = true});
+  const BlockSpec* block = find_block(scenario, load.block);
+  if (t.point("point", load.from,
+              of_point({.meaning = "Where the force acts.", .unit = "m", .required = true}))) {
+    check_point(t, "point", block, load.from);
+  }
+  t.point("force", load.value,
+          of_point({.meaning = "Force per unit thickness.", .unit = "N/m", .required = true}));
+  const bool from = t.point(
+      "from", load.from,
+      of_line({.meaning = "Start of a straight stretch of boundary.", .unit = "m", .required = true}));
+  const bool to = t.point("to", load.to, of_line({.meaning = "Its end.", .unit = "m", .required = true}));
+  if (from && to) check_stretch(t, block, load.from, load.to);
+  t.point("traction", load.value,
+          of_line({.meaning = "Force per area at the start.", .unit = "Pa", .required = true}));
+  if (!documenting) load.value_end = load.value;
+  Rule end{.meaning = "Force per area at the end; linear between.", .unit = "Pa", .fallback = "as traction"};
+  t.point("traction_end", load.value_end, of_line(end));
+  TimeRows rows;
+  t.time_rows("time", rows, false,
+              {.meaning = "Factor over time: rows `[[t, factor], …]`, linear between rows and held outside.",
+               .unit = "s",
+               .fallback = "1"});
+  load.factor = loading::TimeTable(std::move(rows));
+}
+
+void read_directions(TableReader& t, Support& support) {
+  const Value* directions = t.any("directions", "array of \"x\", \"y\"",
+                                  {.meaning = "In which directions it holds.", .fallback = "[\"x\", \"y\"]"});
+  if (directions == nullptr) return;
+  support.along_x = support.along_y = false;
+  bool valid = directions->is(Value::Type::array) && !directions->items.empty();
+  if (valid) {
+    for (const Value& item : directions->items) {
+      const bool x = item.is(Value::Type::string) && item.text == "x";
+      const bool y = item.is(Value::Type::string) && item.text == "y";
+      support.along_x = support.along_x || x;
+      support.along_y = support.along_y || y;
+      valid = valid && (x || y);
+    }
+  }
+  if (!valid) t.fail("directions", describe(*directions), R"(["x"], ["y"] or ["x", "y"])");
+}
+
+loading::TimeTable read_ground_end(TableReader& t, std::string_view key, bool held) {
+  TimeRows rows;
+  t.time_rows(key, rows, false,
+              {.meaning = "Displacement of the ground end: rows `[[t, u], …]`, linear between rows and held "
+                          "outside.",
+               .unit = "s, m",
+               .applies = held || t.documenting(),
+               .condition = "this direction held"});
+  return loading::TimeTable(std::move(rows));
+}
+
+void read_support(TableReader& t, Support& support, const Scenario& scenario) {
+  support.is_edge = t.find("from") != nullptr || t.find("to") != nullptr;
+  const bool documenting = t.documenting();
+  t.reference("block", support.block, "block", {.meaning = "The block it holds.", .required = true});
+  const BlockSpec* block = find_block(scenario, support.block);
+  if (t.points("points", support.points,
+               {.meaning = "Points that are held.",
+                .unit = "m",
+                .required = !support.is_edge && !documenting,
+                .fallback = "required, or from and to",
+                .applies = !support.is_edge || documenting,
+                .condition = "neither from nor to"})) {
+    for (const Vec2 p : support.points) check_point(t, "points", block, p);
+  }
+  Vec2 ends[2];
+  const Rule rule{.meaning = "Start of a straight stretch of boundary that is held.",
+                  .unit = "m",
+                  .required = support.is_edge,
+                  .applies = support.is_edge || documenting,
+                  .condition = "no points"};
+  Rule to_rule = rule;
+  to_rule.meaning = "Its end.";
+  const bool from = t.point("from", ends[0], rule), to = t.point("to", ends[1], to_rule);
+  if (from && to) {
+    check_stretch(t, block, ends[0], ends[1]);
+    support.points = {ends[0], ends[1]};
+  }
+  read_directions(t, support);
+  t.number("stiffness", support.stiffness,
+           {.meaning = "Stiffness of the springs: N/m per unit thickness at a point, Pa/m along a stretch.",
+            .unit = "N/m², Pa/m",
+            .above = 0.0,
+            .fallback = "1000 young"});
+  t.table("motion", {.meaning = "Prescribed displacement of the ground end of the springs."},
+          [&](TableReader& m) {
+            support.motion_x = read_ground_end(m, "x", support.along_x);
+            support.motion_y = read_ground_end(m, "y", support.along_y);
+          });
+}
+
+}  // namespace
+
+void read_loading(TableReader& root, Scenario& scenario) {
+  root.table(
+      "in_situ",
+      {.meaning = "Stress before excavation. Without it the rock carries its own weight alone, and the "
+                  "crown of an opening in cohesionless joints is marginal."},
+      [&](TableReader& t) { read_in_situ(t, scenario); });
+  root.tables(
+      "motion", scenario.motions,
+      {.meaning = "A motion of the base: a record with its components, or acceleration given in x and y."},
+      [](TableReader& t, MotionSpec& motion) { read_motion(t, motion); });
+  root.tables(
+      "load", scenario.loads,
+      {.meaning = "A force at a point of a block, or a traction along a straight stretch of its boundary. "
+                  "Per unit thickness; it follows the block."},
+      [&](TableReader& t, Load& load) { read_load(t, load, scenario); });
+  root.tables("support", scenario.supports,
+              {.meaning = "Springs from points, or from a straight stretch of boundary, to the ground."},
+              [&](TableReader& t, Support& support) { read_support(t, support, scenario); });
+}
+
+}  // namespace keyblock::scenario

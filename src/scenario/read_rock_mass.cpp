@@ -1,0 +1,260 @@
+#include <fmt/format.h>
+
+#include "rockmass/trace_generator.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using rockmass::Distribution;
+using rockmass::DistributionKind;
+using rockmass::SpacingMeasure;
+
+constexpr Word<PlaneState> plane_states[] = {{"plane-stress", PlaneState::plane_stress},
+                                             {"plane-strain", PlaneState::plane_strain}};
+constexpr Word<bool> boundaries[] = {{"frame", true}, {"free", false}};
+constexpr Word<SpacingMeasure> spacing_measures[] = {{"true", SpacingMeasure::true_spacing},
+                                                     {"trace", SpacingMeasure::trace_spacing}};
+constexpr Word<DistributionKind> distribution_kinds[] = {{"constant", DistributionKind::constant},
+                                                         {"uniform", DistributionKind::uniform},
+                                                         {"normal", DistributionKind::normal},
+                                                         {"lognormal", DistributionKind::lognormal},
+                                                         {"exponential", DistributionKind::exponential}};
+
+void read_section(TableReader& t, Scenario& scenario) {
+  t.number("azimuth", scenario.section_azimuth,
+           {.meaning = "Direction of the +x axis, clockwise from north. Needed for joint sets and for "
+                       "horizontal components of records.",
+            .unit = "°",
+            .at_least = 0.0,
+            .at_most = 360.0});
+}
+
+void read_domain(TableReader& t, Scenario& scenario) {
+  Domain& domain = scenario.domain.emplace();
+  t.interval("x", domain.x, {.meaning = "Horizontal extent of the rock.", .unit = "m", .required = true});
+  t.interval("y", domain.y, {.meaning = "Vertical extent, y upwards.", .unit = "m", .required = true});
+  t.word("boundary", domain.frame, boundaries,
+         {.meaning = "`frame`: fixed blocks around the domain, along which the rock can slide but not move "
+                     "outwards. `free`: nothing."});
+  t.number("frame_friction", domain.frame_friction,
+           {.meaning = "Friction angle between the rock and the frame.",
+            .unit = "°",
+            .at_least = 0.0,
+            .below = 90.0,
+            .applies = t.documenting() || domain.frame,
+            .condition = "boundary = \"frame\""});
+}
+
+void read_distribution(TableReader& t, std::string_view key, Distribution& distribution, bool zero_allowed,
+                       std::string_view meaning) {
+  const Rule rule{.meaning = meaning,
+                  .unit = "m",
+                  .required = true,
+                  .above = zero_allowed ? -HUGE_VAL : 0.0,
+                  .at_least = zero_allowed ? 0.0 : -HUGE_VAL,
+                  .group = "Distribution",
+                  .group_meaning =
+                      "A length that varies from joint to joint: a number (the same for all), or a "
+                      "table such as `{ mean = 0.3, std = 0.1, distribution = \"normal\" }`. Mean and "
+                      "standard deviation are those before the distribution is cut off at zero."};
+  const Value* value = t.find(key);
+  if (value != nullptr && value->is_number()) {
+    t.number(key, distribution.mean, rule);
+    return;
+  }
+  if (!t.documenting() && (value == nullptr || !value->is(Value::Type::table))) {
+    constexpr std::string_view type = "number or table { mean, std, distribution }";
+    if (t.any(key, type, rule) != nullptr) t.fail(key, describe(*value), "a " + std::string(type) + ", in m");
+    return;
+  }
+  t.table(key, rule, [&](TableReader& d) {
+    d.word("distribution", distribution.kind, distribution_kinds,
+           {.meaning = "Its shape. `uniform` spans mean ± √3 std.", .required = true});
+    const bool constant = distribution.kind == DistributionKind::constant;
+    d.number("mean", distribution.mean,
+             {.meaning = "Mean. Zero only where a constant gap is meant.",
+              .unit = "m",
+              .required = true,
+              .above = zero_allowed && constant ? -HUGE_VAL : 0.0,
+              .at_least = zero_allowed && constant ? 0.0 : -HUGE_VAL});
+    const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
+    d.number("std", distribution.std,
+             {.meaning =
+                  "Standard deviation. Needed for `uniform`, `normal` and `lognormal`; the others have none "
+                  "of their own and leave it aside.",
+              .unit = "m",
+              .required = needs_std && !t.documenting(),
+              .at_least = 0.0,
+              .fallback = "required where used"});
+  });
+}
+
+struct JointDefaults {
+  bool friction_required = false;
+  std::string_view zero, friction, normal, shear;
+};
+
+void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
+  t.number("friction", joints.friction,
+           {.meaning = "Friction angle.",
+            .unit = "°",
+            .required = defaults.friction_required,
+            .at_least = 0.0,
+            .below = 90.0,
+            .fallback = defaults.friction});
+  t.number("cohesion", joints.cohesion,
+           {.meaning = "Cohesion of a joint in place, lost when it slips or opens.",
+            .unit = "Pa",
+            .at_least = 0.0,
+            .fallback = defaults.zero});
+  t.number("tension", joints.tension,
+           {.meaning = "Tensile strength of a joint in place, lost likewise.",
+            .unit = "Pa",
+            .at_least = 0.0,
+            .fallback = defaults.zero});
+  t.number("normal_stiffness", joints.normal_stiffness,
+           {.meaning = "Normal stiffness of the joint.",
+            .unit = "Pa/m",
+            .above = 0.0,
+            .fallback = defaults.normal});
+  t.number("shear_stiffness", joints.shear_stiffness,
+           {.meaning = "Shear stiffness of the joint. Given only where a normal stiffness is given, too.",
+            .unit = "Pa/m",
+            .above = 0.0,
+            .fallback = defaults.shear});
+}
+
+constexpr JointDefaults joint_defaults{true, "0", "", "20 young per metre", "0.4 normal_stiffness"};
+constexpr JointDefaults set_defaults{false, "of [joints]", "of [joints]", "of [joints]", "of [joints]"};
+
+void check_stiffness(TableReader& t, const JointKeys& own, const JointKeys& standard) {
+  if (own.shear_stiffness && !own.normal_stiffness && !standard.normal_stiffness) {
+    t.fail("shear_stiffness", "a shear stiffness without a normal stiffness", "normal_stiffness as well");
+  }
+}
+
+void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standard) {
+  rockmass::JointSet& set = spec.set;
+  spec.path = t.path();
+  t.name("name", set.name, "joint_set", {.meaning = "Name in results and key paths.", .required = true});
+  t.number("dip", set.dip,
+           {.meaning = "Dip of the joint planes below the horizontal.",
+            .unit = "°",
+            .required = true,
+            .at_least = 0.0,
+            .at_most = 90.0});
+  t.number("dip_direction", set.dip_direction,
+           {.meaning =
+                "Direction in which the planes fall, clockwise from north. Toward +x they dip to the right.",
+            .unit = "°",
+            .required = true,
+            .at_least = 0.0,
+            .at_most = 360.0});
+  t.number("dip_std", set.dip_std,
+           {.meaning = "Scatter of the dip from joint to joint (normal distribution).",
+            .unit = "°",
+            .at_least = 0.0,
+            .at_most = 90.0});
+  t.number(
+      "dip_direction_std", set.dip_direction_std,
+      {.meaning = "Scatter of the dip direction, likewise.", .unit = "°", .at_least = 0.0, .at_most = 180.0});
+  t.word("spacing_measure", set.spacing_measure, spacing_measures,
+         {.meaning =
+              "How spacing is measured: `true`, normal to the joint planes, or `trace`, between the traces "
+              "in the section."});
+  read_distribution(t, "spacing", set.spacing, false, "Distance of neighbouring joints.");
+  read_distribution(t, "length", set.length, false, "Length of a trace in the section.");
+  read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
+  read_joint_keys(t, spec.joints, set_defaults);
+  check_stiffness(t, spec.joints, standard);
+}
+
+void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
+  map.path = t.path();
+  t.file("file", map.file,
+         {.meaning =
+              "GeoJSON (LineString and MultiLineString features) or CSV (columns `trace,x,y`, one row per "
+              "vertex), in the coordinates of the domain.",
+          .required = true});
+  t.name("name", map.name, "trace_map", {.meaning = "Name in results.", .fallback = "that of the file"});
+  if (map.name.empty()) map.name = map.file.stem().string();
+  read_joint_keys(t, map.joints, set_defaults);
+  check_stiffness(t, map.joints, standard);
+}
+
+void read_region(TableReader& t, RegionSpec& region) {
+  t.string("name", region.name, {.meaning = "For the reader of the file."});
+  read_polygon(t, region.polygon, true,
+               {.meaning = "Outline. Cut blocks whose centroid is inside take the keys below; where regions "
+                           "overlap, those of the last one.",
+                .unit = "m",
+                .required = true});
+  read_rock_keys(t, region.rock, false);
+}
+
+}  // namespace
+
+void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
+  const std::string_view inherited = required ? "" : "of [rock]";
+  t.number("density", rock.density,
+           {.meaning = "Mass per volume.",
+            .unit = "kg/m³",
+            .required = required,
+            .above = 0.0,
+            .fallback = inherited});
+  t.number("young", rock.young,
+           {.meaning = "Young's modulus.",
+            .unit = "Pa",
+            .required = required,
+            .above = 0.0,
+            .fallback = inherited});
+  t.number("poisson", rock.poisson,
+           {.meaning = "Poisson's ratio.",
+            .required = required,
+            .at_least = 0.0,
+            .below = 0.5,
+            .fallback = inherited});
+  t.word("state", rock.state, plane_states,
+         {.meaning = "No stress, or no strain, normal to the section.", .fallback = inherited});
+  t.integer("order", rock.order,
+            {.meaning = "Order of the displacement polynomial of a block: 1 has uniform strain, 2 bends, …",
+             .at_least = 1.0,
+             .fallback = inherited});
+}
+
+void read_rock_mass(TableReader& root, Scenario& scenario) {
+  root.table("section", {.meaning = "How the section stands in space."},
+             [&](TableReader& t) { read_section(t, scenario); });
+  root.table("domain",
+             {.meaning = "The rectangle that is cut into blocks by joint sets and trace maps. Not needed for "
+                         "explicit blocks alone."},
+             [&](TableReader& t) { read_domain(t, scenario); });
+  scenario.rock.state = PlaneState::plane_stress;
+  scenario.rock.order = 1;
+  root.table("rock", {.meaning = "The rock between the joints.", .required = true},
+             [&](TableReader& t) { read_rock_keys(t, scenario.rock, true); });
+  const Value* blocks = root.find("block");
+  const bool has_contacts = root.find("domain") != nullptr || (blocks != nullptr && blocks->items.size() > 1);
+  root.table(
+      "joints",
+      {.meaning = "Properties of all contacts; joint sets and trace maps may have their own. Needed as soon "
+                  "as there are two blocks.",
+       .required = has_contacts},
+      [&](TableReader& t) {
+        read_joint_keys(t, scenario.joints, joint_defaults);
+        check_stiffness(t, scenario.joints, {});
+      });
+  root.tables(
+      "joint_set", scenario.joint_sets,
+      {.meaning = "A family of parallel joints known by its statistics; traces are generated from them."},
+      [&](TableReader& t, JointSetSpec& set) { read_joint_set(t, set, scenario.joints); });
+  root.tables("trace_map", scenario.trace_maps,
+              {.meaning = "Joints mapped one by one, straight or as polylines."},
+              [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
+  root.tables("region", scenario.regions,
+              {.meaning = "A part of the domain with rock of its own: any key of [rock]."},
+              [&](TableReader& t, RegionSpec& region) { read_region(t, region); });
+}
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenario/key_path.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using dynamics::LinearSolver;
+using simulation::Stage;
+using simulation::StageKind;
+
+constexpr Word<StageKind> stage_kinds[] = {
+    {"settle", StageKind::settle}, {"shake", StageKind::shake}, {"rest", StageKind::rest}};
+constexpr Word<LinearSolver> linear_solvers[] = {{"block", LinearSolver::block},
+                                                 {"direct", LinearSolver::direct}};
+
+// More steps than this are a slip of the pen.
+constexpr double most_steps = 1e9;
+
+Rule only(bool applies, std::string_view condition, Rule rule) {
+  rule.applies = applies;
+  rule.condition = condition;
+  return rule;
+}
+
+void read_stage(TableReader& t, Stage& stage) {
+  t.name("name", stage.name, "stage", {.meaning = "Name in results and key paths.", .required = true});
+  const bool known = t.word(
+      "kind", stage.kind, stage_kinds,
+      {.meaning = "`settle`: static steps to equilibrium; `shake`: dynamic under a ground motion; `rest`: "
+                  "dynamic without one.",
+       .required = true});
+  const bool any = t.documenting() || !known;
+  const bool settle = any || stage.kind == StageKind::settle;
+  const bool shake = any || stage.kind == StageKind::shake;
+  t.references("excavate", stage.excavate, "excavation",
+               {.meaning = "Excavations taken out at the start of the stage."});
+  std::string motion;
+  if (t.reference("motion", motion, "motion",
+                  only(shake, "kind = \"shake\"",
+                       {.meaning = "The ground motion.", .required = known || t.documenting()}))) {
+    const auto& names = t.context().list_names["motion"];
+    stage.motion = static_cast<int>(std::find(names.begin(), names.end(), motion) - names.begin());
+  }
+  t.number("scale", stage.scale,
+           only(shake, "kind = \"shake\"", {.meaning = "Factor on its accelerations."}));
+  t.number("duration", stage.duration,
+           only(any || stage.kind != StageKind::settle, "kind = \"shake\" or \"rest\"",
+                {.meaning = "Duration.",
+                 .unit = "s",
+                 .required = known && stage.kind == StageKind::rest,
+                 .above = 0.0,
+                 .fallback = "that of the motion; required to rest"}));
+  t.integer("max_steps", stage.max_steps,
+            only(settle, "kind = \"settle\"",
+                 {.meaning = "Most static steps; the stage ends without equilibrium when they are used up.",
+                  .at_least = 1.0,
+                  .fallback = "chosen by the program"}));
+  t.number("tolerance", stage.tolerance,
+           only(settle, "kind = \"settle\"",
+                {.meaning = "Equilibrium: largest residual of a block over its weight.",
+                 .above = 0.0,
+                 .below = 1.0}));
+}
+
+void check_excavated_once(TableReader& root, const Scenario& scenario) {
+  std::vector<int> excavated;
+  for (const Stage& stage : scenario.stages) {
+    for (const int index : stage.excavate) {
+      if (std::find(excavated.begin(), excavated.end(), index) != excavated.end()) {
+        const std::string path = join_path("stage", stage.name) + ".excavate";
+        root.context().diagnostics.push_back(
+            {root.context().where(path), path,
+             fmt::format("\"{}\" again", scenario.excavations[static_cast<std::size_t>(index)].name),
+             "every excavation taken out once", ""});
+      }
+      excavated.push_back(index);
+    }
+  }
+}
+
+void check_step_count(TableReader& t, const Scenario& scenario) {
+  double duration = 0.0;
+  for (const Stage& stage : scenario.stages) duration += stage.duration.value_or(0.0);
+  if (scenario.time_step > 0.0 && duration / scenario.time_step > most_steps) {
+    t.fail("step", fmt::format("{:.3g} steps in {} s", duration / scenario.time_step, duration),
+           fmt::format("at most {:.0e} steps", most_steps));
+  }
+}
+
+void read_history(TableReader& t, simulation::History& history) {
+  t.name("name", history.name, "history",
+         {.meaning = "Name of its columns in histories.csv.", .required = true});
+  t.reference("block", history.block, "block",
+              {.meaning = "The block it belongs to.", .fallback = "the block that holds the point"});
+  t.point("point", history.point,
+          {.meaning = "Material point, by its place before the run.", .unit = "m", .required = true});
+}
+
+void read_damage(TableReader& t, simulation::DamageLimits& damage) {
+  t.number("fall_distance", damage.fall_distance,
+           {.meaning = "How far a block has moved when it counts as fallen.",
+            .unit = "m",
+            .above = 0.0,
+            .fallback = "5 % of the width of the opening"});
+  t.number("loosened_distance", damage.loosened_distance,
+           {.meaning = "How far a block has moved when it counts as loosened.", .unit = "m", .above = 0.0});
+  t.number("slip", damage.slip,
+           {.meaning = "Slip beyond which a joint counts as slipped.", .unit = "m", .above = 0.0});
+  t.number("opening", damage.opening,
+           {.meaning = "Gap beyond which a joint counts as opened.", .unit = "m", .above = 0.0});
+}
+
+void read_output(TableReader& t, simulation::OutputOptions& output) {
+  t.number("frame_interval", output.frame_interval,
+           {.meaning = "Between frames of dynamic stages.", .unit = "s", .above = 0.0});
+  t.integer("settle_frame_interval", output.settle_frame_interval,
+            {.meaning = "Between frames of static stages.", .unit = "steps", .at_least = 1.0});
+  t.number("contact_interval", output.contact_interval,
+           {.meaning = "Between snapshots of all contacts; always at the ends of stages.",
+            .unit = "s",
+            .above = 0.0});
+  t.number("history_interval", output.history_interval,
+           {.meaning = "Between rows of histories; 0: every step.", .unit = "s", .at_least = 0.0});
+}
+
+void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
+  t.number("theta", solver.theta,
+           {.meaning = "Time integration, M(1+θ)/Δt²: 1 is Shi's rule, 0 backward Euler.",
+            .at_least = 0.0,
+            .at_most = 1.0});
+  t.number("tolerance", solver.tolerance,
+           {.meaning = "Largest residual of a block over its weight for a step to count as converged.",
+            .above = 0.0,
+            .below = 1.0});
+  t.integer(
+      "max_iterations", solver.max_iterations,
+      {.meaning = "Open-close iterations before a step is retried with half its size.", .at_least = 1.0});
+  t.integer("max_halvings", solver.max_halvings,
+            {.meaning = "How often a step is halved at most.", .at_least = 0.0});
+  t.integer("max_bound_updates", solver.max_bound_updates,
+            {.meaning = "How often the friction bounds are taken anew within a step.", .at_least = 0.0});
+  t.number(
+      "bound_tolerance", solver.bound_tolerance,
+      {.meaning = "Error of the friction bounds (L2, over their norm) that asks for another.", .above = 0.0});
+  t.word("linear", solver.linear, linear_solvers,
+         {.meaning =
+              "Solver of the linear systems: `block` is this program's own, `direct` that of a library."});
+}
+
+void read_vary(TableReader& t, VarySpec& vary) {
+  t.string("key", vary.key,
+           {.meaning = "Key path of the value that varies, as for `--set`: `stage.'first earthquake'.scale`.",
+            .required = true});
+  const Value* values = t.any("values", "array", {.meaning = "The values it takes.", .required = true});
+  if (values == nullptr) return;
+  if (!values->is(Value::Type::array) || values->items.empty()) {
+    t.fail("values", describe(*values), "an array of values");
+    return;
+  }
+  for (const Value& value : values->items) vary.values.push_back(to_toml(value));
+}
+
+void read_study(TableReader& t, Scenario& scenario) {
+  StudySpec& study = scenario.study.emplace();
+  t.integer("realizations", study.realizations,
+            {.meaning = "Number of realizations of the joint sets.", .at_least = 1.0});
+  t.tables("vary", study.vary, {.meaning = "One axis of the grid; all combinations are run."},
+           [](TableReader& v, VarySpec& vary) { read_vary(v, vary); });
+}
+
+}  // namespace
+
+void read_run(TableReader& root, Scenario& scenario) {
+  root.tables(
+      "stage", scenario.stages,
+      {.meaning = "What happens, one stage after the other. Without stages only `keyblock cut` has work to "
+                  "do."},
+      [](TableReader& t, Stage& stage) { read_stage(t, stage); });
+  check_excavated_once(root, scenario);
+  root.table("time", {.meaning = "Steps.", .required = root.find("stage") != nullptr}, [&](TableReader& t) {
+    t.number("step", scenario.time_step,
+             {.meaning = "Time step; halved for a while where a step does not converge.",
+              .unit = "s",
+              .required = true,
+              .above = 0.0});
+    check_step_count(t, scenario);
+  });
+  root.tables("history", scenario.histories,
+              {.meaning = "A point whose displacement, velocity and stress are recorded in histories.csv."},
+              [](TableReader& t, simulation::History& history) { read_history(t, history); });
+  root.table("damage", {.meaning = "Limits of the damage measures."},
+             [&](TableReader& t) { read_damage(t, scenario.damage); });
+  root.table("output", {.meaning = "How often results are recorded."},
+             [&](TableReader& t) { read_output(t, scenario.output); });
+  root.table("solver", {.meaning = "How steps are solved. The defaults suit rock at engineering scale."},
+             [&](TableReader& t) { read_solver(t, scenario.solver); });
+  root.table("study",
+             {.meaning = "A Monte Carlo study for `keyblock study`: realizations × a grid of values."},
+             [&](TableReader& t) { read_study(t, scenario); });
+}
+
+}  // namespace keyblock::scenario

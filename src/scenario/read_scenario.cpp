@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "rockmass/trace_generator.h"
+#include "scenario/key_path.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+// Mistakes that show only when several sections are seen together. Positions are those in the context, as the
+// scenario has none yet.
+class Consistency {
+ public:
+  Consistency(TableReader& root, const Scenario& scenario) : root_(root), scenario_(scenario) {}
+
+  void check() {
+    if (root_.documenting()) return;
+    if (root_.find("domain") == nullptr) check_without_domain();
+    const Value* section = root_.find("section");
+    if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
+    check_trace_counts();
+    check_histories();
+  }
+
+ private:
+  void fail(const std::string& path, std::string key, std::string found, std::string expected) {
+    ReadContext& context = root_.context();
+    context.diagnostics.push_back(
+        {context.where(path), std::move(key), std::move(found), std::move(expected), ""});
+  }
+
+  void check_without_domain() {
+    if (!scenario_.joint_sets.empty()) {
+      fail(scenario_.joint_sets.front().path, "domain", "nothing", "[domain], which joint sets are made in");
+    } else if (!scenario_.trace_maps.empty()) {
+      fail(scenario_.trace_maps.front().path, "domain", "nothing", "[domain], which trace maps are cut in");
+    } else if (root_.find("block") == nullptr) {
+      root_.missing("domain", "[domain] or at least one [[block]]");
+    }
+  }
+
+  void check_without_azimuth() {
+    const std::string expected = "the direction of the +x axis, in degrees from north, which {} need";
+    if (!scenario_.joint_sets.empty()) {
+      fail(scenario_.joint_sets.front().path, "section.azimuth", "nothing",
+           fmt::format(fmt::runtime(expected), "joint sets"));
+      return;
+    }
+    for (const MotionSpec& motion : scenario_.motions) {
+      const bool horizontal = std::any_of(motion.components.begin(), motion.components.end(),
+                                          [](const auto& c) { return c.azimuth.has_value(); });
+      if (!horizontal) continue;
+      fail(motion.path, "section.azimuth", "nothing",
+           fmt::format(fmt::runtime(expected), "horizontal components of records"));
+      return;
+    }
+  }
+
+  void check_trace_counts() {
+    if (!scenario_.domain || !scenario_.section_azimuth) return;
+    const Domain& domain = *scenario_.domain;
+    if (domain.x.first >= domain.x.second || domain.y.first >= domain.y.second) return;
+    const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+    for (const JointSetSpec& spec : scenario_.joint_sets) {
+      const rockmass::JointSet& set = spec.set;
+      if (set.spacing.mean <= 0.0 || set.length.mean <= 0.0) continue;
+      const double count = rockmass::expected_traces(set, *scenario_.section_azimuth, window);
+      if (count <= rockmass::max_traces) continue;
+      fail(spec.path, join_path(spec.path, "spacing"),
+           fmt::format("about {:.2g} traces in the domain", count),
+           fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",
+                       rockmass::max_traces));
+    }
+  }
+
+  void check_histories() {
+    if (root_.find("domain") != nullptr) return;
+    for (const simulation::History& history : scenario_.histories) {
+      const bool held =
+          std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), [&](const BlockSpec& block) {
+            return (history.block.empty() || history.block == block.name) &&
+                   bounds(block.polygon).grown(1e-6 * perimeter(block.polygon)).contains(history.point);
+          });
+      if (held) continue;
+      const std::string path = join_path(join_path("history", history.name), "point");
+      fail(path, path, fmt::format("[{}, {}], outside", history.point.x, history.point.y),
+           history.block.empty() ? "a point of a block"
+                                 : fmt::format("a point of the block '{}'", history.block));
+    }
+  }
+
+  TableReader& root_;
+  const Scenario& scenario_;
+};
+
+}  // namespace
+
+void read_scenario(TableReader& root, Scenario& scenario) {
+  root.string("title", scenario.title, {.meaning = "Title of the report."});
+  root.integer("seed", scenario.seed,
+               {.meaning = "Of the random numbers: the same seed and realization give the same joints on any "
+                           "machine."});
+  root.point("gravity", scenario.gravity, {.meaning = "Acceleration of gravity.", .unit = "m/s²"});
+  read_rock_mass(root, scenario);
+  read_shapes(root, scenario);
+  read_loading(root, scenario);
+  read_run(root, scenario);
+  Consistency(root, scenario).check();
+}
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "scenario/key_path.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+// Areas under this share of the squared perimeter are no areas.
+constexpr double flat_ratio = 1e-10;
+constexpr int fewest_chords = 8;
+
+constexpr Word<ExcavationShape> shapes[] = {{"circle", ExcavationShape::circle},
+                                            {"polygon", ExcavationShape::polygon},
+                                            {"horseshoe", ExcavationShape::horseshoe}};
+
+// What is wrong with a polygon, if anything.
+std::string fault_of(Polygon& polygon) {
+  for (std::size_t k = 0; k < polygon.ring_count(); ++k) {
+    const double length = perimeter({polygon.ring(k), {}});
+    if (std::abs(signed_area(polygon.ring(k))) <= flat_ratio * length * length) {
+      return k == 0 ? "a polygon without area" : fmt::format("a hole without area (holes[{}])", k - 1);
+    }
+  }
+  orient(polygon);
+  if (self_intersects(polygon)) return "a polygon that crosses or touches itself";
+  for (std::size_t k = 0; k < polygon.holes.size(); ++k) {
+    const Vec2 p = polygon.holes[k].front();
+    if (!contains(polygon.outer, p)) return fmt::format("a hole outside the outer ring (holes[{}])", k);
+    for (std::size_t j = 0; j < polygon.holes.size(); ++j) {
+      if (j != k && contains(polygon.holes[j], p)) return fmt::format("a hole inside a hole (holes[{}])", k);
+    }
+  }
+  return {};
+}
+
+void read_circle(TableReader& t, ExcavationSpec& spec, const auto& rule) {
+  t.point("center", spec.center,
+          rule(ExcavationShape::circle, {.meaning = "Centre.", .unit = "m", .required = true}));
+  t.number(
+      "diameter", spec.diameter,
+      rule(ExcavationShape::circle, {.meaning = "Diameter.", .unit = "m", .required = true, .above = 0.0}));
+}
+
+void read_horseshoe(TableReader& t, ExcavationSpec& spec, const auto& rule) {
+  constexpr auto horseshoe = ExcavationShape::horseshoe;
+  t.point("invert", spec.invert,
+          rule(horseshoe, {.meaning = "Middle of the floor.", .unit = "m", .required = true}));
+  t.number("width", spec.width,
+           rule(horseshoe, {.meaning = "Width of the floor.", .unit = "m", .required = true, .above = 0.0}));
+  t.number(
+      "wall_height", spec.wall_height,
+      rule(horseshoe,
+           {.meaning = "Height of the vertical walls.", .unit = "m", .required = true, .at_least = 0.0}));
+  const bool rise =
+      t.number("arch_height", spec.arch_height,
+               rule(horseshoe, {.meaning = "Rise of the circular arch above the walls, at most half "
+                                           "the width.",
+                                .unit = "m",
+                                .above = 0.0,
+                                .fallback = "width / 2"}));
+  if (rise && spec.width > 0.0 && *spec.arch_height > 0.5 * spec.width) {
+    t.fail("arch_height", fmt::format("the number {}", *spec.arch_height),
+           fmt::format("at most half the width, {}", 0.5 * spec.width));
+  }
+}
+
+void read_excavation(TableReader& t, ExcavationSpec& spec) {
+  spec.path = t.path();
+  t.name("name", spec.name, "excavation",
+         {.meaning = "Name, for the stages that excavate it.", .required = true});
+  const bool known =
+      t.word("shape", spec.shape, shapes, {.meaning = "Shape of the outline.", .required = true});
+  const auto rule = [&](ExcavationShape shape, Rule r) {
+    const auto word =
+        std::find_if(std::begin(shapes), std::end(shapes), [&](const auto& w) { return w.value == shape; });
+    static constexpr std::string_view conditions[] = {"shape = \"circle\"", "shape = \"polygon\"",
+                                                      "shape = \"horseshoe\""};
+    r.condition = conditions[word - std::begin(shapes)];
+    r.applies = t.documenting() || !known || spec.shape == shape;
+    r.required = r.required && (t.documenting() || known);
+    return r;
+  };
+  read_circle(t, spec, rule);
+  Polygon polygon;
+  const Rule outer{.meaning = "Vertices, either way round.", .unit = "m", .required = true};
+  read_polygon(t, polygon, false, rule(ExcavationShape::polygon, outer));
+  spec.outer = std::move(polygon.outer);
+  read_horseshoe(t, spec, rule);
+  const bool round = t.documenting() || spec.shape != ExcavationShape::polygon;
+  t.integer("chords", spec.chords,
+            {.meaning = "Chords of a full circle.",
+             .at_least = fewest_chords,
+             .applies = round,
+             .condition = "shape = \"circle\" or \"horseshoe\""});
+}
+
+void read_block(TableReader& t, BlockSpec& block) {
+  block.path = t.path();
+  t.name("name", block.name, "block", {.meaning = "Name, for loads, supports and histories."});
+  read_polygon(t, block.polygon, true,
+               {.meaning = "Vertices, either way round.", .unit = "m", .required = true});
+  read_rock_keys(t, block.rock, false);
+  t.boolean("fixed", block.fixed, {.meaning = "The block neither moves nor deforms."});
+  const bool moves = t.documenting() || !block.fixed;
+  t.point("velocity", block.velocity,
+          {.meaning = "Velocity of the centroid at the start.",
+           .unit = "m/s",
+           .applies = moves,
+           .condition = "fixed = false"});
+  t.number("spin", block.spin,
+           {.meaning = "Angular velocity at the start, counter-clockwise.",
+            .unit = "rad/s",
+            .applies = moves,
+            .condition = "fixed = false"});
+}
+
+}  // namespace
+
+void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& outer_rule) {
+  bool valid = t.ring("outer", polygon.outer, outer_rule);
+  if (holes) {
+    const bool has_holes = t.find("holes") != nullptr;
+    const bool valid_holes =
+        t.rings("holes", polygon.holes, {.meaning = "Holes: an array of rings.", .unit = "m"});
+    valid = valid && (!has_holes || valid_holes);
+  }
+  if (!valid) return;
+  const std::string fault = fault_of(polygon);
+  if (!fault.empty()) t.fail("outer", fault, "rings that enclose an area and do not cross");
+}
+
+Ring excavation_outline(const ExcavationSpec& spec) {
+  constexpr double pi = std::numbers::pi;
+  if (spec.shape == ExcavationShape::polygon) return spec.outer;
+  Ring ring;
+  if (spec.shape == ExcavationShape::circle) {
+    for (int k = 0; k < spec.chords; ++k) {
+      const double angle = 2.0 * pi * k / spec.chords;
+      ring.push_back(spec.center + 0.5 * spec.diameter * Vec2{std::cos(angle), std::sin(angle)});
+    }
+    return ring;
+  }
+  // Arch: radius r and half angle α from the rise h over the half width w: r = (w² + h²)/2h, sin α = w/r.
+  const double w = 0.5 * spec.width;
+  const double h = spec.arch_height.value_or(w);
+  const double r = (w * w + h * h) / (2.0 * h);
+  const double half_angle = std::atan2(w, r - h);
+  const Vec2 centre = spec.invert + Vec2{0.0, spec.wall_height + h - r};
+  ring = {spec.invert - Vec2{w, 0.0}, spec.invert + Vec2{w, 0.0}};
+  const int chords = std::max(2, static_cast<int>(std::ceil(spec.chords * half_angle / pi)));
+  for (int k = spec.wall_height > 0.0 ? 0 : 1; k <= chords; ++k) {
+    const double angle = half_angle * (2.0 * k / chords - 1.0);
+    ring.push_back(centre + r * Vec2{-std::sin(angle), std::cos(angle)});
+  }
+  if (spec.wall_height == 0.0) ring.pop_back();
+  return ring;
+}
+
+void read_shapes(TableReader& root, Scenario& scenario) {
+  root.tables(
+      "excavation", scenario.excavations,
+      {.meaning = "An opening. Its outline is cut into the rock from the start; a stage takes the rock out."},
+      [](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec); });
+  root.tables("block", scenario.blocks,
+              {.meaning = "A block given by its outline, beside those cut from the domain or alone."},
+              [](TableReader& t, BlockSpec& block) { read_block(t, block); });
+}
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,158 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "block/material.h"
+#include "core/error.h"
+#include "dynamics/options.h"
+#include "geometry/polygon.h"
+#include "loading/load.h"
+#include "loading/projection.h"
+#include "rockmass/joint_set.h"
+#include "simulation/setup.h"
+#include "simulation/stage.h"
+
+/// What a scenario file says, typed and checked, before anything is generated, read or cut. Coordinates are real
+/// ones; SI units. The meaning of every key: docs/scenario.md.
+namespace keyblock::scenario {
+
+/// [rock], or those of its keys that a region or a block has of its own.
+struct RockKeys {
+  std::optional<double> density, young, poisson;
+  std::optional<PlaneState> state;
+  std::optional<int> order;
+};
+
+/// [joints], or those of its keys that a joint set or trace map has of its own.
+struct JointKeys {
+  std::optional<double> friction, cohesion, tension, normal_stiffness, shear_stiffness;
+};
+
+struct Domain {
+  std::pair<double, double> x, y;
+  bool frame = true;            ///< fixed blocks around the domain
+  double frame_friction = 0.0;  ///< degrees
+};
+
+struct JointSetSpec {
+  rockmass::JointSet set;
+  JointKeys joints;
+  std::string path;  ///< key path, here and below; position: Scenario::where
+};
+
+struct TraceMapSpec {
+  std::string name;
+  std::filesystem::path file;
+  JointKeys joints;
+  std::string path;
+};
+
+struct RegionSpec {
+  std::string name;
+  Polygon polygon;
+  RockKeys rock;
+};
+
+enum class ExcavationShape { circle, polygon, horseshoe };
+
+struct ExcavationSpec {
+  std::string name;
+  ExcavationShape shape = ExcavationShape::circle;
+  Vec2 center;               ///< circle
+  double diameter = 0.0;     ///< circle
+  int chords = 96;           ///< of a full circle
+  Ring outer;                ///< polygon
+  Vec2 invert;               ///< horseshoe: middle of the floor
+  double width = 0.0;        ///< horseshoe
+  double wall_height = 0.0;  ///< horseshoe: of the vertical walls
+  std::optional<double>
+      arch_height;  ///< horseshoe: rise of the circular arch over the walls; default width / 2
+  std::string path;
+};
+
+struct BlockSpec {
+  std::string name;  ///< may be empty
+  Polygon polygon;
+  RockKeys rock;
+  bool fixed = false;
+  Vec2 velocity;
+  double spin = 0.0;
+  std::string path;
+};
+
+/// Depth with K0, or a constant stress; compression negative.
+struct InSituSpec {
+  std::optional<double> depth;  ///< m of rock above the top of the model
+  std::optional<double> k0;
+  double sxx = 0.0, syy = 0.0, sxy = 0.0;  ///< Pa, without depth
+};
+
+struct MotionComponentSpec {
+  std::filesystem::path file;
+  int channel = 1;                ///< component of a file that holds several, counted from 1
+  bool vertical = false;          ///< azimuth = "up"
+  std::optional<double> azimuth;  ///< degrees; neither: as the file says
+  std::string path;
+};
+
+/// A record projected on the section, or acceleration over time in x and y.
+struct MotionSpec {
+  std::string name;
+  std::vector<MotionComponentSpec> components;
+  std::optional<std::pair<double, double>> window;  ///< s of the record
+  loading::Baseline baseline = loading::Baseline::none;
+  loading::AccelerationTable x, y;
+  std::optional<loading::Sine> sine_x, sine_y;
+  std::string path;
+};
+
+/// One axis of the grid of a study.
+struct VarySpec {
+  std::string key;                  ///< key path
+  std::vector<std::string> values;  ///< as TOML: `key=value` is an override
+};
+
+struct StudySpec {
+  int realizations = 1;
+  std::vector<VarySpec> vary;
+};
+
+struct Scenario {
+  std::string title;
+  std::uint64_t seed = 1;
+  Vec2 gravity{0.0, -9.81};  ///< m/s²
+  std::optional<double> section_azimuth;
+  std::optional<Domain> domain;
+  RockKeys rock;  ///< all set
+  JointKeys joints;
+  std::vector<JointSetSpec> joint_sets;
+  std::vector<TraceMapSpec> trace_maps;
+  std::vector<RegionSpec> regions;
+  std::vector<ExcavationSpec> excavations;
+  std::vector<BlockSpec> blocks;
+  std::optional<InSituSpec> in_situ;
+  double time_step = 0.0;  ///< s; 0: not given, and no stages
+  std::vector<MotionSpec> motions;
+  std::vector<loading::Load> loads;
+  std::vector<loading::Support> supports;
+  std::vector<simulation::History> histories;
+  std::vector<simulation::Stage> stages;  ///< indices are those of `excavations` and `motions`
+  simulation::DamageLimits damage;
+  simulation::OutputOptions output;
+  dynamics::SolverOptions solver;
+  std::optional<StudySpec> study;
+
+  std::string file;  ///< as given; for messages
+  std::string text;  ///< of the file, with the overrides as comments at its end
+  std::map<std::string, SourcePosition> positions;  ///< of every value, by key path
+
+  /// Position of a value, or of the nearest table around it.
+  [[nodiscard]] SourcePosition where(const std::string& key_path) const;
+};
+
+}  // namespace keyblock::scenario

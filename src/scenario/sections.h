@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "scenario/table_reader.h"
+
+/// The sections of a scenario: for every table of the file a function that names its keys, once, for reading and for
+/// the reference alike.
+namespace keyblock::scenario {
+
+/// All sections in an order in which names are known before they are referred to, then what concerns several.
+void read_scenario(TableReader& root, Scenario& scenario);
+
+/// The stretch of rock: [section], [domain], [rock], [joints], [[joint_set]], [[trace_map]], [[region]].
+void read_rock_mass(TableReader& root, Scenario& scenario);
+/// What is built into it: [[excavation]], [[block]].
+void read_shapes(TableReader& root, Scenario& scenario);
+/// [in_situ], [[motion]], [[load]], [[support]].
+void read_loading(TableReader& root, Scenario& scenario);
+/// [time], [[stage]], [[history]], [damage], [output], [solver], [study].
+void read_run(TableReader& root, Scenario& scenario);
+
+/// Keys of [rock]; with `required`, those without a default must be there.
+void read_rock_keys(TableReader& t, RockKeys& rock, bool required);
+/// `outer` and, with `holes`, `holes`: turned the right way round and checked.
+void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& outer_rule);
+
+/// Circles and horseshoes as chords, counter-clockwise.
+Ring excavation_outline(const ExcavationSpec& spec);
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,96 @@
+#include "scenario/value.h"
+
+#include <fmt/format.h>
+
+#include "scenario/key_path.h"
+
+namespace keyblock::scenario {
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      result += fmt::format("\\u{:04X}", code);
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+std::string number_text(double number) {
+  std::string text = fmt::format("{}", number);
+  if (text.find_first_of(".einf") == std::string::npos) text += ".0";
+  return text;
+}
+
+}  // namespace
+
+const Value* Value::find(std::string_view member) const {
+  if (type != Type::table) return nullptr;
+  for (const Value& item : items) {
+    if (item.key == member) return &item;
+  }
+  return nullptr;
+}
+
+Value* Value::find(std::string_view member) {
+  return const_cast<Value*>(static_cast<const Value*>(this)->find(member));
+}
+
+const std::string* Value::name() const {
+  const Value* member = find("name");
+  return member != nullptr && member->is(Type::string) ? &member->text : nullptr;
+}
+
+std::string describe(const Value& value) {
+  switch (value.type) {
+    case Value::Type::string:
+      return "the string " + quoted(value.text);
+    case Value::Type::integer:
+      return fmt::format("the integer {}", value.integer);
+    case Value::Type::number:
+      return "the number " + number_text(value.number);
+    case Value::Type::boolean:
+      return fmt::format("the boolean {}", value.boolean);
+    case Value::Type::date:
+      return "the date or time " + value.text;
+    case Value::Type::array:
+      return value.items.empty() ? "an empty array" : fmt::format("an array of {}", value.items.size());
+    case Value::Type::table:
+      return "a table";
+  }
+  return {};
+}
+
+std::string to_toml(const Value& value) {
+  std::string text;
+  switch (value.type) {
+    case Value::Type::string:
+      return quoted(value.text);
+    case Value::Type::integer:
+      return fmt::format("{}", value.integer);
+    case Value::Type::number:
+      return number_text(value.number);
+    case Value::Type::boolean:
+      return value.boolean ? "true" : "false";
+    case Value::Type::date:
+      return value.text;
+    case Value::Type::array:
+      for (const Value& item : value.items) text += (text.empty() ? "" : ", ") + to_toml(item);
+      return "[" + text + "]";
+    case Value::Type::table:
+      for (const Value& item : value.items) {
+        text += (text.empty() ? " " : ", ") + path_segment(item.key) + " = " + to_toml(item);
+      }
+      return "{" + text + " }";
+  }
+  return {};
+}
+
+}  // namespace keyblock::scenario

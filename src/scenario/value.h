@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace keyblock::scenario {
+
+/// A value of a TOML document, with the place where it stands. A tree of plain data, so that overrides can be
+/// put into it and the rest of the module need not know the TOML library.
+struct Value {
+  enum class Type { string, integer, number, boolean, date, array, table };
+
+  Type type = Type::table;
+  std::string text;  ///< of a string; a date as written
+  std::int64_t integer = 0;
+  double number = 0.0;  ///< of an integer, too
+  bool boolean = false;
+  std::vector<Value> items;  ///< elements of an array; members of a table in the order of the file
+  SourcePosition where;      ///< of the value; of the header of a [table]
+
+  std::string key;  ///< members of a table only
+  SourcePosition key_where;
+
+  [[nodiscard]] bool is(Type t) const { return type == t; }
+  /// Type::number or Type::integer.
+  [[nodiscard]] bool is_number() const { return type == Type::number || type == Type::integer; }
+  /// Member of a table, or null.
+  [[nodiscard]] const Value* find(std::string_view member) const;
+  [[nodiscard]] Value* find(std::string_view member);
+  /// The string member `name` of a table, or null: the name of an element of a list.
+  [[nodiscard]] const std::string* name() const;
+};
+
+/// What stands there, for a message: `the number -1`, `the string "stiff"`, `an array of 3`.
+std::string describe(const Value& value);
+
+/// The value as TOML, on one line.
+std::string to_toml(const Value& value);
+
+/// Reads TOML. Positions name `file`. Throws InputError for a syntax error.
+Value parse_toml(std::string_view text, const std::string& file);
+
+}  // namespace keyblock::scenario
