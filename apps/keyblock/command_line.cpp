@@ -1,0 +1,73 @@
+#include "command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "commands.h"
+#include "core/error.h"
+
+namespace keyblock::app {
+namespace {
+
+void describe(CLI::App& app) {
+  app.name("keyblock");
+  app.description(
+      "Jointed rock as a system of deformable blocks (2D discontinuous deformation analysis): joints are cut "
+      "into "
+      "blocks, an opening is excavated, an earthquake shakes it.");
+  app.set_version_flag("--version", "keyblock " KEYBLOCK_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  keyblock check tunnel.toml\n"
+      "  keyblock run tunnel.toml -o out/tunnel\n"
+      "  keyblock run tunnel.toml -o out/strong --set \"stage.'first earthquake'.scale=2\"\n"
+      "  keyblock motion record.smc --plot\n\n"
+      "Each command has its own --help.\n"
+      "Exit codes: 0 done, 1 the input is wrong, 2 the run failed or was interrupted, 3 internal error.");
+  app.require_subcommand(1);
+  add_motion(app);
+}
+
+/// --help and --version arrive here too; they are no mistakes.
+int explain(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    app.exit(error, std::cout, std::cerr);
+    return done;
+  }
+  const CLI::App* asked = &app;
+  while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
+  const std::string command = asked == &app ? "keyblock" : "keyblock " + asked->get_name();
+  std::cerr << command << ": " << error.what() << "\nSee " << command << " --help.\n";
+  return input_wrong;
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  try {
+    CLI::App app;
+    describe(app);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return explain(app, error);
+    }
+    std::cout.flush();
+    return done;
+  } catch (const InputError& error) {
+    std::cerr << error.what() << "\n";
+    return input_wrong;
+  } catch (const RunError& error) {
+    std::cerr << "keyblock: " << error.what() << "\n";
+    return run_failed;
+  } catch (const std::exception& error) {
+    std::cerr << "keyblock: internal error: " << error.what()
+              << "\nThis is a mistake in keyblock, not in your input. Please report it, with the scenario "
+                 "and the output "
+                 "of keyblock --version.\n";
+    return internal_error;
+  }
+}
+
+}  // namespace keyblock::app

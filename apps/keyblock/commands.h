@@ -1,0 +1,18 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+/// The commands. Each function adds one to the command line; its work is done while the command line is parsed and
+/// throws what the work throws (see command_line.h).
+namespace keyblock::app {
+
+void add_run(CLI::App& app);
+void add_check(CLI::App& app);
+void add_cut(CLI::App& app);
+void add_report(CLI::App& app);
+void add_export(CLI::App& app);
+void add_motion(CLI::App& app);
+
+}  // namespace keyblock::app

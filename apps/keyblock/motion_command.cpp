@@ -1,0 +1,58 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "loading/motion_measures.h"
+
+namespace keyblock::app {
+namespace {
+
+struct MotionArguments {
+  std::vector<std::string> files;
+  bool plot = false;
+  std::string output = "motion.svg";
+};
+
+void show_motions(const MotionArguments& arguments) {
+  std::vector<loading::MotionComponent> components;
+  std::vector<Diagnostic> mistakes;
+  for (const std::string& file : arguments.files) {
+    try {
+      for (auto& component : loading::read_motion_file(file)) components.push_back(std::move(component));
+    } catch (const InputError& error) {
+      mistakes.insert(mistakes.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  std::cout << loading::describe_motion(components);
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+  if (arguments.plot) {
+    write_file_atomically(arguments.output, loading::plot_motion_svg(components));
+    std::cout << "plot: " << arguments.output << "\n";
+  }
+}
+
+}  // namespace
+
+void add_motion(CLI::App& app) {
+  auto arguments = std::make_shared<MotionArguments>();
+  CLI::App* command =
+      app.add_subcommand("motion", "What a ground motion record holds: components, dt, points, peak, unit");
+  command
+      ->add_option("FILE", arguments->files,
+                   "USGS SMC, PEER AT2, CSMIP or COSMOS V2, or CSV (time, acceleration)")
+      ->required();
+  command->add_flag("--plot", arguments->plot, "Draw the components into an SVG file");
+  command->add_option("-o,--output", arguments->output, "The SVG file")
+      ->capture_default_str()
+      ->needs("--plot");
+  command->footer("Example:\n  keyblock motion motions/*.smc --plot -o record.svg");
+  command->callback([arguments] { show_motions(*arguments); });
+}
+
+}  // namespace keyblock::app

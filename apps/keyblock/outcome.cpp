@@ -1,0 +1,106 @@
+#include "outcome.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "terminal.h"
+
+namespace keyblock::app {
+namespace {
+
+using simulation::RunRecord;
+using simulation::StageKind;
+using simulation::StageRecord;
+
+constexpr std::size_t columns = 9;
+using Row = std::array<std::string, columns>;
+
+const Row heading{"stage",     "steps",       "time s",   "PGA m/s2",   "fallen",
+                  "fallen m2", "loosened m2", "filled %", "max slip mm"};
+
+std::string kind_name(StageKind kind) {
+  return kind == StageKind::settle ? "settle" : kind == StageKind::shake ? "shake" : "rest";
+}
+
+Row row(const StageRecord& stage) {
+  const simulation::Damage& d = stage.damage;
+  const bool dynamic = stage.stage.kind != StageKind::settle;
+  return {fmt::format("{} ({})", one_line(stage.stage.name, 30, true), kind_name(stage.stage.kind)),
+          fmt::format("{}", stage.steps),
+          dynamic ? fmt::format("{:.2f}", stage.duration) : "-",
+          stage.stage.kind == StageKind::shake ? fmt::format("{:.2f}", stage.pga) : "-",
+          fmt::format("{}", d.fallen_blocks),
+          fmt::format("{:.2f}", d.fallen_area),
+          fmt::format("{:.2f}", d.loosened_area),
+          fmt::format("{:.1f}", 100.0 * d.opening_filled_ratio),
+          fmt::format("{:.2f}", 1000.0 * d.slip_max)};
+}
+
+/// First column to the left, numbers to the right.
+std::string aligned(const std::vector<Row>& rows) {
+  std::array<int, columns> width{};
+  for (const Row& r : rows) {
+    for (std::size_t c = 0; c < columns; ++c) width[c] = std::max(width[c], column_count(r[c]));
+  }
+  std::string text;
+  for (const Row& r : rows) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      const std::string padding(static_cast<std::size_t>(width[c] - column_count(r[c])), ' ');
+      text += c == 0 ? r[c] + padding : "  " + padding + r[c];
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string moving_text(const StageRecord& stage) {
+  std::string text = fmt::format("{} {} moving (share of the weight that is carried:", stage.moving.size(),
+                                 stage.moving.size() == 1 ? "block keeps" : "blocks keep");
+  constexpr std::size_t shown = 6;
+  for (std::size_t k = 0; k < std::min(shown, stage.moving.size()); ++k) {
+    text += fmt::format("{} block {} {:.0f} %", k == 0 ? "" : ",", stage.moving[k].block,
+                        100.0 * stage.moving[k].carried);
+  }
+  return text + (stage.moving.size() > shown ? ", ...)" : ")");
+}
+
+std::vector<std::string> warnings(const RunRecord& run) {
+  std::vector<std::string> texts;
+  for (const StageRecord& stage : run.stages) {
+    if (stage.interrupted) {
+      texts.push_back(fmt::format("stage \"{}\" was interrupted", stage.stage.name));
+    } else if (stage.stage.kind == StageKind::settle && !stage.moving.empty()) {
+      texts.push_back(fmt::format("stage \"{}\": {}", stage.stage.name, moving_text(stage)));
+    } else if (stage.stage.kind == StageKind::settle && !stage.equilibrium_reached) {
+      texts.push_back(
+          fmt::format("stage \"{}\" ended before equilibrium: worst residual {:.1e} of a block's weight",
+                      stage.stage.name, stage.worst_residual_ratio));
+    }
+  }
+  if (run.open_close.unconverged_steps > 0) {
+    texts.push_back(fmt::format("{} steps did not converge", run.open_close.unconverged_steps));
+  }
+  return texts;
+}
+
+}  // namespace
+
+std::string outcome_text(const RunRecord& run, std::size_t block_count) {
+  std::vector<Row> rows{heading};
+  for (const StageRecord& stage : run.stages) rows.push_back(row(stage));
+  const double per_step = run.steps > 0 ? 1000.0 * run.wall_time / static_cast<double>(run.steps) : 0.0;
+  std::string text = fmt::format(
+      "{} blocks, {} degrees of freedom; {} steps in {:.1f} s: {:.2f} ms and {:.1f} open-close iterations "
+      "per step\n"
+      "largest overlap {:.3f} mm, energy residual {:.2f} %, state {}\n\n",
+      block_count, run.dof, run.steps, run.wall_time, per_step, run.open_close.mean_iterations,
+      1000.0 * run.max_overlap, 100.0 * run.energy.residual_ratio, run.state_hash);
+  text += aligned(rows);
+  for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
+  return text;
+}
+
+}  // namespace keyblock::app

@@ -1,0 +1,76 @@
+#include "outcome.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace keyblock::app {
+namespace {
+
+using simulation::RunRecord;
+using simulation::StageKind;
+using simulation::StageRecord;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+RunRecord settled_and_shaken() {
+  RunRecord run;
+  run.steps = 2000;
+  run.wall_time = 5.0;
+  run.dof = 5502;
+  run.state_hash = "00ff";
+  run.open_close.mean_iterations = 3.25;
+  run.max_overlap = 4e-4;
+  StageRecord settled;
+  settled.stage.name = "in situ";
+  settled.equilibrium_reached = true;
+  settled.steps = 120;
+  StageRecord shaken;
+  shaken.stage.name = "first earthquake";
+  shaken.stage.kind = StageKind::shake;
+  shaken.steps = 1880;
+  shaken.duration = 3.76;
+  shaken.pga = 1.25;
+  shaken.damage.fallen_blocks = 12;
+  shaken.damage.fallen_area = 3.5;
+  shaken.damage.slip_max = 0.0125;
+  shaken.damage.opening_filled_ratio = 0.147;
+  run.stages = {settled, shaken};
+  return run;
+}
+
+TEST(OutcomeText, OneAlignedRowPerStage) {
+  const std::string text = outcome_text(settled_and_shaken(), 917);
+  EXPECT_THAT(text, HasSubstr("917 blocks, 5502 degrees of freedom; 2000 steps in 5.0 s: 2.50 ms"));
+  EXPECT_THAT(text, HasSubstr("largest overlap 0.400 mm"));
+  EXPECT_THAT(text, HasSubstr("\nstage                     steps  time s  PGA m/s2  fallen  fallen m2"));
+  EXPECT_THAT(text, HasSubstr("\nin situ (settle)            120       -         -       0       0.00"));
+  EXPECT_THAT(text, HasSubstr("\nfirst earthquake (shake)   1880    3.76      1.25      12       3.50"));
+  EXPECT_THAT(text, HasSubstr("      14.7        12.50\n"));
+  EXPECT_THAT(text, Not(HasSubstr("note:")));
+}
+
+TEST(OutcomeText, SaysWhatToBeWaryOf) {
+  RunRecord run = settled_and_shaken();
+  run.stages[0].equilibrium_reached = false;
+  run.stages[0].worst_residual_ratio = 0.05;
+  EXPECT_THAT(outcome_text(run, 9),
+              HasSubstr("note: stage \"in situ\" ended before equilibrium: worst residual 5.0e-02"));
+  run.stages[0].moving = {{17, 0.25}};
+  EXPECT_THAT(outcome_text(run, 9),
+              HasSubstr("note: stage \"in situ\": 1 block keeps moving (share of the weight that is "
+                        "carried: block 17 25 %)\n"));
+  run.stages[0].moving.resize(9, {18, 0.5});
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("9 blocks keep moving"));
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("block 18 50 %, ...)\n"));
+  run.stages[1].interrupted = true;
+  run.open_close.unconverged_steps = 3;
+  EXPECT_THAT(outcome_text(run, 9),
+              HasSubstr("note: stage \"first earthquake\" was interrupted\nnote: 3 steps did not"));
+}
+
+TEST(OutcomeText, OfARunThatDidNothing) {
+  EXPECT_THAT(outcome_text({}, 0), HasSubstr("0 steps in 0.0 s: 0.00 ms"));
+}
+
+}  // namespace
+}  // namespace keyblock::app
