@@ -1,0 +1,20 @@
+# cmake -DINPUT=FILE -DOUTPUT=FILE.cpp -P embed_file.cmake: a source that holds the bytes of a file.
+file(READ ${INPUT} bytes HEX)
+string(REGEX REPLACE "(................................................................)" "\\1\n" bytes "${bytes}")
+string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
+file(WRITE ${OUTPUT} "#include \"report/viewer_template.h\"
+
+namespace keyblock::report {
+
+namespace {
+constexpr unsigned char bytes[] = {
+${bytes}
+};
+}  // namespace
+
+std::string_view viewer_template() {
+  return {reinterpret_cast<const char*>(bytes), sizeof bytes};
+}
+
+}  // namespace keyblock::report
+")

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "simulation/record.h"
+
+namespace keyblock::report {
+
+/// The stretch of joint that a contact stands for, tied to the block it lies on so that it can be drawn at
+/// any moment: from the point at `from` to the one at `to` (shares of the way) between display vertex
+/// `vertex` and the next of its ring.
+struct JointPiece {
+  std::uint32_t vertex = 0;
+  float from = 0.0F, to = 1.0F;
+  float slip = 0.0F;  ///< m, without sign
+  float gap = 0.0F;   ///< m
+  simulation::ContactState state = simulation::ContactState::open;
+};
+
+/// Finds where contacts lie. A straight edge of the reference configuration, which may consist of several
+/// pieces between display vertices, is the *chain* that a contact's length is laid on: centred at the
+/// contact, and shifted where it would reach over an end of the edge.
+class JointLocator {
+ public:
+  explicit JointLocator(const simulation::ModelRecord& model);
+
+  /// Appends the pieces of all contacts of one snapshot; `displacement` of all display vertices at that
+  /// moment.
+  void locate(std::span<const simulation::ContactRecord> contacts,
+              std::span<const std::array<float, 2>> displacement, std::vector<JointPiece>& pieces) const;
+
+ private:
+  struct Chain {
+    std::vector<std::uint32_t> vertices;  ///< first to last along the edge, one more than pieces
+  };
+  void add_ring(std::span<const std::uint32_t> ring, std::vector<Chain>& chains) const;
+  const simulation::ModelRecord& model_;
+  std::vector<std::vector<Chain>> chains_;  ///< by block
+};
+
+}  // namespace keyblock::report

@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "report/frame_codec.h"
+#include "report/joint_pieces.h"
+#include "report/page_data.h"
+#include "report/thinning.h"
+
+namespace keyblock::report {
+
+namespace {
+
+using simulation::ContactFrame;
+using simulation::Frame;
+
+constexpr std::size_t max_frames = 300;
+constexpr std::size_t max_snapshots = 60;
+constexpr std::size_t max_rows = 4000;
+/// Numbers of displacement beyond which a large model gets fewer frames, which bounds the page at about 15
+/// MB.
+constexpr std::size_t max_displacements = 8'000'000;
+constexpr std::size_t min_frames = 60;
+
+/// Step numbers since the start of the run, whether they were counted so or from the start of their stage.
+class StepCounter {
+ public:
+  double operator()(long step) {
+    if (step < last_) offset_ += last_;
+    last_ = step;
+    return static_cast<double>(offset_ + step);
+  }
+
+ private:
+  long last_ = 0, offset_ = 0;
+};
+
+void add_model(const simulation::ModelRecord& model, ArrayPack& pack) {
+  std::vector<std::uint32_t> begin, end, block;
+  std::vector<std::uint8_t> order, fixed, kind;
+  std::vector<std::int32_t> index;
+  std::vector<float> position, area, density;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const auto& record = model.blocks[b];
+    for (std::size_t r = 0; r + 1 < record.ring_start.size(); ++r) {
+      begin.push_back(static_cast<std::uint32_t>(record.ring_start[r]));
+      end.push_back(static_cast<std::uint32_t>(record.ring_start[r + 1]));
+      block.push_back(static_cast<std::uint32_t>(b));
+    }
+    order.push_back(static_cast<std::uint8_t>(std::min(record.order, 255)));
+    fixed.push_back(record.fixed ? 1 : 0);
+    area.push_back(static_cast<float>(record.area));
+    density.push_back(static_cast<float>(record.density));
+  }
+  for (const Vec2 p : model.vertices) {
+    position.push_back(static_cast<float>(p.x));
+    position.push_back(static_cast<float>(p.y));
+  }
+  for (const cutting::EdgeLabel label : model.edge_label) {
+    kind.push_back(static_cast<std::uint8_t>(label.kind));
+    index.push_back(label.index);
+  }
+  pack.add("ring.begin", begin);
+  pack.add("ring.end", end);
+  pack.add("ring.block", block);
+  pack.add("vertex.position", position);
+  pack.add("edge.kind", kind);
+  pack.add("edge.index", index);
+  pack.add("block.order", order);
+  pack.add("block.fixed", fixed);
+  pack.add("block.area", area);
+  pack.add("block.density", density);
+}
+
+std::vector<std::size_t> chosen_frames(const results::RunData& run) {
+  std::vector<int> stages;
+  for (const Frame& frame : run.frames) stages.push_back(frame.stage);
+  const std::size_t per_frame = std::max<std::size_t>(1, 2 * run.model.vertices.size());
+  return thin_by_stage(stages, std::clamp(max_displacements / per_frame, min_frames, max_frames));
+}
+
+void add_frames(const results::RunData& run, const std::vector<std::size_t>& chosen, ArrayPack& pack) {
+  const std::size_t vertices = run.model.vertices.size();
+  const std::size_t blocks = run.model.blocks.size();
+  std::vector<double> time, step;
+  std::vector<std::int32_t> stage;
+  std::vector<std::uint8_t> status;
+  StepCounter counter;
+  std::vector<double> steps;
+  for (const Frame& frame : run.frames) steps.push_back(counter(frame.step));
+  for (const std::size_t f : chosen) {
+    const Frame& frame = run.frames[f];
+    time.push_back(frame.time);
+    step.push_back(steps[f]);
+    stage.push_back(frame.stage);
+    for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
+  }
+  pack.add("frame.time", time);
+  pack.add("frame.step", step);
+  pack.add("frame.stage", stage);
+  pack.add("frame.status", status);
+  pack.add("frame.displacement",
+           encode_frames(chosen.size(), 2 * vertices, displacement_quantum(run),
+                         [&](std::size_t f, std::size_t i) {
+                           return double{run.frames[chosen[f]].displacement[i % vertices][i / vertices]};
+                         }));
+  pack.add("frame.stress",
+           encode_frames(chosen.size(), 3 * blocks, stress_quantum(run), [&](std::size_t f, std::size_t i) {
+             return double{run.frames[chosen[f]].stress[i % blocks][i / blocks]};
+           }));
+}
+
+/// The frame that shows the moment of a snapshot: the last of its stage that is not later; else the first of
+/// the stage.
+std::ptrdiff_t frame_of(const ContactFrame& snapshot, const std::vector<Frame>& frames) {
+  std::ptrdiff_t found = -1;
+  const double tolerance = 1e-9 * (1.0 + std::abs(snapshot.time));
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    if (frames[f].stage == snapshot.stage && (found < 0 || frames[f].time <= snapshot.time + tolerance))
+      found = static_cast<std::ptrdiff_t>(f);
+  return found;
+}
+
+void add_contacts(const results::RunData& run, const std::vector<std::size_t>& frames, ArrayPack& pack) {
+  std::vector<int> stages;
+  for (const ContactFrame& snapshot : run.contacts) stages.push_back(snapshot.stage);
+  const JointLocator locator(run.model);
+  std::vector<JointPiece> pieces;
+  std::vector<std::uint32_t> frame_index, begin{0};
+  for (const std::size_t k : thin_by_stage(stages, max_snapshots)) {
+    const std::ptrdiff_t frame = frame_of(run.contacts[k], run.frames);
+    if (frame < 0) continue;
+    locator.locate(run.contacts[k].contacts, run.frames[static_cast<std::size_t>(frame)].displacement,
+                   pieces);
+    const auto at = std::lower_bound(frames.begin(), frames.end(), static_cast<std::size_t>(frame));
+    frame_index.push_back(static_cast<std::uint32_t>(at - frames.begin()));
+    begin.push_back(static_cast<std::uint32_t>(pieces.size()));
+  }
+  std::vector<std::uint32_t> vertex;
+  std::vector<std::uint8_t> from, to, state;
+  std::vector<float> slip, gap;
+  const auto share = [](float s) { return static_cast<std::uint8_t>(std::lround(255.0F * s)); };
+  for (const JointPiece& piece : pieces) {
+    vertex.push_back(piece.vertex);
+    from.push_back(share(piece.from));
+    to.push_back(share(piece.to));
+    state.push_back(static_cast<std::uint8_t>(piece.state));
+    slip.push_back(piece.slip);
+    gap.push_back(piece.gap);
+  }
+  pack.add("snapshot.frame", frame_index);
+  pack.add("snapshot.begin", begin);
+  pack.add("piece.vertex", vertex);
+  pack.add("piece.from", from);
+  pack.add("piece.to", to);
+  pack.add("piece.state", state);
+  pack.add("piece.slip", slip);
+  pack.add("piece.gap", gap);
+}
+
+void add_curves(std::string_view x_name, std::string_view values_name, const Curves& curves,
+                ArrayPack& pack) {
+  const Curves thin = thin_curves(curves, max_rows);
+  std::vector<float> values;
+  for (const auto& column : thin.columns)
+    for (const double v : column) values.push_back(static_cast<float>(v));
+  pack.add(x_name, thin.x);
+  pack.add(values_name, values);
+}
+
+void add_histories(const results::RunData& run, ArrayPack& pack) {
+  Curves curves;
+  curves.columns.resize(7 * run.model.history_names.size());
+  for (const simulation::HistoryRow& row : run.histories) {
+    curves.x.push_back(row.time);
+    for (std::size_t p = 0; p < run.model.history_names.size(); ++p) {
+      const auto& q = row.points[p];
+      const double values[] = {q.ux, q.uy, q.vx, q.vy, q.sxx, q.syy, q.sxy};
+      for (std::size_t c = 0; c < 7; ++c) curves.columns[7 * p + c].push_back(values[c]);
+    }
+  }
+  add_curves("history.time", "history.values", curves, pack);
+}
+
+void add_steps(const results::RunData& run, ArrayPack& pack) {
+  Curves curves;
+  StepCounter counter;
+  for (const simulation::StepRow& row : run.steps) {
+    const simulation::Energy& e = row.energy;
+    const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.numerical - e.input;
+    // In the order of step_columns in page_header.cpp.
+    const double values[] = {double(row.stage),
+                             row.time,
+                             double(row.iterations),
+                             row.step_size,
+                             row.penetration,
+                             row.max_displacement,
+                             double(row.closed_contacts),
+                             e.kinetic,
+                             e.strain,
+                             e.gravity,
+                             e.contact,
+                             e.friction,
+                             e.numerical,
+                             e.input,
+                             residual,
+                             e.residual_ratio};
+    curves.columns.resize(std::size(values));
+    curves.x.push_back(counter(row.step));
+    for (std::size_t c = 0; c < std::size(values); ++c) curves.columns[c].push_back(values[c]);
+  }
+  add_curves("step.step", "step.values", curves, pack);
+}
+
+void add_motions(const results::RunData& run, ArrayPack& pack) {
+  for (std::size_t k = 0; k < run.run.stages.size(); ++k) {
+    const simulation::StageRecord& stage = run.run.stages[k];
+    if (stage.motion_time.empty()) continue;
+    std::vector<double> time;
+    std::vector<float> x, y;
+    for (std::size_t i = 0; i < stage.motion_time.size(); ++i) {
+      time.push_back(stage.start_time + stage.motion_time[i]);
+      x.push_back(static_cast<float>(stage.motion[i].x));
+      y.push_back(static_cast<float>(stage.motion[i].y));
+    }
+    const std::string name = "motion." + std::to_string(k);
+    pack.add(name + ".time", time);
+    pack.add(name + ".x", x);
+    pack.add(name + ".y", y);
+  }
+}
+
+}  // namespace
+
+double displacement_quantum(const results::RunData& run) {
+  constexpr double share_of_size = 1e-7, share_of_largest = 1e-4;
+  Box box;
+  for (const Vec2 p : run.model.vertices) box.add(p);
+  double largest = 0.0;
+  for (const Frame& frame : run.frames)
+    for (const auto& u : frame.displacement)
+      for (const float c : u)
+        if (std::isfinite(c)) largest = std::max(largest, std::abs(double{c}));
+  const double size = run.model.vertices.empty() ? 1.0 : std::max(box.size().x, box.size().y);
+  return largest > 0.0 ? std::min(share_of_size * size, share_of_largest * largest) : share_of_size * size;
+}
+
+double stress_quantum(const results::RunData& run) {
+  constexpr double share_of_median = 1e-3;
+  std::vector<float> sizes;
+  for (const Frame& frame : run.frames)
+    for (const auto& s : frame.stress)
+      for (const float c : s)
+        if (std::isfinite(c) && c != 0.0F) sizes.push_back(std::abs(c));
+  if (sizes.empty()) return 1.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return share_of_median * double{*middle};
+}
+
+ArrayPack page_arrays(const results::RunData& run) {
+  ArrayPack pack;
+  add_model(run.model, pack);
+  const std::vector<std::size_t> frames = chosen_frames(run);
+  add_frames(run, frames, pack);
+  add_contacts(run, frames, pack);
+  add_histories(run, pack);
+  add_steps(run, pack);
+  add_motions(run, pack);
+  return pack;
+}
+
+}  // namespace keyblock::report

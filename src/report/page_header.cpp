@@ -1,0 +1,155 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/page_data.h"
+
+namespace keyblock::report {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* name_of(simulation::StageKind kind) {
+  switch (kind) {
+    case simulation::StageKind::settle:
+      return "settle";
+    case simulation::StageKind::shake:
+      return "shake";
+    case simulation::StageKind::rest:
+      return "rest";
+  }
+  return "";
+}
+
+template <class T>
+ordered_json optional(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json energy_json(const simulation::Energy& e) {
+  return {{"kinetic", e.kinetic},     {"strain", e.strain},
+          {"gravity", e.gravity},     {"contact", e.contact},
+          {"friction", e.friction},   {"input", e.input},
+          {"numerical", e.numerical}, {"residual_ratio", e.residual_ratio}};
+}
+
+ordered_json damage_json(const simulation::Damage& d) {
+  return {{"fallen_blocks", d.fallen_blocks},
+          {"fallen_area_m2", d.fallen_area},
+          {"opening_filled_ratio", d.opening_filled_ratio},
+          {"loosened_area_m2", d.loosened_area},
+          {"slip_max_m", d.slip_max},
+          {"slip_mean_m", d.slip_mean},
+          {"slipped_length_m", d.slipped_length},
+          {"opened_length_m", d.opened_length},
+          {"closure_vertical_m", d.closure_vertical},
+          {"closure_horizontal_m", d.closure_horizontal}};
+}
+
+ordered_json stage_json(const simulation::StageRecord& record) {
+  ordered_json moving = ordered_json::array();
+  for (const simulation::MovingBlock& m : record.moving)
+    moving.push_back({{"block", m.block}, {"carried", m.carried}});
+  return {{"name", record.stage.name},
+          {"kind", name_of(record.stage.kind)},
+          {"excavate", record.stage.excavate},
+          {"scale", record.stage.scale},
+          {"tolerance", record.stage.tolerance},
+          {"steps", record.steps},
+          {"start_time", record.start_time},
+          {"duration", record.duration},
+          {"pga_m_s2", record.pga},
+          {"equilibrium_reached", record.equilibrium_reached},
+          {"worst_residual_ratio", record.worst_residual_ratio},
+          {"moving", moving},
+          {"damage", damage_json(record.damage)},
+          {"wall_time_s", record.wall_time},
+          {"interrupted", record.interrupted}};
+}
+
+ordered_json model_json(const simulation::ModelRecord& model) {
+  ordered_json outlines = ordered_json::array();
+  for (const auto& outline : model.excavation_outlines) {
+    ordered_json points = ordered_json::array();
+    for (const Vec2 p : outline) points.push_back({p.x, p.y});
+    outlines.push_back(points);
+  }
+  ordered_json names = ordered_json::object();
+  for (std::size_t b = 0; b < model.blocks.size(); ++b)
+    if (!model.blocks[b].name.empty()) names[std::to_string(b)] = model.blocks[b].name;
+  const cutting::CutStatistics& cut = model.cutting;
+  return {{"title", model.title},
+          {"version", model.version},
+          {"seed", std::to_string(model.seed)},
+          {"realization", model.realization},
+          {"threads", model.threads},
+          {"step_size_s", model.step_size},
+          {"origin", {model.origin.x, model.origin.y}},
+          {"scenario", model.scenario},
+          {"block_names", names},
+          {"joint_sets", model.joint_set_names},
+          {"trace_maps", model.trace_map_names},
+          {"excavations", model.excavation_names},
+          {"excavation_outlines", outlines},
+          {"histories", model.history_names},
+          {"opening_width_m", optional(model.opening_width)},
+          {"cutting",
+           {{"traces", cut.traces},
+            {"joints_used", cut.joints_used},
+            {"trace_length_m", cut.trace_length},
+            {"removed_length_m", cut.removed_length},
+            {"removed_pieces", cut.removed_pieces},
+            {"merged_slivers", cut.merged_slivers},
+            {"merged_vertices", cut.merged_vertices},
+            {"domain_area_m2", cut.domain_area},
+            {"sliver_area_m2", cut.sliver_area}}}};
+}
+
+ordered_json run_json(const simulation::RunRecord& run) {
+  ordered_json stages = ordered_json::array();
+  for (const simulation::StageRecord& record : run.stages) stages.push_back(stage_json(record));
+  return {{"steps", run.steps},
+          {"wall_time_s", run.wall_time},
+          {"dof", run.dof},
+          {"state_hash", run.state_hash},
+          {"open_close",
+           {{"mean_iterations", run.open_close.mean_iterations},
+            {"max_iterations", run.open_close.max_iterations},
+            {"retried_steps", run.open_close.retried_steps},
+            {"unconverged_steps", run.open_close.unconverged_steps}}},
+          {"max_overlap_m", run.max_overlap},
+          {"max_area_change", run.max_area_change},
+          {"energy", energy_json(run.energy)},
+          {"stages", stages},
+          {"interrupted", run.interrupted}};
+}
+
+}  // namespace
+
+std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
+  ordered_json entries = ordered_json::array();
+  for (const ArrayPack::Entry& e : arrays.entries())
+    entries.push_back({{"name", e.name}, {"type", e.type}, {"offset", e.offset}, {"count", e.count}});
+  const ordered_json header{{"model", model_json(run.model)},
+                            {"run", run_json(run.run)},
+                            {"recorded_frames", run.frames.size()},
+                            {"displacement_quantum", displacement_quantum(run)},
+                            {"stress_quantum", stress_quantum(run)},
+                            // In the order of the values in add_steps, page_arrays.cpp.
+                            {"step_columns",
+                             {"stage", "time", "iterations", "step_size", "penetration", "max_displacement",
+                              "closed_contacts", "kinetic", "strain", "gravity", "contact", "friction",
+                              "numerical", "input", "residual", "residual_ratio"}},
+                            {"arrays", entries}};
+  const std::string text = header.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string safe;
+  for (const char c : text) c == '<' ? safe += "\\u003c" : safe += c;
+  return safe;
+}
+
+PageData make_page_data(const results::RunData& run) {
+  const ArrayPack arrays = page_arrays(run);
+  return {page_header(run, arrays), arrays.encoded()};
+}
+
+}  // namespace keyblock::report

@@ -1,0 +1,10 @@
+#pragma once
+#include <string_view>
+
+namespace keyblock::report {
+
+/// The page as built from viewer/ (embedded at build time), with three places to fill, each exactly once:
+/// `@@title@@` (HTML text), `@@header@@` (JSON inside a script element), `@@arrays@@` (base64).
+std::string_view viewer_template();
+
+}  // namespace keyblock::report

@@ -1,0 +1,336 @@
+// browser_test.mjs SAMPLES NODE_MODULES: opens the sample reports in headless Chromium and uses them as a reader would.
+// Screenshots are left in SAMPLES/screenshots. Exit code 77: skipped, as there is no Chromium.
+import assert from "node:assert/strict";
+import { existsSync, mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [samples, packages] = process.argv.slice(2).map((path) => resolve(path));
+const executablePath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(
+  existsSync,
+);
+if (!executablePath) {
+  console.log("SKIPPED: no Chromium is installed, so the report has not been opened in a browser");
+  process.exit(process.env.CI ? 1 : 77);
+}
+const { chromium } = createRequire(join(packages, "index.js"))("playwright-core");
+const screenshots = join(samples, "screenshots");
+mkdirSync(screenshots, { recursive: true });
+const profile = mkdtempSync(join(tmpdir(), "keyblock-browser-"));
+const context = await chromium.launchPersistentContext(profile, {
+  executablePath,
+  headless: true,
+  args: [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+  ],
+});
+
+/** Opens a sample; the returned `complaints` collect what must not happen. */
+async function open(name, { width = 1400, height = 1000, colorScheme = "light" } = {}) {
+  const page = await context.newPage();
+  await page.setViewportSize({ width, height });
+  await page.emulateMedia({ colorScheme });
+  const complaints = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type()))
+      complaints.push(`console ${message.type()}: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => complaints.push(`uncaught: ${error}`));
+  page.on("requestfailed", (request) => complaints.push(`failed request: ${request.url()}`));
+  page.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url()))
+      complaints.push(`request to the network: ${request.url()}`);
+  });
+  const begin = performance.now();
+  await page.goto(pathToFileURL(join(samples, name, "report.html")).href);
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, {
+    timeout: 20_000,
+  });
+  page.complaints = complaints;
+  page.seconds = (performance.now() - begin) / 1000;
+  return page;
+}
+
+async function close(page) {
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+}
+
+const canvas = ".canvas-box canvas";
+const pixels = (page, selector = canvas) =>
+  page.evaluate((s) => document.querySelector(s).toDataURL(), selector);
+const label = (page) => page.textContent("#time-label");
+const marker = (page, plot = ".motion .now-line") =>
+  page.evaluate((s) => document.querySelector(s).style.transform, plot);
+const settle = (page) =>
+  page.evaluate(() => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))));
+const text = (page, selector) => page.evaluate((s) => document.querySelector(s)?.innerText ?? "", selector);
+const sidewaysOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+
+async function slideTo(page, frame) {
+  await page.$eval(
+    "#time-slider",
+    (slider, value) => {
+      slider.value = String(value);
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    },
+    frame,
+  );
+  await settle(page);
+}
+
+/** Brings every plot into being and saves the whole page. */
+async function shoot(page, name) {
+  await settle(page);
+  await page.screenshot({ path: join(screenshots, `${name}.png`), fullPage: true });
+}
+
+const tests = {
+  async "shows the run in the order an engineer reads it"() {
+    const page = await open("tunnel");
+    const headings = await page.$$eval("h2", (all) => all.map((e) => e.textContent));
+    assert.deepEqual(headings, [
+      "Result",
+      "What was run",
+      "Damage by stage",
+      "The blocks before and after each stage",
+      "Animation",
+      "Histories of chosen points",
+      "Quality of the computation",
+      "From joints to blocks",
+      "Conventions",
+    ]);
+    assert.equal(await text(page, "h1"), "Brick wall <synthetic> & shaken");
+    assert.equal(await page.title(), "Brick wall <synthetic> & shaken");
+    const facts = await text(page, "#run");
+    assert.match(facts, /18446744073709551615, 3/);
+    assert.match(facts, /9f2c44d1a07be863/);
+    assert.match(await page.textContent("#run pre"), /<\/script><b>not markup<\/b>/);
+    assert.match(
+      await text(page, ".verdict"),
+      /^\d+ blocks? \([\d.]+ m²\) ha(s|ve) fallen; the opening \(tunnel\) is [\d.]+ % filled/,
+    );
+    assert.equal(await page.locator("#verdict .attention").count(), 0);
+    assert.equal(await page.locator("#quality .findings .attention").count(), 0);
+    assert.equal(await page.locator("#damage tbody tr").count(), 3);
+    assert.match(await text(page, "#damage tbody tr:nth-child(2)"), /\+\d/);
+    assert.equal(await page.locator(".pictures figure").count(), 5);
+    assert.equal(await sidewaysOverflow(page), 0);
+    await slideTo(page, 78);
+    await shoot(page, "tunnel-1400");
+    await close(page);
+  },
+
+  async "the slider moves time, blocks and cursors"() {
+    const page = await open("tunnel");
+    await slideTo(page, 62);
+    const before = [
+      await label(page),
+      await pixels(page),
+      await marker(page),
+      await marker(page, "#quality .now-line"),
+    ];
+    await slideTo(page, 88);
+    const after = [
+      await label(page),
+      await pixels(page),
+      await marker(page),
+      await marker(page, "#quality .now-line"),
+    ];
+    before.forEach((value, k) => assert.notEqual(value, after[k], `thing ${k} did not change`));
+    assert.match(after[0], /first earthquake · [\d.]+ of 10.0 s/);
+    await close(page);
+  },
+
+  async "play runs to the end and pauses; keys work"() {
+    const page = await open("tunnel");
+    await slideTo(page, 60);
+    const before = await label(page);
+    await page.click("#play");
+    await page.waitForFunction((old) => document.querySelector("#time-label").textContent !== old, before);
+    assert.match(await text(page, "#play"), /Pause/);
+    await page.click("#play");
+    assert.match(await text(page, "#play"), /Play/);
+    await slideTo(page, 60);
+    await page.focus(canvas);
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.inputValue("#time-slider"), "61");
+    await page.keyboard.press("Shift+ArrowLeft");
+    assert.equal(await page.inputValue("#time-slider"), "51");
+    await page.keyboard.press("End");
+    assert.equal(await page.inputValue("#time-slider"), "119");
+    await page.keyboard.press("Home");
+    await page.keyboard.press("Space");
+    await page.waitForFunction(() => Number(document.querySelector("#time-slider").value) > 2);
+    await page.keyboard.press("Space");
+    assert.match(await text(page, "#play"), /Play/);
+    await close(page);
+  },
+
+  async "every colouring draws another picture, with its legend"() {
+    const page = await open("tunnel");
+    await slideTo(page, 115);
+    const seen = new Set();
+    const blocksBy = page.locator("#animation select").nth(0);
+    const jointsBy = page.locator("#animation select").nth(1);
+    for (const value of ["displacement", "mean", "major", "minor", "shear", "status", "order", "plain"]) {
+      await blocksBy.selectOption(value);
+      await settle(page);
+      seen.add(await pixels(page));
+      if (value !== "plain") assert.notEqual(await text(page, "#animation .legends"), "");
+    }
+    for (const value of ["slip", "opening", "state", "set"]) {
+      await jointsBy.selectOption(value);
+      await settle(page);
+      seen.add(await pixels(page));
+      await page.locator("#animation").screenshot({ path: join(screenshots, `joints-${value}.png`) });
+    }
+    assert.equal(seen.size, 12);
+    await close(page);
+  },
+
+  async "the pointer names blocks, the wheel zooms, dragging pans, a double click fits"() {
+    const page = await open("tunnel");
+    await slideTo(page, 115);
+    await page.locator(canvas).scrollIntoViewIfNeeded();
+    const box = await page.locator(canvas).boundingBox();
+    const [x, y] = [box.x + 0.3 * box.width, box.y + 0.8 * box.height];
+    await page.mouse.move(x, y);
+    await settle(page);
+    assert.match(
+      await text(page, ".tooltip"),
+      /block \d+[\s\S]*status[\s\S]*in place[\s\S]*displacement[\s\S]*σxx/,
+    );
+    await page.mouse.move(box.x + 2, box.y - 30);
+    await settle(page);
+    const fitted = await pixels(page);
+    await page.mouse.move(x, y);
+    await page.mouse.click(x, y);
+    await page.mouse.wheel(0, -400);
+    await page.mouse.move(box.x + 2, box.y - 30);
+    await settle(page);
+    const zoomed = await pixels(page);
+    assert.notEqual(zoomed, fitted);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y - 40);
+    await page.mouse.up();
+    await page.mouse.move(box.x + 2, box.y - 30);
+    await settle(page);
+    assert.notEqual(await pixels(page), zoomed);
+    await page.mouse.dblclick(x, y);
+    await page.mouse.move(box.x + 2, box.y - 30);
+    await settle(page);
+    assert.equal(await pixels(page), fitted);
+    await close(page);
+  },
+
+  async "a click on a plot moves the animation there"() {
+    const page = await open("tunnel");
+    const over = page.locator(".motion .u-over").first();
+    await over.scrollIntoViewIfNeeded();
+    const box = await over.boundingBox();
+    await page.mouse.click(box.x + 0.5 * box.width, box.y + 20);
+    const x = Number(/translateX\(([\d.]+)px\)/.exec(await marker(page))[1]);
+    assert.ok(Math.abs(x - 0.5 * box.width) < 3, `cursor at ${x} of ${box.width}`);
+    assert.match(await label(page), /first earthquake/);
+    await close(page);
+  },
+
+  async "a picture can be enlarged and closed again"() {
+    const page = await open("tunnel");
+    await page.locator(".picture").nth(3).click();
+    assert.ok(await page.locator("dialog[open] canvas").isVisible());
+    await page.screenshot({ path: join(screenshots, "enlarged.png") });
+    await page.keyboard.press("Escape");
+    assert.equal(await page.locator("dialog[open]").count(), 0);
+    await close(page);
+  },
+
+  async "a marginal case says so and lists its moving blocks"() {
+    const page = await open("marginal");
+    assert.match(
+      await text(page, "#verdict .attention"),
+      /marginal: 3 blocks .* still moving when “excavated” ended/,
+    );
+    assert.equal(await page.locator("#verdict tbody tr").count(), 3);
+    assert.ok((await page.locator("#quality .findings .attention").count()) >= 3);
+    await page.locator("#verdict button.link").first().click();
+    assert.match(await label(page), /^excavated/);
+    await shoot(page, "marginal-1400");
+    await close(page);
+  },
+
+  async "an interrupted run shows what there is"() {
+    const page = await open("interrupted");
+    assert.match(await text(page, "#verdict .attention"), /interrupted/);
+    await page.keyboard.press("End");
+    await slideTo(page, 85);
+    assert.match(await label(page), /stage 3/);
+    await shoot(page, "interrupted-1400");
+    await close(page);
+  },
+
+  async "a run without frames has tables and plots"() {
+    const page = await open("no_frames");
+    assert.equal(await page.locator("canvas:not(.uplot canvas)").count(), 0);
+    assert.ok((await page.locator(".plot").count()) >= 10);
+    await shoot(page, "no_frames-1400");
+    await close(page);
+  },
+
+  async "a run without excavation has no damage table"() {
+    const page = await open("no_excavation");
+    assert.equal(await page.locator("#damage").count(), 0);
+    assert.match(await text(page, ".verdict"), /no excavation in this model; the largest displacement/);
+    await shoot(page, "no_excavation-1400");
+    await close(page);
+  },
+
+  async "fits a narrow window, a dark screen and paper"() {
+    const page = await open("marginal", { width: 800 });
+    await slideTo(page, 78);
+    assert.ok((await sidewaysOverflow(page)) <= 0);
+    await shoot(page, "marginal-800");
+    await page.pdf({ path: join(screenshots, "marginal.pdf"), format: "A4" });
+    await close(page);
+    const dark = await open("tunnel", { colorScheme: "dark" });
+    await slideTo(dark, 78);
+    await shoot(dark, "tunnel-dark");
+    await close(dark);
+  },
+
+  async "a report as large as the demo's opens within two seconds"() {
+    const page = await open("large");
+    const megabytes = statSync(join(samples, "large", "report.html")).size / 1e6;
+    console.log(`  ${megabytes.toFixed(2)} MB, ready after ${page.seconds.toFixed(2)} s`);
+    assert.ok(megabytes < 15);
+    assert.ok(page.seconds < 2 * (process.env.CI ? 3 : 1.5), `${page.seconds} s`);
+    await slideTo(page, 200);
+    await shoot(page, "large-1400");
+    await close(page);
+  },
+};
+
+let failed = 0;
+for (const [name, run] of Object.entries(tests)) {
+  try {
+    await run();
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    failed++;
+    console.log(`FAILED  ${name}\n${error.stack}`);
+  }
+}
+await context.close();
+rmSync(profile, { recursive: true, force: true });
+console.log(`${Object.keys(tests).length - failed} passed, ${failed} failed`);
+process.exitCode = failed > 0 ? 1 : 0;

@@ -1,0 +1,13 @@
+# cmake -DSOURCE=viewer -DBUILD=DIR -DNPM=npm -P: all packages of viewer/package-lock.json in DIR, unless there already.
+foreach(name package.json package-lock.json .npmrc)
+  file(SHA256 ${SOURCE}/${name} hash)
+  string(APPEND wanted "${hash}\n")
+endforeach()
+if(EXISTS ${BUILD}/installed)
+  file(READ ${BUILD}/installed found)
+endif()
+if(NOT "${found}" STREQUAL "${wanted}")
+  file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json ${SOURCE}/.npmrc DESTINATION ${BUILD})
+  execute_process(COMMAND ${NPM} ci --prefer-offline --silent WORKING_DIRECTORY ${BUILD} COMMAND_ERROR_IS_FATAL ANY)
+  file(WRITE ${BUILD}/installed "${wanted}")
+endif()

@@ -1,0 +1,28 @@
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "../unit/report/synthetic_run.h"
+#include "report/report.h"
+
+/// write_samples DIR: one folder with a report.html for each kind of run that the browser test opens.
+int main(int argc, char** argv) {
+  using keyblock::testing::synthetic_run;
+  using keyblock::testing::SyntheticOptions;
+  if (argc != 2) {
+    std::fputs("usage: write_samples DIR\n", stderr);
+    return 1;
+  }
+  const auto write = [&](const std::string& name, const SyntheticOptions& options) {
+    const std::filesystem::path directory = std::filesystem::path(argv[1]) / name;
+    std::filesystem::create_directories(directory);
+    keyblock::report::write_report(synthetic_run(options), directory);
+  };
+  write("tunnel", {});
+  write("marginal", {.marginal = true});
+  write("interrupted", {.interrupted = true});
+  write("no_frames", {.frames = false});
+  write("no_excavation", {.excavation = false});
+  // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.
+  write("large", {.columns = 32, .rows = 28, .edge_pieces = 3, .frames_per_stage = 75});
+}

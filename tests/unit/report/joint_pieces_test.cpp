@@ -1,0 +1,88 @@
+#include "report/joint_pieces.h"
+
+#include <gtest/gtest.h>
+
+namespace keyblock::report {
+namespace {
+
+using simulation::ContactRecord;
+
+/// A square 0…4, its top edge in two pieces: vertices 0 (0,0), 1 (4,0), 2 (4,4), 3 (3,4), 4 (0,4).
+simulation::ModelRecord square() {
+  simulation::ModelRecord model;
+  model.vertices = {{0, 0}, {4, 0}, {4, 4}, {3, 4}, {0, 4}};
+  model.edge_label.assign(5, {cutting::EdgeKind::joint_set, 0});
+  simulation::ModelRecord::Block block;
+  block.ring_start = {0, 5};
+  model.blocks = {block};
+  return model;
+}
+
+std::vector<JointPiece> located(const simulation::ModelRecord& model, ContactRecord contact,
+                                std::array<float, 2> moved = {0.0F, 0.0F}) {
+  const std::vector<std::array<float, 2>> displacement(model.vertices.size(), moved);
+  std::vector<JointPiece> pieces;
+  JointLocator(model).locate({&contact, 1}, displacement, pieces);
+  return pieces;
+}
+
+ContactRecord on_top(double x, double length) {
+  ContactRecord contact;
+  contact.position = {x, 4.0};
+  contact.normal = {0.0, 1.0};
+  contact.length = length;
+  contact.slip = -0.02;
+  return contact;
+}
+
+TEST(JointLocator, LaysTheLengthAroundTheContact) {
+  const auto pieces = located(square(), on_top(1.5, 1.0));
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_EQ(pieces[0].vertex, 3U);
+  EXPECT_FLOAT_EQ(pieces[0].from, 1.0F / 3.0F);
+  EXPECT_FLOAT_EQ(pieces[0].to, 2.0F / 3.0F);
+  EXPECT_FLOAT_EQ(pieces[0].slip, 0.02F);
+}
+
+TEST(JointLocator, ShiftsTheLengthInwardsAtACornerAndGoesOverDisplayVertices) {
+  const auto pieces = located(square(), on_top(4.0, 2.5));
+  ASSERT_EQ(pieces.size(), 2U);
+  EXPECT_EQ(pieces[0].vertex, 2U);
+  EXPECT_FLOAT_EQ(pieces[0].from, 0.0F);
+  EXPECT_FLOAT_EQ(pieces[0].to, 1.0F);
+  EXPECT_EQ(pieces[1].vertex, 3U);
+  EXPECT_FLOAT_EQ(pieces[1].to, 0.5F);
+}
+
+TEST(JointLocator, NeverGoesOverTheEndOfTheEdge) {
+  double length = 0.0;
+  for (const auto& piece : located(square(), on_top(2.0, 9.0)))
+    length += (piece.to - piece.from) * (piece.vertex == 2 ? 1.0 : 3.0);
+  EXPECT_NEAR(length, 4.0, 1e-6);
+}
+
+TEST(JointLocator, TakesTheEdgeThatFacesTheNormal) {
+  ContactRecord corner = on_top(4.0, 1.0);
+  corner.normal = {1.0, 0.0};
+  const auto pieces = located(square(), corner);
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_EQ(pieces[0].vertex, 1U);
+  EXPECT_FLOAT_EQ(pieces[0].from, 0.75F);
+}
+
+TEST(JointLocator, FollowsTheDisplacement) {
+  ContactRecord contact = on_top(1.5, 1.0);
+  contact.position = {11.5, -6.0};
+  EXPECT_EQ(located(square(), contact, {10.0F, -10.0F}).at(0).vertex, 3U);
+}
+
+TEST(JointLocator, EdgesEndWhereTheLabelChanges) {
+  simulation::ModelRecord model = square();
+  model.edge_label[3] = {cutting::EdgeKind::joint_set, 1};
+  const auto pieces = located(model, on_top(3.2, 2.0));
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_EQ(pieces[0].vertex, 2U);
+}
+
+}  // namespace
+}  // namespace keyblock::report

@@ -1,0 +1,149 @@
+/** What report.html carries: facts as JSON and numbers as packed arrays (src/report/page_data.h says how). */
+
+export interface Damage {
+  fallen_blocks: number;
+  fallen_area_m2: number;
+  opening_filled_ratio: number;
+  loosened_area_m2: number;
+  slip_max_m: number;
+  slip_mean_m: number;
+  slipped_length_m: number;
+  opened_length_m: number;
+  closure_vertical_m: number;
+  closure_horizontal_m: number;
+}
+
+export interface Stage {
+  name: string;
+  kind: "settle" | "shake" | "rest";
+  excavate: number[];
+  scale: number;
+  tolerance: number;
+  steps: number;
+  start_time: number;
+  duration: number;
+  pga_m_s2: number;
+  equilibrium_reached: boolean;
+  worst_residual_ratio: number | null;
+  moving: { block: number; carried: number | null }[];
+  damage: Damage;
+  wall_time_s: number;
+  interrupted: boolean;
+}
+
+export interface Header {
+  model: {
+    title: string;
+    version: string;
+    seed: string;
+    realization: number;
+    threads: number;
+    step_size_s: number;
+    origin: [number, number];
+    scenario: string;
+    block_names: Record<string, string>;
+    joint_sets: string[];
+    trace_maps: string[];
+    excavations: string[];
+    excavation_outlines: [number, number][][];
+    histories: string[];
+    opening_width_m: number | null;
+    cutting: {
+      traces: number;
+      joints_used: number;
+      trace_length_m: number;
+      removed_length_m: number;
+      removed_pieces: number;
+      merged_slivers: number;
+      merged_vertices: number;
+      domain_area_m2: number;
+      sliver_area_m2: number;
+    };
+  };
+  run: {
+    steps: number;
+    wall_time_s: number;
+    dof: number;
+    state_hash: string;
+    open_close: {
+      mean_iterations: number;
+      max_iterations: number;
+      retried_steps: number;
+      unconverged_steps: number;
+    };
+    max_overlap_m: number | null;
+    max_area_change: number | null;
+    energy: Record<string, number | null>;
+    stages: Stage[];
+    interrupted: boolean;
+  };
+  recorded_frames: number;
+  displacement_quantum: number;
+  stress_quantum: number;
+  step_columns: string[];
+  arrays: { name: string; type: string; offset: number; count: number }[];
+}
+
+const readers = {
+  u8: Uint8Array,
+  u32: Uint32Array,
+  i32: Int32Array,
+  f32: Float32Array,
+  f64: Float64Array,
+} as const;
+type Readers = typeof readers;
+
+/** The unpacked arrays, by name. */
+export class Arrays {
+  constructor(
+    private readonly entries: Header["arrays"],
+    private readonly buffer: ArrayBuffer,
+  ) {}
+
+  has(name: string): boolean {
+    return this.entries.some((e) => e.name === name);
+  }
+
+  get<T extends keyof Readers>(name: string, type: T): InstanceType<Readers[T]> {
+    const entry = this.entries.find((e) => e.name === name);
+    if (!entry || entry.type !== type) throw new Error(`the report holds no array ${name} of type ${type}`);
+    return new readers[type](this.buffer, entry.offset, entry.count) as InstanceType<Readers[T]>;
+  }
+}
+
+/** Inverse of encode_frames (src/report/frame_codec.h), row after row. */
+export function decodeFrames(
+  bytes: Uint8Array,
+  frames: number,
+  columns: number,
+  quantum: number,
+): Float32Array {
+  const n = frames * columns;
+  const values = new Float32Array(n);
+  const row = new Int32Array(columns);
+  for (let f = 0, at = 0; f < frames; f++) {
+    let d = 0;
+    for (let i = 0; i < columns; i++, at++) {
+      const z = bytes[at] | (bytes[n + at] << 8) | (bytes[2 * n + at] << 16) | (bytes[3 * n + at] << 24);
+      d = (d + ((z >>> 1) ^ -(z & 1))) | 0;
+      const value = (row[i] + d) | 0;
+      row[i] = value;
+      values[at] = quantum * value;
+    }
+  }
+  return values;
+}
+
+export async function unpack(base64: string): Promise<ArrayBuffer> {
+  const text = atob(base64);
+  const packed = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) packed[i] = text.charCodeAt(i);
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer();
+}
+
+export async function readPage(): Promise<{ header: Header; arrays: Arrays }> {
+  const text = (id: string) => document.getElementById(id)?.textContent?.trim() ?? "";
+  const header = JSON.parse(text("header")) as Header;
+  return { header, arrays: new Arrays(header.arrays, await unpack(text("arrays"))) };
+}

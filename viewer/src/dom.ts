@@ -1,0 +1,50 @@
+/** Small helpers to build HTML. Text is always set as text, never parsed. */
+
+type Attributes = Record<string, string | number | boolean | ((event: Event) => void)>;
+export type Child = Node | string | number | null | undefined;
+
+/** h("p", { class: "note" }, "text", node): an element with attributes (functions become listeners) and children. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === "function") element.addEventListener(name, value);
+    else if (value === true) element.setAttribute(name, "");
+    else if (value !== false) element.setAttribute(name, String(value));
+  }
+  for (const child of children)
+    if (child !== null && child !== undefined)
+      element.append(String(child) === child ? child : typeof child === "number" ? String(child) : child);
+  return element;
+}
+
+/** A labelled drop-down list. */
+export function choice(
+  label: string,
+  options: readonly { value: string; text: string }[],
+  selected: string,
+  onChange: (value: string) => void,
+): HTMLLabelElement {
+  const select = h("select", { change: () => onChange(select.value) });
+  for (const option of options) select.append(h("option", { value: option.value }, option.text));
+  select.value = selected;
+  return h("label", { class: "choice" }, h("span", {}, label), select);
+}
+
+/** A section of the report with its heading. */
+export function section(id: string, title: string, ...children: Child[]): HTMLElement {
+  return h(
+    "section",
+    { id, "aria-labelledby": `${id}-title` },
+    h("h2", { id: `${id}-title` }, title),
+    ...children,
+  );
+}
+
+/** The value of a CSS custom property, which depends on the theme. */
+export function css(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}

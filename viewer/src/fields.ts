@@ -1,0 +1,315 @@
+import { magma, palette, place, table, viridis, type Scale } from "./colors";
+import { css } from "./dom";
+import { length, niceAbove, stress } from "./format";
+import { EdgeKind, Run, Status, statusNames, type Moment } from "./run";
+
+/** What blocks may be coloured by. */
+export type BlockField = "displacement" | "mean" | "major" | "minor" | "shear" | "status" | "order" | "plain";
+/** What joints may be coloured by. */
+export type JointField = "plain" | "slip" | "opening" | "state" | "set";
+
+export const blockFields: { value: BlockField; text: string }[] = [
+  { value: "displacement", text: "displacement" },
+  { value: "mean", text: "mean stress" },
+  { value: "major", text: "principal stress, most compressive" },
+  { value: "minor", text: "principal stress, least compressive" },
+  { value: "shear", text: "largest shear stress" },
+  { value: "status", text: "status" },
+  { value: "order", text: "polynomial order" },
+  { value: "plain", text: "nothing" },
+];
+export const jointFields: { value: JointField; text: string }[] = [
+  { value: "plain", text: "nothing" },
+  { value: "slip", text: "slip" },
+  { value: "opening", text: "opening" },
+  { value: "state", text: "contact state" },
+  { value: "set", text: "joint set" },
+];
+
+/** What a legend shows: a colour bar, or named colours. */
+export interface Legend {
+  title: string;
+  note?: string;
+  bar?: { colors: string[]; scale: Scale; format: (value: number) => string };
+  classes?: { color: string; name: string; line?: boolean }[];
+}
+
+/** Mean displacement vector of a block between two states of all vertices. */
+export function blockDisplacement(
+  run: Run,
+  block: number,
+  u: Float32Array,
+  since: Float32Array,
+): [number, number] {
+  const n = run.vertexCount;
+  const ring = run.firstRing[block];
+  const begin = run.ringBegin[ring];
+  const end = run.ringEnd[ring];
+  let x = 0;
+  let y = 0;
+  for (let v = begin; v < end; v++) {
+    x += u[v] - since[v];
+    y += u[n + v] - since[n + v];
+  }
+  return [x / (end - begin), y / (end - begin)];
+}
+
+export interface Principal {
+  compressive: number;
+  tensile: number;
+  shear: number;
+  /** Of the most compressive direction, degrees counter-clockwise from +x. */
+  angle: number;
+}
+
+/** Principal values of a plane stress tensor with compression negative. */
+export function principal([xx, yy, xy]: [number, number, number]): Principal {
+  const mean = 0.5 * (xx + yy);
+  const radius = Math.hypot(0.5 * (xx - yy), xy);
+  const tensileAngle = 0.5 * Math.atan2(2 * xy, xx - yy);
+  const angle = ((tensileAngle * 180) / Math.PI + 90 + 180) % 180;
+  return { compressive: mean - radius, tensile: mean + radius, shear: radius, angle };
+}
+
+function percentile(sorted: Float64Array, p: number): number {
+  return sorted.length === 0 ? 0 : sorted[Math.round(p * (sorted.length - 1))];
+}
+
+/** Colours of one run. Scales are the same for all moments, so that pictures can be compared. */
+export class Fields {
+  private readonly viridis = table(viridis);
+  private readonly compression = table(viridis, true);
+  private slipColors: string[] = [];
+  private readonly scales = new Map<string, Scale>();
+  private statusColors: string[] = [];
+  private stateStyles: { name: string; color: string; width: number }[] = [];
+  private plain = "";
+
+  constructor(readonly run: Run) {
+    this.readTheme();
+  }
+
+  readTheme(): void {
+    this.plain = css("--rock");
+    this.statusColors = [css("--rock"), "#e69f00", "#d55e00", "transparent"];
+    this.stateStyles = [
+      { name: "open", color: "#56b4e9", width: 1.5 },
+      { name: "sliding", color: "#d55e00", width: 2.5 },
+      { name: "locked", color: css("--joint"), width: 1.2 },
+    ];
+    // From the colour of the paper to its opposite, leaving out the end that would not be seen on it.
+    const dark = css("--scheme") === "dark";
+    const map = dark ? magma.slice(3) : magma.slice(0, 9).reverse();
+    this.slipColors = table(map);
+  }
+
+  /** Moments whose values set the scales: the ends of the stages. */
+  private keyMoments(): Moment[] {
+    const ends: Moment[] = [];
+    for (let k = 0; k < this.run.stageCount(); k++) {
+      const f = this.run.lastFrame(k);
+      if (f >= 0) ends.push(f);
+    }
+    return ends;
+  }
+
+  displacementScale(since: Moment): Scale {
+    return this.cached(`displacement ${since}`, () => {
+      const { run } = this;
+      const u0 = run.displacementAt(since);
+      const u = new Float32Array(u0.length);
+      const values: number[] = [];
+      for (const moment of this.keyMoments()) {
+        run.displacementAt(moment, u);
+        for (let b = 0; b < run.blockCount; b++) {
+          if (run.fixed[b] || run.statusAt(moment, b) === Status.excavated) continue;
+          const d = Math.hypot(...blockDisplacement(run, b, u, u0));
+          if (d > 0) values.push(d);
+        }
+      }
+      const sorted = Float64Array.from(values).sort();
+      const largest = percentile(sorted, 1);
+      if (!(largest > 0)) return { min: 0, max: 0.001, logarithmic: false };
+      const max = niceAbove(largest);
+      // A few fallen blocks move metres, the rest millimetres: then only a logarithmic scale shows both.
+      if (largest < 30 * percentile(sorted, 0.5)) return { min: 0, max, logarithmic: false };
+      const decades = Math.min(5, Math.max(2, Math.ceil(Math.log10(max / percentile(sorted, 0.1)))));
+      return { min: max / 10 ** decades, max, logarithmic: true };
+    });
+  }
+
+  private stressValue(field: BlockField, moment: Moment, block: number): number {
+    const tensor = this.run.stressAt(moment, block);
+    if (field === "mean") return 0.5 * (tensor[0] + tensor[1]);
+    const p = principal(tensor);
+    return field === "major" ? p.compressive : field === "minor" ? p.tensile : p.shear;
+  }
+
+  private stressScale(field: BlockField): Scale {
+    return this.cached(field, () => {
+      const { run } = this;
+      const values: number[] = [];
+      for (const moment of this.keyMoments()) {
+        for (let b = 0; b < run.blockCount; b++) {
+          if (run.fixed[b] || run.statusAt(moment, b) === Status.excavated) continue;
+          values.push(this.stressValue(field, moment, b));
+        }
+      }
+      const sorted = Float64Array.from(values).sort();
+      const low = percentile(sorted, 0.02);
+      const high = percentile(sorted, 0.98);
+      if (field === "shear") return { min: 0, max: high > 0 ? niceAbove(high) : 1, logarithmic: false };
+      const min = low < 0 ? -niceAbove(-low) : 0;
+      const max = high > 0 && high > -0.02 * min ? niceAbove(high) : 0;
+      return min < max ? { min, max, logarithmic: false } : { min: -1, max: 0, logarithmic: false };
+    });
+  }
+
+  private pieceScale(field: "slip" | "opening"): Scale {
+    return this.cached(field, () => {
+      const source = field === "slip" ? this.run.pieceSlip : this.run.pieceGap;
+      let largest = 0;
+      for (const value of source) if (Number.isFinite(value)) largest = Math.max(largest, value);
+      const max = niceAbove(Math.max(largest, 1e-5));
+      return { min: max / 1e3, max, logarithmic: true };
+    });
+  }
+
+  private cached(key: string, make: () => Scale): Scale {
+    const known = this.scales.get(key) ?? make();
+    this.scales.set(key, known);
+    return known;
+  }
+
+  /** Fill colours of all blocks at a moment; `u` and `since` are the displacements of all vertices then and before. */
+  blockColors(
+    field: BlockField,
+    moment: Moment,
+    u: Float32Array,
+    since: Float32Array,
+    sinceMoment: Moment,
+  ): string[] {
+    const { run } = this;
+    const colors = new Array<string>(run.blockCount).fill(this.plain);
+    if (field === "plain") return colors;
+    const pick = (map: string[], t: number) => map[Math.round(t * (map.length - 1))];
+    const scale = field === "displacement" ? this.displacementScale(sinceMoment) : this.stressScaleOf(field);
+    for (let b = 0; b < run.blockCount; b++) {
+      if (run.fixed[b]) continue;
+      if (field === "status") colors[b] = this.statusColors[run.statusAt(moment, b)];
+      else if (field === "order") colors[b] = this.orderColor(run.order[b]);
+      else if (field === "displacement") {
+        const d = Math.hypot(...blockDisplacement(run, b, u, since));
+        colors[b] = pick(this.viridis, place(scale, d));
+      } else {
+        const map = field === "shear" ? this.viridis : this.compression;
+        colors[b] = pick(map, place(scale, this.stressValue(field, moment, b)));
+      }
+    }
+    return colors;
+  }
+
+  private stressScaleOf(field: BlockField): Scale {
+    return field === "status" || field === "order"
+      ? { min: 0, max: 1, logarithmic: false }
+      : this.stressScale(field);
+  }
+
+  private orderColor(order: number): string {
+    return order === 1 ? this.plain : palette[(order - 2) % palette.length];
+  }
+
+  /** Colour and width (px) of a joint piece; null: not drawn. */
+  pieceStyle(field: JointField, piece: number): { color: string; width: number } | null {
+    const { run } = this;
+    if (field === "slip" || field === "opening") {
+      const scale = this.pieceScale(field);
+      const value = field === "slip" ? run.pieceSlip[piece] : run.pieceGap[piece];
+      if (!(value > scale.min)) return null;
+      const t = place(scale, value);
+      return { color: this.slipColors[Math.round(t * (this.slipColors.length - 1))], width: 1 + 3 * t };
+    }
+    return this.stateStyles[run.pieceState[piece]];
+  }
+
+  /** Colour of the block edge that starts at a vertex, by what it is a piece of; null: not drawn. */
+  edgeColor(vertex: number): string | null {
+    const index = this.run.edgeIndex[vertex];
+    switch (this.run.edgeKind[vertex] as EdgeKind) {
+      case EdgeKind.jointSet:
+        return palette[index % palette.length];
+      case EdgeKind.traceMap:
+        return palette[(this.run.header.model.joint_sets.length + index) % palette.length];
+      default:
+        return null;
+    }
+  }
+
+  blockLegend(field: BlockField, since: Moment): Legend | null {
+    switch (field) {
+      case "plain":
+        return null;
+      case "status":
+        return {
+          title: "Status of the blocks",
+          classes: [0, 1, 2].map((s) => ({ color: this.statusColors[s], name: statusNames[s] })),
+        };
+      case "order": {
+        const orders = [...new Set(this.run.order)].sort((a, b) => a - b);
+        return {
+          title: "Order of the displacement polynomial",
+          classes: orders.map((o) => ({ color: this.orderColor(o), name: `order ${o}` })),
+        };
+      }
+      case "displacement":
+        return {
+          title: "Displacement of the blocks",
+          bar: { colors: this.viridis, scale: this.displacementScale(since), format: (v) => length(v, 2) },
+        };
+      default:
+        return {
+          title: `${field === "shear" ? "Largest shear stress" : field === "mean" ? "Mean stress (σxx + σyy)/2" : field === "major" ? "Most compressive principal stress" : "Least compressive principal stress"}`,
+          note:
+            field === "shear"
+              ? undefined
+              : "compression negative; colours end at the 2nd and 98th percentile",
+          bar: {
+            colors: field === "shear" ? this.viridis : this.compression,
+            scale: this.stressScale(field),
+            format: (v) => stress(v, 2),
+          },
+        };
+    }
+  }
+
+  jointLegend(field: JointField): Legend | null {
+    const { model } = this.run.header;
+    switch (field) {
+      case "plain":
+        return null;
+      case "set":
+        return {
+          title: "Joints by set",
+          classes: [...model.joint_sets, ...model.trace_maps].map((name, k) => ({
+            color: palette[k % palette.length],
+            name,
+            line: true,
+          })),
+        };
+      case "state":
+        return {
+          title: "State of the contacts",
+          classes: this.stateStyles.map((s) => ({ color: s.color, name: s.name, line: true })),
+        };
+      default:
+        return {
+          title: field === "slip" ? "Slip of the joints" : "Opening of the joints",
+          note:
+            field === "slip"
+              ? "shear displacement since the excavation; thin line: less"
+              : "gap; thin line: less",
+          bar: { colors: this.slipColors, scale: this.pieceScale(field), format: (v) => length(v, 2) },
+        };
+    }
+  }
+}

@@ -1,0 +1,38 @@
+import { fixed, integer } from "./format";
+import type { Run, Moment } from "./run";
+
+/** "first earthquake · 3.42 s of 20 s · run time 5.42 s · step 2,710": where in the run a moment is. */
+export function momentLabel(run: Run, moment: Moment): string {
+  if (moment < 0 || run.frameCount === 0) return "reference position";
+  const stage = run.stage[run.frameOf(moment)];
+  const record = run.stages[stage];
+  const time = run.timeAt(moment);
+  const parts = [run.stageName(stage)];
+  const first = run.firstFrame(stage);
+  if (record?.kind === "settle" || (!record && run.time[first] === run.time[run.lastFrame(stage)])) {
+    parts.push("static");
+  } else {
+    const start = record ? record.start_time : run.time[first];
+    const whole = record && record.duration > 0 ? ` of ${fixed(record.duration, 1)}` : "";
+    parts.push(`${fixed(time - start, 2)}${whole} s`, `run time ${fixed(time, 2)} s`);
+  }
+  parts.push(`step ${integer(run.stepAt(moment))}`);
+  return parts.join(" · ");
+}
+
+/** Moments from which displacements may be counted: the start, and the start of each later stage. */
+export function sinceChoices(run: Run): { value: string; text: string }[] {
+  const choices = [{ value: "-1", text: "the start" }];
+  for (let k = 1; k < run.stageCount(); k++) {
+    const f = run.lastFrame(k - 1);
+    if (f >= 0 && run.firstFrame(k) >= 0)
+      choices.push({ value: String(f), text: `the start of “${run.stageName(k)}”` });
+  }
+  return choices;
+}
+
+/** The moment before the first excavation, from which damage counts; the start without one. */
+export function damageStart(run: Run): Moment {
+  const k = run.stages.findIndex((stage) => stage.excavate.length > 0);
+  return k > 0 ? run.lastFrame(k - 1) : -1;
+}

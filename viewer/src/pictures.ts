@@ -1,0 +1,159 @@
+import { choice, h } from "./dom";
+import { blockFields, jointFields, type BlockField, type Fields, type JointField } from "./fields";
+import { count, fixed } from "./format";
+import { damageStart, sinceChoices } from "./labels";
+import { legendElement } from "./legend";
+import type { Moment, Run } from "./run";
+import { SectionView, type Look } from "./section_view";
+
+interface Picture {
+  title: string;
+  text: string;
+  moment: Moment;
+}
+
+/** The block system before the first stage and after each: one small picture per state, all with the same colours. */
+export class Pictures {
+  readonly element: HTMLElement;
+  private readonly views: SectionView[] = [];
+  private readonly look: Look;
+  private readonly legends = h("div", { class: "legends" });
+  private readonly grid = h("div", { class: "pictures" });
+  private readonly dialog: HTMLDialogElement;
+  private large: SectionView | null = null;
+
+  constructor(
+    private readonly run: Run,
+    private readonly fields: Fields,
+  ) {
+    this.look = {
+      moment: -1,
+      since: damageStart(run),
+      exaggeration: 1,
+      blocks: "displacement",
+      joints: "plain",
+    };
+    this.dialog = h("dialog", {
+      class: "large-picture",
+      "aria-label": "Enlarged picture",
+      close: () => this.closed(),
+    });
+    for (const picture of this.pictures()) this.grid.append(this.figure(picture));
+    this.element = h("div", { class: "picture-box" }, this.controls(), this.legends, this.grid, this.dialog);
+    this.updateLegends();
+    new ResizeObserver(() => this.redraw()).observe(this.grid);
+  }
+
+  private pictures(): Picture[] {
+    const { run } = this;
+    const pictures: Picture[] = [{ title: "Before", text: "reference position", moment: -1 }];
+    for (let k = 0; k < run.stageCount(); k++) {
+      const moment = run.lastFrame(k);
+      if (moment < 0) continue;
+      const stage = run.stages[k];
+      const facts: string[] = [];
+      if (stage?.excavate.length)
+        facts.push(`${stage.excavate.map((e) => run.header.model.excavations[e]).join(", ")} excavated`);
+      if (stage?.kind === "shake") facts.push(`peak ${fixed(stage.pga_m_s2 / 9.81, 2)} g`);
+      if (stage && stage.kind !== "settle") facts.push(`${fixed(stage.duration, 1)} s`);
+      if (stage?.kind === "settle") facts.push(count(stage.steps, "static step"));
+      if (!stage || stage.interrupted) facts.push("interrupted");
+      pictures.push({ title: `After “${run.stageName(k)}”`, text: facts.join(" · "), moment });
+    }
+    return pictures;
+  }
+
+  private controls(): HTMLElement {
+    const change = (action: () => void) => {
+      action();
+      this.updateLegends();
+      this.redraw();
+    };
+    const { look } = this;
+    return h(
+      "div",
+      { class: "controls screen-only", role: "group", "aria-label": "What the pictures show" },
+      choice("Blocks by", blockFields, look.blocks, (v) => change(() => (look.blocks = v as BlockField))),
+      choice("Joints by", jointFields, look.joints, (v) => change(() => (look.joints = v as JointField))),
+      choice("Displacement since", sinceChoices(this.run), String(look.since), (v) =>
+        change(() => (look.since = Number(v))),
+      ),
+    );
+  }
+
+  private figure(picture: Picture): HTMLElement {
+    const view = new SectionView(
+      this.run,
+      this.fields,
+      { ...this.look, moment: picture.moment },
+      {
+        axes: false,
+        label: `Block system: ${picture.title}`,
+        maxHeight: 520,
+      },
+    );
+    this.views.push(view);
+    const button = h(
+      "button",
+      { type: "button", class: "picture", title: "Enlarge", click: () => this.enlarge(picture) },
+      view.canvas,
+    );
+    return h(
+      "figure",
+      {},
+      button,
+      h("figcaption", {}, h("strong", {}, picture.title), h("span", {}, picture.text)),
+    );
+  }
+
+  private enlarge(picture: Picture): void {
+    const view = new SectionView(
+      this.run,
+      this.fields,
+      { ...this.look, moment: picture.moment },
+      {
+        axes: true,
+        label: `Block system: ${picture.title}`,
+        maxHeight: Math.max(200, window.innerHeight - 190),
+      },
+    );
+    this.large = view;
+    const close = h("button", { type: "button", class: "close", click: () => this.dialog.close() }, "Close");
+    this.dialog.replaceChildren(
+      h("div", { class: "dialog-head" }, h("strong", {}, picture.title), h("span", {}, picture.text), close),
+      view.canvas,
+      h("div", { class: "legends" }, ...this.legendElements()),
+    );
+    this.dialog.showModal();
+    view.resize(this.dialog.clientWidth - 32);
+    view.draw();
+  }
+
+  private closed(): void {
+    this.large = null;
+    this.dialog.replaceChildren();
+  }
+
+  private legendElements(): HTMLElement[] {
+    const { look } = this;
+    return [this.fields.blockLegend(look.blocks, look.since), this.fields.jointLegend(look.joints)]
+      .filter((l) => l !== null)
+      .map(legendElement);
+  }
+
+  private updateLegends(): void {
+    this.legends.replaceChildren(...this.legendElements());
+  }
+
+  redraw(): void {
+    this.updateLegends();
+    for (const view of this.views) {
+      const width = view.canvas.parentElement!.clientWidth;
+      if (width === 0) continue;
+      view.look = { ...this.look, moment: view.look.moment };
+      view.resize(width);
+      view.draw();
+    }
+    this.large?.draw();
+  }
+}

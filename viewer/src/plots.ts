@@ -1,0 +1,201 @@
+import uPlot from "uplot";
+import type { Clock } from "./clock";
+import { css, h } from "./dom";
+import { significant } from "./format";
+
+export interface Series {
+  name: string;
+  values: ArrayLike<number | null>;
+  /** A colour, or the name of a custom property that holds it. */
+  color: string;
+  /** Drawn as steps or points where a line between rows would say too much. */
+  style?: "line" | "steps";
+  width?: number;
+}
+
+export interface PlotOptions {
+  title: string;
+  unit: string;
+  xName: string;
+  x: ArrayLike<number>;
+  series: Series[];
+  height?: number;
+  logarithmic?: boolean;
+  range?: [number, number];
+  /** A second axis at the right: values of the left one divided by `divisor`. */
+  right?: { unit: string; divisor: number };
+  /** Plots of one group share the pointer's position. */
+  group: string;
+  /** The abscissa at which the animation stands, and the way back. */
+  now: () => number;
+  seek: (x: number) => void;
+}
+
+const colorOf = (s: Series) => (s.color.startsWith("--") ? css(s.color) : s.color);
+
+/** A plot over time or steps with a line at the moment of the animation; a click moves the animation there. */
+export class Plot {
+  readonly element: HTMLElement;
+  private plot: uPlot | null = null;
+  private readonly target: HTMLElement;
+  private readonly readings: HTMLElement[] = [];
+  private readonly marker = h("div", { class: "now-line", "aria-hidden": "true" });
+
+  constructor(
+    private readonly options: PlotOptions,
+    clock: Clock,
+  ) {
+    this.target = h("div", { class: "plot-target" });
+    const caption = h(
+      "figcaption",
+      {},
+      h("strong", {}, options.title),
+      h("span", { class: "unit" }, options.unit),
+    );
+    caption.append(this.key());
+    this.element = h(
+      "figure",
+      { class: "plot", "aria-label": `${options.title} (${options.unit})` },
+      caption,
+      this.target,
+    );
+    new ResizeObserver(() => this.resize()).observe(this.target);
+    clock.onChange(() => this.moveMarker());
+  }
+
+  private resize(): void {
+    const width = this.target.clientWidth;
+    if (width <= 0) return;
+    if (!this.plot) this.build(width);
+    else if (this.plot.width !== width) this.plot.setSize({ width, height: this.plot.height });
+    this.moveMarker();
+  }
+
+  /** Builds anew, with the colours of the theme. */
+  rebuild(): void {
+    this.plot?.destroy();
+    this.plot = null;
+    this.resize();
+  }
+
+  private build(width: number): void {
+    const { options } = this;
+    const axis = {
+      stroke: css("--muted"),
+      font: `11px ${css("--font")}`,
+      grid: { stroke: css("--grid"), width: 1 },
+      ticks: { stroke: css("--grid"), width: 1, size: 4 },
+    };
+    const number = (_: uPlot, values: (number | null)[]) =>
+      values.map((v) => (v === null ? "" : significant(v, 5)));
+    const axes: uPlot.Axis[] = [
+      {
+        ...axis,
+        label: options.xName,
+        labelFont: axis.font,
+        labelSize: 18,
+        labelGap: 0,
+        size: 26,
+        values: number,
+      },
+      { ...axis, size: 56, values: number, space: 26 },
+    ];
+    if (options.right)
+      axes.push({
+        ...axis,
+        scale: "right",
+        side: 1,
+        size: 48,
+        values: number,
+        grid: { show: false },
+        label: options.right.unit,
+        labelFont: axis.font,
+        labelSize: 16,
+        labelGap: 0,
+      });
+    const divisor = options.right?.divisor ?? 1;
+    const plot = new uPlot(
+      {
+        width,
+        height: options.height ?? 190,
+        padding: [8, options.right ? 0 : 12, 0, 0],
+        scales: {
+          x: { time: false },
+          y: {
+            distr: options.logarithmic ? 3 : 1,
+            ...(options.range ? { range: () => options.range! } : {}),
+          },
+          ...(options.right
+            ? {
+                right: {
+                  from: "y",
+                  range: (_: uPlot, min: number, max: number): uPlot.Range.MinMax => [
+                    min / divisor,
+                    max / divisor,
+                  ],
+                },
+              }
+            : {}),
+        },
+        axes,
+        series: [
+          { label: options.xName, value: (_, v) => significant(v, 5) },
+          ...options.series.map((s) => ({
+            label: s.name,
+            stroke: colorOf(s),
+            width: s.width ?? 1.2,
+            points: { show: false },
+            spanGaps: false,
+            value: (_: uPlot, v: number | null) => significant(v, 4),
+            ...(s.style === "steps" ? { paths: uPlot.paths.stepped!({ align: 1 }) } : {}),
+          })),
+        ],
+        cursor: {
+          drag: { x: true, y: false },
+          sync: { key: options.group, scales: ["x", null] },
+          points: { size: 6 },
+        },
+        legend: { show: false },
+        hooks: { setCursor: [(u) => this.showReadings(u.cursor.idx ?? null)] },
+      },
+      [options.x, ...options.series.map((s) => s.values)] as uPlot.AlignedData,
+      this.target,
+    );
+    plot.over.append(this.marker);
+    let pressedAt = 0;
+    plot.over.addEventListener("mousedown", (event) => (pressedAt = event.clientX));
+    plot.over.addEventListener("click", (event) => {
+      // A drag, which zooms, ends with a click, too.
+      if (Math.abs(event.clientX - pressedAt) < 3) options.seek(plot.posToVal(event.offsetX, "x"));
+    });
+    this.plot = plot;
+  }
+
+  private moveMarker(): void {
+    if (!this.plot) return;
+    const x = this.plot.valToPos(this.options.now(), "x");
+    const inside = x >= -0.5 && x <= this.plot.over.clientWidth + 0.5;
+    this.marker.hidden = !inside;
+    this.marker.style.transform = `translateX(${x.toFixed(1)}px)`;
+  }
+
+  /** Names of the curves, each with its value under the pointer. */
+  private key(): HTMLElement {
+    const key = h("span", { class: "plot-key" });
+    for (const s of this.options.series) {
+      const swatch = h("span", { class: "swatch line" });
+      swatch.style.background = s.color.startsWith("--") ? `var(${s.color})` : s.color;
+      const reading = h("span", { class: "reading" });
+      this.readings.push(reading);
+      key.append(h("span", {}, ...(this.options.series.length > 1 ? [swatch, s.name] : []), reading));
+    }
+    return key;
+  }
+
+  private showReadings(index: number | null): void {
+    this.options.series.forEach((s, k) => {
+      const value = index === null ? null : s.values[index];
+      this.readings[k].textContent = value === null || value === undefined ? "" : ` ${significant(value, 4)}`;
+    });
+  }
+}

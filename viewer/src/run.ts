@@ -1,0 +1,250 @@
+import { Arrays, decodeFrames, type Header, type Stage } from "./data";
+
+export const enum Status {
+  inPlace = 0,
+  loosened = 1,
+  fallen = 2,
+  excavated = 3,
+}
+export const statusNames = ["in place", "loosened", "fallen", "excavated"];
+
+export const enum EdgeKind {
+  free = 0,
+  jointSet = 1,
+  traceMap = 2,
+  excavation = 3,
+  domain = 4,
+}
+
+export interface Box {
+  minX: number;
+  minY: number;
+  maxX: number;
+  maxY: number;
+}
+
+/** Moments at which the page shows the blocks: a fractional index into the frames, −1 for the reference position. */
+export type Moment = number;
+
+/** The results of one run, with the questions that the figures ask. */
+export class Run {
+  readonly stages: Stage[];
+  readonly blockCount: number;
+  readonly vertexCount: number;
+  readonly frameCount: number;
+  readonly ringBegin: Uint32Array;
+  readonly ringEnd: Uint32Array;
+  readonly ringBlock: Uint32Array;
+  /** Rings of block b are firstRing[b] … firstRing[b + 1]. */
+  readonly firstRing: Uint32Array;
+  /** The vertex after each in its ring. */
+  readonly next: Uint32Array;
+  readonly position: Float32Array;
+  readonly edgeKind: Uint8Array;
+  readonly edgeIndex: Int32Array;
+  readonly order: Uint8Array;
+  readonly fixed: Uint8Array;
+  readonly area: Float32Array;
+  readonly density: Float32Array;
+  readonly time: Float64Array;
+  readonly stage: Int32Array;
+  readonly step: Float64Array;
+  readonly status: Uint8Array;
+  readonly snapshotFrame: Uint32Array;
+  readonly snapshotBegin: Uint32Array;
+  readonly pieceVertex: Uint32Array;
+  readonly pieceFrom: Uint8Array;
+  readonly pieceTo: Uint8Array;
+  readonly pieceState: Uint8Array;
+  readonly pieceSlip: Float32Array;
+  readonly pieceGap: Float32Array;
+  private readonly displacement: Float32Array;
+  private readonly stress: Float32Array;
+
+  constructor(
+    readonly header: Header,
+    readonly arrays: Arrays,
+  ) {
+    this.stages = header.run.stages;
+    this.ringBegin = arrays.get("ring.begin", "u32");
+    this.ringEnd = arrays.get("ring.end", "u32");
+    this.ringBlock = arrays.get("ring.block", "u32");
+    this.position = arrays.get("vertex.position", "f32");
+    this.edgeKind = arrays.get("edge.kind", "u8");
+    this.edgeIndex = arrays.get("edge.index", "i32");
+    this.order = arrays.get("block.order", "u8");
+    this.fixed = arrays.get("block.fixed", "u8");
+    this.area = arrays.get("block.area", "f32");
+    this.density = arrays.get("block.density", "f32");
+    this.time = arrays.get("frame.time", "f64");
+    this.stage = arrays.get("frame.stage", "i32");
+    this.step = arrays.get("frame.step", "f64");
+    this.status = arrays.get("frame.status", "u8");
+    this.snapshotFrame = arrays.get("snapshot.frame", "u32");
+    this.snapshotBegin = arrays.get("snapshot.begin", "u32");
+    this.pieceVertex = arrays.get("piece.vertex", "u32");
+    this.pieceFrom = arrays.get("piece.from", "u8");
+    this.pieceTo = arrays.get("piece.to", "u8");
+    this.pieceState = arrays.get("piece.state", "u8");
+    this.pieceSlip = arrays.get("piece.slip", "f32");
+    this.pieceGap = arrays.get("piece.gap", "f32");
+    this.blockCount = this.order.length;
+    this.vertexCount = this.position.length / 2;
+    this.frameCount = this.time.length;
+    const f = this.frameCount;
+    this.displacement = decodeFrames(
+      arrays.get("frame.displacement", "u8"),
+      f,
+      2 * this.vertexCount,
+      header.displacement_quantum,
+    );
+    this.stress = decodeFrames(
+      arrays.get("frame.stress", "u8"),
+      f,
+      3 * this.blockCount,
+      header.stress_quantum,
+    );
+
+    this.firstRing = new Uint32Array(this.blockCount + 1);
+    for (const b of this.ringBlock) this.firstRing[b + 1]++;
+    for (let b = 0; b < this.blockCount; b++) this.firstRing[b + 1] += this.firstRing[b];
+    this.next = new Uint32Array(this.vertexCount);
+    for (let r = 0; r < this.ringBegin.length; r++) {
+      for (let v = this.ringBegin[r]; v < this.ringEnd[r]; v++) {
+        this.next[v] = v + 1 < this.ringEnd[r] ? v + 1 : this.ringBegin[r];
+      }
+    }
+  }
+
+  /** "17" or its name: what the page calls a block. */
+  blockName(block: number): string {
+    return this.header.model.block_names[block] ?? `block ${block}`;
+  }
+
+  stageName(stage: number): string {
+    return this.stages[stage]?.name ?? `stage ${stage + 1}`;
+  }
+
+  /** Stages of which there are frames or records, ascending. */
+  stageCount(): number {
+    const last = this.frameCount > 0 ? this.stage[this.frameCount - 1] + 1 : 0;
+    return Math.max(this.stages.length, last);
+  }
+
+  firstFrame(stage: number): number {
+    return this.stage.indexOf(stage);
+  }
+
+  lastFrame(stage: number): number {
+    return this.stage.lastIndexOf(stage);
+  }
+
+  /** The frame whose states hold at a moment. */
+  frameOf(moment: Moment): number {
+    return Math.min(Math.floor(moment + 1e-6), this.frameCount - 1);
+  }
+
+  /** The moment at which the animation stands at a time; of several static frames at one time, the last. */
+  momentAtTime(time: number): Moment {
+    let f = 0;
+    while (f + 1 < this.frameCount && this.time[f + 1] <= time) f++;
+    if (f + 1 >= this.frameCount || this.time[f + 1] <= this.time[f]) return f;
+    return Math.max(f, f + (time - this.time[f]) / (this.time[f + 1] - this.time[f]));
+  }
+
+  momentAtStep(step: number): Moment {
+    let f = 0;
+    while (f + 1 < this.frameCount && this.step[f + 1] <= step) f++;
+    if (f + 1 >= this.frameCount || this.step[f + 1] <= this.step[f]) return f;
+    return Math.max(f, f + (step - this.step[f]) / (this.step[f + 1] - this.step[f]));
+  }
+
+  private interpolate(values: Float64Array, moment: Moment): number {
+    if (moment < 0) return 0;
+    const f = this.frameOf(moment);
+    const s = moment - f;
+    return s > 1e-6 && f + 1 < this.frameCount ? values[f] + s * (values[f + 1] - values[f]) : values[f];
+  }
+
+  timeAt(moment: Moment): number {
+    return this.interpolate(this.time, moment);
+  }
+
+  stepAt(moment: Moment): number {
+    return this.interpolate(this.step, moment);
+  }
+
+  statusAt(moment: Moment, block: number): Status {
+    return moment < 0 ? Status.inPlace : this.status[this.frameOf(moment) * this.blockCount + block];
+  }
+
+  /** Displacements since the start at a moment: x of all vertices, then y; linear between frames. */
+  displacementAt(moment: Moment, out?: Float32Array): Float32Array {
+    const n = 2 * this.vertexCount;
+    const result = out ?? new Float32Array(n);
+    if (moment < 0 || this.frameCount === 0) return result.fill(0);
+    const f = this.frameOf(moment);
+    const s = moment - f;
+    const a = this.displacement.subarray(f * n, (f + 1) * n);
+    if (s < 1e-6 || f + 1 >= this.frameCount) {
+      result.set(a);
+      return result;
+    }
+    const b = this.displacement.subarray((f + 1) * n, (f + 2) * n);
+    for (let i = 0; i < n; i++) result[i] = a[i] + s * (b[i] - a[i]);
+    return result;
+  }
+
+  /** Mean Cauchy stress of a block: xx, yy, xy in Pa, compression negative. */
+  stressAt(moment: Moment, block: number): [number, number, number] {
+    if (moment < 0 || this.frameCount === 0) return [0, 0, 0];
+    const at = this.frameOf(moment) * 3 * this.blockCount + block;
+    const n = this.blockCount;
+    return [this.stress[at], this.stress[at + n], this.stress[at + 2 * n]];
+  }
+
+  /** The joint pieces that hold at a moment: [begin, end), empty before the first contact snapshot. */
+  piecesAt(moment: Moment): [number, number] {
+    const f = this.frameOf(moment);
+    let k = -1;
+    while (k + 1 < this.snapshotFrame.length && this.snapshotFrame[k + 1] <= f) k++;
+    return k < 0 ? [0, 0] : [this.snapshotBegin[k], this.snapshotBegin[k + 1]];
+  }
+
+  /** The rock without the fixed frame around a domain; all blocks where there is no domain. */
+  extentOfRock(): Box {
+    const hasDomain = this.edgeKind.includes(EdgeKind.domain);
+    return this.boxOf((b) => !hasDomain || !this.fixed[b]);
+  }
+
+  /** What to show of the plane: the rock, and of the frame around it only a margin. */
+  extent(): Box {
+    const rock = this.extentOfRock();
+    const margin = 0.03 * Math.max(rock.maxX - rock.minX, rock.maxY - rock.minY);
+    return {
+      minX: rock.minX - margin,
+      minY: rock.minY - margin,
+      maxX: rock.maxX + margin,
+      maxY: rock.maxY + margin,
+    };
+  }
+
+  private boxOf(counts: (block: number) => boolean): Box {
+    const box = { minX: Infinity, minY: Infinity, maxX: -Infinity, maxY: -Infinity };
+    for (let r = 0; r < this.ringBegin.length; r++) {
+      if (!counts(this.ringBlock[r])) continue;
+      for (let v = this.ringBegin[r]; v < this.ringEnd[r]; v++) {
+        box.minX = Math.min(box.minX, this.position[2 * v]);
+        box.maxX = Math.max(box.maxX, this.position[2 * v]);
+        box.minY = Math.min(box.minY, this.position[2 * v + 1]);
+        box.maxY = Math.max(box.maxY, this.position[2 * v + 1]);
+      }
+    }
+    return Number.isFinite(box.minX) ? box : { minX: -1, minY: -1, maxX: 1, maxY: 1 };
+  }
+
+  /** Area of the blocks that are not fixed, m². */
+  rockArea(): number {
+    return this.area.reduce((sum, a, b) => sum + (this.fixed[b] ? 0 : a), 0);
+  }
+}

@@ -1,0 +1,166 @@
+import type { Clock } from "./clock";
+import { Plot, type PlotOptions, type Series } from "./plots";
+import type { Run } from "./run";
+
+const g = 9.81;
+
+function overTime(run: Run, clock: Clock): Pick<PlotOptions, "now" | "seek" | "group" | "xName"> {
+  return {
+    now: () => run.timeAt(clock.moment),
+    seek: (t) => {
+      clock.pause();
+      clock.seek(run.momentAtTime(t));
+    },
+    group: "time",
+    xName: "run time (s)",
+  };
+}
+
+/** a_x and a_y of all shaken stages, with gaps between them, on one scale. */
+export function motionPlots(run: Run, clock: Clock): Plot[] {
+  const time: number[] = [];
+  const ax: (number | null)[] = [];
+  const ay: (number | null)[] = [];
+  let largest = 0;
+  run.stages.forEach((_, k) => {
+    if (!run.arrays.has(`motion.${k}.time`)) return;
+    const t = run.arrays.get(`motion.${k}.time`, "f64");
+    const x = run.arrays.get(`motion.${k}.x`, "f32");
+    const y = run.arrays.get(`motion.${k}.y`, "f32");
+    if (time.length > 0) {
+      time.push(time[time.length - 1]);
+      ax.push(null);
+      ay.push(null);
+    }
+    for (let i = 0; i < t.length; i++) {
+      time.push(t[i]);
+      ax.push(x[i]);
+      ay.push(y[i]);
+      largest = Math.max(largest, Math.abs(x[i]), Math.abs(y[i]));
+    }
+  });
+  if (time.length === 0) return [];
+  const limit = 1.08 * (largest || 1);
+  const plot = (title: string, values: (number | null)[], color: string) =>
+    new Plot(
+      {
+        ...overTime(run, clock),
+        title,
+        unit: "m/s², right axis g",
+        x: time,
+        series: [{ name: title, values, color, width: 0.9 }],
+        range: [-limit, limit],
+        right: { unit: "g", divisor: g },
+        height: 200,
+      },
+      clock,
+    );
+  return [plot("Horizontal, a_x", ax, "--curve-1"), plot("Vertical, a_y", ay, "--curve-2")];
+}
+
+/** Displacement, velocity and stress of each chosen point. */
+export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plot[] }[] {
+  const names = run.header.model.histories;
+  const time = run.arrays.get("history.time", "f64");
+  const rows = time.length;
+  if (names.length === 0 || rows === 0) return [];
+  const values = run.arrays.get("history.values", "f32");
+  const column = (point: number, c: number) =>
+    values.subarray((7 * point + c) * rows, (7 * point + c + 1) * rows);
+  // A static run takes no time: its rows are plotted one after the other.
+  const isStatic = time[rows - 1] <= time[0];
+  const x = isStatic ? Float64Array.from(time, (_, i) => i + 1) : time;
+  const axis = isStatic
+    ? { ...overTime(run, clock), xName: "recorded row", now: () => NaN, seek: () => undefined, group: "rows" }
+    : overTime(run, clock);
+  const scaled = (v: Float32Array, factor: number) => v.map((a) => a * factor);
+  return names.map((name, p) => {
+    const largest = column(p, 0).reduce((m, a, i) => Math.max(m, Math.abs(a), Math.abs(column(p, 1)[i])), 0);
+    const inMetres = largest >= 1;
+    const plot = (title: string, unit: string, series: Series[]) =>
+      new Plot({ ...axis, title, unit, x, series }, clock);
+    const line = (label: string, c: number, factor: number, k: number): Series => ({
+      name: label,
+      values: scaled(column(p, c), factor),
+      color: `--curve-${k}`,
+    });
+    const length = inMetres ? 1 : 1e3;
+    return {
+      name,
+      plots: [
+        plot("Displacement", inMetres ? "m" : "mm", [line("u_x", 0, length, 1), line("u_y", 1, length, 2)]),
+        plot("Velocity", "m/s", [line("v_x", 2, 1, 1), line("v_y", 3, 1, 2)]),
+        plot("Stress, compression negative", "kPa", [
+          line("σ_xx", 4, 1e-3, 1),
+          line("σ_yy", 5, 1e-3, 2),
+          line("σ_xy", 6, 1e-3, 3),
+        ]),
+      ],
+    };
+  });
+}
+
+/** Iterations, depths and energies by step: by step and not by time, as static steps have none. */
+export function solverPlots(run: Run, clock: Clock): Plot[] {
+  const step = run.arrays.get("step.step", "f64");
+  const rows = step.length;
+  if (rows === 0) return [];
+  const values = run.arrays.get("step.values", "f32");
+  const column = (name: string): Float32Array => {
+    const c = run.header.step_columns.indexOf(name);
+    return values.subarray(c * rows, (c + 1) * rows);
+  };
+  const scaled = (name: string, factor: number) => column(name).map((v) => v * factor);
+  const positive = (name: string, factor: number) =>
+    Array.from(column(name), (v) => (v > 0 ? factor * v : null));
+  const axis = {
+    now: () => run.stepAt(clock.moment),
+    seek: (s: number) => {
+      clock.pause();
+      clock.seek(run.momentAtStep(s));
+    },
+    group: "step",
+    xName: "step",
+    x: step,
+  };
+  const plot = (title: string, unit: string, series: Series[], more: Partial<PlotOptions> = {}) =>
+    new Plot({ ...axis, title, unit, series, ...more }, clock);
+  const energies: [string, string][] = [
+    ["kinetic", "#0072B2"],
+    ["strain", "#009E73"],
+    ["gravity", "#7A5C00"],
+    ["contact", "#CC79A7"],
+    ["friction", "#D55E00"],
+    ["numerical", "#56B4E9"],
+    ["input", "#B8A900"],
+  ];
+  return [
+    plot("Open-close iterations", "per step", [
+      { name: "iterations", values: column("iterations"), color: "--curve-1", style: "steps", width: 1 },
+    ]),
+    plot(
+      "Depth of contacts and movement in a step",
+      "mm, logarithmic",
+      [
+        { name: "penetration", values: positive("penetration", 1e3), color: "--curve-2", width: 1 },
+        { name: "displacement", values: positive("max_displacement", 1e3), color: "--curve-1", width: 1 },
+      ],
+      { logarithmic: true },
+    ),
+    plot("Closed contacts", "number", [
+      { name: "closed", values: column("closed_contacts"), color: "--curve-1", width: 1 },
+    ]),
+    plot(
+      "Energy",
+      "kJ per metre",
+      energies.map(([name, color]) => ({ name, color, values: scaled(name, 1e-3) })),
+      { height: 260 },
+    ),
+    plot(
+      "Energy residual",
+      "% of the largest term",
+      [{ name: "residual", values: scaled("residual_ratio", 100), color: "--curve-1", width: 1 }],
+      { height: 260 },
+    ),
+  ];
+}

@@ -1,0 +1,393 @@
+import { css } from "./dom";
+import type { BlockField, Fields, JointField } from "./fields";
+import { significant } from "./format";
+import { ticks } from "./colors";
+import { Status, type Box, type Moment, type Run } from "./run";
+
+export interface Look {
+  moment: Moment;
+  /** Displacements are shown, and exaggerated, relative to this moment. */
+  since: Moment;
+  exaggeration: number;
+  blocks: BlockField;
+  joints: JointField;
+}
+
+const axisLeft = 46;
+const axisBottom = 24;
+
+/** Draws the block system on a canvas: one moment, as a Look says, through a camera that can zoom and pan. */
+export class SectionView {
+  readonly canvas: HTMLCanvasElement;
+  look: Look;
+  selected = -1;
+  hovered = -1;
+  private readonly context: CanvasRenderingContext2D;
+  private readonly u: Float32Array;
+  private readonly since: Float32Array;
+  private sinceMoment: Moment = -1;
+  /** Drawn positions: x of all vertices, then y. */
+  private readonly drawn: Float32Array;
+  private width = 0;
+  private height = 0;
+  private ratio = 1;
+  private centerX = 0;
+  private centerY = 0;
+  private zoom = 1;
+  private readonly extent: Box;
+  private hatch: CanvasPattern | null = null;
+
+  constructor(
+    readonly run: Run,
+    readonly fields: Fields,
+    look: Look,
+    readonly options: { axes: boolean; label: string; minHeight?: number; maxHeight?: number },
+  ) {
+    this.look = { ...look };
+    this.canvas = document.createElement("canvas");
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", options.label);
+    this.context = this.canvas.getContext("2d", { alpha: false })!;
+    this.u = new Float32Array(2 * run.vertexCount);
+    this.since = new Float32Array(2 * run.vertexCount);
+    this.drawn = new Float32Array(2 * run.vertexCount);
+    this.extent = run.extent();
+    this.fit();
+    this.readTheme();
+  }
+
+  readTheme(): void {
+    const tile = document.createElement("canvas");
+    tile.width = tile.height = 8;
+    const c = tile.getContext("2d")!;
+    c.fillStyle = css("--fixed");
+    c.fillRect(0, 0, 8, 8);
+    c.strokeStyle = css("--fixed-hatch");
+    c.lineWidth = 1;
+    c.beginPath();
+    for (const at of [-4, 4, 12]) {
+      c.moveTo(at - 5, 9);
+      c.lineTo(at + 5, -1);
+    }
+    c.stroke();
+    this.hatch = this.context.createPattern(tile, "repeat");
+  }
+
+  /** Makes the canvas as wide as given, and as high as the model then is within the limits of the options. */
+  resize(width: number): void {
+    const { minX, maxX, minY, maxY } = this.extent;
+    const insetX = this.options.axes ? axisLeft + 8 : 0;
+    const insetY = this.options.axes ? axisBottom + 8 : 0;
+    const natural = ((maxY - minY) / (maxX - minX)) * (width - insetX) + insetY;
+    const height = Math.min(
+      Math.max(natural, this.options.minHeight ?? 0),
+      this.options.maxHeight ?? Infinity,
+    );
+    this.width = Math.round(width);
+    this.height = Math.round(height);
+    this.ratio = Math.min(window.devicePixelRatio || 1, 3);
+    this.canvas.width = Math.round(this.width * this.ratio);
+    this.canvas.height = Math.round(this.height * this.ratio);
+    this.canvas.style.width = `${this.width}px`;
+    this.canvas.style.height = `${this.height}px`;
+  }
+
+  fit(): void {
+    this.zoom = 1;
+    this.centerX = 0.5 * (this.extent.minX + this.extent.maxX);
+    this.centerY = 0.5 * (this.extent.minY + this.extent.maxY);
+  }
+
+  isFitted(): boolean {
+    return this.zoom === 1;
+  }
+
+  /** Pixels per metre. */
+  private get scale(): number {
+    const { minX, maxX, minY, maxY } = this.extent;
+    const inner = this.inner();
+    return this.zoom * Math.min(inner.width / (maxX - minX), inner.height / (maxY - minY));
+  }
+
+  private inner(): { left: number; top: number; width: number; height: number } {
+    if (!this.options.axes) return { left: 0, top: 0, width: this.width, height: this.height };
+    return { left: axisLeft, top: 8, width: this.width - axisLeft - 8, height: this.height - axisBottom - 8 };
+  }
+
+  toPixel(x: number, y: number): [number, number] {
+    const { left, top, width, height } = this.inner();
+    return [
+      left + 0.5 * width + this.scale * (x - this.centerX),
+      top + 0.5 * height - this.scale * (y - this.centerY),
+    ];
+  }
+
+  toModel(px: number, py: number): [number, number] {
+    const { left, top, width, height } = this.inner();
+    return [
+      this.centerX + (px - left - 0.5 * width) / this.scale,
+      this.centerY - (py - top - 0.5 * height) / this.scale,
+    ];
+  }
+
+  /** Zooms by a factor so that the point under a pixel stays there. */
+  zoomAt(px: number, py: number, factor: number): void {
+    const [x, y] = this.toModel(px, py);
+    this.zoom = Math.min(Math.max(this.zoom * factor, 0.5), 200);
+    const [x1, y1] = this.toModel(px, py);
+    this.centerX += x - x1;
+    this.centerY += y - y1;
+  }
+
+  zoomCentred(factor: number): void {
+    this.zoom = Math.min(Math.max(this.zoom * factor, 0.5), 200);
+  }
+
+  pan(dx: number, dy: number): void {
+    this.centerX -= dx / this.scale;
+    this.centerY += dy / this.scale;
+  }
+
+  /** Centres a block as it is drawn now. */
+  showBlock(block: number): void {
+    this.update();
+    const ring = this.run.firstRing[block];
+    const v = this.run.ringBegin[ring];
+    this.centerX = this.drawn[v];
+    this.centerY = this.drawn[this.run.vertexCount + v];
+    this.zoom = Math.max(this.zoom, 3);
+  }
+
+  /** Displacements at the moment of the look, and before. */
+  displacements(): { u: Float32Array; since: Float32Array } {
+    return { u: this.u, since: this.since };
+  }
+
+  private update(): void {
+    const { run, look } = this;
+    run.displacementAt(look.moment, this.u);
+    if (look.since !== this.sinceMoment) {
+      run.displacementAt(look.since, this.since);
+      this.sinceMoment = look.since;
+    }
+    const n = run.vertexCount;
+    const e = look.exaggeration;
+    for (let v = 0; v < n; v++) {
+      this.drawn[v] = run.position[2 * v] + this.since[v] + e * (this.u[v] - this.since[v]);
+      this.drawn[n + v] =
+        run.position[2 * v + 1] + this.since[n + v] + e * (this.u[n + v] - this.since[n + v]);
+    }
+  }
+
+  isShown(block: number): boolean {
+    return this.run.statusAt(this.look.moment, block) !== Status.excavated;
+  }
+
+  /** The block under a pixel, −1 for none. */
+  blockAt(px: number, py: number): number {
+    const [x, y] = this.toModel(px, py);
+    const { run, drawn } = this;
+    const n = run.vertexCount;
+    for (let b = run.blockCount - 1; b >= 0; b--) {
+      if (!this.isShown(b)) continue;
+      let inside = false;
+      for (let r = run.firstRing[b]; r < run.firstRing[b + 1]; r++) {
+        const end = run.ringEnd[r];
+        for (let v = run.ringBegin[r], w = end - 1; v < end; w = v++) {
+          const yv = drawn[n + v];
+          const yw = drawn[n + w];
+          if (yv > y !== yw > y && x < drawn[v] + ((y - yv) / (yw - yv)) * (drawn[w] - drawn[v]))
+            inside = !inside;
+        }
+      }
+      if (inside) return b;
+    }
+    return -1;
+  }
+
+  private tracePath(block: number, close = true): void {
+    const { run, drawn, context: c } = this;
+    const n = run.vertexCount;
+    for (let r = run.firstRing[block]; r < run.firstRing[block + 1]; r++) {
+      for (let v = run.ringBegin[r]; v < run.ringEnd[r]; v++) {
+        const x = this.ax + this.scaleNow * drawn[v];
+        const y = this.ay - this.scaleNow * drawn[n + v];
+        if (v === run.ringBegin[r]) c.moveTo(x, y);
+        else c.lineTo(x, y);
+      }
+      if (close) c.closePath();
+    }
+  }
+
+  // The camera while drawing: pixel = (ax + s x, ay − s y).
+  private ax = 0;
+  private ay = 0;
+  private scaleNow = 1;
+
+  draw(): void {
+    if (this.width === 0) return;
+    this.update();
+    const { context: c } = this;
+    this.scaleNow = this.scale;
+    [this.ax, this.ay] = this.toPixel(0, 0);
+    const inner = this.inner();
+    c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    c.fillStyle = css("--paper");
+    c.fillRect(0, 0, this.width, this.height);
+    c.save();
+    c.beginPath();
+    c.rect(inner.left, inner.top, inner.width, inner.height);
+    c.clip();
+    this.drawBlocks();
+    this.drawOutlines();
+    this.drawJoints();
+    this.drawMarked();
+    c.restore();
+    if (this.options.axes) this.drawAxes();
+  }
+
+  private drawBlocks(): void {
+    const { run, look, context: c } = this;
+    const colors = this.fields.blockColors(look.blocks, look.moment, this.u, this.since, look.since);
+    for (let b = 0; b < run.blockCount; b++) {
+      if (!this.isShown(b)) continue;
+      c.beginPath();
+      this.tracePath(b);
+      c.fillStyle = run.fixed[b] ? (this.hatch ?? css("--fixed")) : colors[b];
+      c.fill("evenodd");
+    }
+    c.beginPath();
+    for (let b = 0; b < run.blockCount; b++) if (this.isShown(b)) this.tracePath(b);
+    const small = Math.min(
+      1,
+      Math.sqrt((this.scaleNow * this.scaleNow * run.rockArea()) / run.blockCount) / 24,
+    );
+    c.lineJoin = "round";
+    c.lineWidth = 0.35 + 0.45 * small;
+    c.strokeStyle = css("--joint");
+    c.globalAlpha = look.joints === "plain" || look.joints === "set" ? 0.75 : 0.35;
+    c.stroke();
+    c.globalAlpha = 1;
+  }
+
+  private drawOutlines(): void {
+    const { context: c } = this;
+    c.beginPath();
+    for (const outline of this.run.header.model.excavation_outlines) {
+      outline.forEach(([x, y], k) => {
+        const px = this.ax + this.scaleNow * x;
+        const py = this.ay - this.scaleNow * y;
+        if (k === 0) c.moveTo(px, py);
+        else c.lineTo(px, py);
+      });
+      c.closePath();
+    }
+    c.lineWidth = this.options.axes ? 2 : 1.25;
+    c.strokeStyle = css("--outline");
+    c.setLineDash(this.options.axes ? [7, 4] : [4, 2.5]);
+    c.stroke();
+    c.setLineDash([]);
+  }
+
+  private drawJoints(): void {
+    const { run, look, context: c, drawn } = this;
+    if (look.joints === "plain") return;
+    const n = run.vertexCount;
+    const fine = this.options.axes ? 1 : 0.6;
+    const batches = new Map<string, { color: string; width: number; path: Path2D }>();
+    const add = (color: string, width: number, v: number, from: number, to: number) => {
+      const w = run.next[v];
+      const key = `${color} ${width.toFixed(1)}`;
+      let batch = batches.get(key);
+      if (!batch) batches.set(key, (batch = { color, width, path: new Path2D() }));
+      const at = (s: number): [number, number] => [
+        this.ax + this.scaleNow * (drawn[v] + s * (drawn[w] - drawn[v])),
+        this.ay - this.scaleNow * (drawn[n + v] + s * (drawn[n + w] - drawn[n + v])),
+      ];
+      batch.path.moveTo(...at(from));
+      batch.path.lineTo(...at(to));
+    };
+    if (look.joints === "set") {
+      for (let b = 0; b < run.blockCount; b++) {
+        if (!this.isShown(b)) continue;
+        for (let r = run.firstRing[b]; r < run.firstRing[b + 1]; r++) {
+          for (let v = run.ringBegin[r]; v < run.ringEnd[r]; v++) {
+            const color = this.fields.edgeColor(v);
+            if (color) add(color, 1.2, v, 0, 1);
+          }
+        }
+      }
+    } else {
+      const [begin, end] = run.piecesAt(look.moment);
+      for (let p = begin; p < end; p++) {
+        const style = this.fields.pieceStyle(look.joints, p);
+        if (style)
+          add(style.color, style.width, run.pieceVertex[p], run.pieceFrom[p] / 255, run.pieceTo[p] / 255);
+      }
+    }
+    c.lineCap = "round";
+    for (const { color, width, path } of [...batches.values()].sort((a, b) => a.width - b.width)) {
+      c.strokeStyle = color;
+      c.lineWidth = fine * width;
+      c.stroke(path);
+    }
+    c.lineCap = "butt";
+  }
+
+  private drawMarked(): void {
+    const { context: c } = this;
+    for (const [block, width] of [
+      [this.hovered, 1.5],
+      [this.selected, 2.5],
+    ] as const) {
+      if (block < 0 || !this.isShown(block)) continue;
+      c.beginPath();
+      this.tracePath(block);
+      c.lineWidth = width + 2;
+      c.strokeStyle = css("--paper");
+      c.stroke();
+      c.lineWidth = width;
+      c.strokeStyle = css("--mark");
+      c.stroke();
+    }
+  }
+
+  private drawAxes(): void {
+    const { context: c } = this;
+    const { left, top, width, height } = this.inner();
+    const [ox, oy] = this.run.header.model.origin;
+    const [x0, y0] = this.toModel(left, top + height);
+    const [x1, y1] = this.toModel(left + width, top);
+    c.strokeStyle = css("--axis");
+    c.fillStyle = css("--muted");
+    c.lineWidth = 1;
+    c.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
+    c.font = `11px ${css("--font")}`;
+    c.beginPath();
+    c.textAlign = "center";
+    c.textBaseline = "top";
+    const label = (value: number, range: number) =>
+      Math.abs(value) < 1e-9 * range ? "0" : significant(value, 8);
+    let last = -Infinity;
+    for (const t of ticks({ min: x0 + ox, max: x1 + ox, logarithmic: false }, Math.max(2, width / 90))) {
+      const [px] = this.toPixel(t - ox, 0);
+      c.moveTo(Math.round(px) + 0.5, top + height);
+      c.lineTo(Math.round(px) + 0.5, top + height + 4);
+      const text = label(t, x1 - x0);
+      const half = 0.5 * c.measureText(text).width;
+      if (px - half < last + 8 || px + half > this.width - 22) continue;
+      c.fillText(text, px, top + height + 6);
+      last = px + half;
+    }
+    c.textAlign = "right";
+    c.fillText("m", this.width - 4, top + height + 6);
+    c.textBaseline = "middle";
+    for (const t of ticks({ min: y0 + oy, max: y1 + oy, logarithmic: false }, Math.max(2, height / 70))) {
+      const [, py] = this.toPixel(0, t - oy);
+      c.moveTo(left - 4, Math.round(py) + 0.5);
+      c.lineTo(left, Math.round(py) + 0.5);
+      if (py > top + 6 && py < top + height - 2) c.fillText(label(t, y1 - y0), left - 7, py);
+    }
+    c.stroke();
+  }
+}

@@ -1,0 +1,230 @@
+import type { Damage, Stage } from "./data";
+import { h, type Child } from "./dom";
+import { count, duration, fixed, integer, length, signed, significant } from "./format";
+import type { Run } from "./run";
+import { excavatedArea, marginalStages } from "./verdict";
+
+/** A table in a box that scrolls sideways where the page is too narrow. */
+function tableBox(caption: string, head: Child[][], rows: Child[][], className = ""): HTMLElement {
+  const header = h("thead");
+  for (const cells of head) header.append(h("tr", {}, ...cells));
+  const body = h("tbody");
+  for (const cells of rows) body.append(h("tr", {}, ...cells));
+  const table = h("table", { class: className }, h("caption", {}, caption), header, body);
+  return h("div", { class: "table-box", tabindex: "0", role: "region", "aria-label": caption }, table);
+}
+
+function factList(facts: [string, Child][]): HTMLElement {
+  const list = h("dl", { class: "facts" });
+  for (const [name, value] of facts) list.append(h("div", {}, h("dt", {}, name), h("dd", {}, value)));
+  return list;
+}
+
+export function runFacts(run: Run): HTMLElement {
+  const { model, run: record } = run.header;
+  const cut = model.cutting;
+  const moving = run.blockCount - run.fixed.reduce((sum, f) => sum + f, 0);
+  const orders = [...new Set([...run.order].filter((_, b) => !run.fixed[b]))].sort((a, b) => a - b);
+  const box = run.extentOfRock();
+  const size = `${significant(box.maxX - box.minX, 4)} × ${significant(box.maxY - box.minY, 4)} m`;
+  const facts: [string, Child][] = [
+    ["Section", size],
+    [
+      "Blocks",
+      moving === run.blockCount ? integer(moving) : `${integer(moving)} and ${run.blockCount - moving} fixed`,
+    ],
+    ["Area of the blocks", `${significant(run.rockArea(), 4)} m²`],
+    ["Excavated at the end", `${significant(excavatedArea(run), 4)} m²`],
+    ["Order", orders.join(", ") || "–"],
+    ["Degrees of freedom", integer(record.dof)],
+    [
+      "Joints that bound blocks",
+      cut.traces > 0 ? `${integer(cut.joints_used)} of ${integer(cut.traces)} traces` : "explicit blocks",
+    ],
+    ["Seed, realization", `${model.seed}, ${model.realization}`],
+    ["Time step", `${significant(1e3 * model.step_size_s, 4)} ms`],
+    ["Steps", integer(record.steps)],
+    ["Wall time", duration(record.wall_time_s)],
+    ["Per step", record.steps > 0 ? `${significant((1e3 * record.wall_time_s) / record.steps, 3)} ms` : "–"],
+    ["Threads", integer(model.threads)],
+    ["Program", `keyblock ${model.version}`],
+    ["State hash", h("code", {}, record.state_hash || "–")],
+  ];
+  if (model.opening_width_m !== null)
+    facts.splice(4, 0, ["Opening", `${significant(model.opening_width_m, 3)} m wide`]);
+  const [ox, oy] = model.origin;
+  if (ox !== 0 || oy !== 0) facts.push(["Local origin", `${significant(ox, 9)}, ${significant(oy, 9)} m`]);
+  return factList(facts.filter(([name, value]) => name !== "Excavated at the end" || value !== "0 m²"));
+}
+
+const kinds = { settle: "static", shake: "shaking", rest: "dynamic, no shaking" };
+
+export function stageTable(run: Run): HTMLElement {
+  const th = (text: string, unit = "") =>
+    h("th", { scope: "col" }, text, unit ? h("span", { class: "unit" }, unit) : null);
+  const head = [
+    th("Stage"),
+    th("Kind"),
+    th("Excavates"),
+    th("Steps"),
+    th("Duration", "s"),
+    th("Peak acceleration", "m/s²"),
+    th("Equilibrium"),
+    th("Worst residual", "of weight"),
+    th("Still moving"),
+    th("Wall time"),
+  ];
+  const rows = run.stages.map((s) => [
+    h("th", { scope: "row" }, s.name, s.interrupted ? h("span", { class: "sub" }, "interrupted") : null),
+    h("td", { class: "text" }, kinds[s.kind]),
+    h("td", { class: "text" }, s.excavate.map((e) => run.header.model.excavations[e]).join(", ") || "–"),
+    h("td", {}, integer(s.steps)),
+    h("td", {}, s.kind === "settle" ? "–" : significant(s.duration, 4)),
+    h(
+      "td",
+      {},
+      s.kind === "shake" ? `${significant(s.pga_m_s2, 3)} (${fixed(s.pga_m_s2 / 9.81, 2)} g)` : "–",
+    ),
+    h("td", { class: "text" }, s.kind !== "settle" ? "–" : s.equilibrium_reached ? "reached" : "not reached"),
+    h("td", {}, s.kind === "settle" ? significant(s.worst_residual_ratio, 2) : "–"),
+    h("td", {}, s.kind === "settle" ? count(s.moving.length, "block") : "–"),
+    h("td", {}, duration(s.wall_time_s)),
+  ]);
+  return tableBox("Stages as they were run", [head], rows);
+}
+
+interface Measure {
+  name: string;
+  unit: string;
+  decimals: number;
+  of: (d: Damage) => number;
+}
+
+const measures: Measure[] = [
+  { name: "Fallen blocks", unit: "–", decimals: 0, of: (d) => d.fallen_blocks },
+  { name: "Fallen area", unit: "m²", decimals: 2, of: (d) => d.fallen_area_m2 },
+  { name: "Opening filled", unit: "%", decimals: 1, of: (d) => 100 * d.opening_filled_ratio },
+  { name: "Loosened area", unit: "m²", decimals: 2, of: (d) => d.loosened_area_m2 },
+  { name: "Largest slip", unit: "mm", decimals: 1, of: (d) => 1e3 * d.slip_max_m },
+  { name: "Mean slip", unit: "mm", decimals: 2, of: (d) => 1e3 * d.slip_mean_m },
+  { name: "Slipped joints", unit: "m", decimals: 1, of: (d) => d.slipped_length_m },
+  { name: "Opened joints", unit: "m", decimals: 1, of: (d) => d.opened_length_m },
+  { name: "Closure, vertical", unit: "mm", decimals: 2, of: (d) => 1e3 * d.closure_vertical_m },
+  { name: "Closure, horizontal", unit: "mm", decimals: 2, of: (d) => 1e3 * d.closure_horizontal_m },
+];
+
+function stageCell(stage: Stage): HTMLElement {
+  const facts =
+    stage.kind === "shake"
+      ? `${significant(stage.duration, 3)} s, peak ${fixed(stage.pga_m_s2 / 9.81, 2)} g`
+      : stage.kind === "rest"
+        ? `${significant(stage.duration, 3)} s at rest`
+        : "static";
+  return h(
+    "th",
+    { scope: "row" },
+    stage.name,
+    h("span", { class: "sub" }, stage.interrupted ? `${facts}, interrupted` : facts),
+  );
+}
+
+/** Damage at the end of each stage since the first excavation, and below each number what the stage added. */
+export function damageTable(run: Run): HTMLElement | null {
+  const first = run.stages.findIndex((s) => s.excavate.length > 0);
+  if (first < 0) return null;
+  const head = [
+    h("th", { scope: "col" }, "At the end of"),
+    ...measures.map((m) => h("th", { scope: "col" }, m.name, h("span", { class: "unit" }, m.unit))),
+  ];
+  const rows = run.stages.slice(first).map((stage, k, all) => [
+    stageCell(stage),
+    ...measures.map((m) => {
+      const now = m.of(stage.damage);
+      const change = k > 0 ? signed(now - m.of(all[k - 1].damage), m.decimals) : "";
+      return h("td", {}, fixed(now, m.decimals), h("span", { class: "sub" }, change));
+    }),
+  ]);
+  return tableBox(
+    "Cumulative since the first excavation; in small print the difference to the stage before",
+    [head],
+    rows,
+    "damage",
+  );
+}
+
+/** Blocks left moving by static stages, each with a button that shows it. */
+export function movingTable(run: Run, show: (block: number, stage: number) => void): HTMLElement | null {
+  const stages = marginalStages(run).filter(({ stage }) => stage.moving.length > 0);
+  if (stages.length === 0) return null;
+  const total = stages.reduce((sum, { stage }) => sum + stage.moving.length, 0);
+  const rows = stages.flatMap(({ stage, index }) =>
+    stage.moving.map((m) => [
+      h(
+        "th",
+        { scope: "row" },
+        h(
+          "button",
+          { type: "button", class: "link", click: () => show(m.block, index) },
+          run.blockName(m.block),
+        ),
+      ),
+      h("td", { class: "text" }, stage.name),
+      h("td", {}, significant(run.area[m.block], 3)),
+      h("td", {}, significant((run.area[m.block] * run.density[m.block] * 9.81) / 1e3, 3)),
+      h("td", {}, m.carried === null ? "–" : fixed(100 * m.carried, 0)),
+    ]),
+  );
+  const th = (text: string, unit = "") =>
+    h("th", { scope: "col" }, text, unit ? h("span", { class: "unit" }, unit) : null);
+  const head = [
+    th("Block"),
+    th("Stage"),
+    th("Area", "m²"),
+    th("Weight", "kN/m"),
+    th("Carried by contacts", "% of weight"),
+  ];
+  return h(
+    "details",
+    { open: total <= 12 },
+    h("summary", {}, `${count(total, "block")} still moving at the end of a static stage`),
+    tableBox("Blocks without equilibrium", [head], rows, "narrow"),
+  );
+}
+
+export function solverFacts(run: Run): HTMLElement {
+  const { open_close: oc, max_overlap_m, max_area_change, energy, steps } = run.header.run;
+  return factList([
+    [
+      "Open-close iterations per step",
+      `${significant(oc.mean_iterations, 3)} on average, ${integer(oc.max_iterations)} at most`,
+    ],
+    ["Steps retried with a smaller time step", `${integer(oc.retried_steps)} of ${integer(steps)}`],
+    ["Steps that did not converge", integer(oc.unconverged_steps)],
+    ["Largest true overlap", length(max_overlap_m)],
+    ["Largest relative change of area", significant(max_area_change, 2)],
+    ["Energy residual", `${significant(100 * (energy.residual_ratio ?? NaN), 2)} % of the largest term`],
+  ]);
+}
+
+export function cuttingFacts(run: Run): HTMLElement | null {
+  const c = run.header.model.cutting;
+  if (c.traces === 0) return null;
+  const share =
+    c.trace_length_m > 0
+      ? ` (${fixed((100 * c.removed_length_m) / c.trace_length_m, 0)} % of ${significant(c.trace_length_m, 4)} m)`
+      : "";
+  return factList([
+    ["Traces that meet the domain", integer(c.traces)],
+    ["Traces that bound blocks", integer(c.joints_used)],
+    [
+      "Dead ends and idle joints removed",
+      `${count(c.removed_pieces, "piece")}, ${significant(c.removed_length_m, 4)} m${share}`,
+    ],
+    [
+      "Slivers merged into neighbours",
+      `${integer(c.merged_slivers)}, ${significant(c.sliver_area_m2, 3)} m² in all`,
+    ],
+    ["Vertices merged or dropped", integer(c.merged_vertices)],
+    ["Area of the domain", `${significant(c.domain_area_m2, 5)} m²`],
+  ]);
+}

@@ -1,0 +1,171 @@
+import type { Stage } from "./data";
+import { count, fixed, length, list, significant } from "./format";
+import { Status, type Run } from "./run";
+
+export type Grade = "good" | "attention" | "plain";
+
+export interface Finding {
+  grade: Grade;
+  text: string;
+}
+
+const quoted = (name: string) => `“${name}”`;
+
+/** Peak ground acceleration as "1.18 m/s² (0.12 g)". */
+export function acceleration(a: number): string {
+  return `${significant(a, 3)} m/s² (${fixed(a / 9.81, 2)} g)`;
+}
+
+function fallen(blocks: number, area: number): string {
+  return `${count(blocks, "block")} (${significant(area, 3)} m²)`;
+}
+
+/** Settle stages that did not end in equilibrium: the case is marginal, and what moved is listed. */
+export function marginalStages(run: Run): { index: number; stage: Stage }[] {
+  return run.stages
+    .map((stage, index) => ({ index, stage }))
+    .filter(
+      ({ stage }) => stage.kind === "settle" && (!stage.equilibrium_reached || stage.moving.length > 0),
+    );
+}
+
+/** What happened to the rock, in sentences. The first is the verdict. */
+export function findings(run: Run): Finding[] {
+  const result: Finding[] = [];
+  const { stages, header } = run;
+  if (header.run.interrupted) {
+    const last = stages[stages.length - 1];
+    result.push({
+      grade: "attention",
+      text: last
+        ? `The run was interrupted: the numbers hold for what was computed${last.interrupted ? `, up to the middle of ${quoted(last.name)}` : ` up to the end of ${quoted(last.name)}`}.`
+        : "The run was interrupted before its first stage had ended.",
+    });
+  }
+  const excavated = stages.findIndex((s) => s.excavate.length > 0);
+  if (excavated >= 0) result.unshift(...damageFindings(run, excavated));
+  else result.unshift(movementFinding(run));
+  for (const { stage } of marginalStages(run)) result.push(marginalFinding(run, stage));
+  return result;
+}
+
+function damageFindings(run: Run, excavated: number): Finding[] {
+  const { stages } = run;
+  const end = stages[stages.length - 1].damage;
+  const loosened =
+    end.loosened_area_m2 > 0
+      ? `${significant(end.loosened_area_m2, 3)} m² more are loosened`
+      : "nothing more is loosened";
+  const openings = list(run.header.model.excavations);
+  const verdict =
+    end.fallen_blocks > 0
+      ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)} % filled; ${loosened}.`
+      : `No block has fallen since the excavation (${openings}); ${loosened.replace(" more", "")}.`;
+  const result: Finding[] = [{ grade: "plain", text: verdict }];
+  const parts: string[] = [];
+  for (let k = excavated; k < stages.length; k++) {
+    const before = k > 0 ? stages[k - 1].damage : { fallen_blocks: 0, fallen_area_m2: 0 };
+    const blocks = stages[k].damage.fallen_blocks - before.fallen_blocks;
+    const area = stages[k].damage.fallen_area_m2 - before.fallen_area_m2;
+    const peak = stages[k].kind === "shake" ? `, peak ${acceleration(stages[k].pga_m_s2)},` : "";
+    if (blocks > 0)
+      parts.push(`${fallen(blocks, area)} came down in ${quoted(stages[k].name)}${peak.replace(/,$/, "")}`);
+    else if (peak)
+      parts.push(`nothing further came down in ${quoted(stages[k].name)}${peak.replace(/,$/, "")}`);
+  }
+  if (end.fallen_blocks > 0 && parts.length > 0)
+    result.push({ grade: "plain", text: `${capital(list(parts))}.` });
+  if (end.slip_max_m > 0)
+    result.push({
+      grade: "plain",
+      text: `Joints slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${significant(end.slipped_length_m, 3)} m of joint slipped and ${significant(end.opened_length_m, 3)} m opened.`,
+    });
+  return result;
+}
+
+function movementFinding(run: Run): Finding {
+  const last = run.frameCount - 1;
+  if (last < 0) return { grade: "attention", text: "No frame was recorded: there is nothing to draw." };
+  const u = run.displacementAt(last);
+  let largest = 0;
+  let at = 0;
+  for (let r = 0; r < run.ringBegin.length; r++) {
+    if (run.fixed[run.ringBlock[r]]) continue;
+    for (let v = run.ringBegin[r]; v < run.ringEnd[r]; v++) {
+      const d = Math.hypot(u[v], u[run.vertexCount + v]);
+      if (d > largest) [largest, at] = [d, run.ringBlock[r]];
+    }
+  }
+  const moved =
+    largest > 0
+      ? `the largest displacement at the end is ${length(largest)} (${run.blockName(at)})`
+      : "nothing has moved";
+  return { grade: "plain", text: `There is no excavation in this model; ${moved}.` };
+}
+
+function marginalFinding(run: Run, stage: Stage): Finding {
+  const moving = stage.moving.length;
+  const area = stage.moving.reduce((sum, m) => sum + run.area[m.block], 0);
+  const what =
+    moving > 0
+      ? `${fallen(moving, area)} ${moving === 1 ? "was" : "were"} still moving when ${quoted(stage.name)} ended`
+      : `${quoted(stage.name)} ended without equilibrium`;
+  return {
+    grade: "attention",
+    text: `This case is marginal: ${what}. What falls then may depend on small differences of the model; see the list of moving blocks.`,
+  };
+}
+
+/** How far the numbers can be trusted: one line per check, with its limit. */
+export function checks(run: Run): Finding[] {
+  const { open_close: oc, max_overlap_m, max_area_change, energy, steps } = run.header.run;
+  const grade = (good: boolean): Grade => (good ? "good" : "attention");
+  const overlap = max_overlap_m ?? Infinity;
+  const residual = energy.residual_ratio ?? Infinity;
+  const result: Finding[] = [
+    {
+      grade: grade(oc.unconverged_steps === 0),
+      text:
+        oc.unconverged_steps === 0
+          ? `Every one of ${count(steps, "step")} converged.`
+          : `${count(oc.unconverged_steps, "step")} of ${count(steps, "step")} did not converge.`,
+    },
+    {
+      grade: grade(overlap < 1e-3),
+      text: `Largest true overlap of two blocks ${length(max_overlap_m)} (good below 1 mm).`,
+    },
+    {
+      grade: grade(residual < 0.01),
+      text: `Energy balance closed to ${significant(Number.isFinite(residual) ? 100 * residual : null, 2)} % of its largest term (good below 1 %).`,
+    },
+    {
+      grade: grade((max_area_change ?? Infinity) < 0.01),
+      text: `Largest relative change of a block's area ${significant(max_area_change, 2)} (elastic strain included; good below 0.01).`,
+    },
+  ];
+  const settled = run.stages.filter((s) => s.kind === "settle");
+  if (settled.length > 0) {
+    const marginal = marginalStages(run).map(({ stage }) => quoted(stage.name));
+    result.push({
+      grade: grade(marginal.length === 0),
+      text:
+        marginal.length === 0
+          ? `${settled.length === 1 ? "The static stage" : "All static stages"} ended in equilibrium.`
+          : `No equilibrium at the end of ${list(marginal)}.`,
+    });
+  }
+  return result;
+}
+
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** Blocks that are excavated at the end, for the facts. */
+export function excavatedArea(run: Run): number {
+  if (run.frameCount === 0) return 0;
+  let sum = 0;
+  for (let b = 0; b < run.blockCount; b++)
+    if (run.statusAt(run.frameCount - 1, b) === Status.excavated) sum += run.area[b];
+  return sum;
+}
