@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenario/key_path.h"
+#include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -12,26 +12,10 @@ using loading::Baseline;
 using loading::Load;
 using loading::Support;
 
-// How far a point may lie off the block it acts on, over the block's perimeter.
-constexpr double point_tolerance = 1e-6;
-
 constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
                                         {"demean", Baseline::demean},
                                         {"linear", Baseline::linear},
                                         {"taper", Baseline::taper}};
-
-double distance_to_boundary(const Polygon& polygon, Vec2 p) {
-  double nearest = HUGE_VAL;
-  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
-    const Ring& ring = polygon.ring(r);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], ab = ring[(k + 1) % ring.size()] - a;
-      const double s = std::clamp(dot(p - a, ab) / squared_norm(ab), 0.0, 1.0);
-      nearest = std::min(nearest, norm(p - a - s * ab));
-    }
-  }
-  return nearest;
-}
 
 const BlockSpec* find_block(const Scenario& scenario, const std::string& name) {
   const auto block = std::find_if(scenario.blocks.begin(), scenario.blocks.end(),
@@ -41,8 +25,7 @@ const BlockSpec* find_block(const Scenario& scenario, const std::string& name) {
 }
 
 void check_point(TableReader& t, std::string_view key, const BlockSpec* block, Vec2 p) {
-  if (block == nullptr || contains(block->polygon, p)) return;
-  if (distance_to_boundary(block->polygon, p) <= point_tolerance * perimeter(block->polygon)) return;
+  if (block == nullptr || lies_in(block->polygon, p)) return;
   t.fail(key, fmt::format("[{}, {}], outside the block", p.x, p.y),
          fmt::format("a point of the block '{}'", block->name));
 }
@@ -55,7 +38,7 @@ void check_stretch(TableReader& t, const BlockSpec* block, Vec2 from, Vec2 to) {
   if (block == nullptr) return;
   for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const Vec2 p = lerp(from, to, s);
-    if (distance_to_boundary(block->polygon, p) <= point_tolerance * perimeter(block->polygon)) continue;
+    if (lies_on_boundary(block->polygon, p)) continue;
     t.fail(s == 0.0 ? "from" : "to", fmt::format("a stretch that leaves the boundary at [{}, {}]", p.x, p.y),
            fmt::format("two points on one straight edge of the block '{}'", block->name));
     return;
@@ -101,7 +84,9 @@ void read_component(TableReader& t, MotionComponentSpec& component) {
          {.meaning = "Record: USGS SMC, PEER AT2, CSMIP or COSMOS V2, or two columns (time s, acceleration).",
           .required = true});
   t.integer("channel", component.channel,
-            {.meaning = "Which component of a file that holds several, from 1.", .at_least = 1.0});
+            {.meaning = "Which component of a file that holds several, counted from 1.",
+             .at_least = 1.0,
+             .fallback = "the only one"});
   const Value* azimuth = t.find("azimuth");
   constexpr std::string_view type = "number from 0 to 360, or \"up\"";
   const Rule rule{
@@ -264,7 +249,7 @@ void read_support(TableReader& t, Support& support, const Scenario& scenario) {
   Vec2 ends[2];
   const Rule rule{.meaning = "Start of a straight stretch of boundary that is held.",
                   .unit = "m",
-                  .required = support.is_edge,
+                  .required = support.is_edge || documenting,
                   .applies = support.is_edge || documenting,
                   .condition = "no points"};
   Rule to_rule = rule;

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "rockmass/trace_generator.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -183,10 +182,38 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
   check_stiffness(t, map.joints, standard);
 }
 
+void read_cutting(TableReader& t, CuttingKeys& cutting) {
+  t.number("snapping", cutting.snapping,
+           {.meaning = "A trace that ends closer than this to another line is made to end on it.",
+            .unit = "m",
+            .at_least = 0.0,
+            .fallback = "5e-5 L"});
+  t.number("sliver_area", cutting.sliver_area,
+           {.meaning = "Blocks of less area are merged into the neighbour with the longest common edge.",
+            .unit = "m²",
+            .at_least = 0.0,
+            .fallback = "2.5e-6 L²"});
+  t.number("sliver_thickness", cutting.sliver_thickness,
+           {.meaning = "Blocks of less area over perimeter are merged, too.",
+            .unit = "m",
+            .at_least = 0.0,
+            .fallback = "2.5e-4 L"});
+  t.number("cluster", cutting.cluster,
+           {.meaning = "Vertices closer than this become one.",
+            .unit = "m",
+            .at_least = 0.0,
+            .fallback = "2.5e-4 L"});
+  t.number("collinear", cutting.collinear,
+           {.meaning = "A vertex nearer than this to the straight line between its neighbours is dropped.",
+            .unit = "m",
+            .at_least = 0.0,
+            .fallback = "5e-8 L"});
+}
+
 void read_region(TableReader& t, RegionSpec& region) {
   t.string("name", region.name, {.meaning = "For the reader of the file."});
   read_polygon(t, region.polygon, true,
-               {.meaning = "Outline. Cut blocks whose centroid is inside take the keys below; where regions "
+               {.meaning = "Outline. Blocks whose centroid is inside take the keys below; where regions "
                            "overlap, those of the last one.",
                 .unit = "m",
                 .required = true});
@@ -252,9 +279,16 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
   root.tables("trace_map", scenario.trace_maps,
               {.meaning = "Joints mapped one by one, straight or as polylines."},
               [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
-  root.tables("region", scenario.regions,
-              {.meaning = "A part of the domain with rock of its own: any key of [rock]."},
-              [&](TableReader& t, RegionSpec& region) { read_region(t, region); });
+  root.table(
+      "cutting",
+      {.meaning = "Tolerances of cutting; 0 switches a step off. L is the square root of the area of the "
+                  "domain."},
+      [&](TableReader& t) { read_cutting(t, scenario.cutting); });
+  root.tables(
+      "region", scenario.regions,
+      {.meaning =
+           "A part of the model with rock of its own: any key of [rock]. A block's own keys go before."},
+      [&](TableReader& t, RegionSpec& region) { read_region(t, region); });
 }
 
 }  // namespace keyblock::scenario

@@ -136,16 +136,26 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
            {.meaning = "Largest residual of a block over its weight for a step to count as converged.",
             .above = 0.0,
             .below = 1.0});
+  t.number(
+      "rock_damping", solver.rock_damping,
+      {.meaning = "Damping of the vibration of blocks, as a share of critical at the first elastic frequency "
+                  "of each. Rigid motion is not slowed.",
+       .at_least = 0.0});
+  t.number("contact_damping", solver.contact_damping,
+           {.meaning = "Damping of every contact spring with its two blocks, as a share of critical.",
+            .at_least = 0.0});
   t.integer(
       "max_iterations", solver.max_iterations,
       {.meaning = "Open-close iterations before a step is retried with half its size.", .at_least = 1.0});
   t.integer("max_halvings", solver.max_halvings,
             {.meaning = "How often a step is halved at most.", .at_least = 0.0});
+  t.number("bound_tolerance", solver.bound_tolerance,
+           {.meaning =
+                "Error of the friction bounds (L2 over all contacts, over their norm) beyond which they are "
+                "taken anew within a step.",
+            .above = 0.0});
   t.integer("max_bound_updates", solver.max_bound_updates,
-            {.meaning = "How often the friction bounds are taken anew within a step.", .at_least = 0.0});
-  t.number(
-      "bound_tolerance", solver.bound_tolerance,
-      {.meaning = "Error of the friction bounds (L2, over their norm) that asks for another.", .above = 0.0});
+            {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
   t.word("linear", solver.linear, linear_solvers,
          {.meaning =
               "Solver of the linear systems: `block` is this program's own, `direct` that of a library."});

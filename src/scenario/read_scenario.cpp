@@ -4,6 +4,7 @@
 
 #include "rockmass/trace_generator.h"
 #include "scenario/key_path.h"
+#include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -80,8 +81,8 @@ class Consistency {
     for (const simulation::History& history : scenario_.histories) {
       const bool held =
           std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), [&](const BlockSpec& block) {
-            return (history.block.empty() || history.block == block.name) &&
-                   bounds(block.polygon).grown(1e-6 * perimeter(block.polygon)).contains(history.point);
+            return (history.block.empty() || history.block == block.name) && block.polygon.outer.size() > 2 &&
+                   lies_in(block.polygon, history.point);
           });
       if (held) continue;
       const std::string path = join_path(join_path("history", history.name), "point");

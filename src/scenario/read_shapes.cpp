@@ -3,39 +3,17 @@
 #include <algorithm>
 #include <numbers>
 
-#include "scenario/key_path.h"
+#include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
 namespace {
 
-// Areas under this share of the squared perimeter are no areas.
-constexpr double flat_ratio = 1e-10;
 constexpr int fewest_chords = 8;
 
 constexpr Word<ExcavationShape> shapes[] = {{"circle", ExcavationShape::circle},
                                             {"polygon", ExcavationShape::polygon},
                                             {"horseshoe", ExcavationShape::horseshoe}};
-
-// What is wrong with a polygon, if anything.
-std::string fault_of(Polygon& polygon) {
-  for (std::size_t k = 0; k < polygon.ring_count(); ++k) {
-    const double length = perimeter({polygon.ring(k), {}});
-    if (std::abs(signed_area(polygon.ring(k))) <= flat_ratio * length * length) {
-      return k == 0 ? "a polygon without area" : fmt::format("a hole without area (holes[{}])", k - 1);
-    }
-  }
-  orient(polygon);
-  if (self_intersects(polygon)) return "a polygon that crosses or touches itself";
-  for (std::size_t k = 0; k < polygon.holes.size(); ++k) {
-    const Vec2 p = polygon.holes[k].front();
-    if (!contains(polygon.outer, p)) return fmt::format("a hole outside the outer ring (holes[{}])", k);
-    for (std::size_t j = 0; j < polygon.holes.size(); ++j) {
-      if (j != k && contains(polygon.holes[j], p)) return fmt::format("a hole inside a hole (holes[{}])", k);
-    }
-  }
-  return {};
-}
 
 void read_circle(TableReader& t, ExcavationSpec& spec, const auto& rule) {
   t.point("center", spec.center,
@@ -129,7 +107,7 @@ void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& oute
     valid = valid && (!has_holes || valid_holes);
   }
   if (!valid) return;
-  const std::string fault = fault_of(polygon);
+  const std::string fault = orient_and_check(polygon);
   if (!fault.empty()) t.fail("outer", fault, "rings that enclose an area and do not cross");
 }
 

@@ -39,6 +39,11 @@ struct Domain {
   double frame_friction = 0.0;  ///< degrees
 };
 
+/// Tolerances of cutting; those not given scale with the domain (cutting::CutTolerances).
+struct CuttingKeys {
+  std::optional<double> snapping, sliver_area, sliver_thickness, cluster, collinear;
+};
+
 struct JointSetSpec {
   rockmass::JointSet set;
   JointKeys joints;
@@ -94,7 +99,7 @@ struct InSituSpec {
 
 struct MotionComponentSpec {
   std::filesystem::path file;
-  int channel = 1;                ///< component of a file that holds several, counted from 1
+  std::optional<int> channel;     ///< component of a file that holds several, counted from 1
   bool vertical = false;          ///< azimuth = "up"
   std::optional<double> azimuth;  ///< degrees; neither: as the file says
   std::string path;
@@ -132,6 +137,7 @@ struct Scenario {
   JointKeys joints;
   std::vector<JointSetSpec> joint_sets;
   std::vector<TraceMapSpec> trace_maps;
+  CuttingKeys cutting;
   std::vector<RegionSpec> regions;
   std::vector<ExcavationSpec> excavations;
   std::vector<BlockSpec> blocks;

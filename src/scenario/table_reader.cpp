@@ -57,8 +57,7 @@ SourcePosition ReadContext::where(const std::string& key_path) const {
 }
 
 TableReader::TableReader(ReadContext& context, const Value* root) : TableReader(context, root, "", 0, "") {
-  if (documenting())
-    context_.reference->push_back({"", "Keys outside all tables; they stand at the top.", {}});
+  if (documenting()) context_.reference->push_back({"", "They stand at the top of the file.", {}});
 }
 
 TableReader::TableReader(ReadContext& context, const Value* table, std::string path, std::size_t section,

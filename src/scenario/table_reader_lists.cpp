@@ -265,7 +265,7 @@ void TableReader::describe_table(std::string_view key, const Rule& rule, bool li
     describe_key(key, rule, list ? "list of tables" : "table", "");
     return describe(section_, prefix_ + name + ".");
   }
-  describe_key(key, rule, std::string(rule.group), "");
+  describe_key(key, rule, "see " + std::string(rule.group), "");
   const bool known = std::any_of(sections.begin(), sections.end(),
                                  [&](const SectionReference& s) { return s.title == rule.group; });
   if (known) return;

@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cutting/cut.h"
+#include "rockmass/trace_generator.h"
+#include "scenario/build.h"
+#include "scenario/inputs.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+// Blocks farther from the origin than this many times their extent get a local origin.
+constexpr double far_away = 1000.0;
+
+Ring shifted(Ring ring, Vec2 by) {
+  for (Vec2& p : ring) p += by;
+  return ring;
+}
+
+cutting::CutTolerances tolerances_of(const CuttingKeys& keys, double domain_area) {
+  cutting::CutTolerances tolerances = cutting::CutTolerances::for_domain(domain_area);
+  tolerances.snapping = keys.snapping.value_or(tolerances.snapping);
+  tolerances.sliver_area = keys.sliver_area.value_or(tolerances.sliver_area);
+  tolerances.sliver_thickness = keys.sliver_thickness.value_or(tolerances.sliver_thickness);
+  tolerances.cluster = keys.cluster.value_or(tolerances.cluster);
+  tolerances.collinear = keys.collinear.value_or(tolerances.collinear);
+  return tolerances;
+}
+
+void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
+  const Domain& domain = *scenario.domain;
+  const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+  for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k) {
+    const auto set = rockmass::generate_traces(scenario.joint_sets[k].set, static_cast<int>(k),
+                                               *scenario.section_azimuth, window, scenario.seed, realization);
+    model.traces.insert(model.traces.end(), set.begin(), set.end());
+  }
+  const auto mapped = read_trace_maps(scenario);
+  model.traces.insert(model.traces.end(), mapped.begin(), mapped.end());
+
+  cutting::CutInput input;
+  input.domain = {window.min, {window.max.x, window.min.y}, window.max, {window.min.x, window.max.y}};
+  input.traces = model.traces;
+  input.excavations = model.outlines;
+  input.tolerances = tolerances_of(scenario.cutting, window.size().x * window.size().y);
+  model.system = cutting::cut(input);
+}
+
+Vec2 origin_of(const std::vector<BlockSpec>& blocks) {
+  Box box;
+  for (const BlockSpec& block : blocks) box.add(bounds(block.polygon));
+  const double size = std::max(box.size().x, box.size().y);
+  if (norm(box.min) <= far_away * size) return {};
+  return {std::round(box.min.x), std::round(box.min.y)};
+}
+
+cutting::CutBlock explicit_block(const BlockSpec& spec, const std::vector<Ring>& outlines, Vec2 origin) {
+  cutting::CutBlock block;
+  const Vec2 centre = centroid(spec.polygon);
+  for (std::size_t k = 0; k < outlines.size(); ++k) {
+    if (contains(outlines[k], centre)) block.excavations.push_back(static_cast<int>(k));
+  }
+  block.polygon.outer = shifted(spec.polygon.outer, -origin);
+  for (const Ring& hole : spec.polygon.holes) block.polygon.holes.push_back(shifted(hole, -origin));
+  for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) {
+    block.labels.emplace_back(block.polygon.ring(r).size());
+  }
+  return block;
+}
+
+}  // namespace
+
+BlockModel build_blocks(const Scenario& scenario, int realization) {
+  BlockModel model;
+  for (const ExcavationSpec& spec : scenario.excavations) model.outlines.push_back(excavation_outline(spec));
+  if (scenario.domain) {
+    cut_domain(scenario, realization, model);
+  } else {
+    model.system.origin = origin_of(scenario.blocks);
+  }
+  for (const BlockSpec& spec : scenario.blocks) {
+    model.system.blocks.push_back(explicit_block(spec, model.outlines, model.system.origin));
+  }
+  return model;
+}
+
+}  // namespace keyblock::scenario

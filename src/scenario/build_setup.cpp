@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenario/build.h"
+#include "scenario/inputs.h"
+#include "scenario/key_path.h"
+#include "scenario/polygon_checks.h"
+
+namespace keyblock::scenario {
+namespace {
+
+// Unknowns beyond which a model is refused: its matrices would not fit into the memory of a large machine.
+constexpr double most_unknowns = 2e7;
+
+using simulation::BlockProperties;
+using simulation::RunSetup;
+
+[[noreturn]] void fail(const Scenario& scenario, const std::string& key, std::string found,
+                       std::string expected) {
+  throw InputError(Diagnostic{scenario.where(key), key, std::move(found), std::move(expected), ""});
+}
+
+// Keys of `over` where given, those of `rock` elsewhere.
+RockKeys layered(RockKeys rock, const RockKeys& over) {
+  if (over.density) rock.density = over.density;
+  if (over.young) rock.young = over.young;
+  if (over.poisson) rock.poisson = over.poisson;
+  if (over.state) rock.state = over.state;
+  if (over.order) rock.order = over.order;
+  return rock;
+}
+
+std::vector<BlockProperties> properties_of(const Scenario& scenario, const cutting::BlockSystem& system) {
+  const std::size_t cut = system.blocks.size() - scenario.blocks.size();
+  std::vector<BlockProperties> all;
+  for (std::size_t b = 0; b < system.blocks.size(); ++b) {
+    const Vec2 centre = centroid(system.blocks[b].polygon) + system.origin;
+    RockKeys rock = scenario.rock;
+    for (const RegionSpec& region : scenario.regions) {
+      if (contains(region.polygon, centre)) rock = layered(rock, region.rock);
+    }
+    BlockProperties properties;
+    if (b >= cut) {
+      const BlockSpec& spec = scenario.blocks[b - cut];
+      rock = layered(rock, spec.rock);
+      properties.name = spec.name;
+      properties.fixed = spec.fixed;
+      properties.velocity = spec.velocity;
+      properties.spin = spec.spin;
+    }
+    properties.material = {*rock.density, *rock.young, *rock.poisson, *rock.state};
+    properties.order = *rock.order;
+    all.push_back(std::move(properties));
+  }
+  return all;
+}
+
+JointProperties joint_properties(const JointKeys& own, const JointKeys& standard) {
+  const auto pick = [](const std::optional<double>& first, const std::optional<double>& second) {
+    return first ? first : second;
+  };
+  JointProperties joint;
+  joint.friction = pick(own.friction, standard.friction).value_or(0.0);
+  joint.cohesion = pick(own.cohesion, standard.cohesion).value_or(0.0);
+  joint.tension = pick(own.tension, standard.tension).value_or(0.0);
+  joint.normal_stiffness = pick(own.normal_stiffness, standard.normal_stiffness);
+  const auto shear = pick(own.shear_stiffness, standard.shear_stiffness);
+  if (shear && joint.normal_stiffness) joint.stiffness_ratio = *shear / *joint.normal_stiffness;
+  return joint;
+}
+
+simulation::JointTable joint_table(const Scenario& scenario) {
+  simulation::JointTable table;
+  table.standard = joint_properties(scenario.joints, {});
+  for (const JointSetSpec& spec : scenario.joint_sets) {
+    table.joint_sets.push_back(joint_properties(spec.joints, scenario.joints));
+  }
+  for (const TraceMapSpec& spec : scenario.trace_maps) {
+    table.trace_maps.push_back(joint_properties(spec.joints, scenario.joints));
+  }
+  table.frame = table.standard;
+  table.frame.friction = scenario.domain ? scenario.domain->frame_friction : 0.0;
+  table.frame.cohesion = table.frame.tension = 0.0;
+  return table;
+}
+
+std::optional<InSituStress> in_situ_stress(const Scenario& scenario, double top) {
+  if (!scenario.in_situ) return std::nullopt;
+  const InSituSpec& spec = *scenario.in_situ;
+  InSituStress stress;
+  if (!spec.depth) {
+    stress.sxx = spec.sxx;
+    stress.syy = spec.syy;
+    stress.sxy = spec.sxy;
+    return stress;
+  }
+  const double weight = -*scenario.rock.density * scenario.gravity.y;  // N/m³, downwards
+  stress.syy = -weight * *spec.depth;
+  stress.syy_gradient = weight;
+  stress.sxx = *spec.k0 * stress.syy;
+  stress.sxx_gradient = *spec.k0 * weight;
+  stress.reference_y = top;
+  return stress;
+}
+
+// What acts at points is moved into local coordinates.
+void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
+  setup.loads = scenario.loads;
+  for (loading::Load& load : setup.loads) {
+    load.from -= origin;
+    load.to -= origin;
+  }
+  setup.supports = scenario.supports;
+  for (loading::Support& support : setup.supports) {
+    for (Vec2& p : support.points) p -= origin;
+  }
+  setup.histories = scenario.histories;
+  for (simulation::History& history : setup.histories) {
+    history.point -= origin;
+    const auto& blocks = setup.system.blocks;
+    bool held = false;
+    for (std::size_t b = 0; b < blocks.size() && !held; ++b) {
+      const bool meant = history.block.empty() || history.block == setup.properties[b].name;
+      held = meant && lies_in(blocks[b].polygon, history.point);
+    }
+    const Vec2 p = history.point + origin;
+    if (!held) {
+      fail(scenario, join_path(join_path("history", history.name), "point"),
+           fmt::format("[{}, {}], outside", p.x, p.y),
+           history.block.empty() ? "a point of a block"
+                                 : fmt::format("a point of the block '{}'", history.block));
+    }
+  }
+}
+
+void check_size(const Scenario& scenario, const std::vector<BlockProperties>& properties) {
+  double unknowns = 0.0;
+  for (const BlockProperties& block : properties) {
+    unknowns += (block.order + 1.0) * (block.order + 2.0);
+  }
+  if (unknowns > most_unknowns) {
+    fail(scenario, "rock.order", fmt::format("{:.2g} unknowns in {} blocks", unknowns, properties.size()),
+         fmt::format("at most {:.0e} unknowns", most_unknowns));
+  }
+}
+
+void warn_of_empty_excavations(const Scenario& scenario, const cutting::BlockSystem& system,
+                               std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
+    const bool holds_blocks = std::any_of(system.blocks.begin(), system.blocks.end(), [&](const auto& block) {
+      return std::find(block.excavations.begin(), block.excavations.end(), static_cast<int>(k)) !=
+             block.excavations.end();
+    });
+    if (!holds_blocks) warnings.push_back(scenario.excavations[k].path + ": holds no block");
+  }
+}
+
+double top_of(const Scenario& scenario, const cutting::BlockSystem& system) {
+  if (scenario.domain) return scenario.domain->y.second - system.origin.y;
+  Box box;
+  for (const cutting::CutBlock& block : system.blocks) box.add(bounds(block.polygon));
+  return box.max.y;
+}
+
+}  // namespace
+
+RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel& blocks,
+                     std::vector<std::string>* warnings) {
+  std::vector<std::string> notes = plausibility_warnings(scenario);
+  if (scenario.stages.empty()) fail(scenario, "stage", "nothing", "at least one [[stage]]");
+  RunSetup setup;
+  setup.title = scenario.title;
+  setup.seed = scenario.seed;
+  setup.realization = realization;
+  setup.scenario = scenario.text;
+
+  setup.system = blocks.system;
+  const Vec2 origin = setup.system.origin;
+  setup.properties = properties_of(scenario, setup.system);
+  check_size(scenario, setup.properties);
+  if (scenario.domain) {
+    const Domain& domain = *scenario.domain;
+    setup.frame = domain.frame;
+    setup.domain = {Vec2{domain.x.first, domain.y.first} - origin,
+                    Vec2{domain.x.second, domain.y.second} - origin};
+  }
+  setup.joints = joint_table(scenario);
+  for (const JointSetSpec& spec : scenario.joint_sets) setup.joint_set_names.push_back(spec.set.name);
+  for (const TraceMapSpec& spec : scenario.trace_maps) setup.trace_map_names.push_back(spec.name);
+  for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
+    Ring outline = blocks.outlines[k];
+    for (Vec2& p : outline) p -= origin;
+    setup.excavations.push_back({scenario.excavations[k].name, std::move(outline)});
+  }
+
+  setup.gravity = scenario.gravity;
+  setup.in_situ = in_situ_stress(scenario, top_of(scenario, setup.system));
+  setup.time_step = scenario.time_step;
+  setup.motions = read_motions(scenario, notes);
+  place_loading(scenario, origin, setup);
+  setup.stages = scenario.stages;
+  setup.damage = scenario.damage;
+  setup.output = scenario.output;
+  setup.solver = scenario.solver;
+  warn_of_empty_excavations(scenario, setup.system, notes);
+  if (warnings != nullptr) warnings->insert(warnings->end(), notes.begin(), notes.end());
+  return setup;
+}
+
+RunSetup build_setup(const Scenario& scenario, int realization, std::vector<std::string>* warnings) {
+  return build_setup(scenario, realization, build_blocks(scenario, realization), warnings);
+}
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,171 @@
+#include "scenario/inputs.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "loading/motion_file.h"
+#include "loading/projection.h"
+#include "rockmass/trace_map.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using loading::ComponentDirection;
+using loading::GroundMotion;
+using loading::MotionComponent;
+
+// Directions that differ by more than this from what a file says are worth a warning. °
+constexpr double azimuth_tolerance = 1.0;
+
+void append(std::vector<Diagnostic>& all, const InputError& error) {
+  all.insert(all.end(), error.diagnostics().begin(), error.diagnostics().end());
+}
+
+class MotionReader {
+ public:
+  MotionReader(const Scenario& scenario, std::vector<std::string>& warnings)
+      : scenario_(scenario), warnings_(warnings) {}
+
+  std::vector<GroundMotion> read() {
+    std::vector<GroundMotion> motions;
+    for (const MotionSpec& spec : scenario_.motions) {
+      try {
+        motions.push_back(spec.components.empty() ? tables(spec) : record(spec));
+      } catch (const InputError& error) {
+        for (Diagnostic diagnostic : error.diagnostics())
+          mistakes_.push_back(placed(spec, std::move(diagnostic)));
+      }
+    }
+    if (!mistakes_.empty()) throw InputError(std::move(mistakes_));
+    return motions;
+  }
+
+ private:
+  // Mistakes without a file are about keys of the motion.
+  Diagnostic placed(const MotionSpec& spec, Diagnostic diagnostic) const {
+    if (!diagnostic.where.file.empty()) return diagnostic;
+    diagnostic.key = spec.path + (diagnostic.key.empty() ? "" : "." + diagnostic.key);
+    diagnostic.where = scenario_.where(diagnostic.key);
+    return diagnostic;
+  }
+
+  [[noreturn]] void fail(const std::string& key, std::string found, std::string expected) const {
+    throw InputError(Diagnostic{scenario_.where(key), key, std::move(found), std::move(expected), ""});
+  }
+
+  GroundMotion tables(const MotionSpec& spec) const {
+    return loading::table_motion(spec.name, spec.sine_x ? loading::sine_table(*spec.sine_x) : spec.x,
+                                 spec.sine_y ? loading::sine_table(*spec.sine_y) : spec.y);
+  }
+
+  GroundMotion record(const MotionSpec& spec) {
+    std::vector<std::pair<MotionComponent, ComponentDirection>> components;
+    std::vector<Diagnostic> mistakes;
+    for (const MotionComponentSpec& component : spec.components) {
+      try {
+        MotionComponent read = channel(component);
+        const ComponentDirection along = direction(component, read);
+        components.emplace_back(std::move(read), along);
+      } catch (const InputError& error) {
+        append(mistakes, error);
+      }
+    }
+    if (!mistakes.empty()) throw InputError(std::move(mistakes));
+    loading::ProjectionOptions options;
+    options.section_azimuth = scenario_.section_azimuth.value_or(0.0);
+    options.window = spec.window;
+    options.baseline = spec.baseline;
+    return loading::project_motion(spec.name, components, options);
+  }
+
+  MotionComponent channel(const MotionComponentSpec& spec) {
+    std::vector<MotionComponent> read = loading::read_motion_file(spec.file);
+    const std::string key = spec.path + ".channel";
+    const int count = static_cast<int>(read.size());
+    if (!spec.channel && count > 1) {
+      std::string labels;
+      for (int k = 0; k < count; ++k) {
+        labels += fmt::format("{}{}: {}", k == 0 ? "" : ", ", k + 1, read[static_cast<std::size_t>(k)].label);
+      }
+      fail(key, fmt::format("a file of {} components ({})", count, labels),
+           "channel = the number of one of them");
+    }
+    const int number = spec.channel.value_or(1);
+    if (number > count)
+      fail(key, fmt::format("the integer {}", number),
+           fmt::format("at most {}, the components of the file", count));
+    MotionComponent component = std::move(read[static_cast<std::size_t>(number - 1)]);
+    for (const std::string& note : component.notes) warnings_.push_back(component.file + ": " + note);
+    return component;
+  }
+
+  ComponentDirection direction(const MotionComponentSpec& spec, const MotionComponent& component) {
+    const std::string key = spec.path + ".azimuth";
+    ComponentDirection along{spec.vertical, spec.azimuth.value_or(0.0)};
+    if (!spec.vertical && !spec.azimuth) {
+      along = {component.vertical, component.azimuth.value_or(0.0)};
+      if (!component.vertical && !component.azimuth) {
+        fail(key, fmt::format("nothing, and no direction in the file (\"{}\")", component.label),
+             "degrees from north, or \"up\"");
+      }
+    } else if (along.vertical != component.vertical && (component.vertical || component.azimuth)) {
+      warnings_.push_back(fmt::format("{}: the file calls this component \"{}\"", key, component.label));
+    } else if (!along.vertical && component.azimuth &&
+               std::abs(std::remainder(along.azimuth - *component.azimuth, 360.0)) > azimuth_tolerance) {
+      warnings_.push_back(
+          fmt::format("{} is {}°; the file says {}°", key, along.azimuth, *component.azimuth));
+    }
+    if (!along.vertical && !scenario_.section_azimuth) {
+      fail("section.azimuth", "nothing",
+           "the direction of the +x axis, for horizontal components of records");
+    }
+    return along;
+  }
+
+  const Scenario& scenario_;
+  std::vector<std::string>& warnings_;
+  std::vector<Diagnostic> mistakes_;
+};
+
+}  // namespace
+
+std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario) {
+  std::vector<rockmass::Trace> traces;
+  std::vector<Diagnostic> mistakes;
+  for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
+    try {
+      const auto map = rockmass::read_trace_map(scenario.trace_maps[k].file, static_cast<int>(k));
+      traces.insert(traces.end(), map.begin(), map.end());
+    } catch (const InputError& error) {
+      append(mistakes, error);
+    }
+  }
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+  return traces;
+}
+
+std::vector<GroundMotion> read_motions(const Scenario& scenario, std::vector<std::string>& warnings) {
+  return MotionReader(scenario, warnings).read();
+}
+
+std::vector<std::string> check_inputs(const Scenario& scenario) {
+  std::vector<std::string> warnings = plausibility_warnings(scenario);
+  std::vector<Diagnostic> mistakes;
+  try {
+    read_trace_maps(scenario);
+  } catch (const InputError& error) {
+    append(mistakes, error);
+  }
+  try {
+    read_motions(scenario, warnings);
+  } catch (const InputError& error) {
+    append(mistakes, error);
+  }
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+  return warnings;
+}
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "loading/ground_motion.h"
+#include "rockmass/trace.h"
+#include "scenario/scenario.h"
+
+/// The files that a scenario names. A mistake inside a file is reported at its place there, one in what the scenario
+/// says about the file at its place in the scenario. All mistakes are thrown as one InputError.
+namespace keyblock::scenario {
+
+/// The traces of all [[trace_map]], each with its index.
+std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario);
+
+/// All [[motion]], in the order of the scenario: records read, projected on the section and cut to their window,
+/// tables and sines as they are; unscaled. What the user should know is added to `warnings`: notes of the readers,
+/// directions that are not those the files name.
+std::vector<loading::GroundMotion> read_motions(const Scenario& scenario, std::vector<std::string>& warnings);
+
+/// What seems wrong with a scenario that can be run: K0 below 1/3, an excavation that no stage takes out, … Reads no
+/// files.
+std::vector<std::string> plausibility_warnings(const Scenario& scenario);
+
+/// All of the above, for `keyblock check`: returns the warnings, throws the mistakes of all files together.
+std::vector<std::string> check_inputs(const Scenario& scenario);
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,57 @@
+#include "scenario/polygon_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keyblock::scenario {
+namespace {
+
+// Areas under this share of the squared perimeter are no areas.
+constexpr double flat_ratio = 1e-10;
+// How far a point may lie off a boundary, over the perimeter.
+constexpr double point_tolerance = 1e-6;
+
+double distance_to_boundary(const Polygon& polygon, Vec2 p) {
+  double nearest = HUGE_VAL;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], ab = ring[(k + 1) % ring.size()] - a;
+      const double s = std::clamp(dot(p - a, ab) / squared_norm(ab), 0.0, 1.0);
+      nearest = std::min(nearest, norm(p - a - s * ab));
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+std::string orient_and_check(Polygon& polygon) {
+  for (std::size_t k = 0; k < polygon.ring_count(); ++k) {
+    const double length = perimeter({polygon.ring(k), {}});
+    if (std::abs(signed_area(polygon.ring(k))) <= flat_ratio * length * length) {
+      return k == 0 ? "a polygon without area" : fmt::format("a hole without area (holes[{}])", k - 1);
+    }
+  }
+  orient(polygon);
+  if (self_intersects(polygon)) return "a polygon that crosses or touches itself";
+  for (std::size_t k = 0; k < polygon.holes.size(); ++k) {
+    const Vec2 p = polygon.holes[k].front();
+    if (!contains(polygon.outer, p)) return fmt::format("a hole outside the outer ring (holes[{}])", k);
+    for (std::size_t j = 0; j < polygon.holes.size(); ++j) {
+      if (j != k && contains(polygon.holes[j], p)) return fmt::format("a hole inside a hole (holes[{}])", k);
+    }
+  }
+  return {};
+}
+
+bool lies_on_boundary(const Polygon& polygon, Vec2 p) {
+  return distance_to_boundary(polygon, p) <= point_tolerance * perimeter(polygon);
+}
+
+bool lies_in(const Polygon& polygon, Vec2 p) {
+  return contains(polygon, p) || lies_on_boundary(polygon, p);
+}
+
+}  // namespace keyblock::scenario
