@@ -174,17 +174,18 @@ void Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> d
 void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const {
   const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
   // Positions are those at the last look, which the margins refer to.
-  const double reach = margin_[ia] + margin_[ib] + tolerances_.activation + tolerances_.depth_limit;
+  const double margin = margin_[ia] + margin_[ib] + tolerances_.activation;
+  const Box near = box_[ib].grown(margin_[ia] + tolerances_.depth_limit);
   for (int v = surface.block_begin[ia]; v < surface.block_begin[ia + 1]; ++v) {
     const auto iv = static_cast<std::size_t>(v);
-    if (surface.reflex[iv] || !box_[ib].grown(margin_[ia] + tolerances_.depth_limit).contains(looked_at_[iv]))
-      continue;
+    const Vec2 p = looked_at_[iv];
+    if (surface.reflex[iv] || !near.contains(p)) continue;
     for (int e = surface.block_begin[ib]; e < surface.block_begin[ib + 1]; ++e) {
-      const auto ie = static_cast<std::size_t>(e);
-      if (distance_to_segment(looked_at_[iv], looked_at_[ie],
-                              looked_at_[static_cast<std::size_t>(surface.next[ie])]) < reach) {
-        found.push_back({v, e, {}});
-      }
+      const auto from = static_cast<std::size_t>(e), to = static_cast<std::size_t>(surface.next[from]);
+      const bool inside = cross(looked_at_[to] - looked_at_[from], p - looked_at_[from]) > 0.0;
+      const bool deep = inside || surface.reflex[from] || surface.reflex[to];
+      const double reach = margin + (deep ? tolerances_.depth_limit : 0.0);
+      if (distance_to_segment(p, looked_at_[from], looked_at_[to]) < reach) found.push_back({v, e, {}});
     }
   }
 }

@@ -9,7 +9,7 @@ struct Tolerances {
       : activation(0.0015 * block_size),
         end_zone(0.003 * block_size),
         depth_limit(0.03 * block_size),
-        margin(0.04 * block_size),
+        margin(0.015 * block_size),
         least_length(0.05 * block_size),
         corner_tie(0.00075 * block_size),
         corner_depth(0.00015 * block_size),
@@ -24,7 +24,7 @@ struct Tolerances {
   /// beyond it a vertex is grabbed by the far edge. Also how far an edge reaches past a reflex end, where a vertex
   /// nested in a concave corner may slip by.
   double depth_limit;
-  /// How far candidates are collected beyond the activation distance (3 cm), each block on its own. Larger: fewer
+  /// How far candidates are collected beyond the activation distance (1 cm), each block on its own. Larger: fewer
   /// rebuilds, more candidates.
   double margin;
   /// Least length of joint that gives a contact its stiffness (3 cm): a corner on an edge has no length of its own.

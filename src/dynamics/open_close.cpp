@@ -19,6 +19,7 @@ bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& sol
   const auto& rows = problem.rows();
   problem.assemble(assumed_, solver);
   ++result.iterations;
+  ++result.factorizations;
   if (!solver.factor()) return false;
   std::copy(problem.right().begin(), problem.right().end(), d.begin());
   for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -92,10 +93,13 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
     problem.gradient(d, r_, gradient_);
   }
   while (result.iterations < limit) {
-    assumed_ = active_;
-    problem.assemble(assumed_, solver);
     ++result.iterations;
-    if (!solver.factor()) return false;
+    if (active_ != assumed_) {  // else the factorization at hand is that of ∇²Π here
+      assumed_ = active_;
+      problem.assemble(assumed_, solver);
+      ++result.factorizations;
+      if (!solver.factor()) return false;
+    }
     for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
     solver.solve(direction_);
     const double alpha = line_search(problem, d);
@@ -109,7 +113,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
-                              std::span<contact::Memory* const> memory, const SolverOptions& options) {
+                              std::span<contact::Memory* const> memory, double tolerance) {
   auto& rows = problem.rows();
   double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
@@ -126,10 +130,7 @@ bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Con
     scale += wanted * wanted;
   }
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
-  if (ratio <= options.bound_tolerance || ratio <= 1.5 * stalled_error_) {
-    if (ratio <= options.bound_tolerance) stalled_error_ = 0.0;
-    return false;
-  }
+  if (ratio <= tolerance) return false;
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (!contacts[c].fused) rows[c].spring.set_bound(bound(c));
   }
@@ -179,9 +180,9 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::
       result.bond_broken = true;
       continue;
     }
-    if (result.bound_updates >= options.max_bound_updates ||
-        !update_bounds(problem, contacts, memory, options))
-      break;
+    const double tolerance = result.bound_updates == 0 ? options.bound_tolerance : options.bound_accuracy;
+    if (result.bound_updates >= options.max_bound_updates) break;
+    if (!update_bounds(problem, contacts, memory, tolerance)) break;
     ++result.bound_updates;
   }
   result.residual_ratio = problem.residual_ratio(gradient_);

@@ -13,6 +13,7 @@ struct OpenCloseResult {
   bool converged = false;
   bool bond_broken = false;     ///< some contact lost its cohesion and tension on the way
   int iterations = 0;           ///< linear solves
+  int factorizations = 0;
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
   double residual_ratio = 0.0;  ///< at the end
 };
@@ -47,14 +48,13 @@ class OpenClose {
   double line_search(const StepProblem& problem, std::span<const double> d);
   void evaluate(const StepProblem& problem, std::span<const double> d);
   bool update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
-                     std::span<contact::Memory* const> memory, const SolverOptions& options);
+                     std::span<contact::Memory* const> memory, double tolerance);
   bool break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
                    std::span<contact::Memory* const> memory);
 
   std::vector<Active> assumed_, active_;
   std::vector<Vec2> r_, r_direction_;
   std::vector<double> gradient_, direction_, h_direction_;
-  double stalled_error_ = 0.0;  ///< bound error at which taking the bounds anew did not help
 };
 
 }  // namespace keyblock::dynamics
