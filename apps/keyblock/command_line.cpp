@@ -1,11 +1,16 @@
 #include "command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "core/error.h"
+#include "scenario/key_path.h"
 
 namespace keyblock::app {
 namespace {
@@ -26,16 +31,27 @@ void describe(CLI::App& app) {
       "Each command has its own --help.\n"
       "Exit codes: 0 done, 1 the input is wrong, 2 the run failed or was interrupted, 3 internal error.");
   app.require_subcommand(1);
+  add_check(app);
+  add_cut(app);
+  add_report(app);
   add_motion(app);
 }
 
 /// --help and --version arrive here too; they are no mistakes.
-int explain(const CLI::App& app, const CLI::ParseError& error) {
+int explain(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     app.exit(error, std::cout, std::cerr);
     return done;
   }
   const CLI::App* asked = &app;
+  if (app.get_subcommands().empty() && !words.empty() && words.front().substr(0, 1) != "-") {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    const std::string hint = scenario::suggestion(words.front(), names);
+    std::cerr << fmt::format("keyblock: no command '{}'; there are {}{}\n", words.front(),
+                             scenario::list_words(names, " and "), hint.empty() ? "" : "; " + hint);
+    return input_wrong;
+  }
   while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
   const std::string command = asked == &app ? "keyblock" : "keyblock " + asked->get_name();
   std::cerr << command << ": " << error.what() << "\nSee " << command << " --help.\n";
@@ -51,7 +67,7 @@ int run_command_line(int argc, const char* const* argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      return explain(app, error);
+      return explain(app, {argv + 1, argv + argc}, error);
     }
     std::cout.flush();
     return done;

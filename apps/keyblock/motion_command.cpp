@@ -49,6 +49,7 @@ void add_motion(CLI::App& app) {
       ->required();
   command->add_flag("--plot", arguments->plot, "Draw the components into an SVG file");
   command->add_option("-o,--output", arguments->output, "The SVG file")
+      ->type_name("SVG")
       ->capture_default_str()
       ->needs("--plot");
   command->footer("Example:\n  keyblock motion motions/*.smc --plot -o record.svg");

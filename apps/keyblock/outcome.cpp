@@ -18,17 +18,13 @@ using simulation::StageRecord;
 constexpr std::size_t columns = 9;
 using Row = std::array<std::string, columns>;
 
-const Row heading{"stage",     "steps",       "time s",   "PGA m/s2",   "fallen",
-                  "fallen m2", "loosened m2", "filled %", "max slip mm"};
-
-std::string kind_name(StageKind kind) {
-  return kind == StageKind::settle ? "settle" : kind == StageKind::shake ? "shake" : "rest";
-}
+const Row heading{"stage",     "steps",       "time s",   "PGA m/s2", "fallen",
+                  "fallen m2", "loosened m2", "filled %", "slip mm"};
 
 Row row(const StageRecord& stage) {
   const simulation::Damage& d = stage.damage;
   const bool dynamic = stage.stage.kind != StageKind::settle;
-  return {fmt::format("{} ({})", one_line(stage.stage.name, 30, true), kind_name(stage.stage.kind)),
+  return {one_line(stage.stage.name, 20, true),
           fmt::format("{}", stage.steps),
           dynamic ? fmt::format("{:.2f}", stage.duration) : "-",
           stage.stage.kind == StageKind::shake ? fmt::format("{:.2f}", stage.pga) : "-",

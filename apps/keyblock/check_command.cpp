@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "scenario/build.h"
+#include "scenario/inputs.h"
+#include "scenario_arguments.h"
+
+namespace keyblock::app {
+namespace {
+
+void check_scenario(const ScenarioArguments& arguments) {
+  const scenario::Scenario scenario = arguments.read();
+  std::vector<std::string> warnings = scenario::check_inputs(scenario);
+  const scenario::BlockModel blocks = scenario::build_blocks(scenario, arguments.realization);
+  if (!scenario.stages.empty()) {  // a scenario without stages can still be cut
+    warnings.clear();
+    scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
+  }
+  print_warnings(arguments, warnings);
+  std::cout << fmt::format("{}: ok: {} blocks, {} joint traces, {} stages\n", arguments.file,
+                           blocks.system.blocks.size(), blocks.traces.size(), scenario.stages.size());
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  auto arguments = std::make_shared<ScenarioArguments>();
+  CLI::App* command = app.add_subcommand("check", "Every mistake of a scenario, with line and column");
+  add_scenario_arguments(*command, *arguments);
+  command->footer("Exit code 1 if there is any mistake.\n\nExample:\n  keyblock check tunnel.toml");
+  command->callback([arguments] { check_scenario(*arguments); });
+}
+
+}  // namespace keyblock::app

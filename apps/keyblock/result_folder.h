@@ -1,0 +1,35 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "simulation/record.h"
+#include "simulation/setup.h"
+
+namespace keyblock::app {
+
+/// Makes the folder if it is not there. Throws InputError when it cannot be made or is no folder.
+void make_folder(const std::filesystem::path& folder);
+
+/// Throws InputError when the folder holds results of a run, whose summary would be lost.
+void check_holds_no_run(const std::filesystem::path& folder);
+
+/// Guards the folder of a run's results. The input of a run is kept beside its results, in scenario.toml; a folder with
+/// results of the same input may be written again (the results are the same), one with results of other input not.
+class ResultFolder : public simulation::RunObserver {
+ public:
+  enum class Use { fresh, replace, resume };
+
+  /// Throws InputError when `folder` holds results of other input, unless they are to be replaced, or when there is
+  /// nothing to resume. Nothing is changed yet.
+  ResultFolder(std::filesystem::path folder, const simulation::RunSetup& setup, Use use);
+
+  /// The run begins: keeps its input, and takes away what an earlier run had concluded.
+  void begin(const simulation::ModelRecord& model) override;
+
+ private:
+  std::filesystem::path folder_;
+  std::string input_;
+  Use use_;
+};
+
+}  // namespace keyblock::app
