@@ -9,7 +9,9 @@ namespace keyblock::results {
 /// A whole result file in memory.
 struct RunData {
   simulation::ModelRecord model;
-  simulation::RunRecord run;  ///< complete up to the last stage that ended, when the run was interrupted
+  /// Of a run that was killed: the stages that had ended, the one it was killed in (as far as it is known, marked as
+  /// interrupted), and the sums that follow from both.
+  simulation::RunRecord run;
   std::vector<simulation::Frame> frames;
   std::vector<simulation::ContactFrame> contacts;
   std::vector<simulation::HistoryRow> histories;
@@ -18,5 +20,8 @@ struct RunData {
 
 /// Reads DIR/result.h5. Throws InputError when there is none, or when it is truncated or of another format.
 RunData read_run(const std::filesystem::path& directory);
+
+/// Its histories alone.
+std::vector<simulation::HistoryRow> read_histories(const std::filesystem::path& directory);
 
 }  // namespace keyblock::results

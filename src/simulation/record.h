@@ -51,7 +51,7 @@ enum class BlockStatus : std::uint8_t { in_place = 0, loosened = 1, fallen = 2, 
 struct Frame {
   double time = 0.0;  ///< s of simulated time; static steps count none
   int stage = 0;
-  long step = 0;
+  long step = 0;  ///< of the run, over all stages
   std::vector<std::array<float, 2>> displacement;  ///< of every display vertex since the start, m
   std::vector<std::array<float, 3>> stress;        ///< mean Cauchy stress of every block: xx, yy, xy, Pa
   std::vector<BlockStatus> status;                 ///< of every block
@@ -77,6 +77,7 @@ struct ContactFrame {
   double time = 0.0;
   int stage = 0;
   std::vector<ContactRecord> contacts;
+  long step = 0;  ///< of the run, over all stages
 };
 
 /// One row of DIR/histories.csv: displacement, velocity and Cauchy stress at the chosen points.
@@ -86,6 +87,7 @@ struct HistoryRow {
     double ux, uy, vx, vy, sxx, syy, sxy;
   };
   std::vector<Point> points;
+  long step = 0;  ///< of the run, over all stages
 };
 
 /// Energies in J per metre thickness. Losses and inputs accumulate from the start of the first stage.
@@ -104,7 +106,7 @@ struct Energy {
 /// How the steps went, one row now and then.
 struct StepRow {
   double time = 0.0;
-  long step = 0;
+  long step = 0;  ///< of the run, over all stages
   int stage = 0;
   int iterations = 0;         ///< open-close iterations of the step
   double step_size = 0.0;     ///< s

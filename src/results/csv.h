@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulation/record.h"
+
+namespace keyblock::results {
+
+/// A field as RFC 4180 has it: in quotes where it holds a comma, a quote or a line break.
+std::string csv_field(std::string_view text);
+
+/// One row per recorded step: `time`, then per history `NAME.ux, NAME.uy, NAME.vx, NAME.vy, NAME.sxx, NAME.syy,
+/// NAME.sxy` (displacement since the start, m; velocity, m/s; Cauchy stress, Pa). Every number can be read back to its
+/// last bit.
+std::string histories_csv(const std::vector<std::string>& names,
+                          const std::vector<simulation::HistoryRow>& rows);
+
+/// Writes DIR/histories.csv at once. Throws RunError.
+void write_histories_csv(const std::filesystem::path& directory, const std::vector<std::string>& names,
+                         const std::vector<simulation::HistoryRow>& rows);
+
+}  // namespace keyblock::results

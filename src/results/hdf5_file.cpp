@@ -1,0 +1,278 @@
+#include "results/hdf5_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace keyblock::results::hdf5 {
+namespace {
+
+constexpr unsigned deflate_level = 4;
+// Chunks hold whole rows, about this many bytes of them.
+constexpr std::size_t chunk_bytes = 65536;
+
+// The first message from the inside, the cause: "unable to extend file: No space left on device".
+herr_t keep_message(unsigned n, const H5E_error2_t* error, void* text) {
+  if (n == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+hsize_t product(const std::vector<hsize_t>& shape) {
+  return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
+}
+
+Handle string_type() {
+  Handle type(check_id(H5Tcopy(H5T_C_S1), "string type"), H5Tclose);
+  check(H5Tset_size(type, H5T_VARIABLE), "string type");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
+  return type;
+}
+
+// Times of creation would make two files of one run differ.
+Handle dataset_properties() {
+  Handle properties(check_id(H5Pcreate(H5P_DATASET_CREATE), "dataset"), H5Pclose);
+  check(H5Pset_obj_track_times(properties, false), "dataset");
+  return properties;
+}
+
+void compress(hid_t properties, const std::vector<hsize_t>& chunk) {
+  check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "chunks");
+  check(H5Pset_shuffle(properties), "compression");
+  check(H5Pset_deflate(properties, deflate_level), "compression");
+}
+
+std::vector<hsize_t> chunk_of(const std::vector<hsize_t>& row_shape, std::size_t value_bytes) {
+  std::vector<hsize_t> chunk{1};
+  for (const hsize_t n : row_shape) chunk.push_back(std::max<hsize_t>(n, 1));
+  chunk[0] = std::clamp<hsize_t>(chunk_bytes / (product(chunk) * value_bytes), 1, 4096);
+  return chunk;
+}
+
+template <class T>
+hid_t file_type() {
+  if constexpr (std::is_same_v<T, double>) return H5T_IEEE_F64LE;
+  if constexpr (std::is_same_v<T, float>) return H5T_IEEE_F32LE;
+  if constexpr (std::is_same_v<T, std::int64_t>) return H5T_STD_I64LE;
+  if constexpr (std::is_same_v<T, std::int32_t>) return H5T_STD_I32LE;
+  if constexpr (std::is_same_v<T, std::int16_t>) return H5T_STD_I16LE;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_STD_U8LE;
+  if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
+}
+
+}  // namespace
+
+QuietErrors::QuietErrors() {
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+QuietErrors::~QuietErrors() {
+  H5Eset_auto2(H5E_DEFAULT, function_, data_);
+}
+
+void check(herr_t status, const std::string& what) {
+  if (status >= 0) return;
+  std::string cause;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_message, &cause);
+  throw RunError(cause.empty() ? what : fmt::format("{}: {}", what, cause));
+}
+
+hid_t check_id(hid_t id, const std::string& what) {
+  check(id < 0 ? -1 : 0, what);
+  return id;
+}
+
+Handle create_group(hid_t parent, const std::string& name) {
+  const Handle properties(check_id(H5Pcreate(H5P_GROUP_CREATE), name), H5Pclose);
+  check(H5Pset_obj_track_times(properties, false), name);
+  return {check_id(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), name), H5Gclose};
+}
+
+Handle open_group(hid_t parent, const std::string& name) {
+  return {check_id(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), name), H5Gclose};
+}
+
+void write_attribute(hid_t object, const std::string& name, const std::string& value) {
+  const Handle type = string_type();
+  const Handle space(check_id(H5Screate(H5S_SCALAR), name), H5Sclose);
+  const Handle attribute(
+      check_id(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), name), H5Aclose);
+  const char* text = value.c_str();
+  check(H5Awrite(attribute, type, &text), name);
+}
+
+template <class T>
+void write_attribute(hid_t object, const std::string& name, T value) {
+  const Handle space(check_id(H5Screate(H5S_SCALAR), name), H5Sclose);
+  const Handle attribute(
+      check_id(H5Acreate2(object, name.c_str(), file_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT), name),
+      H5Aclose);
+  check(H5Awrite(attribute, native_type<T>(), &value), name);
+}
+
+std::string read_text_attribute(hid_t object, const std::string& name) {
+  const Handle attribute(check_id(H5Aopen(object, name.c_str(), H5P_DEFAULT), name), H5Aclose);
+  const Handle type = string_type();
+  char* text = nullptr;
+  check(H5Aread(attribute, type, &text), name);
+  std::string value = text == nullptr ? "" : text;
+  H5free_memory(text);
+  return value;
+}
+
+template <class T>
+T read_attribute(hid_t object, const std::string& name) {
+  const Handle attribute(check_id(H5Aopen(object, name.c_str(), H5P_DEFAULT), name), H5Aclose);
+  T value{};
+  check(H5Aread(attribute, native_type<T>(), &value), name);
+  return value;
+}
+
+template <class T>
+void write_array(hid_t group, const std::string& name, const std::vector<hsize_t>& shape,
+                 std::span<const T> values) {
+  const Handle space(check_id(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), name),
+                     H5Sclose);
+  const Handle properties = dataset_properties();
+  constexpr std::size_t smallest_compressed = 4096;
+  if (values.size_bytes() >= smallest_compressed) compress(properties, shape);
+  const Handle dataset(
+      check_id(H5Dcreate2(group, name.c_str(), file_type<T>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
+               name),
+      H5Dclose);
+  if (!values.empty())
+    check(H5Dwrite(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+}
+
+void write_strings(hid_t group, const std::string& name, const std::vector<std::string>& values) {
+  const hsize_t count = values.size();
+  const Handle type = string_type();
+  const Handle space(check_id(H5Screate_simple(1, &count, nullptr), name), H5Sclose);
+  const Handle properties = dataset_properties();
+  const Handle dataset(
+      check_id(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), name),
+      H5Dclose);
+  std::vector<const char*> texts;
+  for (const std::string& value : values) texts.push_back(value.c_str());
+  if (count > 0) check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
+}
+
+template <class T>
+Array<T> read_array(hid_t group, const std::string& name) {
+  const Handle dataset(check_id(H5Dopen2(group, name.c_str(), H5P_DEFAULT), name), H5Dclose);
+  const Handle space(check_id(H5Dget_space(dataset), name), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  check(rank, name);
+  Array<T> array;
+  array.shape.resize(static_cast<std::size_t>(rank));
+  check(H5Sget_simple_extent_dims(space, array.shape.data(), nullptr), name);
+  array.values.resize(static_cast<std::size_t>(product(array.shape)));
+  if (!array.values.empty()) {
+    check(H5Dread(dataset, native_type<T>(), H5S_ALL, space, H5P_DEFAULT, array.values.data()), name);
+  }
+  return array;
+}
+
+std::vector<std::string> read_strings(hid_t group, const std::string& name) {
+  const Handle dataset(check_id(H5Dopen2(group, name.c_str(), H5P_DEFAULT), name), H5Dclose);
+  const Handle space(check_id(H5Dget_space(dataset), name), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  check(count < 0 ? -1 : 0, name);
+  std::vector<char*> texts(static_cast<std::size_t>(count), nullptr);
+  const Handle type = string_type();
+  if (count > 0) check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
+  std::vector<std::string> values;
+  for (char* text : texts) {
+    values.emplace_back(text == nullptr ? "" : text);
+    H5free_memory(text);
+  }
+  return values;
+}
+
+template <class T>
+Column<T>::Column(hid_t group, const std::string& name, std::vector<hsize_t> row_shape)
+    : name_(name),
+      row_shape_(std::move(row_shape)),
+      row_size_(static_cast<std::size_t>(product(row_shape_))) {
+  std::vector<hsize_t> now{0}, most{H5S_UNLIMITED};
+  now.insert(now.end(), row_shape_.begin(), row_shape_.end());
+  most.insert(most.end(), row_shape_.begin(), row_shape_.end());
+  const Handle space(check_id(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), name),
+                     H5Sclose);
+  const Handle properties = dataset_properties();
+  compress(properties, chunk_of(row_shape_, sizeof(T)));
+  if constexpr (std::is_same_v<T, double>) {
+    const double unwritten = std::numeric_limits<double>::quiet_NaN();
+    check(H5Pset_fill_value(properties, H5T_NATIVE_DOUBLE, &unwritten), name);
+  }
+  dataset_ = Handle(
+      check_id(H5Dcreate2(group, name.c_str(), file_type<T>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
+               name),
+      H5Dclose);
+}
+
+template <class T>
+void Column<T>::write() {
+  if (pending_rows_ == 0) return;
+  std::vector<hsize_t> extent{rows_ + pending_rows_}, start{rows_}, count{pending_rows_};
+  for (const hsize_t n : row_shape_) {
+    extent.push_back(n);
+    start.push_back(0);
+    count.push_back(n);
+  }
+  check(H5Dset_extent(dataset_, extent.data()), name_);
+  if (!buffer_.empty()) {
+    const Handle in_file(check_id(H5Dget_space(dataset_), name_), H5Sclose);
+    check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), name_);
+    const Handle in_memory(
+        check_id(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), name_), H5Sclose);
+    check(H5Dwrite(dataset_, native_type<T>(), in_memory, in_file, H5P_DEFAULT, buffer_.data()), name_);
+  }
+  rows_ += pending_rows_;
+  pending_rows_ = 0;
+  buffer_.clear();
+}
+
+template <class T>
+void Column<T>::flush() {
+  if (!dataset_.valid()) return;
+  write();
+  check(H5Dflush(dataset_), name_);
+}
+
+template class Column<double>;
+template class Column<float>;
+template class Column<std::int64_t>;
+template class Column<std::int32_t>;
+template class Column<std::int16_t>;
+template class Column<std::uint8_t>;
+
+template void write_attribute(hid_t, const std::string&, double);
+template void write_attribute(hid_t, const std::string&, std::int32_t);
+template void write_attribute(hid_t, const std::string&, std::int64_t);
+template void write_attribute(hid_t, const std::string&, std::uint64_t);
+template double read_attribute(hid_t, const std::string&);
+template std::int32_t read_attribute(hid_t, const std::string&);
+template std::int64_t read_attribute(hid_t, const std::string&);
+template std::uint64_t read_attribute(hid_t, const std::string&);
+
+template void write_array(hid_t, const std::string&, const std::vector<hsize_t>&, std::span<const double>);
+template void write_array(hid_t, const std::string&, const std::vector<hsize_t>&,
+                          std::span<const std::int32_t>);
+template void write_array(hid_t, const std::string&, const std::vector<hsize_t>&,
+                          std::span<const std::int16_t>);
+template void write_array(hid_t, const std::string&, const std::vector<hsize_t>&,
+                          std::span<const std::uint8_t>);
+template Array<double> read_array(hid_t, const std::string&);
+template Array<float> read_array(hid_t, const std::string&);
+template Array<std::int64_t> read_array(hid_t, const std::string&);
+template Array<std::int32_t> read_array(hid_t, const std::string&);
+template Array<std::int16_t> read_array(hid_t, const std::string&);
+template Array<std::uint8_t> read_array(hid_t, const std::string&);
+
+}  // namespace keyblock::results::hdf5

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "results/record_json.h"
+#include "results/result_tables.h"
+
+namespace keyblock::results {
+namespace {
+
+using hdf5::read_array;
+using hdf5::write_array;
+
+template <class T>
+void write_column(hid_t group, const std::string& name, const std::vector<T>& values) {
+  write_array<T>(group, name, {values.size()}, values);
+}
+
+void write_points(hid_t group, const std::string& name, const std::vector<Vec2>& points) {
+  std::vector<double> xy;
+  for (const Vec2 p : points) xy.insert(xy.end(), {p.x, p.y});
+  write_array<double>(group, name, {points.size(), 2}, xy);
+}
+
+std::vector<Vec2> read_points(hid_t group, const std::string& name) {
+  const auto xy = read_array<double>(group, name);
+  std::vector<Vec2> points;
+  for (std::size_t k = 0; 2 * k + 1 < xy.values.size(); ++k)
+    points.push_back({xy.values[2 * k], xy.values[2 * k + 1]});
+  return points;
+}
+
+// Lists of different lengths, one after the other; list k is values[start[k] … start[k + 1]).
+struct Lists {
+  std::vector<std::int32_t> start{0}, values;
+  void add(const std::vector<int>& list) {
+    values.insert(values.end(), list.begin(), list.end());
+    start.push_back(static_cast<std::int32_t>(values.size()));
+  }
+  [[nodiscard]] std::vector<int> list(std::size_t k) const {
+    return {values.begin() + start.at(k), values.begin() + start.at(k + 1)};
+  }
+};
+
+Lists read_lists(hid_t group, const std::string& start, const std::string& values, std::size_t count) {
+  Lists lists{read_array<std::int32_t>(group, start).values, read_array<std::int32_t>(group, values).values};
+  bool fits = lists.start.size() == count + 1 && lists.start.front() == 0 &&
+              static_cast<std::size_t>(lists.start.back()) == lists.values.size();
+  for (std::size_t k = 0; fits && k < count; ++k) fits = lists.start[k] <= lists.start[k + 1];
+  if (!fits) throw RunError(fmt::format("model/{} does not fit model/{}", start, values));
+  return lists;
+}
+
+}  // namespace
+
+void write_model(hid_t file, const simulation::ModelRecord& model) {
+  hdf5::write_attribute(file, "format", std::string(result_format));
+  hdf5::write_attribute<std::int32_t>(file, "format_version", result_format_version);
+  hdf5::write_attribute(file, "title", model.title);
+  hdf5::write_attribute(file, "version", model.version);
+  hdf5::write_attribute<std::uint64_t>(file, "seed", model.seed);
+  hdf5::write_attribute<std::int32_t>(file, "realization", model.realization);
+  hdf5::write_strings(file, "scenario", {model.scenario});
+  const hdf5::Handle group = hdf5::create_group(file, "model");
+  hdf5::write_strings(group, "record", {model_json(model)});
+
+  std::vector<std::string> name;
+  std::vector<std::int32_t> order;
+  std::vector<std::uint8_t> fixed, edge_kind;
+  std::vector<std::int16_t> edge_index;
+  std::vector<double> area, density;
+  std::vector<Vec2> centroid;
+  Lists rings, excavations;
+  for (const auto& block : model.blocks) {
+    name.push_back(block.name);
+    order.push_back(block.order);
+    fixed.push_back(block.fixed ? 1 : 0);
+    area.push_back(block.area);
+    density.push_back(block.density);
+    centroid.push_back(block.centroid);
+    rings.add(block.ring_start);
+    excavations.add(block.excavations);
+  }
+  for (const cutting::EdgeLabel label : model.edge_label) {
+    edge_kind.push_back(static_cast<std::uint8_t>(label.kind));
+    edge_index.push_back(label.index);
+  }
+  hdf5::write_strings(group, "block_name", name);
+  write_column(group, "block_order", order);
+  write_column(group, "block_fixed", fixed);
+  write_column(group, "block_area", area);
+  write_column(group, "block_density", density);
+  write_points(group, "block_centroid", centroid);
+  write_column(group, "block_rings", rings.start);
+  write_column(group, "ring_start", rings.values);
+  write_column(group, "block_excavations", excavations.start);
+  write_column(group, "excavation", excavations.values);
+  write_points(group, "vertices", model.vertices);
+  write_column(group, "edge_kind", edge_kind);
+  write_column(group, "edge_index", edge_index);
+}
+
+simulation::ModelRecord read_model(hid_t file) {
+  simulation::ModelRecord model;
+  const hdf5::Handle group = hdf5::open_group(file, "model");
+  const auto scenario = hdf5::read_strings(file, "scenario"), record = hdf5::read_strings(group, "record");
+  if (scenario.size() != 1 || record.size() != 1) throw RunError("scenario or model/record is not one text");
+  read_model_json(record[0], model);
+  model.scenario = scenario[0];
+  const auto name = hdf5::read_strings(group, "block_name");
+  const auto order = read_array<std::int32_t>(group, "block_order");
+  const auto fixed = read_array<std::uint8_t>(group, "block_fixed");
+  const auto area = read_array<double>(group, "block_area"),
+             density = read_array<double>(group, "block_density");
+  const auto centroid = read_points(group, "block_centroid");
+  const std::size_t count = name.size();
+  if (order.rows() != count || fixed.rows() != count || area.rows() != count || density.rows() != count ||
+      centroid.size() != count) {
+    throw RunError("the columns of model/block_… differ in length");
+  }
+  const Lists rings = read_lists(group, "block_rings", "ring_start", count);
+  const Lists excavations = read_lists(group, "block_excavations", "excavation", count);
+  for (std::size_t b = 0; b < count; ++b) {
+    model.blocks.push_back({name[b], order.values[b], fixed.values[b] != 0, area.values[b], density.values[b],
+                            excavations.list(b), centroid[b], rings.list(b)});
+  }
+  model.vertices = read_points(group, "vertices");
+  const auto edge_kind = read_array<std::uint8_t>(group, "edge_kind");
+  const auto edge_index = read_array<std::int16_t>(group, "edge_index");
+  if (edge_kind.rows() != edge_index.rows())
+    throw RunError("model/edge_kind and model/edge_index differ in length");
+  for (std::size_t k = 0; k < edge_kind.rows(); ++k) {
+    model.edge_label.push_back({static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]});
+  }
+  for (const int start : rings.values) {
+    if (start < 0 || static_cast<std::size_t>(start) > model.vertices.size())
+      throw RunError("model/ring_start is out of range");
+  }
+  return model;
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,263 @@
+#include "results/record_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "core/error.h"
+
+namespace keyblock::results {
+namespace {
+
+using nlohmann::ordered_json;
+using simulation::StageKind;
+
+constexpr std::pair<StageKind, const char*> kinds[] = {
+    {StageKind::settle, "settle"}, {StageKind::shake, "shake"}, {StageKind::rest, "rest"}};
+
+template <class T>
+ordered_json or_null(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json points(const std::vector<Vec2>& list) {
+  ordered_json out = ordered_json::array();
+  for (const Vec2 p : list) out.push_back({p.x, p.y});
+  return out;
+}
+
+// JSON has no NaN; it is written as null.
+double number(const ordered_json& value) {
+  return value.is_null() ? std::nan("") : value.get<double>();
+}
+
+std::optional<double> optional_number(const ordered_json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+std::vector<Vec2> read_points(const ordered_json& list) {
+  std::vector<Vec2> out;
+  for (const auto& p : list) out.push_back({number(p.at(0)), number(p.at(1))});
+  return out;
+}
+
+// Field names beside members, for writing and reading alike.
+template <class Record, class Visit>
+void visit_damage(Record& d, const Visit& visit) {
+  visit("fallen_blocks", d.fallen_blocks);
+  visit("fallen_area", d.fallen_area);
+  visit("opening_filled_ratio", d.opening_filled_ratio);
+  visit("loosened_area", d.loosened_area);
+  visit("slip_max", d.slip_max);
+  visit("slip_mean", d.slip_mean);
+  visit("slipped_length", d.slipped_length);
+  visit("opened_length", d.opened_length);
+  visit("closure_vertical", d.closure_vertical);
+  visit("closure_horizontal", d.closure_horizontal);
+}
+
+template <class Record, class Visit>
+void visit_energy(Record& e, const Visit& visit) {
+  visit("kinetic", e.kinetic);
+  visit("strain", e.strain);
+  visit("gravity", e.gravity);
+  visit("contact", e.contact);
+  visit("friction", e.friction);
+  visit("input", e.input);
+  visit("numerical", e.numerical);
+  visit("residual_ratio", e.residual_ratio);
+}
+
+template <class Record, class Visit>
+void visit_cutting(Record& c, const Visit& visit) {
+  visit("traces", c.traces);
+  visit("joints_used", c.joints_used);
+  visit("trace_length", c.trace_length);
+  visit("removed_length", c.removed_length);
+  visit("removed_pieces", c.removed_pieces);
+  visit("merged_slivers", c.merged_slivers);
+  visit("merged_vertices", c.merged_vertices);
+  visit("domain_area", c.domain_area);
+  visit("sliver_area", c.sliver_area);
+}
+
+// Calls visit_… with a function that writes into, or reads from, `json`.
+struct Write {
+  ordered_json& json;
+  template <class T>
+  void operator()(const char* name, const T& value) const {
+    json[name] = value;
+  }
+};
+struct Read {
+  const ordered_json& json;
+  void operator()(const char* name, double& value) const { value = number(json.at(name)); }
+  void operator()(const char* name, int& value) const { value = json.at(name).get<int>(); }
+};
+
+template <class Parse>
+auto parsed(const std::string& text, const Parse& parse) {
+  try {
+    return parse(ordered_json::parse(text));
+  } catch (const nlohmann::json::exception& error) {
+    Diagnostic diagnostic;
+    diagnostic.found = error.what();
+    diagnostic.expected = "a record as keyblock writes it";
+    throw InputError(std::move(diagnostic));
+  }
+}
+
+}  // namespace
+
+std::string stage_kind_name(StageKind kind) {
+  for (const auto& [known, name] : kinds) {
+    if (known == kind) return name;
+  }
+  return {};
+}
+
+std::string model_json(const simulation::ModelRecord& model) {
+  ordered_json outlines = ordered_json::array(), cutting;
+  for (const auto& outline : model.excavation_outlines) outlines.push_back(points(outline));
+  visit_cutting(model.cutting, Write{cutting});
+  const ordered_json json{{"title", model.title},
+                          {"version", model.version},
+                          {"seed", model.seed},
+                          {"realization", model.realization},
+                          {"threads", model.threads},
+                          {"step_size", model.step_size},
+                          {"origin", {model.origin.x, model.origin.y}},
+                          {"joint_set_names", model.joint_set_names},
+                          {"trace_map_names", model.trace_map_names},
+                          {"excavation_names", model.excavation_names},
+                          {"excavation_outlines", outlines},
+                          {"history_names", model.history_names},
+                          {"opening_width", or_null(model.opening_width)},
+                          {"cutting", cutting}};
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+void read_model_json(const std::string& text, simulation::ModelRecord& model) {
+  parsed(text, [&](const ordered_json& json) {
+    json.at("title").get_to(model.title);
+    json.at("version").get_to(model.version);
+    json.at("seed").get_to(model.seed);
+    json.at("realization").get_to(model.realization);
+    json.at("threads").get_to(model.threads);
+    model.step_size = number(json.at("step_size"));
+    model.origin = {number(json.at("origin").at(0)), number(json.at("origin").at(1))};
+    json.at("joint_set_names").get_to(model.joint_set_names);
+    json.at("trace_map_names").get_to(model.trace_map_names);
+    json.at("excavation_names").get_to(model.excavation_names);
+    for (const auto& outline : json.at("excavation_outlines"))
+      model.excavation_outlines.push_back(read_points(outline));
+    json.at("history_names").get_to(model.history_names);
+    model.opening_width = optional_number(json.at("opening_width"));
+    visit_cutting(model.cutting, Read{json.at("cutting")});
+    return 0;
+  });
+}
+
+std::string stage_json(int index, const simulation::StageRecord& r, bool ended) {
+  ordered_json damage, moving = ordered_json::array();
+  visit_damage(r.damage, Write{damage});
+  for (const auto& m : r.moving) moving.push_back({{"block", m.block}, {"carried", m.carried}});
+  const ordered_json json{{"index", index},
+                          {"ended", ended},
+                          {"name", r.stage.name},
+                          {"kind", stage_kind_name(r.stage.kind)},
+                          {"excavate", r.stage.excavate},
+                          {"motion_index", r.stage.motion},
+                          {"scale", r.stage.scale},
+                          {"given_duration", or_null(r.stage.duration)},
+                          {"max_steps", or_null(r.stage.max_steps)},
+                          {"tolerance", r.stage.tolerance},
+                          {"steps", r.steps},
+                          {"start_time", r.start_time},
+                          {"duration", r.duration},
+                          {"pga", r.pga},
+                          {"equilibrium_reached", r.equilibrium_reached},
+                          {"worst_residual_ratio", r.worst_residual_ratio},
+                          {"moving", moving},
+                          {"damage", damage},
+                          {"wall_time", r.wall_time},
+                          {"interrupted", r.interrupted},
+                          {"motion_time", r.motion_time},
+                          {"motion", points(r.motion)}};
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+StageLine read_stage_json(const std::string& text) {
+  return parsed(text, [](const ordered_json& json) {
+    StageLine line;
+    json.at("index").get_to(line.index);
+    json.at("ended").get_to(line.ended);
+    simulation::StageRecord& r = line.stage;
+    json.at("name").get_to(r.stage.name);
+    for (const auto& [kind, name] : kinds) {
+      if (json.at("kind") == name) r.stage.kind = kind;
+    }
+    json.at("excavate").get_to(r.stage.excavate);
+    json.at("motion_index").get_to(r.stage.motion);
+    r.stage.scale = number(json.at("scale"));
+    r.stage.duration = optional_number(json.at("given_duration"));
+    if (!json.at("max_steps").is_null()) r.stage.max_steps = json.at("max_steps").get<int>();
+    r.stage.tolerance = number(json.at("tolerance"));
+    json.at("steps").get_to(r.steps);
+    r.start_time = number(json.at("start_time"));
+    r.duration = number(json.at("duration"));
+    r.pga = number(json.at("pga"));
+    json.at("equilibrium_reached").get_to(r.equilibrium_reached);
+    r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
+    for (const auto& m : json.at("moving"))
+      r.moving.push_back({m.at("block").get<int>(), number(m.at("carried"))});
+    visit_damage(r.damage, Read{json.at("damage")});
+    r.wall_time = number(json.at("wall_time"));
+    json.at("interrupted").get_to(r.interrupted);
+    for (const auto& t : json.at("motion_time")) r.motion_time.push_back(number(t));
+    r.motion = read_points(json.at("motion"));
+    return line;
+  });
+}
+
+std::string run_json(const simulation::RunRecord& run) {
+  ordered_json energy;
+  visit_energy(run.energy, Write{energy});
+  const ordered_json json{{"steps", run.steps},
+                          {"wall_time", run.wall_time},
+                          {"dof", run.dof},
+                          {"state_hash", run.state_hash},
+                          {"open_close",
+                           {{"mean_iterations", run.open_close.mean_iterations},
+                            {"max_iterations", run.open_close.max_iterations},
+                            {"retried_steps", run.open_close.retried_steps},
+                            {"unconverged_steps", run.open_close.unconverged_steps}}},
+                          {"max_overlap", run.max_overlap},
+                          {"max_area_change", run.max_area_change},
+                          {"energy", energy},
+                          {"interrupted", run.interrupted}};
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+simulation::RunRecord read_run_json(const std::string& text) {
+  return parsed(text, [](const ordered_json& json) {
+    simulation::RunRecord run;
+    json.at("steps").get_to(run.steps);
+    run.wall_time = number(json.at("wall_time"));
+    json.at("dof").get_to(run.dof);
+    json.at("state_hash").get_to(run.state_hash);
+    const auto& open_close = json.at("open_close");
+    run.open_close.mean_iterations = number(open_close.at("mean_iterations"));
+    open_close.at("max_iterations").get_to(run.open_close.max_iterations);
+    open_close.at("retried_steps").get_to(run.open_close.retried_steps);
+    open_close.at("unconverged_steps").get_to(run.open_close.unconverged_steps);
+    run.max_overlap = number(json.at("max_overlap"));
+    run.max_area_change = number(json.at("max_area_change"));
+    visit_energy(run.energy, Read{json.at("energy")});
+    json.at("interrupted").get_to(run.interrupted);
+    return run;
+  });
+}
+
+}  // namespace keyblock::results

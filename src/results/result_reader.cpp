@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/error.h"
+#include "results/record_json.h"
+#include "results/result_tables.h"
+#include "results/run_data.h"
+
+namespace keyblock::results {
+namespace {
+
+constexpr unsigned read_attempts = 24;  // some 20 ms in all
+
+[[noreturn]] void fail(const std::filesystem::path& path, std::string found, std::string expected,
+                       std::string hint = {}) {
+  Diagnostic diagnostic;
+  diagnostic.where.file = path.string();
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  diagnostic.hint = std::move(hint);
+  throw InputError(std::move(diagnostic));
+}
+
+// A file whose writer was killed, or still runs, opens in the mode for concurrent readers alone.
+hdf5::Handle open_file(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) fail(path, "no such file", "the results of a run");
+  const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), "file access"), H5Pclose);
+  hdf5::check(H5Pset_file_locking(access, true, true), "file access");
+  // Each attempt at a page that is being written waits twice as long as the last, from 1 ns.
+  hdf5::check(H5Pset_metadata_read_attempts(access, read_attempts), "file access");
+  for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ}) {
+    const hid_t id = H5Fopen(path.c_str(), mode, access);
+    if (id >= 0) return {id, H5Fclose};
+  }
+  fail(path, H5Fis_hdf5(path.c_str()) > 0 ? "an HDF5 file that cannot be opened" : "no HDF5 file",
+       "the results of a run", "it may have been cut short");
+}
+
+void check_format(const std::filesystem::path& path, hid_t file) {
+  if (H5Aexists(file, "format") <= 0 || hdf5::read_text_attribute(file, "format") != result_format) {
+    fail(path, "an HDF5 file of another kind", fmt::format("the attribute format = \"{}\"", result_format));
+  }
+  const auto version = hdf5::read_attribute<std::int32_t>(file, "format_version");
+  if (version != result_format_version) {
+    fail(path, fmt::format("format version {}", version),
+         fmt::format("format version {}", result_format_version),
+         "read it with the version of keyblock that wrote it");
+  }
+}
+
+// Calls read(file) and turns whatever HDF5 finds wrong into an error of the input.
+template <class Read>
+auto with_file(const std::filesystem::path& directory, const Read& read) {
+  const hdf5::QuietErrors quiet;
+  const std::filesystem::path path = directory / "result.h5";
+  try {
+    const hdf5::Handle file = open_file(path);
+    check_format(path, file);
+    return read(file);
+  } catch (const RunError& error) {
+    fail(path, error.what(), "a complete result file", "it may have been cut short");
+  } catch (const InputError& error) {
+    Diagnostic diagnostic = error.diagnostics().front();
+    if (diagnostic.where.file.empty()) diagnostic.where.file = path.string();
+    throw InputError(std::move(diagnostic));
+  }
+}
+
+// The stage a run was killed in, as far as its rows tell.
+void complete_killed_stage(const RunData& data, int index, simulation::StageRecord& stage) {
+  double time = stage.start_time;
+  long first = 0, last = 0;
+  const auto see = [&](const auto& rows) {
+    for (const auto& row : rows) {
+      if (row.stage < index) first = std::max(first, row.step);
+      if (row.stage != index) continue;
+      time = std::max(time, row.time);
+      last = std::max(last, row.step);
+    }
+  };
+  see(data.frames);
+  see(data.steps);
+  stage.interrupted = true;
+  stage.duration = time - stage.start_time;
+  stage.steps = std::max(stage.steps, last - first);
+}
+
+void read_run_record(hid_t file, RunData& data) {
+  std::map<int, StageLine> stages;
+  for (const std::string& text : TextColumn::read_lines(file, "stages")) {
+    StageLine line = read_stage_json(text);
+    stages[line.index] = std::move(line);
+  }
+  const auto run = TextColumn::read_lines(file, "run");
+  if (!run.empty()) {
+    data.run = read_run_json(run.back());
+  } else {
+    data.run.interrupted = true;
+    if (!data.steps.empty()) data.run.energy = data.steps.back().energy;
+  }
+  for (auto& [index, line] : stages) {
+    if (!line.ended) complete_killed_stage(data, index, line.stage);
+    data.run.stages.push_back(std::move(line.stage));
+    if (!run.empty()) continue;
+    data.run.steps += data.run.stages.back().steps;
+    data.run.wall_time += data.run.stages.back().wall_time;
+  }
+}
+
+}  // namespace
+
+RunData read_run(const std::filesystem::path& directory) {
+  return with_file(directory, [](hid_t file) {
+    RunData data;
+    data.model = read_model(file);
+    data.frames = FrameTable::read(file);
+    data.contacts = ContactTable::read(file);
+    data.histories = HistoryTable::read(file);
+    data.steps = StepTable::read(file);
+    read_run_record(file, data);
+    return data;
+  });
+}
+
+std::vector<simulation::HistoryRow> read_histories(const std::filesystem::path& directory) {
+  return with_file(directory, [](hid_t file) { return HistoryTable::read(file); });
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,321 @@
+#include "results/result_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "core/error.h"
+
+namespace keyblock::results {
+namespace {
+
+using hdf5::Array;
+using hdf5::read_array;
+
+constexpr std::size_t energy_terms = 8;
+constexpr std::size_t history_values = 7;
+
+static_assert(sizeof(simulation::HistoryRow::Point) == history_values * sizeof(double));
+static_assert(sizeof(Vec2) == 2 * sizeof(double));
+
+template <class T>
+std::span<const T> flat(const T* values, std::size_t count) {
+  return {values, count};
+}
+
+// Rows whose time is written.
+std::size_t complete_rows(const Array<double>& time) {
+  const auto unwritten =
+      std::find_if(time.values.begin(), time.values.end(), [](double t) { return std::isnan(t); });
+  return static_cast<std::size_t>(unwritten - time.values.begin());
+}
+
+std::size_t common_rows(const Array<double>& time, std::initializer_list<std::size_t> others) {
+  return std::min(complete_rows(time), std::min(others));
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw RunError(fmt::format("{} does not fit the rest of the file", what));
+}
+
+}  // namespace
+
+FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
+    : vertices_(model.vertices.size()),
+      blocks_(model.blocks.size()),
+      group_(hdf5::create_group(file, "frames")),
+      displacement_(group_, "displacement", {vertices_, 2}),
+      stress_(group_, "stress", {blocks_, 3}),
+      status_(group_, "status", {blocks_}),
+      stage_(group_, "stage", {}),
+      step_(group_, "step", {}),
+      time_(group_, "time", {}) {}
+
+void FrameTable::append(const simulation::Frame& frame) {
+  if (frame.displacement.size() != vertices_ || frame.stress.size() != blocks_ ||
+      frame.status.size() != blocks_) {
+    throw std::invalid_argument("a frame of another model");
+  }
+  displacement_.append_row(flat(frame.displacement.data()->data(), 2 * vertices_));
+  stress_.append_row(flat(frame.stress.data()->data(), 3 * blocks_));
+  std::vector<std::uint8_t> status;
+  for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
+  status_.append_row(status);
+  stage_.append(frame.stage);
+  step_.append(frame.step);
+  time_.append(frame.time);
+}
+
+void FrameTable::flush() {
+  displacement_.flush();
+  stress_.flush();
+  status_.flush();
+  stage_.flush();
+  step_.flush();
+  time_.flush();
+}
+
+std::vector<simulation::Frame> FrameTable::read(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "frames");
+  const auto time = read_array<double>(group, "time");
+  const auto displacement = read_array<float>(group, "displacement"),
+             stress = read_array<float>(group, "stress");
+  const auto status = read_array<std::uint8_t>(group, "status");
+  const auto stage = read_array<std::int32_t>(group, "stage");
+  const auto step = read_array<std::int64_t>(group, "step");
+  const std::size_t nv = displacement.width() / 2, nb = status.width();
+  require(stress.width() == 3 * nb, "frames/stress");
+  std::vector<simulation::Frame> frames(
+      common_rows(time, {displacement.rows(), stress.rows(), status.rows(), stage.rows(), step.rows()}));
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    simulation::Frame& frame = frames[f];
+    frame.time = time.values[f];
+    frame.stage = stage.values[f];
+    frame.step = step.values[f];
+    frame.displacement.resize(nv);
+    frame.stress.resize(nb);
+    std::copy_n(displacement.values.data() + 2 * nv * f, 2 * nv, frame.displacement.data()->data());
+    std::copy_n(stress.values.data() + 3 * nb * f, 3 * nb, frame.stress.data()->data());
+    for (std::size_t b = 0; b < nb; ++b) {
+      frame.status.push_back(static_cast<simulation::BlockStatus>(status.values[nb * f + b]));
+    }
+  }
+  return frames;
+}
+
+ContactTable::ContactTable(hid_t file)
+    : group_(hdf5::create_group(file, "contacts")),
+      block_a_(group_, "block_a", {}),
+      block_b_(group_, "block_b", {}),
+      state_(group_, "state", {}),
+      edge_kind_(group_, "edge_kind", {}),
+      edge_index_(group_, "edge_index", {}),
+      position_(group_, "position", {2}),
+      normal_(group_, "normal", {2}),
+      length_(group_, "length", {}),
+      gap_(group_, "gap", {}),
+      slip_(group_, "slip", {}),
+      normal_force_(group_, "normal_force", {}),
+      shear_force_(group_, "shear_force", {}),
+      stage_(group_, "stage", {}),
+      step_(group_, "step", {}),
+      end_(group_, "end", {}),
+      time_(group_, "time", {}) {}
+
+void ContactTable::append(const simulation::ContactFrame& frame) {
+  for (const simulation::ContactRecord& c : frame.contacts) {
+    block_a_.append(c.block_a);
+    block_b_.append(c.block_b);
+    state_.append(static_cast<std::uint8_t>(c.state));
+    edge_kind_.append(static_cast<std::uint8_t>(c.label.kind));
+    edge_index_.append(c.label.index);
+    position_.append(flat(&c.position.x, 2));
+    normal_.append(flat(&c.normal.x, 2));
+    length_.append(c.length);
+    gap_.append(c.gap);
+    slip_.append(c.slip);
+    normal_force_.append(c.normal_force);
+    shear_force_.append(c.shear_force);
+  }
+  stage_.append(frame.stage);
+  step_.append(frame.step);
+  end_.append(static_cast<std::int64_t>(gap_.rows()));
+  time_.append(frame.time);
+}
+
+void ContactTable::flush() {
+  for (auto* column : {&block_a_, &block_b_, &stage_}) column->flush();
+  for (auto* column : {&state_, &edge_kind_}) column->flush();
+  edge_index_.flush();
+  for (auto* column : {&position_, &normal_, &length_, &gap_, &slip_, &normal_force_, &shear_force_})
+    column->flush();
+  for (auto* column : {&step_, &end_}) column->flush();
+  time_.flush();
+}
+
+std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "contacts");
+  const auto time = read_array<double>(group, "time");
+  const auto stage = read_array<std::int32_t>(group, "stage");
+  const auto step = read_array<std::int64_t>(group, "step"), end = read_array<std::int64_t>(group, "end");
+  const auto block_a = read_array<std::int32_t>(group, "block_a"),
+             block_b = read_array<std::int32_t>(group, "block_b");
+  const auto state = read_array<std::uint8_t>(group, "state"),
+             edge_kind = read_array<std::uint8_t>(group, "edge_kind");
+  const auto edge_index = read_array<std::int16_t>(group, "edge_index");
+  const auto position = read_array<double>(group, "position"), normal = read_array<double>(group, "normal");
+  const auto length = read_array<double>(group, "length"), gap = read_array<double>(group, "gap");
+  const auto slip = read_array<double>(group, "slip"),
+             normal_force = read_array<double>(group, "normal_force");
+  const auto shear_force = read_array<double>(group, "shear_force");
+  const std::size_t rows = std::min({block_a.rows(), block_b.rows(), state.rows(), edge_kind.rows(),
+                                     edge_index.rows(), position.rows(), normal.rows(), length.rows(),
+                                     gap.rows(), slip.rows(), normal_force.rows(), shear_force.rows()});
+  std::vector<simulation::ContactFrame> frames;
+  std::size_t k = 0;
+  for (std::size_t f = 0; f < common_rows(time, {stage.rows(), step.rows(), end.rows()}); ++f) {
+    const auto last = static_cast<std::size_t>(end.values[f]);
+    if (last > rows) break;
+    simulation::ContactFrame frame{time.values[f], stage.values[f], {}, step.values[f]};
+    for (; k < last; ++k) {
+      frame.contacts.push_back({block_a.values[k],
+                                block_b.values[k],
+                                static_cast<simulation::ContactState>(state.values[k]),
+                                {position.values[2 * k], position.values[2 * k + 1]},
+                                {normal.values[2 * k], normal.values[2 * k + 1]},
+                                length.values[k],
+                                gap.values[k],
+                                slip.values[k],
+                                normal_force.values[k],
+                                shear_force.values[k],
+                                {static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]}});
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+HistoryTable::HistoryTable(hid_t file, const simulation::ModelRecord& model)
+    : points_(model.history_names.size()),
+      group_(hdf5::create_group(file, "histories")),
+      values_(group_, "values", {points_, history_values}),
+      step_(group_, "step", {}),
+      time_(group_, "time", {}) {
+  hdf5::write_strings(group_, "names", model.history_names);
+}
+
+void HistoryTable::append(const simulation::HistoryRow& row) {
+  if (row.points.size() != points_) throw std::invalid_argument("a history row of another model");
+  values_.append_row(flat(reinterpret_cast<const double*>(row.points.data()), history_values * points_));
+  step_.append(row.step);
+  time_.append(row.time);
+}
+
+void HistoryTable::flush() {
+  values_.flush();
+  step_.flush();
+  time_.flush();
+}
+
+std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "histories");
+  const auto time = read_array<double>(group, "time"), values = read_array<double>(group, "values");
+  const auto step = read_array<std::int64_t>(group, "step");
+  const std::size_t points = values.width() / history_values;
+  std::vector<simulation::HistoryRow> rows(common_rows(time, {values.rows(), step.rows()}));
+  const double* next = values.values.data();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].time = time.values[k];
+    rows[k].step = step.values[k];
+    for (std::size_t p = 0; p < points; ++p, next += history_values) {
+      rows[k].points.push_back({next[0], next[1], next[2], next[3], next[4], next[5], next[6]});
+    }
+  }
+  return rows;
+}
+
+StepTable::StepTable(hid_t file)
+    : group_(hdf5::create_group(file, "steps")),
+      stage_(group_, "stage", {}),
+      iterations_(group_, "iterations", {}),
+      closed_contacts_(group_, "closed_contacts", {}),
+      step_(group_, "step", {}),
+      step_size_(group_, "step_size", {}),
+      penetration_(group_, "penetration", {}),
+      max_displacement_(group_, "max_displacement", {}),
+      energy_(group_, "energy", {energy_terms}),
+      time_(group_, "time", {}) {}
+
+void StepTable::append(const simulation::StepRow& row) {
+  const simulation::Energy& e = row.energy;
+  const double energy[energy_terms] = {e.kinetic,  e.strain, e.gravity,   e.contact,
+                                       e.friction, e.input,  e.numerical, e.residual_ratio};
+  stage_.append(row.stage);
+  iterations_.append(row.iterations);
+  closed_contacts_.append(row.closed_contacts);
+  step_.append(row.step);
+  step_size_.append(row.step_size);
+  penetration_.append(row.penetration);
+  max_displacement_.append(row.max_displacement);
+  energy_.append(energy);
+  time_.append(row.time);
+}
+
+void StepTable::flush() {
+  for (auto* column : {&stage_, &iterations_, &closed_contacts_}) column->flush();
+  step_.flush();
+  for (auto* column : {&step_size_, &penetration_, &max_displacement_, &energy_}) column->flush();
+  time_.flush();
+}
+
+std::vector<simulation::StepRow> StepTable::read(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "steps");
+  const auto time = read_array<double>(group, "time");
+  const auto stage = read_array<std::int32_t>(group, "stage"),
+             iterations = read_array<std::int32_t>(group, "iterations");
+  const auto closed_contacts = read_array<std::int32_t>(group, "closed_contacts");
+  const auto step = read_array<std::int64_t>(group, "step");
+  const auto step_size = read_array<double>(group, "step_size"),
+             penetration = read_array<double>(group, "penetration");
+  const auto max_displacement = read_array<double>(group, "max_displacement");
+  const auto energy = read_array<double>(group, "energy");
+  require(energy.width() == energy_terms, "steps/energy");
+  std::vector<simulation::StepRow> rows(
+      common_rows(time, {stage.rows(), iterations.rows(), closed_contacts.rows(), step.rows(),
+                         step_size.rows(), penetration.rows(), max_displacement.rows(), energy.rows()}));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double* e = energy.values.data() + energy_terms * k;
+    rows[k] = {time.values[k],
+               step.values[k],
+               stage.values[k],
+               iterations.values[k],
+               step_size.values[k],
+               penetration.values[k],
+               max_displacement.values[k],
+               closed_contacts.values[k],
+               {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7]}};
+  }
+  return rows;
+}
+
+void TextColumn::append_line(const std::string& line) {
+  const std::vector<std::uint8_t> bytes(line.begin(), line.end());
+  bytes_.append(bytes);
+  bytes_.append('\n');
+}
+
+std::vector<std::string> TextColumn::read_lines(hid_t file, const std::string& name) {
+  const auto bytes = read_array<std::uint8_t>(file, name);
+  const auto written = std::find(bytes.values.begin(), bytes.values.end(), std::uint8_t{0});
+  std::vector<std::string> lines;
+  for (auto begin = bytes.values.begin();;) {
+    const auto end = std::find(begin, written, std::uint8_t{'\n'});
+    if (end == written) return lines;
+    lines.emplace_back(begin, end);
+    begin = end + 1;
+  }
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,96 @@
+#pragma once
+#include <string>
+
+#include "results/hdf5_file.h"
+#include "results/run_data.h"
+
+/// The tables of a result file: one struct per group, written row by row and read back whole. In each, `time` is
+/// written last, so that every row it holds is complete; see docs/result-file.md.
+namespace keyblock::results {
+
+inline constexpr const char* result_format = "keyblock result";
+inline constexpr int result_format_version = 1;
+
+void write_model(hid_t file, const simulation::ModelRecord& model);
+simulation::ModelRecord read_model(hid_t file);
+
+class FrameTable {
+ public:
+  FrameTable(hid_t file, const simulation::ModelRecord& model);
+  void append(const simulation::Frame& frame);
+  void flush();
+  static std::vector<simulation::Frame> read(hid_t file);
+
+ private:
+  std::size_t vertices_, blocks_;
+  hdf5::Handle group_;
+  hdf5::Column<float> displacement_, stress_;
+  hdf5::Column<std::uint8_t> status_;
+  hdf5::Column<std::int32_t> stage_;
+  hdf5::Column<std::int64_t> step_;
+  hdf5::Column<double> time_;
+};
+
+class ContactTable {
+ public:
+  explicit ContactTable(hid_t file);
+  void append(const simulation::ContactFrame& frame);
+  void flush();
+  static std::vector<simulation::ContactFrame> read(hid_t file);
+
+ private:
+  hdf5::Handle group_;
+  hdf5::Column<std::int32_t> block_a_, block_b_;
+  hdf5::Column<std::uint8_t> state_, edge_kind_;
+  hdf5::Column<std::int16_t> edge_index_;
+  hdf5::Column<double> position_, normal_, length_, gap_, slip_, normal_force_, shear_force_;
+  hdf5::Column<std::int32_t> stage_;
+  hdf5::Column<std::int64_t> step_, end_;
+  hdf5::Column<double> time_;
+};
+
+class HistoryTable {
+ public:
+  HistoryTable(hid_t file, const simulation::ModelRecord& model);
+  void append(const simulation::HistoryRow& row);
+  void flush();
+  static std::vector<simulation::HistoryRow> read(hid_t file);
+
+ private:
+  std::size_t points_;
+  hdf5::Handle group_;
+  hdf5::Column<double> values_;
+  hdf5::Column<std::int64_t> step_;
+  hdf5::Column<double> time_;
+};
+
+class StepTable {
+ public:
+  explicit StepTable(hid_t file);
+  void append(const simulation::StepRow& row);
+  void flush();
+  static std::vector<simulation::StepRow> read(hid_t file);
+
+ private:
+  hdf5::Handle group_;
+  hdf5::Column<std::int32_t> stage_, iterations_, closed_contacts_;
+  hdf5::Column<std::int64_t> step_;
+  hdf5::Column<double> step_size_, penetration_, max_displacement_, energy_;
+  hdf5::Column<double> time_;
+};
+
+/// Text that grows by lines.
+class TextColumn {
+ public:
+  TextColumn() = default;
+  TextColumn(hid_t file, const std::string& name) : bytes_(file, name, {}) {}
+  void append_line(const std::string& line);
+  void flush() { bytes_.flush(); }
+  /// Complete lines only.
+  static std::vector<std::string> read_lines(hid_t file, const std::string& name);
+
+ private:
+  hdf5::Column<std::uint8_t> bytes_;
+};
+
+}  // namespace keyblock::results

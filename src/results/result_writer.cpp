@@ -1,0 +1,212 @@
+#include "results/result_writer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "results/csv.h"
+#include "results/record_json.h"
+#include "results/result_tables.h"
+#include "results/run_data.h"
+#include "results/summary.h"
+
+namespace keyblock::results {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+hdf5::Handle create_file(const std::filesystem::path& path, const simulation::ModelRecord& model) {
+  const std::string what = fmt::format("{}: cannot create", path.string());
+  const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), what), H5Pclose);
+  hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), what);
+  // Some cluster file systems know no locks.
+  hdf5::check(H5Pset_file_locking(access, true, true), what);
+  hdf5::Handle file(hdf5::check_id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), what),
+                    H5Fclose);
+  write_model(file, model);
+  return file;
+}
+
+// The tables of one file. Members close in reverse order, the file last.
+struct OpenFile {
+  OpenFile(const std::filesystem::path& path, const simulation::ModelRecord& model)
+      : file(create_file(path, model)),
+        frames(file, model),
+        contacts(file),
+        histories(file, model),
+        steps(file),
+        stages(file, "stages"),
+        run(file, "run"),
+        summary(file, "summary") {}
+  void flush() {
+    stages.flush();
+    contacts.flush();
+    histories.flush();
+    steps.flush();
+    frames.flush();
+    run.flush();
+    summary.flush();
+  }
+  hdf5::Handle file;
+  FrameTable frames;
+  ContactTable contacts;
+  HistoryTable histories;
+  StepTable steps;
+  TextColumn stages, run, summary;
+};
+
+}  // namespace
+
+struct ResultWriter::State {
+  hdf5::QuietErrors quiet;
+  std::filesystem::path directory;
+  bool resume = false;
+  std::chrono::duration<double> flush_interval{};
+  simulation::ModelRecord model;
+  std::optional<OpenFile> file;
+  Clock::time_point last_flush;
+  bool published = false;
+  std::vector<std::pair<int, std::string>> waiting_stages;  // lines from before the first row
+
+  [[nodiscard]] std::filesystem::path path() const { return directory / "result.h5"; }
+  [[nodiscard]] std::filesystem::path temporary_path() const { return directory / "result.h5.tmp"; }
+  void copy_earlier(long first_new_step);
+  void publish(long first_new_step);
+};
+
+// What the earlier run had reported before `first_new_step`.
+void ResultWriter::State::copy_earlier(long first_new_step) {
+  const RunData earlier = read_run(directory);
+  if (earlier.model.vertices != model.vertices || earlier.model.blocks.size() != model.blocks.size() ||
+      earlier.model.history_names != model.history_names) {
+    Diagnostic diagnostic;
+    diagnostic.where.file = path().string();
+    diagnostic.found = fmt::format("results of another model ({} blocks)", earlier.model.blocks.size());
+    diagnostic.expected = fmt::format("results of the run to be resumed ({} blocks)", model.blocks.size());
+    diagnostic.hint = "run without --resume, or into another folder";
+    throw InputError(std::move(diagnostic));
+  }
+  const auto copy = [first_new_step](const auto& rows, auto& table) {
+    for (const auto& row : rows) {
+      if (row.step < first_new_step) table.append(row);
+    }
+  };
+  copy(earlier.frames, file->frames);
+  copy(earlier.contacts, file->contacts);
+  copy(earlier.histories, file->histories);
+  copy(earlier.steps, file->steps);
+  const int first_new_stage = waiting_stages.empty() ? 0 : waiting_stages.front().first;
+  for (std::size_t k = 0; k < earlier.run.stages.size() && static_cast<int>(k) < first_new_stage; ++k) {
+    file->stages.append_line(stage_json(static_cast<int>(k), earlier.run.stages[k], true));
+  }
+}
+
+// Gives the file its name, when its first row is to be written.
+void ResultWriter::State::publish(long first_new_step) {
+  if (resume && std::filesystem::exists(path())) copy_earlier(first_new_step);
+  for (const auto& [index, line] : waiting_stages) file->stages.append_line(line);
+  waiting_stages.clear();
+  hdf5::check(H5Fflush(file->file, H5F_SCOPE_GLOBAL), path().string());
+  hdf5::check(H5Fstart_swmr_write(file->file), path().string());
+  std::error_code error;
+  std::filesystem::rename(temporary_path(), path(), error);
+  if (error) throw RunError(fmt::format("{}: cannot rename: {}", path().string(), error.message()));
+  published = true;
+}
+
+ResultWriter::ResultWriter(std::filesystem::path directory, bool resume, double flush_interval)
+    : state_(std::make_unique<State>()) {
+  state_->directory = std::move(directory);
+  state_->resume = resume;
+  state_->flush_interval = std::chrono::duration<double>(flush_interval);
+}
+
+ResultWriter::~ResultWriter() {
+  const bool abandoned = state_->file && !state_->published;
+  state_->file.reset();
+  std::error_code ignored;
+  if (abandoned) std::filesystem::remove(state_->temporary_path(), ignored);
+}
+
+void ResultWriter::begin(const simulation::ModelRecord& model) {
+  std::error_code error;
+  std::filesystem::create_directories(state_->directory, error);
+  if (error)
+    throw RunError(fmt::format("{}: cannot create: {}", state_->directory.string(), error.message()));
+  state_->model = model;
+  state_->file.emplace(state_->temporary_path(), model);
+  state_->last_flush = Clock::now();
+}
+
+// What is to be done before a row is added.
+void ResultWriter::before_event(long step) {
+  if (!state_->published) state_->publish(step);
+  if (Clock::now() - state_->last_flush >= state_->flush_interval) flush();
+}
+
+void ResultWriter::flush() {
+  try {
+    state_->file->flush();
+  } catch (const RunError& error) {
+    throw RunError(fmt::format("{}: cannot write: {}", state_->path().string(), error.what()));
+  }
+  state_->last_flush = Clock::now();
+}
+
+void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) {
+  const std::string line = stage_json(index, stage, false);
+  if (!state_->published)
+    state_->waiting_stages.emplace_back(index, line);
+  else
+    state_->file->stages.append_line(line);
+}
+
+void ResultWriter::frame(const simulation::Frame& frame) {
+  before_event(frame.step);
+  state_->file->frames.append(frame);
+}
+
+void ResultWriter::contacts(const simulation::ContactFrame& frame) {
+  before_event(frame.step);
+  state_->file->contacts.append(frame);
+}
+
+void ResultWriter::history(const simulation::HistoryRow& row) {
+  before_event(row.step);
+  state_->file->histories.append(row);
+}
+
+void ResultWriter::step(const simulation::StepRow& row) {
+  before_event(row.step);
+  state_->file->steps.append(row);
+}
+
+void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
+  const std::string line = stage_json(index, stage, true);
+  if (!state_->published) {
+    state_->waiting_stages.emplace_back(index, line);
+    return;
+  }
+  state_->file->stages.append_line(line);
+  flush();
+}
+
+void ResultWriter::end(const simulation::RunRecord& run) {
+  if (!state_->file) return;  // the run failed before it began
+  if (!state_->published) state_->publish(run.steps + 1);
+  state_->file->run.append_line(run_json(run));
+  state_->file->summary.append_line(summary_json(state_->model, run));
+  flush();
+  hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string());
+  state_->file.reset();
+  write_summary(state_->directory, state_->model, run);
+  const auto& names = state_->model.history_names;
+  if (!names.empty()) write_histories_csv(state_->directory, names, read_histories(state_->directory));
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,45 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "simulation/record.h"
+
+namespace keyblock::results {
+
+/// Writes what a run leaves in its folder: result.h5 while it goes on, and at the end summary.json and, where points
+/// were chosen, histories.csv.
+///
+/// The layout is documented in docs/result-file.md. The file is written in HDF5's single-writer-multiple-reader mode
+/// and flushed at the end of every stage and every `flush_interval` seconds: it can be read while the run goes on, and
+/// after it was killed, up to the last flush (read_run; in Python h5py.File(path, swmr=True)).
+///
+/// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps what
+/// the earlier one had reported before the first step that is now reported (by the step counts of the events, which
+/// therefore must count the whole run), and the stages that had ended.
+///
+/// Every call may throw RunError: the disk may be full.
+class ResultWriter : public simulation::RunObserver {
+ public:
+  static constexpr double default_flush_interval = 2.0;  // s of wall time
+  explicit ResultWriter(std::filesystem::path directory, bool resume = false,
+                        double flush_interval = default_flush_interval);
+  ~ResultWriter() override;
+
+  void begin(const simulation::ModelRecord& model) override;
+  void stage_begin(int index, const simulation::StageRecord& stage) override;
+  void frame(const simulation::Frame& frame) override;
+  void contacts(const simulation::ContactFrame& frame) override;
+  void history(const simulation::HistoryRow& row) override;
+  void step(const simulation::StepRow& row) override;
+  void stage_end(int index, const simulation::StageRecord& stage) override;
+  void end(const simulation::RunRecord& run) override;
+
+ private:
+  void before_event(long step);
+  void flush();
+
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace keyblock::results

@@ -1,0 +1,125 @@
+#include "results/summary.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/atomic_file.h"
+#include "results/record_json.h"
+
+namespace keyblock::results {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json areas(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+  std::set<int> opened;
+  for (const auto& stage : run.stages)
+    opened.insert(stage.stage.excavate.begin(), stage.stage.excavate.end());
+  double blocks = 0.0, excavated = 0.0;
+  for (const auto& block : model.blocks) {
+    const bool out = std::any_of(block.excavations.begin(), block.excavations.end(),
+                                 [&](int e) { return opened.contains(e); });
+    (out ? excavated : blocks) += block.area;
+  }
+  return {{"blocks", blocks}, {"excavated", excavated}, {"domain", model.cutting.domain_area}};
+}
+
+ordered_json cutting(const cutting::CutStatistics& c) {
+  return {{"traces", c.traces},
+          {"trace_length_m", c.trace_length},
+          {"removed_length_m", c.removed_length},
+          {"removed_pieces", c.removed_pieces},
+          {"merged_vertices", c.merged_vertices},
+          {"sliver_area_m2", c.sliver_area}};
+}
+
+ordered_json energy(const simulation::Energy& e) {
+  return {{"kinetic", e.kinetic},     {"strain", e.strain},
+          {"gravity", e.gravity},     {"contact", e.contact},
+          {"friction", e.friction},   {"input", e.input},
+          {"numerical", e.numerical}, {"residual_ratio", e.residual_ratio}};
+}
+
+// Equilibrium is a question only where the stage seeks it.
+ordered_json equilibrium(const simulation::StageRecord& r) {
+  if (r.stage.kind != simulation::StageKind::settle) {
+    return {{"reached", nullptr}, {"worst_residual_ratio", nullptr}, {"moving_blocks", nullptr}};
+  }
+  ordered_json moving = ordered_json::array();
+  for (const auto& m : r.moving) moving.push_back({{"block", m.block}, {"carried", m.carried}});
+  return {{"reached", r.equilibrium_reached},
+          {"worst_residual_ratio", r.worst_residual_ratio},
+          {"moving_blocks", r.moving.size()},
+          {"moving", moving}};
+}
+
+ordered_json damage(const simulation::Damage& d) {
+  return {{"fallen_blocks", d.fallen_blocks},
+          {"fallen_area_m2", d.fallen_area},
+          {"opening_filled_ratio", d.opening_filled_ratio},
+          {"loosened_area_m2", d.loosened_area},
+          {"slip_max_m", d.slip_max},
+          {"slip_mean_m", d.slip_mean},
+          {"slipped_length_m", d.slipped_length},
+          {"opened_length_m", d.opened_length},
+          {"closure_vertical_m", d.closure_vertical},
+          {"closure_horizontal_m", d.closure_horizontal}};
+}
+
+ordered_json stage(const simulation::StageRecord& r) {
+  return {{"name", r.stage.name},
+          {"kind", stage_kind_name(r.stage.kind)},
+          {"steps", r.steps},
+          {"start_time", r.start_time},
+          {"duration", r.duration},
+          {"scale", r.stage.scale},
+          {"pga_m_s2", r.pga},
+          {"wall_time_s", r.wall_time},
+          {"interrupted", r.interrupted},
+          {"equilibrium", equilibrium(r)},
+          {"damage", damage(r.damage)}};
+}
+
+}  // namespace
+
+std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+  ordered_json stages = ordered_json::array();
+  for (const auto& record : run.stages) stages.push_back(stage(record));
+  const ordered_json json{
+      {"title", model.title},
+      {"version", model.version},
+      {"seed", model.seed},
+      {"realization", model.realization},
+      {"interrupted", run.interrupted},
+      {"blocks", model.blocks.size()},
+      {"vertices", model.vertices.size()},
+      {"dof", run.dof},
+      {"joints", model.cutting.joints_used},
+      {"area", areas(model, run)},
+      {"merged_slivers", model.cutting.merged_slivers},
+      {"cutting", cutting(model.cutting)},
+      {"steps", run.steps},
+      {"step_size", model.step_size},
+      {"wall_time_s", run.wall_time},
+      {"ms_per_step", run.steps > 0 ? 1e3 * run.wall_time / static_cast<double>(run.steps) : 0.0},
+      {"threads", model.threads},
+      {"state_hash", run.state_hash},
+      {"open_close",
+       {{"mean_iterations", run.open_close.mean_iterations},
+        {"max_iterations", run.open_close.max_iterations},
+        {"retried_steps", run.open_close.retried_steps},
+        {"unconverged_steps", run.open_close.unconverged_steps}}},
+      {"max_overlap_m", run.max_overlap},
+      {"max_area_change", run.max_area_change},
+      {"energy", energy(run.energy)},
+      {"stages", stages}};
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+void write_summary(const std::filesystem::path& directory, const simulation::ModelRecord& model,
+                   const simulation::RunRecord& run) {
+  write_file_atomically(directory / "summary.json", summary_json(model, run));
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,20 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "simulation/record.h"
+
+namespace keyblock::results {
+
+/// What a run came to, for people and scripts: the fields are described in the user guide. Areas in m², times in s;
+/// every number can be read back to its last bit; what is not a number is null.
+///
+/// `area.excavated` counts the blocks inside excavations that were opened, `area.blocks` all others. `joints` are the
+/// traces of which some piece bounds two blocks.
+std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run);
+
+/// Writes DIR/summary.json at once. Throws RunError.
+void write_summary(const std::filesystem::path& directory, const simulation::ModelRecord& model,
+                   const simulation::RunRecord& run);
+
+}  // namespace keyblock::results

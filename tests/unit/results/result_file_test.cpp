@@ -1,0 +1,301 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "results/result_writer.h"
+#include "results/run_data.h"
+#include "sample_run.h"
+
+namespace keyblock::results {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double never = 1e9;  // s between flushes
+
+std::string error_of(const std::filesystem::path& folder) {
+  try {
+    read_run(folder);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Runs `work` in a process that is killed when it returns, as by the kernel: nothing is closed.
+void in_killed_process(const std::function<void()>& work) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    work();
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "the work failed";
+  ASSERT_EQ(WTERMSIG(status), SIGKILL);
+}
+
+TEST(ResultFile, ComesBackToTheLastBit) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  expect_equal(read_run(folder), sample.expected());
+  EXPECT_EQ(read_histories(folder).size(), 30U);
+  EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "histories.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
+}
+
+TEST(ResultFile, HowOftenItIsFlushedDoesNotShow) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder, false, 0.0);  // after every event
+    sample.play(writer);
+  }
+  expect_equal(read_run(folder), sample.expected());
+}
+
+TEST(ResultFile, ARunWithoutContactsHistoriesOrFrames) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  sample.model.history_names.clear();
+  simulation::RunRecord run = sample.run();
+  {
+    ResultWriter writer(folder);
+    writer.begin(sample.model);
+    simulation::HistoryRow row;
+    row.step = 4;
+    writer.history(row);
+    writer.end(run);
+  }
+  const RunData data = read_run(folder);
+  EXPECT_TRUE(data.frames.empty());
+  EXPECT_TRUE(data.contacts.empty());
+  ASSERT_EQ(data.histories.size(), 1U);
+  EXPECT_TRUE(data.histories[0].points.empty());
+  EXPECT_FALSE(std::filesystem::exists(folder / "histories.csv"));
+}
+
+TEST(ResultFile, ManyRows) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder, false, never);
+    writer.begin(sample.model);
+    for (long step = 1; step <= 20000; ++step) writer.history(sample.history(step));
+    for (long step = 1; step <= 300; ++step) writer.contacts(sample.contacts(0, step, 100));
+    writer.end(sample.run());
+  }
+  const RunData data = read_run(folder);
+  ASSERT_EQ(data.histories.size(), 20000U);
+  EXPECT_EQ(data.histories[19999].points[1].ux, sample.history(20000).points[1].ux);
+  ASSERT_EQ(data.contacts.size(), 300U);
+  EXPECT_EQ(data.contacts[299].contacts[99].gap, sample.contacts(0, 300, 100).contacts[99].gap);
+}
+
+TEST(ResultFile, SurvivesBeingKilled) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  // Flushed at the end of stage 0 (step 10) alone.
+  in_killed_process([&] {
+    ResultWriter writer(folder, false, never);
+    sample.play(writer, 1, 23, false);
+    ::kill(::getpid(), SIGKILL);
+  });
+  RunData data = read_run(folder);
+  EXPECT_TRUE(data.run.interrupted);
+  ASSERT_EQ(data.run.stages.size(), 1U);
+  EXPECT_EQ(data.run.stages[0].steps, 10);
+  EXPECT_EQ(data.run.steps, 10);
+  RunData expected = sample.expected();
+  expected.frames.resize(2);
+  expected.contacts.resize(1);
+  expected.histories.resize(10);
+  expected.steps.resize(10);
+  expected.run = data.run;
+  expected.run.stages = {sample.stage(0)};
+  expect_equal(data, expected);
+}
+
+TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  in_killed_process([&] {
+    ResultWriter writer(folder, false, 0.0);
+    sample.play(writer, 1, 23, false);
+    ::kill(::getpid(), SIGKILL);
+  });
+  const RunData data = read_run(folder);
+  // Every event flushes those before it.
+  ASSERT_EQ(data.frames.size(), 4U);
+  EXPECT_EQ(data.steps.size(), 23U);
+  EXPECT_EQ(data.histories.size(), 22U);
+  ASSERT_EQ(data.run.stages.size(), 2U);
+  EXPECT_FALSE(data.run.stages[0].interrupted);
+  EXPECT_TRUE(data.run.stages[1].interrupted);
+  EXPECT_EQ(data.run.stages[1].steps, 13);
+  EXPECT_EQ(data.run.steps, 23);
+  EXPECT_DOUBLE_EQ(data.run.stages[1].duration, sample.step_row(1, 23).time);
+  EXPECT_EQ(data.run.energy.kinetic, sample.step_row(1, 23).energy.kinetic);
+}
+
+// The kill may come at any moment, in the middle of a flush, too.
+TEST(ResultFile, SurvivesAKillAtAnyMoment) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  int with_frames = 0;
+  for (int round = 0; round < 40; ++round) {
+    std::filesystem::remove(folder / "result.h5");
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      ResultWriter writer(folder, false, 0.0);
+      writer.begin(sample.model);
+      for (long step = 1;; ++step) {
+        writer.history(sample.history(step));
+        writer.contacts(sample.contacts(0, step, 50));
+        writer.frame(sample.frame(0, step));
+      }
+    }
+    while (!std::filesystem::exists(folder / "result.h5")) ::usleep(500);
+    ::usleep(static_cast<useconds_t>(1000 + 1700 * round));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    const RunData data = read_run(folder);
+    with_frames += data.frames.empty() ? 0 : 1;
+    for (std::size_t k = 0; k < data.frames.size(); ++k) {
+      const auto expected = sample.frame(0, static_cast<long>(k) + 1);
+      ASSERT_EQ(data.frames[k].step, expected.step);
+      ASSERT_EQ(data.frames[k].displacement, expected.displacement);
+      ASSERT_EQ(data.frames[k].status, expected.status);
+    }
+    for (std::size_t k = 0; k < data.contacts.size(); ++k) {
+      const auto expected = sample.contacts(0, static_cast<long>(k) + 1, 50);
+      ASSERT_EQ(data.contacts[k].contacts[49].gap, expected.contacts[49].gap);
+      ASSERT_EQ(data.contacts[k].contacts[49].shear_force, expected.contacts[49].shear_force);
+    }
+    for (std::size_t k = 0; k < data.histories.size(); ++k) {
+      ASSERT_EQ(data.histories[k].points[1].sxx, sample.history(static_cast<long>(k) + 1).points[1].sxx);
+    }
+  }
+  EXPECT_GT(with_frames, 30);
+}
+
+TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  ResultWriter writer(folder, false, 0.0);
+  sample.play(writer, 1, 12, false);
+  const RunData data = read_run(folder);
+  EXPECT_EQ(data.frames.size(), 2U);
+  EXPECT_TRUE(data.run.interrupted);
+}
+
+TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  in_killed_process([&] {
+    ResultWriter writer(folder, false, 0.0);
+    sample.play(writer, 1, 27, false);
+    ::kill(::getpid(), SIGKILL);
+  });
+  {
+    ResultWriter writer(folder, true);
+    sample.play(writer, 19, 30);  // from a checkpoint at step 18
+  }
+  expect_equal(read_run(folder), sample.expected());
+}
+
+TEST(ResultFile, ResumingWithoutEarlierResultsIsARunLikeAnyOther) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder, true);
+    sample.play(writer);
+  }
+  expect_equal(read_run(folder), sample.expected());
+}
+
+TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  {
+    SampleRun other;
+    other.model.vertices[0].x += 1.0;
+    ResultWriter writer(folder, true);
+    EXPECT_THROW(other.play(writer), InputError);
+  }
+  expect_equal(read_run(folder), sample.expected());
+  EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
+}
+
+TEST(ResultFile, AFailedStartLeavesEarlierResultsAlone) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  {
+    ResultWriter writer(folder);
+    writer.begin(sample.model);
+    writer.stage_begin(0, sample.stage(0));
+  }
+  expect_equal(read_run(folder), sample.expected());
+}
+
+TEST(ResultFile, WhatIsNoResultFileIsNamed) {
+  const auto folder = fresh_folder();
+  EXPECT_THAT(error_of(folder), HasSubstr("result.h5: found no such file"));
+  std::ofstream(folder / "result.h5") << "hello";
+  EXPECT_THAT(error_of(folder), HasSubstr("no HDF5 file"));
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const std::string whole = read_file(folder / "result.h5");
+  for (const std::size_t size : {std::size_t{20}, std::size_t{3000}, whole.size() / 2, whole.size() - 100}) {
+    std::ofstream(folder / "result.h5", std::ios::binary)
+        .write(whole.data(), static_cast<std::streamsize>(size));
+    EXPECT_THAT(error_of(folder), HasSubstr("result.h5")) << size;
+  }
+}
+
+TEST(ResultFile, AFolderThatCannotBeWrittenIsARunError) {
+  const auto folder = fresh_folder();
+  std::ofstream(folder / "file") << "x";
+  SampleRun sample;
+  ResultWriter writer(folder / "file" / "out");
+  EXPECT_THROW(writer.begin(sample.model), RunError);
+}
+
+TEST(ResultFile, FramesOfAnotherModelAreRefused) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  ResultWriter writer(folder);
+  writer.begin(sample.model);
+  simulation::Frame frame = sample.frame(0, 1);
+  frame.stress.pop_back();
+  EXPECT_THROW(writer.frame(frame), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace keyblock::results

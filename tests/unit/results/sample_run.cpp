@@ -1,0 +1,362 @@
+#include "sample_run.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace keyblock::results {
+namespace {
+
+constexpr double step_size = 0.1 + 0.2 - 0.299;  // no round number
+
+double noise(long seed, int k) {
+  std::mt19937_64 random(static_cast<unsigned long>(seed * 1000 + k));
+  const double mantissa = std::uniform_real_distribution<double>(-1.0, 1.0)(random);
+  return std::ldexp(mantissa, static_cast<int>(random() % 60) - 30);
+}
+
+template <class T>
+bool same(T a, T b) {
+  if constexpr (sizeof(T) == 8)
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  else
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
+
+bool same(Vec2 a, Vec2 b) {
+  return same(a.x, b.x) && same(a.y, b.y);
+}
+
+void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecord& b) {
+  EXPECT_EQ(a.title, b.title);
+  EXPECT_EQ(a.version, b.version);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.realization, b.realization);
+  EXPECT_EQ(a.threads, b.threads);
+  EXPECT_TRUE(same(a.step_size, b.step_size));
+  EXPECT_TRUE(same(a.origin, b.origin));
+  EXPECT_EQ(a.scenario, b.scenario);
+  ASSERT_EQ(a.blocks.size(), b.blocks.size());
+  for (std::size_t k = 0; k < a.blocks.size(); ++k) {
+    EXPECT_EQ(a.blocks[k].name, b.blocks[k].name);
+    EXPECT_EQ(a.blocks[k].order, b.blocks[k].order);
+    EXPECT_EQ(a.blocks[k].fixed, b.blocks[k].fixed);
+    EXPECT_TRUE(same(a.blocks[k].area, b.blocks[k].area));
+    EXPECT_TRUE(same(a.blocks[k].density, b.blocks[k].density));
+    EXPECT_EQ(a.blocks[k].excavations, b.blocks[k].excavations);
+    EXPECT_TRUE(same(a.blocks[k].centroid, b.blocks[k].centroid));
+    EXPECT_EQ(a.blocks[k].ring_start, b.blocks[k].ring_start);
+  }
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.edge_label, b.edge_label);
+  EXPECT_EQ(a.joint_set_names, b.joint_set_names);
+  EXPECT_EQ(a.trace_map_names, b.trace_map_names);
+  EXPECT_EQ(a.excavation_names, b.excavation_names);
+  EXPECT_EQ(a.excavation_outlines, b.excavation_outlines);
+  EXPECT_EQ(a.history_names, b.history_names);
+  EXPECT_EQ(a.opening_width, b.opening_width);
+  EXPECT_EQ(a.cutting.traces, b.cutting.traces);
+  EXPECT_EQ(a.cutting.joints_used, b.cutting.joints_used);
+  EXPECT_EQ(a.cutting.removed_pieces, b.cutting.removed_pieces);
+  EXPECT_EQ(a.cutting.merged_slivers, b.cutting.merged_slivers);
+  EXPECT_EQ(a.cutting.merged_vertices, b.cutting.merged_vertices);
+  EXPECT_TRUE(same(a.cutting.trace_length, b.cutting.trace_length));
+  EXPECT_TRUE(same(a.cutting.removed_length, b.cutting.removed_length));
+  EXPECT_TRUE(same(a.cutting.domain_area, b.cutting.domain_area));
+  EXPECT_TRUE(same(a.cutting.sliver_area, b.cutting.sliver_area));
+}
+
+void expect_equal(const simulation::Energy& a, const simulation::Energy& b) {
+  for (const auto member :
+       {&simulation::Energy::kinetic, &simulation::Energy::strain, &simulation::Energy::gravity,
+        &simulation::Energy::contact, &simulation::Energy::friction, &simulation::Energy::input,
+        &simulation::Energy::numerical, &simulation::Energy::residual_ratio}) {
+    EXPECT_TRUE(same(a.*member, b.*member));
+  }
+}
+
+void expect_equal(const simulation::Frame& a, const simulation::Frame& b) {
+  EXPECT_TRUE(same(a.time, b.time));
+  EXPECT_EQ(a.stage, b.stage);
+  EXPECT_EQ(a.step, b.step);
+  ASSERT_EQ(a.displacement.size(), b.displacement.size());
+  ASSERT_EQ(a.stress.size(), b.stress.size());
+  for (std::size_t k = 0; k < a.displacement.size(); ++k) {
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same(a.displacement[k][i], b.displacement[k][i]));
+  }
+  for (std::size_t k = 0; k < a.stress.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(same(a.stress[k][i], b.stress[k][i]));
+  }
+  EXPECT_EQ(a.status, b.status);
+}
+
+void expect_equal(const simulation::ContactFrame& a, const simulation::ContactFrame& b) {
+  EXPECT_TRUE(same(a.time, b.time));
+  EXPECT_EQ(a.stage, b.stage);
+  EXPECT_EQ(a.step, b.step);
+  ASSERT_EQ(a.contacts.size(), b.contacts.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+    const auto &p = a.contacts[k], &q = b.contacts[k];
+    EXPECT_EQ(p.block_a, q.block_a);
+    EXPECT_EQ(p.block_b, q.block_b);
+    EXPECT_EQ(p.state, q.state);
+    EXPECT_TRUE(same(p.position, q.position) && same(p.normal, q.normal));
+    EXPECT_TRUE(same(p.length, q.length) && same(p.gap, q.gap) && same(p.slip, q.slip));
+    EXPECT_TRUE(same(p.normal_force, q.normal_force) && same(p.shear_force, q.shear_force));
+    EXPECT_EQ(p.label, q.label);
+  }
+}
+
+void expect_equal(const simulation::HistoryRow& a, const simulation::HistoryRow& b) {
+  EXPECT_TRUE(same(a.time, b.time));
+  EXPECT_EQ(a.step, b.step);
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t k = 0; k < a.points.size(); ++k) {
+    const auto &p = a.points[k], &q = b.points[k];
+    EXPECT_TRUE(same(p.ux, q.ux) && same(p.uy, q.uy) && same(p.vx, q.vx) && same(p.vy, q.vy));
+    EXPECT_TRUE(same(p.sxx, q.sxx) && same(p.syy, q.syy) && same(p.sxy, q.sxy));
+  }
+}
+
+void expect_equal(const simulation::StepRow& a, const simulation::StepRow& b) {
+  EXPECT_TRUE(same(a.time, b.time) && same(a.step_size, b.step_size));
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.stage, b.stage);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_TRUE(same(a.penetration, b.penetration) && same(a.max_displacement, b.max_displacement));
+  EXPECT_EQ(a.closed_contacts, b.closed_contacts);
+  expect_equal(a.energy, b.energy);
+}
+
+void expect_equal(const simulation::StageRecord& a, const simulation::StageRecord& b) {
+  EXPECT_EQ(a.stage.name, b.stage.name);
+  EXPECT_EQ(a.stage.kind, b.stage.kind);
+  EXPECT_EQ(a.stage.excavate, b.stage.excavate);
+  EXPECT_EQ(a.stage.motion, b.stage.motion);
+  EXPECT_EQ(a.stage.scale, b.stage.scale);
+  EXPECT_EQ(a.stage.duration, b.stage.duration);
+  EXPECT_EQ(a.stage.max_steps, b.stage.max_steps);
+  EXPECT_EQ(a.stage.tolerance, b.stage.tolerance);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_TRUE(same(a.start_time, b.start_time) && same(a.duration, b.duration) && same(a.pga, b.pga));
+  EXPECT_EQ(a.equilibrium_reached, b.equilibrium_reached);
+  EXPECT_TRUE(same(a.worst_residual_ratio, b.worst_residual_ratio));
+  ASSERT_EQ(a.moving.size(), b.moving.size());
+  for (std::size_t k = 0; k < a.moving.size(); ++k) {
+    EXPECT_EQ(a.moving[k].block, b.moving[k].block);
+    EXPECT_TRUE(same(a.moving[k].carried, b.moving[k].carried));
+  }
+  EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
+  using D = simulation::Damage;
+  for (const auto member :
+       {&D::fallen_area, &D::opening_filled_ratio, &D::loosened_area, &D::slip_max, &D::slip_mean,
+        &D::slipped_length, &D::opened_length, &D::closure_vertical, &D::closure_horizontal}) {
+    EXPECT_TRUE(same(a.damage.*member, b.damage.*member));
+  }
+  EXPECT_TRUE(same(a.wall_time, b.wall_time));
+  EXPECT_EQ(a.interrupted, b.interrupted);
+  EXPECT_EQ(a.motion_time, b.motion_time);
+  EXPECT_EQ(a.motion, b.motion);
+}
+
+template <class Rows>
+void expect_equal_rows(const Rows& a, const Rows& b, const char* what) {
+  SCOPED_TRACE(what);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) expect_equal(a[k], b[k]);
+}
+
+}  // namespace
+
+SampleRun::SampleRun() {
+  model.title = "A \"sample\" – with µ, <tags> & more";
+  model.version = "0.1.0";
+  model.seed = 18446744073709551557ULL;
+  model.realization = 3;
+  model.threads = 2;
+  model.step_size = step_size;
+  model.origin = {466000.1, 6691600.7};
+  model.scenario = "title = \"x\"\n# set rock.order=2\n";
+  model.blocks = {{"base", 1, true, 0.5, 2270.0, {}, {1.0 / 3.0, 1.0 / 3.0}, {0, 3}},
+                  {"", 2, false, 15.0, 2600.5, {0, 1}, {5.0, 5.0}, {3, 7, 11}},
+                  {"slider", 1, false, 0.5, 2270.0, {1}, {7.0, 0.1}, {11, 14}}};
+  model.vertices = {{0, 0},     {1, 0},     {0, 1},     {3, 3},     {7, 3}, {7, 7}, {3, 7},
+                    {4.5, 4.5}, {4.5, 5.5}, {5.5, 5.5}, {5.5, 4.5}, {7, 0}, {8, 0}, {7, 1}};
+  for (std::size_t k = 0; k < model.vertices.size(); ++k) {
+    model.edge_label.push_back({static_cast<cutting::EdgeKind>(k % 5), static_cast<std::int16_t>(k)});
+  }
+  model.joint_set_names = {"J1", "J 2"};
+  model.trace_map_names = {"map"};
+  model.excavation_names = {"tunnel", "niche"};
+  model.excavation_outlines = {{{0, 0}, {1, 0}, {0.1, 1}}, {}};
+  model.history_names = {"crown", "a/b, \"c\""};
+  model.opening_width = 5.5;
+  model.cutting = {10, 7, 12.3, 4.5, 6, 2, 8, 16.0, 1e-5};
+}
+
+simulation::Frame SampleRun::frame(int stage, long step) {
+  simulation::Frame frame;
+  frame.time = stage == 0 ? 0.0 : static_cast<double>(step - 10) * step_size;
+  frame.stage = stage;
+  frame.step = step;
+  for (int k = 0; k < static_cast<int>(model.vertices.size()); ++k) {
+    frame.displacement.push_back(
+        {static_cast<float>(noise(step, 2 * k)), static_cast<float>(noise(step, 2 * k + 1))});
+  }
+  for (int k = 0; k < static_cast<int>(model.blocks.size()); ++k) {
+    frame.stress.push_back(
+        {static_cast<float>(noise(step, 100 + k)), -0.0F, std::numeric_limits<float>::denorm_min()});
+    frame.status.push_back(static_cast<simulation::BlockStatus>((step + k) % 4));
+  }
+  return frame;
+}
+
+simulation::ContactFrame SampleRun::contacts(int stage, long step, int count) {
+  simulation::ContactFrame frame{static_cast<double>(step) * step_size, stage, {}, step};
+  for (int k = 0; k < count; ++k) {
+    frame.contacts.push_back({k,
+                              k + 1,
+                              static_cast<simulation::ContactState>(k % 3),
+                              {noise(step, k), noise(step, k + 1)},
+                              {0.6, 0.8},
+                              noise(step, k + 2),
+                              noise(step, k + 3),
+                              noise(step, k + 4),
+                              noise(step, k + 5),
+                              noise(step, k + 6),
+                              {cutting::EdgeKind::joint_set, static_cast<std::int16_t>(-k)}});
+  }
+  return frame;
+}
+
+simulation::HistoryRow SampleRun::history(long step) {
+  simulation::HistoryRow row;
+  row.time = static_cast<double>(step) * step_size;
+  row.step = step;
+  for (int k = 0; k < 2; ++k) {
+    row.points.push_back({noise(step, k), noise(step, k + 2), noise(step, k + 4), noise(step, k + 6),
+                          noise(step, k + 8), 1e300, -5e-324});
+  }
+  return row;
+}
+
+simulation::StepRow SampleRun::step_row(int stage, long step) {
+  simulation::StepRow row{static_cast<double>(step) * step_size,
+                          step,
+                          stage,
+                          3,
+                          step_size,
+                          noise(step, 1),
+                          noise(step, 2),
+                          17,
+                          {}};
+  row.energy = {noise(step, 3), noise(step, 4), noise(step, 5), noise(step, 6),
+                noise(step, 7), noise(step, 8), noise(step, 9), 1e-3};
+  return row;
+}
+
+simulation::StageRecord SampleRun::stage(int index) {
+  simulation::StageRecord record;
+  record.stage.name = index == 0 ? "in situ" : "first \"earthquake\"";
+  record.stage.kind = index == 0 ? simulation::StageKind::settle : simulation::StageKind::shake;
+  if (index == 0) record.stage.excavate = {0};
+  if (index == 0) record.stage.max_steps = 500;
+  if (index == 1) {
+    record.stage.motion = 0;
+    record.stage.scale = 0.3;
+    record.stage.duration = 20 * step_size;
+    record.pga = noise(1, 1);
+    record.motion_time = {0.0, 0.1, 0.2};
+    record.motion = {{0.1, 0.2}, {0.3, -0.4}, {0.0, 0.0}};
+  }
+  record.steps = index == 0 ? 10 : 20;
+  record.start_time = 0.0;
+  record.duration = index == 0 ? 0.0 : 20 * step_size;
+  record.equilibrium_reached = index == 0;
+  record.worst_residual_ratio = index == 0 ? 0.1 / 3.0 : std::nan("");
+  if (index == 0) record.moving = {{2, 0.7}};
+  record.damage = {index, noise(index, 1), 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, -0.7, 1e-17};
+  record.wall_time = 1.0 / 3.0;
+  return record;
+}
+
+simulation::RunRecord SampleRun::run() {
+  simulation::RunRecord record;
+  record.steps = 30;
+  record.wall_time = 2.0 / 3.0;
+  record.dof = 36;
+  record.state_hash = "0123456789abcdef";
+  record.open_close = {3.7, 9, 2, 0};
+  record.max_overlap = 1.0 / 7.0;
+  record.max_area_change = 1e-12;
+  record.energy = step_row(1, 30).energy;
+  record.stages = {stage(0), stage(1)};
+  return record;
+}
+
+void SampleRun::play(simulation::RunObserver& observer, long first, long last, bool finish) {
+  observer.begin(model);
+  int stage_now = -1;
+  for (long step = first; step <= last; ++step) {
+    const int index = step <= 10 ? 0 : 1;
+    if (index != stage_now) {
+      stage_now = index;
+      simulation::StageRecord record = stage(index);
+      record.steps = 0;
+      record.duration = 0.0;
+      observer.stage_begin(index, record);
+    }
+    observer.step(step_row(index, step));
+    observer.history(history(step));
+    if (step % 5 == 0) observer.frame(frame(index, step));
+    if (step % 10 == 0) observer.contacts(contacts(index, step, static_cast<int>(step / 10) - 1));
+    if (step == 10 || step == 30) observer.stage_end(index, stage(index));
+  }
+  if (finish) observer.end(run());
+}
+
+RunData SampleRun::expected() {
+  RunData data{model, run(), {}, {}, {}, {}};
+  for (long step = 1; step <= 30; ++step) {
+    const int index = step <= 10 ? 0 : 1;
+    data.steps.push_back(step_row(index, step));
+    data.histories.push_back(history(step));
+    if (step % 5 == 0) data.frames.push_back(frame(index, step));
+    if (step % 10 == 0) data.contacts.push_back(contacts(index, step, static_cast<int>(step / 10) - 1));
+  }
+  return data;
+}
+
+void expect_equal(const RunData& a, const RunData& b) {
+  expect_equal(a.model, b.model);
+  expect_equal_rows(a.frames, b.frames, "frames");
+  expect_equal_rows(a.contacts, b.contacts, "contacts");
+  expect_equal_rows(a.histories, b.histories, "histories");
+  expect_equal_rows(a.steps, b.steps, "steps");
+  expect_equal_rows(a.run.stages, b.run.stages, "stages");
+  EXPECT_EQ(a.run.steps, b.run.steps);
+  EXPECT_TRUE(same(a.run.wall_time, b.run.wall_time));
+  EXPECT_EQ(a.run.dof, b.run.dof);
+  EXPECT_EQ(a.run.state_hash, b.run.state_hash);
+  EXPECT_TRUE(same(a.run.open_close.mean_iterations, b.run.open_close.mean_iterations));
+  EXPECT_EQ(a.run.open_close.max_iterations, b.run.open_close.max_iterations);
+  EXPECT_EQ(a.run.open_close.retried_steps, b.run.open_close.retried_steps);
+  EXPECT_EQ(a.run.open_close.unconverged_steps, b.run.open_close.unconverged_steps);
+  EXPECT_TRUE(same(a.run.max_overlap, b.run.max_overlap));
+  EXPECT_TRUE(same(a.run.max_area_change, b.run.max_area_change));
+  expect_equal(a.run.energy, b.run.energy);
+  EXPECT_EQ(a.run.interrupted, b.run.interrupted);
+}
+
+std::filesystem::path fresh_folder() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const auto folder =
+      std::filesystem::path(testing::TempDir()) / (std::string(test->test_suite_name()) + "." + test->name());
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+}  // namespace keyblock::results

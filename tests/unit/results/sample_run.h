@@ -1,0 +1,36 @@
+#pragma once
+#include <filesystem>
+#include <random>
+#include <string>
+
+#include "results/run_data.h"
+
+/// A made-up run with awkward numbers: two triangles and a square with a hole, two stages.
+namespace keyblock::results {
+
+class SampleRun {
+ public:
+  simulation::ModelRecord model;
+
+  SampleRun();
+  simulation::Frame frame(int stage, long step);
+  simulation::ContactFrame contacts(int stage, long step, int count);
+  simulation::HistoryRow history(long step);
+  simulation::StepRow step_row(int stage, long step);
+  simulation::StageRecord stage(int index);
+  simulation::RunRecord run();
+
+  /// Steps 1 … 10 are stage 0 and 11 … 30 stage 1, from `first` on, to `observer`; a frame every 5, contacts every 10.
+  /// Everything depends on the step alone. With `finish`, the run ends after the last step.
+  void play(simulation::RunObserver& observer, long first = 1, long last = 30, bool finish = true);
+  /// What `play` reports, as read back.
+  RunData expected();
+};
+
+/// Same to the last bit (for NaN, too).
+void expect_equal(const RunData& a, const RunData& b);
+
+/// An empty folder of its own for the running test.
+std::filesystem::path fresh_folder();
+
+}  // namespace keyblock::results

@@ -1,0 +1,138 @@
+#include "results/summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "results/csv.h"
+#include "sample_run.h"
+
+namespace keyblock::results {
+namespace {
+
+using nlohmann::json;
+
+TEST(Summary, HasEveryFieldOfTheContract) {
+  SampleRun sample;
+  const json summary = json::parse(summary_json(sample.model, sample.run()));
+  for (const char* key : {"title",
+                          "version",
+                          "seed",
+                          "realization",
+                          "blocks",
+                          "vertices",
+                          "dof",
+                          "joints",
+                          "area",
+                          "merged_slivers",
+                          "steps",
+                          "step_size",
+                          "wall_time_s",
+                          "ms_per_step",
+                          "threads",
+                          "state_hash",
+                          "open_close",
+                          "max_overlap_m",
+                          "max_area_change",
+                          "energy",
+                          "stages"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+  for (const char* key : {"blocks", "excavated", "domain"}) EXPECT_TRUE(summary["area"].contains(key)) << key;
+  for (const char* key : {"mean_iterations", "max_iterations", "retried_steps", "unconverged_steps"}) {
+    EXPECT_TRUE(summary["open_close"].contains(key)) << key;
+  }
+  for (const char* key :
+       {"kinetic", "strain", "gravity", "contact", "friction", "input", "numerical", "residual_ratio"}) {
+    EXPECT_TRUE(summary["energy"].contains(key)) << key;
+  }
+  ASSERT_EQ(summary["stages"].size(), 2U);
+  for (const json& stage : summary["stages"]) {
+    for (const char* key : {"name", "kind", "steps", "duration", "pga_m_s2", "equilibrium", "damage"}) {
+      EXPECT_TRUE(stage.contains(key)) << key;
+    }
+    for (const char* key : {"reached", "worst_residual_ratio", "moving_blocks"}) {
+      EXPECT_TRUE(stage["equilibrium"].contains(key)) << key;
+    }
+    for (const char* key : {"fallen_blocks", "fallen_area_m2", "opening_filled_ratio", "loosened_area_m2",
+                            "slip_max_m", "slip_mean_m", "slipped_length_m", "opened_length_m",
+                            "closure_vertical_m", "closure_horizontal_m"}) {
+      EXPECT_TRUE(stage["damage"].contains(key)) << key;
+    }
+  }
+}
+
+TEST(Summary, NumbersComeBackToTheLastBit) {
+  SampleRun sample;
+  const auto run = sample.run();
+  const json summary = json::parse(summary_json(sample.model, run));
+  EXPECT_EQ(summary["seed"].get<std::uint64_t>(), sample.model.seed);
+  EXPECT_EQ(summary["title"], sample.model.title);
+  EXPECT_EQ(summary["step_size"].get<double>(), sample.model.step_size);
+  EXPECT_EQ(summary["max_overlap_m"].get<double>(), run.max_overlap);
+  EXPECT_EQ(summary["energy"]["numerical"].get<double>(), run.energy.numerical);
+  EXPECT_EQ(summary["stages"][0]["damage"]["closure_horizontal_m"].get<double>(), 1e-17);
+  EXPECT_EQ(summary["ms_per_step"].get<double>(), 1e3 * run.wall_time / 30.0);
+  EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving_blocks"], 1);
+  EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["block"], 2);
+  EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["carried"], 0.7);
+  EXPECT_TRUE(summary["stages"][1]["equilibrium"]["reached"].is_null());
+  EXPECT_EQ(summary["stages"][1]["kind"], "shake");
+}
+
+// The block in both excavations goes with the first; the one in the second alone stays, as that is never opened.
+TEST(Summary, AreasOfWhatWasExcavated) {
+  SampleRun sample;
+  const json summary = json::parse(summary_json(sample.model, sample.run()));
+  EXPECT_EQ(summary["area"]["excavated"], 15.0);
+  EXPECT_EQ(summary["area"]["blocks"], 1.0);
+  EXPECT_EQ(summary["area"]["domain"], 16.0);
+}
+
+TEST(Summary, WhatIsNoNumberIsNull) {
+  SampleRun sample;
+  auto run = sample.run();
+  run.max_overlap = std::nan("");
+  run.energy.input = HUGE_VAL;
+  run.steps = 0;
+  const json summary = json::parse(summary_json(sample.model, run));
+  EXPECT_TRUE(summary["max_overlap_m"].is_null());
+  EXPECT_TRUE(summary["energy"]["input"].is_null());
+  EXPECT_EQ(summary["ms_per_step"], 0.0);
+}
+
+TEST(HistoriesCsv, HeaderAndRows) {
+  SampleRun sample;
+  const std::vector<simulation::HistoryRow> rows{sample.history(1), sample.history(2)};
+  const std::string text = histories_csv({"crown", "a/b, \"c\""}, rows);
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_THAT(
+      lines[0],
+      testing::StartsWith(
+          "time,crown.ux,crown.uy,crown.vx,crown.vy,crown.sxx,crown.syy,crown.sxy,\"a/b, \"\"c\"\".ux\""));
+  std::vector<double> values;
+  for (std::size_t begin = 0; begin <= lines[2].size();) {
+    const std::size_t end = std::min(lines[2].find(',', begin), lines[2].size());
+    values.push_back(std::strtod(lines[2].c_str() + begin, nullptr));
+    begin = end + 1;
+  }
+  ASSERT_EQ(values.size(), 15U);
+  EXPECT_EQ(values[0], rows[1].time);
+  EXPECT_EQ(values[1], rows[1].points[0].ux);
+  EXPECT_EQ(values[8], rows[1].points[1].ux);
+  EXPECT_EQ(values[13], 1e300);
+  EXPECT_EQ(histories_csv({"p"}, {}), "time,p.ux,p.uy,p.vx,p.vy,p.sxx,p.syy,p.sxy\n");
+}
+
+}  // namespace
+}  // namespace keyblock::results
