@@ -34,7 +34,6 @@ Stepper::Stepper(Model& model, ThreadTeam& team)
       solver_(model.solver.linear == LinearSolver::block ? linalg::make_block_cholesky()
                                                          : linalg::make_cholmod()),
       reach_(model.blocks.size(), 0.0),
-      moved_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       balance_(model.blocks.size()) {
   for (const Block& block : model.blocks) {
@@ -42,7 +41,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team)
   }
 }
 
-void Stepper::place(const State& state) {
+void Stepper::place(State& state) {
   contact::Surface& surface = model_.surface;
   team_.for_range(model_.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
@@ -54,14 +53,15 @@ void Stepper::place(const State& state) {
         moved = std::max(moved, squared_norm(x - surface.position[v]));
         surface.position[v] = x;
       }
-      moved_[b] = std::sqrt(moved);
+      state.moved[b] = std::sqrt(moved);
     }
   });
 }
 
 void Stepper::start(State& state) {
+  state.moved.assign(model_.blocks.size(), 0.0);
   place(state);
-  std::fill(moved_.begin(), moved_.end(), 0.0);
+  std::fill(state.moved.begin(), state.moved.end(), 0.0);
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
   detection_.find(model_.surface, reach_, state.contacts, contacts_);
@@ -89,10 +89,21 @@ void Stepper::start(State& state) {
 }
 
 void Stepper::resume(State& state) {
+  const std::vector<double> moved = state.moved;
   place(state);
+  state.moved = moved;
   candidates_.invalidate();
-  std::fill(moved_.begin(), moved_.end(), 0.0);
   analysed_ = false;
+}
+
+std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
+  contact::Candidates candidates(tolerances_);
+  const std::vector<double> still(model_.blocks.size(), 0.0);
+  std::vector<contact::Candidate> list = state.contacts;
+  candidates.update(model_.surface, still, list);
+  std::vector<contact::Contact> contacts;
+  detection_.find(model_.surface, still, list, contacts);
+  return contacts;
 }
 
 void Stepper::remove_absent(State& state) {
@@ -109,7 +120,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     if (drive.is_static) {
-      reach_[b] = 2.0 * moved_[b];
+      reach_[b] = 2.0 * state.moved[b];
       continue;
     }
     const Block& block = model_.blocks[b];
@@ -288,7 +299,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   }
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (model_.moves(b)) report.max_displacement = std::max(report.max_displacement, moved_[b]);
+    if (model_.moves(b)) report.max_displacement = std::max(report.max_displacement, state.moved[b]);
   }
 }
 

@@ -42,6 +42,11 @@ class Stepper {
   void start(State& state);
   /// Brings everything derived to a state read from a checkpoint.
   void resume(State& state);
+  /// Makes the next step look at all blocks anew, as it does after a restart: with that at every checkpoint, a run that is
+  /// resumed gives the same bits as one that is not.
+  void forget_candidates() { candidates_.invalidate(); }
+  /// The contacts of the state as it is, found anew.
+  [[nodiscard]] std::vector<contact::Contact> find_contacts(const State& state);
   /// After excavation: forgets the contacts of blocks that are gone.
   void remove_absent(State& state);
 
@@ -58,8 +63,6 @@ class Stepper {
     double falling = 0.0;
   };
   [[nodiscard]] std::span<const Balance> balance() const { return balance_; }
-  /// Largest displacement of a vertex of each block in the last step, m.
-  [[nodiscard]] std::span<const double> moved() const { return moved_; }
   [[nodiscard]] const contact::Surface& surface() const { return model_.surface; }
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return contacts_; }
   /// Normal and shear force of contact k at the end of the last step, N per thickness.
@@ -74,7 +77,7 @@ class Stepper {
   [[nodiscard]] double contact_energy() const { return contact_energy_; }
 
  private:
-  void place(const State& state);
+  void place(State& state);
   void predict_reach(const State& state, const Drive& drive);
   void detect(State& state, const Drive& drive);
   void ensure_pattern(State& state, bool candidates_changed);
@@ -99,7 +102,7 @@ class Stepper {
   std::vector<int> unknown_sizes_;
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
   bool analysed_ = false;
-  std::vector<double> reach_, moved_, increment_;
+  std::vector<double> reach_, increment_;
   std::vector<Force> forces_;
   std::vector<Balance> balance_;
   double contact_energy_ = 0.0;

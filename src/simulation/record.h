@@ -91,13 +91,14 @@ struct HistoryRow {
 };
 
 /// Energies in J per metre thickness. Losses and inputs accumulate from the start of the first stage.
-/// kinetic + strain + gravity + contact + friction + numerical − input = residual ≈ 0.
+/// kinetic + strain + gravity + contact + friction + damping + numerical − input = residual ≈ 0.
 struct Energy {
   double kinetic = 0.0;
   double strain = 0.0;
   double gravity = 0.0;    ///< potential, relative to the start
   double contact = 0.0;    ///< stored in contact and support springs
   double friction = 0.0;   ///< dissipated
+  double damping = 0.0;    ///< dissipated by the dashpots of contacts
   double input = 0.0;      ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
   double numerical = 0.0;  ///< dissipated by the time integration, computed step by step
   double residual_ratio = 0.0;  ///< |residual| over the largest term

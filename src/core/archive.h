@@ -1,0 +1,105 @@
+#pragma once
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace keyblock {
+
+/// Writes values one after the other as bytes of this machine: for checkpoints, read again by the same program.
+class ArchiveWriter {
+ public:
+  template <typename T>
+    requires std::is_trivially_copyable_v<T>
+  void operator()(const T& value) {
+    const auto* bytes = reinterpret_cast<const char*>(&value);
+    data_.append(bytes, sizeof(T));
+  }
+  template <typename A, typename B>
+  void operator()(const std::pair<A, B>& pair) {
+    (*this)(pair.first);
+    (*this)(pair.second);
+  }
+  void operator()(const std::string& text) {
+    (*this)(static_cast<std::uint64_t>(text.size()));
+    data_ += text;
+  }
+  template <typename T>
+  void operator()(const std::vector<T>& values) {
+    (*this)(static_cast<std::uint64_t>(values.size()));
+    for (const T& value : values) (*this)(value);
+  }
+  [[nodiscard]] const std::string& data() const { return data_; }
+
+ private:
+  std::string data_;
+};
+
+/// Reads what ArchiveWriter wrote. Throws std::out_of_range at a premature end.
+class ArchiveReader {
+ public:
+  explicit ArchiveReader(std::string_view data) : data_(data) {}
+  template <typename T>
+    requires std::is_trivially_copyable_v<T>
+  void operator()(T& value) {
+    std::memcpy(&value, take(sizeof(T)), sizeof(T));
+  }
+  template <typename A, typename B>
+  void operator()(std::pair<A, B>& pair) {
+    (*this)(pair.first);
+    (*this)(pair.second);
+  }
+  void operator()(std::string& text) {
+    const std::size_t size = read_size();
+    text.assign(take(size), size);
+  }
+  template <typename T>
+  void operator()(std::vector<T>& values) {
+    const std::size_t size = read_size();
+    if (size > data_.size()) throw std::out_of_range("archive");
+    values.resize(size);
+    for (T& value : values) (*this)(value);
+  }
+  [[nodiscard]] bool at_end() const { return data_.empty(); }
+
+ private:
+  std::size_t read_size() {
+    std::uint64_t size = 0;
+    (*this)(size);
+    return size;
+  }
+  const char* take(std::size_t size) {
+    if (size > data_.size()) throw std::out_of_range("archive");
+    const char* start = data_.data();
+    data_.remove_prefix(size);
+    return start;
+  }
+  std::string_view data_;
+};
+
+/// FNV-1a over bytes, 64 bit.
+class Hash {
+ public:
+  void add(const void* bytes, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k) {
+      value_ ^= static_cast<const unsigned char*>(bytes)[k];
+      value_ *= 1099511628211ULL;
+    }
+  }
+  template <typename T>
+    requires std::is_arithmetic_v<T>
+  void add(const std::vector<T>& values) {
+    add(values.data(), values.size() * sizeof(T));
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+}  // namespace keyblock

@@ -1,0 +1,140 @@
+#include "simulation/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include "core/archive.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+
+namespace keyblock::simulation {
+
+namespace {
+
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0001;
+
+std::uint64_t fingerprint(const RunSetup& setup) {
+  Hash hash;
+  hash.add(setup.version.data(), setup.version.size());
+  hash.add(setup.scenario.data(), setup.scenario.size());
+  const double numbers[] = {static_cast<double>(setup.seed), static_cast<double>(setup.realization), setup.time_step,
+                            static_cast<double>(setup.system.blocks.size()), static_cast<double>(setup.stages.size())};
+  hash.add(numbers, sizeof(numbers));
+  return hash.value();
+}
+
+template <typename Archive, typename StageRecordOrConst>
+void transfer_stage(Archive& archive, StageRecordOrConst& s) {
+  archive(s.stage.name);
+  archive(s.stage.kind);
+  archive(s.stage.excavate);
+  archive(s.stage.motion);
+  archive(s.stage.scale);
+  archive(s.stage.duration);
+  archive(s.stage.max_steps);
+  archive(s.stage.tolerance);
+  archive(s.steps);
+  archive(s.start_time);
+  archive(s.duration);
+  archive(s.pga);
+  archive(s.equilibrium_reached);
+  archive(s.worst_residual_ratio);
+  archive(s.moving);
+  archive(s.damage);
+  archive(s.wall_time);
+  archive(s.interrupted);
+  archive(s.motion_time);
+  archive(s.motion);
+}
+
+template <typename Archive, typename RunStateOrConst>
+void transfer(Archive& archive, RunStateOrConst& s) {
+  archive(s.mechanics.time);
+  archive(s.mechanics.step);
+  archive(s.mechanics.position);
+  archive(s.mechanics.velocity);
+  archive(s.mechanics.moved);
+  archive(s.mechanics.contacts);
+  archive(s.mechanics.pattern);
+  archive(s.mechanics.ledger);
+  archive(s.present);
+  archive(s.damage.start);
+  archive(s.damage.pieces);
+  archive(s.settler.time_step);
+  archive(s.settler.quiet_steps);
+  archive(s.settler.first_ratio);
+  archive(s.settler.inertia_scale);
+  archive(s.settler.travel);
+  archive(s.settler.carried);
+  archive(s.stage);
+  archive(s.stage_step);
+  archive(s.initial_energy);
+  archive(s.wall_time);
+  archive(s.iterations);
+  archive(s.record.open_close);
+  archive(s.record.max_overlap);
+  archive(s.record.max_area_change);
+}
+
+std::filesystem::path path_in(const std::filesystem::path& directory) { return directory / "checkpoint.bin"; }
+
+}  // namespace
+
+void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state) {
+  ArchiveWriter archive;
+  archive(format);
+  archive(fingerprint(setup));
+  transfer(archive, state);
+  archive(static_cast<std::uint64_t>(state.record.stages.size()));
+  for (const StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
+  Hash hash;
+  hash.add(archive.data().data(), archive.data().size());
+  archive(hash.value());
+  write_file_atomically(path_in(directory), archive.data());
+}
+
+RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup& setup) {
+  const auto refuse = [&](const char* found, const char* expected) {
+    Diagnostic diagnostic;
+    diagnostic.where.file = path_in(directory).string();
+    diagnostic.found = found;
+    diagnostic.expected = expected;
+    throw InputError(std::move(diagnostic));
+  };
+  const std::string data = read_file(path_in(directory));
+  std::uint64_t number = 0;
+  if (data.size() < 3 * sizeof(number)) refuse("a truncated file", "a checkpoint");
+  const std::string_view content(data.data(), data.size() - sizeof(number));
+  Hash hash;
+  hash.add(content.data(), content.size());
+  ArchiveReader(std::string_view(data).substr(content.size()))(number);
+  if (number != hash.value()) refuse("a damaged file", "a checkpoint");
+  ArchiveReader archive(content);
+  archive(number);
+  if (number != format) refuse("another format", "a checkpoint of this version");
+  archive(number);
+  if (number != fingerprint(setup)) {
+    refuse("the checkpoint of another scenario, realization or version", "one of the run to be resumed");
+  }
+  RunState state;
+  transfer(archive, state);
+  std::uint64_t stages = 0;
+  archive(stages);
+  state.record.stages.resize(stages);
+  for (StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
+  return state;
+}
+
+std::string state_hash(const dynamics::State& state) {
+  Hash hash;
+  hash.add(state.position);
+  hash.add(state.velocity);
+  for (const contact::Candidate& c : state.contacts) {
+    if (!c.memory.tracked) continue;
+    const double numbers[] = {static_cast<double>(c.vertex), static_cast<double>(c.edge), c.memory.offset, c.memory.shear,
+                              c.memory.normal_force, static_cast<double>(c.memory.state)};
+    hash.add(numbers, sizeof(numbers));
+  }
+  return fmt::format("{:016x}", hash.value());
+}
+
+}  // namespace keyblock::simulation

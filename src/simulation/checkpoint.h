@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+
+#include "dynamics/state.h"
+#include "simulation/damage.h"
+#include "simulation/record.h"
+#include "simulation/settle.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// All that a run needs to go on as if it had never stopped.
+struct RunState {
+  dynamics::State mechanics;
+  std::vector<std::uint8_t> present;  ///< per block
+  DamageGauge::Reference damage;
+  Settler::Memory settler;            ///< of the stage at hand, if it is a settle stage
+  int stage = 0;
+  long stage_step = 0;                ///< steps done in it
+  double initial_energy = 0.0;        ///< J
+  double wall_time = 0.0;             ///< s
+  long iterations = 0;
+  RunRecord record;                   ///< what has been summed up so far, with the stages that have ended
+};
+
+/// DIR/checkpoint.bin. Written atomically. Reading throws InputError when there is none, when it is damaged, or when it
+/// belongs to another setup or version.
+void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state);
+RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup& setup);
+
+/// Hash of positions, velocities and contact memory: equal for equal bits.
+std::string state_hash(const dynamics::State& state);
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,177 @@
+#include "simulation/damage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "overlap/overlap.h"
+
+namespace keyblock::simulation {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
+  return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
+}
+
+Box box_of(std::span<const Vec2> ring) {
+  Box box;
+  for (const Vec2 p : ring) box.add(p);
+  return box;
+}
+
+}  // namespace
+
+Polygon deformed_polygon(const dynamics::Model& model, std::size_t block) {
+  const contact::Surface& surface = model.surface;
+  Polygon polygon;
+  int v = surface.block_begin[block];
+  while (v < surface.block_begin[block + 1]) {
+    Ring ring;
+    const int first = v;
+    do {
+      ring.push_back(surface.position[at(v)]);
+      ++v;
+    } while (surface.next[at(v - 1)] != first);
+    if (polygon.outer.empty()) {
+      polygon.outer = std::move(ring);
+    } else {
+      polygon.holes.push_back(std::move(ring));
+    }
+  }
+  return polygon;
+}
+
+void DamageGauge::start(const dynamics::State& state, std::span<const contact::Contact> contacts) {
+  start_.clear();
+  pieces_.clear();
+  for (const dynamics::Block& block : model_.blocks) start_.push_back(centroid_now(block, state));
+  for (const contact::Contact& c : contacts) {
+    if (c.length <= 0.0 || !model_.moves(at(c.block_a)) || !model_.moves(at(c.block_b))) continue;
+    pieces_.push_back({c.vertex, c.edge, c.position, c.length});
+  }
+  std::sort(pieces_.begin(), pieces_.end(), [](const JointPiece& x, const JointPiece& y) {
+    return std::tie(x.vertex, x.edge) < std::tie(y.vertex, y.edge);
+  });
+}
+
+void DamageGauge::restore(Reference reference) {
+  start_ = std::move(reference.start);
+  pieces_ = std::move(reference.pieces);
+}
+
+DamageGauge::Offset DamageGauge::offset(const JointPiece& piece) const {
+  const contact::Surface& surface = model_.surface;
+  const Vec2 a = surface.position[at(piece.edge)], b = surface.position[at(surface.next[at(piece.edge)])];
+  const Vec2 tangent = normalized(b - a), apart = surface.position[at(piece.vertex)] - lerp(a, b, piece.along);
+  return {dot(tangent, apart), dot(Vec2{tangent.y, -tangent.x}, apart)};
+}
+
+double DamageGauge::slip(int vertex, int edge) const {
+  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), std::pair{vertex, edge}, [](const JointPiece& p, const auto& key) {
+    return std::pair{p.vertex, p.edge} < key;
+  });
+  return piece != pieces_.end() && piece->vertex == vertex && piece->edge == edge ? offset(*piece).slip : 0.0;
+}
+
+std::optional<double> DamageGauge::opening_width() const {
+  if (setup_.excavations.empty()) return std::nullopt;
+  return box_of(setup_.excavations.front().outline).size().x;
+}
+
+double DamageGauge::area_inside_openings(const Polygon& block) const {
+  double sum = 0.0;
+  for (const Excavation& excavation : setup_.excavations) {
+    if (!box_of(excavation.outline).overlaps(bounds(block))) continue;
+    const Polygon pair[] = {block, {excavation.outline, {}}};
+    for (const overlap::Overlap& piece : overlap::all_overlaps(pair, 0.0)) sum += piece.area;
+  }
+  return sum;
+}
+
+std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const {
+  std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
+  const std::optional<double> width = opening_width();
+  const double fall = setup_.damage.fall_distance.value_or(0.05 * width.value_or(0.0));
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
+    if (!started() || !model_.moves(b)) continue;
+    const dynamics::Block& block = model_.blocks[b];
+    const Vec2 moved = centroid_now(block, state) - start_[b];
+    if (norm(moved) <= setup_.damage.loosened_distance) continue;
+    status[b] = BlockStatus::loosened;
+    if (fall <= 0.0 || norm(moved) <= fall) continue;
+    if (-moved.y > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area) status[b] = BlockStatus::fallen;
+  }
+  return status;
+}
+
+Damage DamageGauge::measure(const dynamics::State& state) const {
+  Damage damage;
+  if (!started()) return damage;
+  const std::vector<BlockStatus> status_now = status(state);
+  double inside = 0.0, openings = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    if (status_now[b] == BlockStatus::fallen) {
+      ++damage.fallen_blocks;
+      damage.fallen_area += model_.blocks[b].area;
+    }
+    if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
+    if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(deformed_polygon(model_, b));
+  }
+  for (const Excavation& excavation : setup_.excavations) openings += std::abs(signed_area(excavation.outline));
+  if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
+
+  double length = 0.0, slip_length = 0.0;
+  for (const JointPiece& piece : pieces_) {
+    const std::size_t a = at(model_.surface.block[at(piece.vertex)]), b = at(model_.surface.block[at(piece.edge)]);
+    if (status_now[a] >= BlockStatus::fallen || status_now[b] >= BlockStatus::fallen) continue;
+    const Offset now = offset(piece);
+    const double slip = std::abs(now.slip);
+    damage.slip_max = std::max(damage.slip_max, slip);
+    slip_length += slip * piece.length;
+    length += piece.length;
+    if (slip > setup_.damage.slip) damage.slipped_length += piece.length;
+    if (now.opening > setup_.damage.opening) damage.opened_length += piece.length;
+  }
+  damage.slip_mean = length > 0.0 ? slip_length / length : 0.0;
+  damage.closure_vertical = closure(state, {0.0, 1.0});
+  damage.closure_horizontal = closure(state, {1.0, 0.0});
+  return damage;
+}
+
+double DamageGauge::closure(const dynamics::State& state, Vec2 direction) const {
+  if (setup_.excavations.empty()) return 0.0;
+  const Ring& outline = setup_.excavations.front().outline;
+  const Vec2 centre = centroid({outline, {}});
+  Vec2 before[2], now[2];
+  for (int end = 0; end < 2; ++end) {
+    const Vec2 out = end == 0 ? direction : -direction;
+    // Where a ray from the centre leaves the outline, and a little beyond: in the wall.
+    double reach = 0.0;
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const Vec2 a = outline[k] - centre, d = outline[(k + 1) % outline.size()] - outline[k];
+      const double denominator = cross(out, d);
+      if (denominator == 0.0) continue;
+      const double t = cross(a, d) / denominator, s = cross(a, out) / denominator;
+      if (s >= 0.0 && s <= 1.0) reach = std::max(reach, t);
+    }
+    const Vec2 point = centre + 1.001 * reach * out;
+    const auto holds = [&](std::size_t b) { return model_.moves(b) && contains(model_.blocks[b].reference, point); };
+    std::size_t b = 0;
+    while (b < model_.blocks.size() && !holds(b)) ++b;
+    if (b == model_.blocks.size()) return 0.0;
+    const dynamics::Block& block = model_.blocks[b];
+    std::vector<double> phi(at(block.size));
+    block.basis.evaluate(point, phi.data());
+    before[end] = point;
+    for (std::size_t k = 0; k < phi.size(); ++k) now[end] += phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
+  }
+  return norm(before[0] - before[1]) - norm(now[0] - now[1]);
+}
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,173 @@
+#include "simulation/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "overlap/overlap.h"
+#include "simulation/build_model.h"
+
+namespace keyblock::simulation {
+
+namespace {
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
+    : setup_(setup), model_(model), gauge_(gauge), threads_(threads), start_(model.surface.position) {
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    for (std::size_t r = 0; r < model.blocks[b].reference.ring_count(); ++r) {
+      const Ring& ring = model.blocks[b].reference.ring(r);
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const cutting::EdgeLabel label = b < setup.system.blocks.size() ? setup.system.blocks[b].labels[r][k]
+                                                                        : cutting::EdgeLabel{cutting::EdgeKind::domain, 0};
+        const int pieces = edge_pieces(norm(ring[(k + 1) % ring.size()] - ring[k]), model.blocks[b].area,
+                                       model.blocks[b].basis.order());
+        labels_.insert(labels_.end(), at(pieces), label);
+      }
+    }
+  }
+  for (const History& history : setup.histories) {
+    std::size_t found = model.blocks.size();
+    for (std::size_t b = 0; b < setup.properties.size() && found == model.blocks.size(); ++b) {
+      const bool meant = history.block.empty() ? contains(model.blocks[b].reference, history.point)
+                                               : setup.properties[b].name == history.block;
+      if (meant) found = b;
+    }
+    if (found == model.blocks.size()) {
+      Diagnostic diagnostic;
+      diagnostic.key = fmt::format("history '{}'", history.name);
+      diagnostic.found = fmt::format("the point ({}, {})", history.point.x, history.point.y);
+      diagnostic.expected = "a point in a block";
+      throw InputError(std::move(diagnostic));
+    }
+    points_.push_back({found, history.point, std::vector<double>(at(model.blocks[found].size))});
+    model.blocks[found].basis.evaluate(history.point, points_.back().phi.data());
+  }
+}
+
+ModelRecord Recorder::model() const {
+  ModelRecord record;
+  record.title = setup_.title;
+  record.version = setup_.version;
+  record.seed = setup_.seed;
+  record.realization = setup_.realization;
+  record.threads = threads_;
+  record.step_size = setup_.time_step;
+  record.origin = setup_.system.origin;
+  record.scenario = setup_.scenario;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    const dynamics::Block& block = model_.blocks[b];
+    ModelRecord::Block row;
+    const bool is_frame = b >= setup_.properties.size();
+    row.name = is_frame ? "frame" : setup_.properties[b].name;
+    row.order = block.basis.order();
+    row.fixed = block.fixed;
+    row.area = block.area;
+    row.density = block.material.density;
+    if (!is_frame) row.excavations = setup_.system.blocks[b].excavations;
+    row.centroid = centroid(block.reference);
+    const contact::Surface& surface = model_.surface;
+    for (int v = surface.block_begin[b]; v < surface.block_begin[b + 1]; ++v) {
+      if (surface.previous[at(v)] >= v) row.ring_start.push_back(v);  // the first vertex of a ring
+    }
+    row.ring_start.push_back(surface.block_begin[b + 1]);
+    record.blocks.push_back(std::move(row));
+  }
+  record.vertices = start_;
+  record.edge_label = labels_;
+  record.joint_set_names = setup_.joint_set_names;
+  record.trace_map_names = setup_.trace_map_names;
+  for (const Excavation& excavation : setup_.excavations) {
+    record.excavation_names.push_back(excavation.name);
+    record.excavation_outlines.push_back(excavation.outline);
+  }
+  for (const History& history : setup_.histories) record.history_names.push_back(history.name);
+  record.opening_width = gauge_.opening_width();
+  record.cutting = setup_.system.statistics;
+  return record;
+}
+
+Frame Recorder::frame(const dynamics::State& state, int stage) const {
+  Frame frame;
+  frame.time = state.time;
+  frame.stage = stage;
+  frame.step = state.step;
+  frame.displacement.reserve(start_.size());
+  for (std::size_t v = 0; v < start_.size(); ++v) {
+    const Vec2 u = model_.surface.position[v] - start_[v];
+    frame.displacement.push_back({static_cast<float>(u.x), static_cast<float>(u.y)});
+  }
+  for (const dynamics::Block& block : model_.blocks) {
+    const block::Stress s = block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&state.position[block.first]);
+    frame.stress.push_back({static_cast<float>(s.xx), static_cast<float>(s.yy), static_cast<float>(s.xy)});
+  }
+  frame.status = gauge_.status(state);
+  return frame;
+}
+
+ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::Stepper& stepper, int stage) const {
+  ContactFrame frame;
+  frame.time = state.time;
+  frame.stage = stage;
+  frame.step = state.step;
+  const auto contacts = stepper.contacts();
+  const contact::Surface& surface = model_.surface;
+  for (std::size_t k = 0; k < contacts.size() && k < stepper.forces().size(); ++k) {
+    const contact::Contact& c = contacts[k];
+    ContactRecord row;
+    row.block_a = c.block_a;
+    row.block_b = c.block_b;
+    row.state = static_cast<ContactState>(state.contacts[at(c.candidate)].memory.state);
+    row.position = surface.position[at(c.vertex)];
+    row.normal = c.normal;
+    row.length = c.length;
+    row.gap = c.gap;
+    row.slip = gauge_.slip(c.vertex, c.edge);
+    row.normal_force = stepper.forces()[k].normal;
+    row.shear_force = stepper.forces()[k].shear;
+    row.label = labels_[at(c.edge)];
+    frame.contacts.push_back(row);
+  }
+  return frame;
+}
+
+HistoryRow Recorder::history(const dynamics::State& state) const {
+  HistoryRow row;
+  row.time = state.time;
+  row.step = state.step;
+  for (const Point& point : points_) {
+    const dynamics::Block& block = model_.blocks[point.block];
+    Vec2 x, v;
+    for (std::size_t k = 0; k < point.phi.size(); ++k) {
+      x += point.phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
+      v += point.phi[k] * Vec2{state.velocity[block.first + 2 * k], state.velocity[block.first + 2 * k + 1]};
+    }
+    const Vec2 u = x - point.reference;
+    const block::Stress s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
+    row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy});
+  }
+  return row;
+}
+
+double Recorder::overlap() const {
+  std::vector<Polygon> polygons;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (model_.surface.present[b]) polygons.push_back(deformed_polygon(model_, b));
+  }
+  return overlap::largest_overlap(polygons).depth;
+}
+
+double Recorder::area_change(const dynamics::State& state) const {
+  double largest = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const dynamics::Block& block = model_.blocks[b];
+    largest = std::max(largest, std::abs(block.pose.area(&state.position[block.first]) / block.area - 1.0));
+  }
+  return largest;
+}
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,42 @@
+#pragma once
+#include <vector>
+
+#include "dynamics/step.h"
+#include "simulation/damage.h"
+#include "simulation/record.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// Turns the state of a run into the records that observers receive.
+class Recorder {
+ public:
+  /// Throws InputError when a history point lies in no block.
+  Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads);
+
+  [[nodiscard]] ModelRecord model() const;
+  [[nodiscard]] Frame frame(const dynamics::State& state, int stage) const;
+  [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper, int stage) const;
+  [[nodiscard]] HistoryRow history(const dynamics::State& state) const;
+  /// Largest true overlap of any two blocks, m.
+  [[nodiscard]] double overlap() const;
+  /// Largest relative change of area of a block.
+  [[nodiscard]] double area_change(const dynamics::State& state) const;
+
+ private:
+  struct Point {
+    std::size_t block;
+    Vec2 reference;
+    std::vector<double> phi;
+  };
+
+  const RunSetup& setup_;
+  const dynamics::Model& model_;
+  const DamageGauge& gauge_;
+  int threads_;
+  std::vector<Vec2> start_;  ///< of every vertex
+  std::vector<cutting::EdgeLabel> labels_;
+  std::vector<Point> points_;
+};
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,330 @@
+#include "simulation/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "dynamics/step.h"
+#include "simulation/build_model.h"
+#include "simulation/checkpoint.h"
+#include "simulation/damage.h"
+#include "simulation/recorder.h"
+#include "simulation/settle.h"
+
+namespace keyblock::simulation {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int default_settle_steps = 3000;
+constexpr long checkpoint_steps = 2000;      // a checkpoint at least this often
+constexpr double step_row_interval = 0.02;   // s between rows of step statistics
+constexpr double overlap_interval = 1.0;     // s between measurements of the true overlap
+constexpr std::size_t motion_points = 4000;  // of the applied motion kept for plots
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// The ground motion of a stage, scaled, in the time of the run.
+class StageMotion final : public dynamics::GroundAcceleration {
+ public:
+  StageMotion(const loading::GroundMotion& motion, double scale, double start) : motion_(motion), scale_(scale), start_(start) {}
+  [[nodiscard]] Vec2 mean(double t0, double t1) const override { return scale_ * motion_.mean(t0 - start_, t1 - start_); }
+
+ private:
+  const loading::GroundMotion& motion_;
+  double scale_, start_;
+};
+
+class Runner {
+ public:
+  Runner(const RunSetup& setup, const RunOptions& options, RunObserver& observer)
+      : setup_(setup),
+        options_(options),
+        observer_(observer),
+        team_(options.threads),
+        model_(build_model(setup)),
+        gauge_(setup, model_),
+        recorder_(setup, model_, gauge_, team_.size()),
+        stepper_(model_, team_) {}
+
+  RunRecord run();
+
+ private:
+  void begin();
+  void resume();
+  void excavate(const Stage& stage);
+  void run_stage();
+  void settle(StageRecord& record);
+  void shake(StageRecord& record);
+  void after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction);
+  void record_frame();
+  void check_overlap();
+  void checkpoint();
+  [[nodiscard]] Energy energy() const;
+  [[nodiscard]] double total_energy() const;
+  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  [[nodiscard]] long every(double interval) const {
+    return std::max(1L, std::lround(interval / setup_.time_step));
+  }
+
+  const RunSetup& setup_;
+  const RunOptions& options_;
+  RunObserver& observer_;
+  ThreadTeam team_;
+  dynamics::Model model_;
+  DamageGauge gauge_;
+  Recorder recorder_;
+  dynamics::Stepper stepper_;
+  RunState now_;
+  std::optional<Settler> settler_;
+  Clock::time_point run_start_ = Clock::now(), stage_start_, last_progress_;
+  double wall_before_ = 0.0;
+  long stage_iterations_ = 0, first_step_of_stage_ = 0;
+};
+
+double Runner::total_energy() const {
+  return stepper_.kinetic_energy(now_.mechanics) + stepper_.strain_energy(now_.mechanics) +
+         stepper_.gravity_energy(now_.mechanics) + stepper_.contact_energy();
+}
+
+Energy Runner::energy() const {
+  const dynamics::EnergyLedger& ledger = now_.mechanics.ledger;
+  Energy e;
+  e.kinetic = stepper_.kinetic_energy(now_.mechanics);
+  e.strain = stepper_.strain_energy(now_.mechanics);
+  e.contact = stepper_.contact_energy();
+  e.friction = ledger.friction;
+  e.damping = ledger.damping;
+  e.numerical = ledger.numerical;
+  e.input = ledger.input;
+  e.gravity = stepper_.gravity_energy(now_.mechanics) - now_.initial_energy;
+  const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
+  double largest = 0.0;
+  for (const double term : {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.numerical, e.input}) {
+    largest = std::max(largest, std::abs(term));
+  }
+  e.residual_ratio = largest > 0.0 ? std::abs(residual) / largest : 0.0;
+  return e;
+}
+
+void Runner::begin() {
+  now_.mechanics = initial_state(setup_, model_);
+  stepper_.start(now_.mechanics);
+  now_.present = model_.surface.present;
+  // All potentials count from the start, as gravity does.
+  now_.initial_energy = total_energy();
+  if (setup_.excavations.empty()) {
+    gauge_.start(now_.mechanics, stepper_.find_contacts(now_.mechanics));
+    now_.damage = gauge_.reference();
+  }
+}
+
+void Runner::resume() {
+  now_ = read_checkpoint(options_.directory, setup_);
+  model_.surface.present = now_.present;
+  gauge_.restore(now_.damage);
+  stepper_.resume(now_.mechanics);
+  wall_before_ = now_.wall_time;
+}
+
+void Runner::excavate(const Stage& stage) {
+  if (stage.excavate.empty()) return;
+  const double before = total_energy();
+  for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
+    const auto& inside = setup_.system.blocks[b].excavations;
+    const bool removed = std::any_of(inside.begin(), inside.end(), [&](int e) {
+      return std::find(stage.excavate.begin(), stage.excavate.end(), e) != stage.excavate.end();
+    });
+    if (removed) model_.surface.present[b] = 0;
+  }
+  if (!gauge_.started()) gauge_.start(now_.mechanics, stepper_.find_contacts(now_.mechanics));
+  now_.damage = gauge_.reference();
+  now_.present = model_.surface.present;
+  stepper_.remove_absent(now_.mechanics);
+  now_.mechanics.ledger.input += total_energy() - before;
+}
+
+void Runner::record_frame() { observer_.frame(recorder_.frame(now_.mechanics, now_.stage)); }
+
+void Runner::check_overlap() {
+  now_.record.max_overlap = std::max(now_.record.max_overlap, recorder_.overlap());
+  now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
+}
+
+void Runner::checkpoint() {
+  stepper_.forget_candidates();
+  if (options_.directory.empty()) return;
+  if (settler_) now_.settler = settler_->memory();
+  now_.wall_time = wall_before_ + seconds_since(run_start_);
+  write_checkpoint(options_.directory, setup_, now_);
+}
+
+/// What follows every step, static or dynamic: statistics, records that are due, progress.
+void Runner::after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction) {
+  ++now_.stage_step;
+  now_.iterations += report.iterations;
+  stage_iterations_ += report.iterations;
+  OpenCloseStatistics& statistics = now_.record.open_close;
+  statistics.max_iterations = std::max(statistics.max_iterations, report.iterations);
+  statistics.retried_steps += report.substeps > 1;
+  statistics.unconverged_steps += !report.converged;
+  for (const double x : now_.mechanics.position) {
+    if (!std::isfinite(x)) {
+      throw RunError(fmt::format("step {} of stage '{}' left no finite state; the results up to it are kept",
+                                 now_.stage_step, setup_.stages[static_cast<std::size_t>(now_.stage)].name));
+    }
+  }
+  const bool is_static = setup_.stages[static_cast<std::size_t>(now_.stage)].kind == StageKind::settle;
+  const long step = now_.stage_step;
+  const auto due = [&](double interval) { return step % every(interval) == 0; };
+  if (steps_left > 0) {
+    if (is_static ? step % setup_.output.settle_frame_interval == 0 : due(setup_.output.frame_interval)) record_frame();
+    if (!is_static && due(setup_.output.contact_interval)) {
+      observer_.contacts(recorder_.contacts(now_.mechanics, stepper_, now_.stage));
+    }
+    if (!is_static && due(overlap_interval)) check_overlap();
+  }
+  if (!setup_.histories.empty() && (is_static || due(setup_.output.history_interval))) {
+    observer_.history(recorder_.history(now_.mechanics));
+  }
+  if (due(step_row_interval)) {
+    observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations, setup_.time_step / report.substeps,
+                    report.penetration, report.max_displacement, report.closed_contacts, energy()});
+  }
+  if (step % checkpoint_steps == 0) checkpoint();
+  if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
+  last_progress_ = Clock::now();
+  const Stage& stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
+  Progress progress;
+  progress.stage = now_.stage;
+  progress.stage_count = static_cast<int>(setup_.stages.size());
+  progress.stage_name = stage.name;
+  progress.kind = stage.kind;
+  progress.step = step;
+  progress.fraction = fraction;
+  progress.time = is_static ? 0.0 : static_cast<double>(step) * setup_.time_step;
+  const double elapsed = std::max(1e-9, seconds_since(stage_start_));
+  const auto done = static_cast<double>(step - first_step_of_stage_);
+  progress.steps_per_second = done / elapsed;
+  progress.seconds_left = is_static ? -1.0 : static_cast<double>(steps_left) / progress.steps_per_second;
+  progress.mean_iterations = static_cast<double>(stage_iterations_) / done;
+  progress.worst_residual_ratio = worst_ratio;
+  observer_.progress(progress);
+}
+
+void Runner::settle(StageRecord& record) {
+  const int limit = record.stage.max_steps.value_or(default_settle_steps);
+  settler_.emplace(model_, setup_.time_step, record.stage.tolerance);
+  if (now_.stage_step > 0) settler_->memory() = now_.settler;
+  bool done = false;
+  while (!done && now_.stage_step < limit && !stopped()) {
+    dynamics::StepReport report;
+    done = settler_->step(stepper_, now_.mechanics, report);
+    after_step(report, done ? 0 : limit - now_.stage_step - 1, settler_->worst_ratio(), settler_->progress());
+  }
+  record.equilibrium_reached = done;
+  record.worst_residual_ratio = settler_->worst_ratio();
+  record.moving = settler_->moving();
+  settler_.reset();
+}
+
+void Runner::shake(StageRecord& record) {
+  const Stage& stage = record.stage;
+  std::optional<StageMotion> motion;
+  double duration = stage.duration.value_or(0.0);
+  if (stage.kind == StageKind::shake) {
+    const loading::GroundMotion& ground = setup_.motions.at(static_cast<std::size_t>(stage.motion));
+    if (!stage.duration) duration = ground.duration();
+    motion.emplace(ground, stage.scale, record.start_time);
+    record.pga = std::abs(stage.scale) * ground.peak();
+    const std::size_t every_nth = std::max<std::size_t>(1, ground.times().size() / motion_points);
+    for (std::size_t k = 0; k < ground.times().size(); k += every_nth) {
+      record.motion_time.push_back(ground.times()[k]);
+      record.motion.push_back(stage.scale * ground.accelerations()[k]);
+    }
+  }
+  const long steps = std::lround(duration / setup_.time_step);
+  while (now_.stage_step < steps && !stopped()) {
+    const dynamics::StepReport report = stepper_.advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
+    const long left = steps - now_.stage_step - 1;
+    after_step(report, left, 0.0, static_cast<double>(now_.stage_step + 1) / static_cast<double>(steps));
+  }
+  record.interrupted = now_.stage_step < steps;
+  // Time from the number of steps, so that stages start at the same time whatever has been added up.
+  record.duration = static_cast<double>(now_.stage_step) * setup_.time_step;
+  if (!record.interrupted) now_.mechanics.time = record.start_time + record.duration;
+}
+
+void Runner::run_stage() {
+  StageRecord record;
+  record.stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
+  record.start_time = now_.mechanics.time;
+  if (record.stage.kind != StageKind::settle) {
+    record.start_time -= static_cast<double>(now_.stage_step) * setup_.time_step;
+  }
+  stage_start_ = last_progress_ = Clock::now();
+  first_step_of_stage_ = now_.stage_step;
+  stage_iterations_ = 0;
+  if (now_.stage_step == 0) {
+    excavate(record.stage);
+    observer_.stage_begin(now_.stage, record);
+    record_frame();
+  } else {
+    observer_.stage_begin(now_.stage, record);
+  }
+  record.stage.kind == StageKind::settle ? settle(record) : shake(record);
+  record.interrupted = record.interrupted || stopped();
+  record.steps = now_.stage_step;
+  record.wall_time = seconds_since(stage_start_);
+  check_overlap();
+  record_frame();
+  observer_.contacts(recorder_.contacts(now_.mechanics, stepper_, now_.stage));
+  record.damage = gauge_.measure(now_.mechanics);
+  observer_.stage_end(now_.stage, record);
+  if (record.interrupted) {
+    now_.record.stages.push_back(record);  // of this run alone; the checkpoint, written before, has it as unfinished
+    return;
+  }
+  now_.record.stages.push_back(record);
+  ++now_.stage;
+  now_.stage_step = 0;
+  checkpoint();
+}
+
+RunRecord Runner::run() {
+  options_.resume ? resume() : begin();
+  observer_.begin(recorder_.model());
+  const auto finish = [&] {
+    RunRecord& record = now_.record;
+    record.steps = now_.mechanics.step;
+    record.wall_time = wall_before_ + seconds_since(run_start_);
+    record.dof = static_cast<int>(model_.unknowns);
+    record.state_hash = state_hash(now_.mechanics);
+    record.open_close.mean_iterations = record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
+    record.energy = energy();
+    record.interrupted = stopped();
+    observer_.end(record);
+  };
+  try {
+    while (now_.stage < static_cast<int>(setup_.stages.size()) && !stopped()) run_stage();
+  } catch (const RunError&) {
+    now_.record.interrupted = true;
+    finish();
+    throw;
+  }
+  finish();
+  return now_.record;
+}
+
+}  // namespace
+
+RunRecord run(const RunSetup& setup, const RunOptions& options, RunObserver& observer) {
+  return Runner(setup, options, observer).run();
+}
+
+}  // namespace keyblock::simulation
