@@ -129,6 +129,9 @@ simulation::ModelRecord read_model(hid_t file) {
   if (edge_kind.rows() != edge_index.rows())
     throw RunError("model/edge_kind and model/edge_index differ in length");
   for (std::size_t k = 0; k < edge_kind.rows(); ++k) {
+    if (edge_kind.values[k] > static_cast<std::uint8_t>(cutting::EdgeKind::domain)) {
+      throw RunError("model/edge_kind holds an unknown value");
+    }
     model.edge_label.push_back({static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]});
   }
   for (const int start : rings.values) {

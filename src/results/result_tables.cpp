@@ -40,6 +40,14 @@ void require(bool holds, const char* what) {
   if (!holds) throw RunError(fmt::format("{} does not fit the rest of the file", what));
 }
 
+// The value as one of an enumeration that ends with `last`.
+template <class Enum>
+Enum enumerator(std::uint8_t value, Enum last, const char* what) {
+  if (value > static_cast<std::uint8_t>(last))
+    throw RunError(fmt::format("{} holds the unknown value {}", what, value));
+  return static_cast<Enum>(value);
+}
+
 }  // namespace
 
 FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
@@ -99,7 +107,8 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
     std::copy_n(displacement.values.data() + 2 * nv * f, 2 * nv, frame.displacement.data()->data());
     std::copy_n(stress.values.data() + 3 * nb * f, 3 * nb, frame.stress.data()->data());
     for (std::size_t b = 0; b < nb; ++b) {
-      frame.status.push_back(static_cast<simulation::BlockStatus>(status.values[nb * f + b]));
+      frame.status.push_back(
+          enumerator(status.values[nb * f + b], simulation::BlockStatus::excavated, "frames/status"));
     }
   }
   return frames;
@@ -180,17 +189,19 @@ std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
     if (last > rows) break;
     simulation::ContactFrame frame{time.values[f], stage.values[f], {}, step.values[f]};
     for (; k < last; ++k) {
-      frame.contacts.push_back({block_a.values[k],
-                                block_b.values[k],
-                                static_cast<simulation::ContactState>(state.values[k]),
-                                {position.values[2 * k], position.values[2 * k + 1]},
-                                {normal.values[2 * k], normal.values[2 * k + 1]},
-                                length.values[k],
-                                gap.values[k],
-                                slip.values[k],
-                                normal_force.values[k],
-                                shear_force.values[k],
-                                {static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]}});
+      frame.contacts.push_back(
+          {block_a.values[k],
+           block_b.values[k],
+           enumerator(state.values[k], simulation::ContactState::locked, "contacts/state"),
+           {position.values[2 * k], position.values[2 * k + 1]},
+           {normal.values[2 * k], normal.values[2 * k + 1]},
+           length.values[k],
+           gap.values[k],
+           slip.values[k],
+           normal_force.values[k],
+           shear_force.values[k],
+           {enumerator(edge_kind.values[k], cutting::EdgeKind::domain, "contacts/edge_kind"),
+            edge_index.values[k]}});
     }
     frames.push_back(std::move(frame));
   }

@@ -1,0 +1,182 @@
+#include "results/export.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "results/block_shape.h"
+#include "results/csv.h"
+
+namespace keyblock::results {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string block_table(const RunData& data) {
+  const simulation::ModelRecord& model = data.model;
+  std::string text = "frame,time,stage,step,block,name,status,x,y,ux,uy,sxx,syy,sxy\n";
+  auto out = std::back_inserter(text);
+  std::vector<Vec2> reference;
+  for (const auto& block : model.blocks) reference.push_back(model.origin + block.centroid);
+  for (std::size_t f = 0; f < data.frames.size(); ++f) {
+    const simulation::Frame& frame = data.frames[f];
+    for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+      if (frame.status[b] == simulation::BlockStatus::excavated) continue;
+      const Vec2 u = block_displacement(model, frame, b), x = reference[b] + u;
+      const auto& s = frame.stress[b];
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", f, frame.time, frame.stage,
+                     frame.step, b, csv_field(model.blocks[b].name), status_name(frame.status[b]), x.x, x.y,
+                     u.x, u.y, s[0], s[1], s[2]);
+    }
+  }
+  return text;
+}
+
+std::string edge_name(const simulation::ModelRecord& model, cutting::EdgeLabel label) {
+  const auto name_in = [&](const std::vector<std::string>& names) {
+    const auto k = static_cast<std::size_t>(label.index);
+    return k < names.size() ? names[k] : std::string();
+  };
+  if (label.kind == cutting::EdgeKind::joint_set) return name_in(model.joint_set_names);
+  if (label.kind == cutting::EdgeKind::trace_map) return name_in(model.trace_map_names);
+  if (label.kind == cutting::EdgeKind::excavation) return name_in(model.excavation_names);
+  return {};
+}
+
+std::string contact_table(const RunData& data) {
+  std::string text =
+      "time,stage,step,block_a,block_b,state,x,y,nx,ny,length,gap,slip,normal_force,shear_force,edge,edge_"
+      "name\n";
+  auto out = std::back_inserter(text);
+  for (const simulation::ContactFrame& frame : data.contacts) {
+    for (const simulation::ContactRecord& c : frame.contacts) {
+      const Vec2 p = data.model.origin + c.position;
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame.time, frame.stage,
+                     frame.step, c.block_a, c.block_b, contact_state_name(c.state), p.x, p.y, c.normal.x,
+                     c.normal.y, c.length, c.gap, c.slip, c.normal_force, c.shear_force,
+                     edge_kind_name(c.label.kind), csv_field(edge_name(data.model, c.label)));
+    }
+  }
+  return text;
+}
+
+std::string step_table(const RunData& data) {
+  std::string text =
+      "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts,kinetic,strain,"
+      "gravity,contact,friction,input,"
+      "numerical,residual_ratio\n";
+  auto out = std::back_inserter(text);
+  for (const simulation::StepRow& r : data.steps) {
+    const simulation::Energy& e = r.energy;
+    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.time, r.stage, r.step,
+                   r.iterations, r.step_size, r.penetration, r.max_displacement, r.closed_contacts, e.kinetic,
+                   e.strain, e.gravity, e.contact, e.friction, e.input, e.numerical, e.residual_ratio);
+  }
+  return text;
+}
+
+ordered_json closed_ring(const Ring& ring) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t k = 0; k <= ring.size(); ++k)
+    out.push_back({ring[k % ring.size()].x, ring[k % ring.size()].y});
+  return out;
+}
+
+std::string stage_geojson(const RunData& data, const simulation::Frame& frame) {
+  ordered_json features = ordered_json::array();
+  for (std::size_t b = 0; b < data.model.blocks.size(); ++b) {
+    if (frame.status[b] == simulation::BlockStatus::excavated) continue;
+    const Polygon polygon = block_shape(data.model, frame, b);
+    ordered_json rings = ordered_json::array();
+    for (std::size_t r = 0; r < polygon.ring_count(); ++r) rings.push_back(closed_ring(polygon.ring(r)));
+    const Vec2 u = block_displacement(data.model, frame, b);
+    features.push_back({{"type", "Feature"},
+                        {"properties",
+                         {{"block", b},
+                          {"name", data.model.blocks[b].name},
+                          {"status", status_name(frame.status[b])},
+                          {"displacement_m", norm(u)},
+                          {"ux_m", u.x},
+                          {"uy_m", u.y},
+                          {"sxx_pa", frame.stress[b][0]},
+                          {"syy_pa", frame.stress[b][1]},
+                          {"sxy_pa", frame.stress[b][2]}}},
+                        {"geometry", {{"type", "Polygon"}, {"coordinates", rings}}}});
+  }
+  const ordered_json collection{{"type", "FeatureCollection"}, {"features", features}};
+  return collection.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+// A stage's name as a part of a file name.
+std::string file_part(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
+    if (plain)
+      out += c;
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
+}
+
+}  // namespace
+
+std::optional<ExportFormat> export_format(std::string_view name) {
+  if (name == "vtk") return ExportFormat::vtk;
+  if (name == "csv") return ExportFormat::csv;
+  if (name == "geojson") return ExportFormat::geojson;
+  return {};
+}
+
+std::vector<std::filesystem::path> export_csv(const RunData& data, const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files{folder / "blocks.csv", folder / "contacts.csv",
+                                           folder / "steps.csv"};
+  write_file_atomically(files[0], block_table(data));
+  write_file_atomically(files[1], contact_table(data));
+  write_file_atomically(files[2], step_table(data));
+  if (!data.model.history_names.empty()) {
+    write_histories_csv(folder, data.model.history_names, data.histories);
+    files.push_back(folder / "histories.csv");
+  }
+  return files;
+}
+
+std::vector<std::filesystem::path> export_geojson(const RunData& data, const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (std::size_t k = 0; k < data.run.stages.size(); ++k) {
+    const simulation::Frame* last = nullptr;
+    for (const simulation::Frame& frame : data.frames) {
+      if (frame.stage == static_cast<int>(k)) last = &frame;
+    }
+    if (last == nullptr) continue;
+    const std::string part = file_part(data.run.stages[k].stage.name);
+    files.push_back(folder / fmt::format("stage_{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part));
+    write_file_atomically(files.back(), stage_geojson(data, *last));
+  }
+  return files;
+}
+
+std::vector<std::filesystem::path> export_run(const RunData& data, const std::filesystem::path& folder,
+                                              ExportFormat format) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw RunError(fmt::format("{}: cannot create: {}", folder.string(), error.message()));
+  switch (format) {
+    case ExportFormat::vtk:
+      return export_vtk(data, folder);
+    case ExportFormat::csv:
+      return export_csv(data, folder);
+    case ExportFormat::geojson:
+      return export_geojson(data, folder);
+  }
+  return {};
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,205 @@
+#include "results/export.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/atomic_file.h"
+#include "results/block_shape.h"
+#include "results/result_writer.h"
+#include "sample_run.h"
+
+namespace keyblock::results {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+// The sample with displacements of a few centimetres, and nothing excavated but block 2 from step 15 on.
+RunData small_motions() {
+  SampleRun sample;
+  RunData data = sample.expected();
+  for (simulation::Frame& frame : data.frames) {
+    for (std::size_t k = 0; k < frame.displacement.size(); ++k) {
+      frame.displacement[k] = {0.01F * static_cast<float>(frame.step), -0.25F};
+    }
+    frame.status = {simulation::BlockStatus::in_place, simulation::BlockStatus::fallen,
+                    frame.step < 15 ? simulation::BlockStatus::loosened : simulation::BlockStatus::excavated};
+  }
+  return data;
+}
+
+std::vector<std::string> lines(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::vector<std::string> out;
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+struct PythonResult {
+  int status = 0;
+  std::string output;
+};
+
+// Debian's own Python, which sees its packaged modules.
+PythonResult python(const std::filesystem::path& folder, const std::string& script,
+                    const std::string& argument) {
+  std::ofstream(folder / "script.py") << script;
+  const std::string output = (folder / "output.txt").string();
+  const std::string command =
+      "/usr/bin/python3 " + (folder / "script.py").string() + " " + argument + " > " + output + " 2>&1";
+  const int status = std::system(command.c_str());  // NOLINT(cert-env33-c): the test's own words
+  return {status, read_file(output)};
+}
+
+bool python_has(const std::string& module) {
+  const std::string command = "/usr/bin/python3 -c 'import " + module + "' > /dev/null 2>&1";
+  return std::system(command.c_str()) == 0;  // NOLINT(cert-env33-c)
+}
+
+TEST(BlockShape, HolesAndDisplacements) {
+  const RunData data = small_motions();
+  const Polygon shape = block_shape(data.model, data.frames[1], 1);
+  ASSERT_EQ(shape.holes.size(), 1U);
+  EXPECT_NEAR(shape.outer[0].x, 466003.1 + 0.1, 1e-6);
+  EXPECT_NEAR(shape.outer[0].y, 6691603.7 - 0.25, 1e-6);
+  EXPECT_NEAR(area(shape), 15.0, 1e-6);
+  const Vec2 u = block_displacement(data.model, data.frames[1], 1);
+  EXPECT_NEAR(u.x, 0.1, 1e-6);
+  EXPECT_NEAR(u.y, -0.25, 1e-6);
+  double covered = 0.0;
+  for (const auto& t : block_triangles(data.model, 1)) {
+    for (const int k : t) EXPECT_TRUE(k >= 3 && k < 11);
+    const auto p = [&](std::size_t k) { return data.model.vertices[static_cast<std::size_t>(t[k])]; };
+    covered += 0.5 * cross(p(1) - p(0), p(2) - p(0));
+  }
+  EXPECT_NEAR(covered, 15.0, 1e-12);
+}
+
+TEST(Export, Csv) {
+  const auto folder = fresh_folder() / "made";
+  const RunData data = small_motions();
+  const auto files = export_run(data, folder, ExportFormat::csv);
+  EXPECT_THAT(files, testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv",
+                                          folder / "steps.csv", folder / "histories.csv"));
+  const auto blocks = lines(folder / "blocks.csv");
+  EXPECT_EQ(blocks[0], "frame,time,stage,step,block,name,status,x,y,ux,uy,sxx,syy,sxy");
+  EXPECT_EQ(blocks.size(), 1U + 2 * 3 + 4 * 2);  // without the excavated block in the last four of six frames
+  EXPECT_THAT(blocks[1], testing::StartsWith("0,0,0,5,0,base,in place,466000.4"));
+  EXPECT_THAT(blocks[3], HasSubstr("slider,loosened"));
+  const auto contacts = lines(folder / "contacts.csv");
+  EXPECT_EQ(contacts.size(), 1U + 0 + 1 + 2);
+  EXPECT_THAT(contacts[1], HasSubstr(",open,"));
+  EXPECT_THAT(contacts[1], testing::EndsWith("joint set,J1"));
+  EXPECT_EQ(lines(folder / "steps.csv").size(), 31U);
+  EXPECT_EQ(lines(folder / "histories.csv").size(), 31U);
+}
+
+TEST(Export, GeoJsonOfEveryStageEnd) {
+  const auto folder = fresh_folder();
+  const auto files = export_run(small_motions(), folder, ExportFormat::geojson);
+  ASSERT_THAT(files, testing::ElementsAre(folder / "stage_1_in-situ.geojson",
+                                          folder / "stage_2_first-earthquake.geojson"));
+  const json first = json::parse(read_file(files[0])), second = json::parse(read_file(files[1]));
+  EXPECT_EQ(first["type"], "FeatureCollection");
+  EXPECT_EQ(first["features"].size(), 3U);
+  EXPECT_EQ(second["features"].size(), 2U);
+  const json& block = second["features"][1];
+  EXPECT_EQ(block["properties"]["status"], "fallen");
+  EXPECT_NEAR(block["properties"]["displacement_m"].get<double>(), std::hypot(0.3, 0.25), 1e-6);
+  const json& rings = block["geometry"]["coordinates"];
+  ASSERT_EQ(rings.size(), 2U);
+  EXPECT_EQ(rings[0].size(), 5U);
+  EXPECT_EQ(rings[0].front(), rings[0].back());
+  EXPECT_NEAR(rings[0][0][0].get<double>(), 466003.1 + 0.3, 1e-6);
+}
+
+TEST(Export, VtkSeriesHasTimesThatAscend) {
+  const auto folder = fresh_folder();
+  const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
+  EXPECT_EQ(files[0], folder / "blocks.pvd");
+  EXPECT_EQ(files[1], folder / "contacts.pvd");
+  EXPECT_EQ(files.size(), 2U + 6 + 3);
+  std::vector<double> times;
+  for (const std::string& line : lines(files[0])) {
+    const std::size_t at = line.find("timestep=\"");
+    if (at != std::string::npos) times.push_back(std::strtod(line.c_str() + at + 10, nullptr));
+  }
+  ASSERT_EQ(times.size(), 6U);
+  for (std::size_t k = 1; k < times.size(); ++k) EXPECT_GT(times[k], times[k - 1]);
+  EXPECT_EQ(times[0], 0.0);
+}
+
+TEST(Export, VtkFilesAreReadByVtk) {
+  if (!python_has("vtkmodules")) GTEST_SKIP() << "python3-vtk9 is not installed";
+  const auto folder = fresh_folder();
+  export_run(small_motions(), folder, ExportFormat::vtk);
+  const PythonResult result = python(folder, R"(
+import sys
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLPolyDataReader
+reader = vtkXMLUnstructuredGridReader()
+reader.SetFileName(sys.argv[1] + "/blocks_00005.vtu")
+reader.Update()
+grid = reader.GetOutput()
+data = grid.GetCellData()
+area = sum(abs(grid.GetCell(k).ComputeArea()) for k in range(1, grid.GetNumberOfCells()))
+print("points", grid.GetNumberOfPoints(), "area of block 1", round(area, 6))
+print("type of cell 0", grid.GetCellType(0), "its points", grid.GetCell(0).GetNumberOfPoints())
+print("blocks", sorted({int(data.GetArray("block").GetValue(k)) for k in range(grid.GetNumberOfCells())}))
+print("status", int(data.GetArray("status").GetValue(1)))
+print("stress", data.GetArray("stress").GetNumberOfComponents(), data.GetArray("stress").GetComponentName(2))
+print("displacement", [round(v, 6) for v in grid.GetPointData().GetArray("displacement").GetTuple3(0)])
+print("point", [round(v, 6) for v in grid.GetPoint(3)])
+print("magnitude", round(data.GetArray("displacement_magnitude").GetValue(0), 6))
+print("step", int(grid.GetFieldData().GetArray("step").GetValue(0)))
+reader = vtkXMLPolyDataReader()
+reader.SetFileName(sys.argv[1] + "/contacts_00002.vtp")
+reader.Update()
+lines = reader.GetOutput()
+print("contacts", lines.GetNumberOfLines(), lines.GetNumberOfPoints(), int(lines.GetCellData().GetArray("state").GetValue(1)))
+)",
+                                     folder.string());
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(result.output,
+            "points 14 area of block 1 15.0\n"
+            "type of cell 0 7 its points 3\n"
+            "blocks [0, 1]\n"
+            "status 2\n"
+            "stress 3 xy\n"
+            "displacement [0.3, -0.25, 0.0]\n"
+            "point [466003.4, 6691603.45, 0.0]\n"
+            "magnitude 0.390512\n"
+            "step 30\n"
+            "contacts 2 4 1\n");
+}
+
+// The example of docs/result-file.md, on a file whose run has ended and on one whose run has not.
+TEST(ResultFileDocs, ThePythonExampleRuns) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const std::string page = read_file(std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "docs" / "result-file.md");
+  const std::size_t begin = page.find("```python\n") + 10, end = page.find("```", begin);
+  ASSERT_NE(end, std::string::npos);
+  const std::string script = page.substr(begin, end - begin);
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  ResultWriter writer(folder, false, 0.0);
+  sample.play(writer, 1, 26, false);
+  PythonResult result = python(folder, script, folder.string());
+  EXPECT_EQ(result.status, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("realization 3\n"));
+  EXPECT_THAT(result.output, HasSubstr("block 1 has fallen; it has 4 vertices and 1 holes"));
+  {
+    ResultWriter whole(folder);
+    sample.play(whole);
+  }
+  result = python(folder, script, folder.string());
+  EXPECT_EQ(result.status, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("block 0 has fallen; it has 3 vertices and 0 holes"));
+}
+
+}  // namespace
+}  // namespace keyblock::results
