@@ -7,16 +7,15 @@
 
 namespace keyblock::report {
 
+using simulation::ContactRecord;
+
 namespace {
 
 /// Sine of the largest angle between two pieces of one straight edge.
 constexpr double straight_sine = 1e-6;
 
-struct Foot {
-  double score = std::numeric_limits<double>::infinity();
-  std::size_t piece = 0;
-  double share = 0.0;
-};
+/// Sine of the largest angle between an edge of one block and the edge of the other that it lies on.
+constexpr double along_sine = 0.3;
 
 }  // namespace
 
@@ -54,40 +53,71 @@ void JointLocator::add_ring(std::span<const std::uint32_t> ring, std::vector<Cha
   }
 }
 
-void JointLocator::locate(std::span<const simulation::ContactRecord> contacts,
-                          std::span<const std::array<float, 2>> displacement,
-                          std::vector<JointPiece>& pieces) const {
-  const auto position = [&](std::uint32_t v) {
-    return model_.vertices[v] + Vec2{double{displacement[v][0]}, double{displacement[v][1]}};
-  };
-  for (const simulation::ContactRecord& contact : contacts) {
-    const Chain* best_chain = nullptr;
-    Foot best;
-    for (const Chain& chain : chains_[static_cast<std::size_t>(contact.block_b)]) {
-      for (std::size_t k = 0; k + 1 < chain.vertices.size(); ++k) {
-        const Vec2 from = position(chain.vertices[k]);
-        const Vec2 along = position(chain.vertices[k + 1]) - from;
-        const double length = norm(along);
-        if (!(length > 0.0)) continue;
-        const double share = std::clamp(dot(contact.position - from, along) / (length * length), 0.0, 1.0);
-        const double distance = norm(contact.position - (from + share * along));
-        const double facing = dot(contact.normal, -perpendicular(along)) / length;
-        const double score = distance + contact.length * (1.0 - facing);
-        if (score < best.score) {
-          best = {score, k, share};
-          best_chain = &chain;
-        }
+Vec2 JointLocator::position(std::uint32_t vertex, Displacement displacement) const {
+  const std::array<float, 2>& u = displacement[vertex];
+  return model_.vertices[vertex] + Vec2{double{u[0]}, double{u[1]}};
+}
+
+JointLocator::Foot JointLocator::foot_of(const ContactRecord& contact, Displacement displacement) const {
+  Foot best;
+  double best_score = std::numeric_limits<double>::infinity();
+  for (const Chain& chain : chains_[static_cast<std::size_t>(contact.block_b)]) {
+    for (std::size_t k = 0; k + 1 < chain.vertices.size(); ++k) {
+      const Vec2 from = position(chain.vertices[k], displacement);
+      const Vec2 along = position(chain.vertices[k + 1], displacement) - from;
+      const double length = norm(along);
+      if (!(length > 0.0)) continue;
+      const double share = std::clamp(dot(contact.position - from, along) / (length * length), 0.0, 1.0);
+      const double distance = norm(contact.position - (from + share * along));
+      const double facing = dot(contact.normal, -perpendicular(along)) / length;
+      const double score = distance + contact.length * (1.0 - facing);
+      if (score < best_score) {
+        best = {&chain, k, share};
+        best_score = score;
       }
     }
-    if (best_chain == nullptr) continue;
+  }
+  return best;
+}
 
-    const auto& vertices = best_chain->vertices;
+double JointLocator::side_of(const ContactRecord& contact, Vec2 along, Displacement displacement) const {
+  const auto& start = model_.blocks[static_cast<std::size_t>(contact.block_a)].ring_start;
+  double nearest = std::numeric_limits<double>::infinity();
+  double side = 0.0;
+  for (std::size_t r = 0; r + 1 < start.size(); ++r) {
+    const auto begin = static_cast<std::uint32_t>(start[r]);
+    const auto count = static_cast<std::uint32_t>(start[r + 1]) - begin;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Vec2 vertex = position(begin + k, displacement);
+      const double distance = norm(vertex - contact.position);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      side = 0.0;
+      for (const std::uint32_t neighbour : {(k + 1) % count, (k + count - 1) % count}) {
+        const Vec2 edge = position(begin + neighbour, displacement) - vertex;
+        if (std::abs(cross(along, edge)) < along_sine * norm(edge))
+          side += dot(along, edge) > 0.0 ? 1.0 : -1.0;
+      }
+    }
+  }
+  return std::clamp(side, -1.0, 1.0);
+}
+
+void JointLocator::locate(std::span<const ContactRecord> contacts, Displacement displacement,
+                          std::vector<JointPiece>& pieces) const {
+  for (const ContactRecord& contact : contacts) {
+    const Foot foot = foot_of(contact, displacement);
+    if (foot.chain == nullptr) continue;
+    const auto& vertices = foot.chain->vertices;
     std::vector<double> arc(vertices.size(), 0.0);
     for (std::size_t k = 0; k + 1 < vertices.size(); ++k)
-      arc[k + 1] = arc[k] + norm(position(vertices[k + 1]) - position(vertices[k]));
-    const double foot = std::lerp(arc[best.piece], arc[best.piece + 1], best.share);
-    const double begin =
-        std::clamp(foot - 0.5 * contact.length, 0.0, std::max(0.0, arc.back() - contact.length));
+      arc[k + 1] =
+          arc[k] + norm(position(vertices[k + 1], displacement) - position(vertices[k], displacement));
+    const Vec2 along = normalized(position(vertices[foot.piece + 1], displacement) -
+                                  position(vertices[foot.piece], displacement));
+    const double at = std::lerp(arc[foot.piece], arc[foot.piece + 1], foot.share);
+    const double first = at - 0.5 * (1.0 - side_of(contact, along, displacement)) * contact.length;
+    const double begin = std::clamp(first, 0.0, std::max(0.0, arc.back() - contact.length));
     const double end = std::min(arc.back(), begin + contact.length);
     for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
       const double length = arc[k + 1] - arc[k];

@@ -34,6 +34,20 @@ class JointLocator {
   struct Chain {
     std::vector<std::uint32_t> vertices;  ///< first to last along the edge, one more than pieces
   };
+  /// A point of a chain: how far along it, and along which piece.
+  struct Foot {
+    const Chain* chain = nullptr;
+    std::size_t piece = 0;
+    double share = 0.0;
+  };
+  using Displacement = std::span<const std::array<float, 2>>;
+
+  [[nodiscard]] Vec2 position(std::uint32_t vertex, Displacement displacement) const;
+  [[nodiscard]] Foot foot_of(const simulation::ContactRecord& contact, Displacement displacement) const;
+  /// Where block_a lies along the edge, seen from the contact: +1 ahead in the direction of the unit vector `along`,
+  /// −1 behind, 0 both or neither.
+  [[nodiscard]] double side_of(const simulation::ContactRecord& contact, Vec2 along,
+                               Displacement displacement) const;
   void add_ring(std::span<const std::uint32_t> ring, std::vector<Chain>& chains) const;
   const simulation::ModelRecord& model_;
   std::vector<std::vector<Chain>> chains_;  ///< by block

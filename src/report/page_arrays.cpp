@@ -22,19 +22,6 @@ constexpr std::size_t max_rows = 4000;
 constexpr std::size_t max_displacements = 8'000'000;
 constexpr std::size_t min_frames = 60;
 
-/// Step numbers since the start of the run, whether they were counted so or from the start of their stage.
-class StepCounter {
- public:
-  double operator()(long step) {
-    if (step < last_) offset_ += last_;
-    last_ = step;
-    return static_cast<double>(offset_ + step);
-  }
-
- private:
-  long last_ = 0, offset_ = 0;
-};
-
 void add_model(const simulation::ModelRecord& model, ArrayPack& pack) {
   std::vector<std::uint32_t> begin, end, block;
   std::vector<std::uint8_t> order, fixed, kind;
@@ -85,13 +72,10 @@ void add_frames(const results::RunData& run, const std::vector<std::size_t>& cho
   std::vector<double> time, step;
   std::vector<std::int32_t> stage;
   std::vector<std::uint8_t> status;
-  StepCounter counter;
-  std::vector<double> steps;
-  for (const Frame& frame : run.frames) steps.push_back(counter(frame.step));
   for (const std::size_t f : chosen) {
     const Frame& frame = run.frames[f];
     time.push_back(frame.time);
-    step.push_back(steps[f]);
+    step.push_back(static_cast<double>(frame.step));
     stage.push_back(frame.stage);
     for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
   }
@@ -110,15 +94,13 @@ void add_frames(const results::RunData& run, const std::vector<std::size_t>& cho
            }));
 }
 
-/// The frame that shows the moment of a snapshot: the last of its stage that is not later; else the first of
-/// the stage.
-std::ptrdiff_t frame_of(const ContactFrame& snapshot, const std::vector<Frame>& frames) {
-  std::ptrdiff_t found = -1;
-  const double tolerance = 1e-9 * (1.0 + std::abs(snapshot.time));
-  for (std::size_t f = 0; f < frames.size(); ++f)
-    if (frames[f].stage == snapshot.stage && (found < 0 || frames[f].time <= snapshot.time + tolerance))
-      found = static_cast<std::ptrdiff_t>(f);
-  return found;
+/// The frame that shows the moment of a snapshot: the last that is not later, else the first.
+std::size_t frame_of(const ContactFrame& snapshot, const std::vector<Frame>& frames) {
+  const auto later =
+      std::upper_bound(frames.begin(), frames.end(), snapshot, [](const ContactFrame& c, const Frame& f) {
+        return std::pair(c.stage, c.step) < std::pair(f.stage, f.step);
+      });
+  return later == frames.begin() ? 0 : static_cast<std::size_t>(later - frames.begin()) - 1;
 }
 
 void add_contacts(const results::RunData& run, const std::vector<std::size_t>& frames, ArrayPack& pack) {
@@ -128,11 +110,10 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
   std::vector<JointPiece> pieces;
   std::vector<std::uint32_t> frame_index, begin{0};
   for (const std::size_t k : thin_by_stage(stages, max_snapshots)) {
-    const std::ptrdiff_t frame = frame_of(run.contacts[k], run.frames);
-    if (frame < 0) continue;
-    locator.locate(run.contacts[k].contacts, run.frames[static_cast<std::size_t>(frame)].displacement,
-                   pieces);
-    const auto at = std::lower_bound(frames.begin(), frames.end(), static_cast<std::size_t>(frame));
+    if (run.frames.empty()) break;
+    const std::size_t frame = frame_of(run.contacts[k], run.frames);
+    locator.locate(run.contacts[k].contacts, run.frames[frame].displacement, pieces);
+    const auto at = std::lower_bound(frames.begin(), frames.end(), frame);
     frame_index.push_back(static_cast<std::uint32_t>(at - frames.begin()));
     begin.push_back(static_cast<std::uint32_t>(pieces.size()));
   }
@@ -170,13 +151,14 @@ void add_curves(std::string_view x_name, std::string_view values_name, const Cur
 
 void add_histories(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
-  curves.columns.resize(7 * run.model.history_names.size());
+  curves.columns.resize(1 + 7 * run.model.history_names.size());
   for (const simulation::HistoryRow& row : run.histories) {
     curves.x.push_back(row.time);
+    curves.columns[0].push_back(static_cast<double>(row.step));
     for (std::size_t p = 0; p < run.model.history_names.size(); ++p) {
       const auto& q = row.points[p];
       const double values[] = {q.ux, q.uy, q.vx, q.vy, q.sxx, q.syy, q.sxy};
-      for (std::size_t c = 0; c < 7; ++c) curves.columns[7 * p + c].push_back(values[c]);
+      for (std::size_t c = 0; c < 7; ++c) curves.columns[1 + 7 * p + c].push_back(values[c]);
     }
   }
   add_curves("history.time", "history.values", curves, pack);
@@ -184,10 +166,10 @@ void add_histories(const results::RunData& run, ArrayPack& pack) {
 
 void add_steps(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
-  StepCounter counter;
   for (const simulation::StepRow& row : run.steps) {
     const simulation::Energy& e = row.energy;
-    const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.numerical - e.input;
+    const double residual =
+        e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
     // In the order of step_columns in page_header.cpp.
     const double values[] = {double(row.stage),
                              row.time,
@@ -201,12 +183,13 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
                              e.gravity,
                              e.contact,
                              e.friction,
+                             e.damping,
                              e.numerical,
                              e.input,
                              residual,
                              e.residual_ratio};
     curves.columns.resize(std::size(values));
-    curves.x.push_back(counter(row.step));
+    curves.x.push_back(static_cast<double>(row.step));
     for (std::size_t c = 0; c < std::size(values); ++c) curves.columns[c].push_back(values[c]);
   }
   add_curves("step.step", "step.values", curves, pack);

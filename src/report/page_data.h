@@ -14,27 +14,32 @@ struct PageData {
 
 PageData make_page_data(const results::RunData& run);
 
-/// The arrays of the page; n(x) is the number of x, codec is encode_frames.
+/// The arrays of the page. n(x) is the number of x; "codec" is encode_frames.
 ///
-/// | name | type | count | what |
+/// | name | type | numbers | what |
 /// |---|---|---|---|
-/// | ring.begin, ring.end, ring.block | u32 | n(rings) | display vertices of a ring, and its block |
+/// | ring.begin, ring.end | u32 | n(rings) | display vertices of a ring |
+/// | ring.block | u32 | n(rings) | its block |
 /// | vertex.position | f32 | 2 n(vertices) | x, y in reference position, m |
-/// | edge.kind, edge.index | u8, i32 | n(vertices) | label of the piece from this vertex to the next |
+/// | edge.kind, edge.index | u8, i32 | n(vertices) | label of the piece from here to the next vertex |
 /// | block.order, block.fixed | u8 | n(blocks) | |
 /// | block.area, block.density | f32 | n(blocks) | m², kg/m³ |
 /// | frame.time, frame.step | f64 | n(frames) | s; steps since the start of the run |
 /// | frame.stage | i32 | n(frames) | |
 /// | frame.status | u8 | n(frames) n(blocks) | BlockStatus |
-/// | frame.displacement | u8 | codec, columns: x of all vertices, then y | quantum `displacement_quantum`, m
-/// | | frame.stress | u8 | codec, columns: xx, then yy, then xy of all blocks | quantum `stress_quantum`, Pa
-/// | | snapshot.frame | u32 | n(snapshots) | frame from which a contact snapshot holds | | snapshot.begin |
-/// u32 | n(snapshots) + 1 | its joint pieces | | piece.vertex | u32 | n(pieces) | see JointPiece | |
-/// piece.from, piece.to, piece.state | u8 | n(pieces) | shares in 1/255; ContactState | | piece.slip,
-/// piece.gap | f32 | n(pieces) | m | | history.time, history.values | f64, f32 | rows, 7 n(points) rows |
-/// column by column: ux, uy, vx, vy, sxx, syy, sxy of a point | | step.step, step.values | f64, f32 | rows,
-/// n(step_columns) rows | column by column, as `step_columns` of the header names them | | motion.K.time, .x,
-/// .y | f64, f32, f32 | samples | of stage K; s since the start of the run, m/s² |
+/// | frame.displacement | u8 | codec | columns: x of all vertices, then y; displacement_quantum |
+/// | frame.stress | u8 | codec | columns: xx of all blocks, then yy, xy; stress_quantum |
+/// | snapshot.frame | u32 | n(snapshots) | frame from which a contact snapshot holds |
+/// | snapshot.begin | u32 | n(snapshots) + 1 | its joint pieces |
+/// | piece.vertex | u32 | n(pieces) | see JointPiece |
+/// | piece.from, piece.to | u8 | n(pieces) | shares in 1/255 |
+/// | piece.state | u8 | n(pieces) | ContactState |
+/// | piece.slip, piece.gap | f32 | n(pieces) | m |
+/// | history.time | f64 | rows | s |
+/// | history.values | f32 | (1 + 7 n(points)) rows | by column: step; ux, uy, vx, vy, sxx, syy, sxy … |
+/// | step.step | f64 | rows | steps since the start of the run |
+/// | step.values | f32 | n(step_columns) rows | by column, as step_columns in the header names them |
+/// | motion.K.time, .x, .y | f64, f32, f32 | samples | of stage K; s since the start of the run, m/s² |
 ArrayPack page_arrays(const results::RunData& run);
 
 /// Resolution of the displacements in the page, m: 10^-7 of the model's size, finer where all displacements

@@ -27,10 +27,9 @@ ordered_json optional(const std::optional<T>& value) {
 }
 
 ordered_json energy_json(const simulation::Energy& e) {
-  return {{"kinetic", e.kinetic},     {"strain", e.strain},
-          {"gravity", e.gravity},     {"contact", e.contact},
-          {"friction", e.friction},   {"input", e.input},
-          {"numerical", e.numerical}, {"residual_ratio", e.residual_ratio}};
+  return {{"kinetic", e.kinetic}, {"strain", e.strain},       {"gravity", e.gravity},
+          {"contact", e.contact}, {"friction", e.friction},   {"damping", e.damping},
+          {"input", e.input},     {"numerical", e.numerical}, {"residual_ratio", e.residual_ratio}};
 }
 
 ordered_json damage_json(const simulation::Damage& d) {
@@ -139,7 +138,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
                             {"step_columns",
                              {"stage", "time", "iterations", "step_size", "penetration", "max_displacement",
                               "closed_contacts", "kinetic", "strain", "gravity", "contact", "friction",
-                              "numerical", "input", "residual", "residual_ratio"}},
+                              "damping", "numerical", "input", "residual", "residual_ratio"}},
                             {"arrays", entries}};
   const std::string text = header.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   std::string safe;

@@ -13,7 +13,10 @@ try {
     filter: (path) => !["node_modules", "dist"].includes(basename(path)),
   });
   symlinkSync(packages, join(copy, "node_modules"));
-  const run = spawnSync("npm", ["run", "check", "--silent"], { cwd: copy, stdio: "inherit" });
+  const run = spawnSync("npm", ["run", "check", "--silent"], {
+    cwd: copy,
+    stdio: "inherit",
+  });
   process.exitCode = run.status ?? 1;
 } finally {
   rmSync(copy, { recursive: true });

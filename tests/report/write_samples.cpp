@@ -23,6 +23,8 @@ int main(int argc, char** argv) {
   write("interrupted", {.interrupted = true});
   write("no_frames", {.frames = false});
   write("no_excavation", {.excavation = false});
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "empty");
+  keyblock::report::write_report({}, std::filesystem::path(argv[1]) / "empty");
   // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.
   write("large", {.columns = 32, .rows = 28, .edge_pieces = 3, .frames_per_stage = 75});
 }

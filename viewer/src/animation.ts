@@ -65,8 +65,13 @@ export class Animation {
       this.controls(),
       this.legends,
       this.figure,
-      h("div", { class: "transport" }, this.playButton, this.slider),
-      this.stageBand(),
+      h(
+        "div",
+        { class: "transport" },
+        this.playButton,
+        h("div", { class: "track" }, this.slider, this.stageBand()),
+        this.speedChoice(),
+      ),
       h("div", { class: "time-line" }, this.timeLabel),
       h(
         "p",
@@ -102,13 +107,14 @@ export class Animation {
         "1",
         (v) => change(() => (look.exaggeration = Number(v))),
       ),
-      choice(
-        "Speed",
-        speeds.map((s) => ({ value: String(s), text: s === 1 ? "real time" : `× ${s}` })),
-        "1",
-        (v) => (this.clock.speed = Number(v)),
-      ),
     );
+  }
+
+  private speedChoice(): HTMLElement {
+    const options = speeds.map((s) => ({ value: String(s), text: s === 1 ? "real time" : `× ${s}` }));
+    const element = choice("Speed", options, "1", (v) => (this.clock.speed = Number(v)));
+    element.classList.add("speed");
+    return element;
   }
 
   private zoomButtons(): HTMLElement {

@@ -8,10 +8,9 @@ const anchors = (text: string): Rgb[] => text.split(" ").map(parse);
 export const viridis = anchors(
   "440154 482475 414487 355f8d 2a788e 21918c 22a884 44bf70 7ad151 bddf26 fde725",
 );
-export const magma = anchors("000004 150e38 3b0f70 641a80 8c2981 b73779 de4968 f7705c fe9f6d fecf92 fcfdbf");
-export const cividis = anchors(
-  "00224e 08326e 2a3f6d 434e6c 575d6d 6b6d71 7f7c75 948e77 aba074 c3b369 fee838",
-);
+/** Magma from its second anchor on; its light end is paler here, so that rock at rest is calm. */
+export const magma = anchors("150e38 3b0f70 641a80 8c2981 b73779 de4968 f7705c fe9f6d fecf92 f4efdf");
+export const mako = anchors("2e1e3b 413d7b 37659e 348fa7 40b7ad 8bdab2 def5e5");
 
 /** Colour of t in [0, 1]. */
 export function sample(map: readonly Rgb[], t: number): string {

@@ -21,6 +21,14 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** "a_x in m/s²" with the x as an index. */
+export function symbols(text: string): DocumentFragment {
+  const fragment = document.createDocumentFragment();
+  for (const [k, part] of text.split(/_([a-z]+)/).entries())
+    fragment.append(k % 2 === 1 ? h("sub", {}, part) : part);
+  return fragment;
+}
+
 /** A labelled drop-down list. */
 export function choice(
   label: string,

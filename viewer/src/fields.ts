@@ -1,4 +1,4 @@
-import { magma, palette, place, table, viridis, type Scale } from "./colors";
+import { magma, mako, palette, place, table, viridis, type Rgb, type Scale } from "./colors";
 import { css } from "./dom";
 import { length, niceAbove, stress } from "./format";
 import { EdgeKind, Run, Status, statusNames, type Moment } from "./run";
@@ -25,6 +25,13 @@ export const jointFields: { value: JointField; text: string }[] = [
   { value: "state", text: "contact state" },
   { value: "set", text: "joint set" },
 ];
+
+const stressTitles: Record<string, string> = {
+  mean: "Mean stress (σxx + σyy)/2",
+  major: "Most compressive principal stress",
+  minor: "Least compressive principal stress",
+  shear: "Largest shear stress",
+};
 
 /** What a legend shows: a colour bar, or named colours. */
 export interface Legend {
@@ -77,9 +84,9 @@ function percentile(sorted: Float64Array, p: number): number {
 
 /** Colours of one run. Scales are the same for all moments, so that pictures can be compared. */
 export class Fields {
-  private readonly viridis = table(viridis);
-  private readonly compression = table(viridis, true);
-  private slipColors: string[] = [];
+  private displacementColors: string[] = [];
+  private stressColors: string[] = [];
+  private jointColors: string[] = [];
   private readonly scales = new Map<string, Scale>();
   private statusColors: string[] = [];
   private stateStyles: { name: string; color: string; width: number }[] = [];
@@ -97,10 +104,12 @@ export class Fields {
       { name: "sliding", color: "#d55e00", width: 2.5 },
       { name: "locked", color: css("--joint"), width: 1.2 },
     ];
-    // From the colour of the paper to its opposite, leaving out the end that would not be seen on it.
+    // Little is near the colour of the paper, much is its opposite.
     const dark = css("--scheme") === "dark";
-    const map = dark ? magma.slice(3) : magma.slice(0, 9).reverse();
-    this.slipColors = table(map);
+    const towardsInk = (map: Rgb[]) => table(dark ? map : [...map].reverse());
+    this.displacementColors = towardsInk(magma);
+    this.stressColors = towardsInk(mako);
+    this.jointColors = towardsInk(dark ? viridis.slice(2) : viridis.slice(0, 9));
   }
 
   /** Moments whose values set the scales: the ends of the stages. */
@@ -191,8 +200,9 @@ export class Fields {
   ): string[] {
     const { run } = this;
     const colors = new Array<string>(run.blockCount).fill(this.plain);
-    if (field === "plain") return colors;
+    if (field === "plain" || (field === "displacement" && moment < sinceMoment)) return colors;
     const pick = (map: string[], t: number) => map[Math.round(t * (map.length - 1))];
+    const stressMap = this.stressMap(field);
     const scale = field === "displacement" ? this.displacementScale(sinceMoment) : this.stressScaleOf(field);
     for (let b = 0; b < run.blockCount; b++) {
       if (run.fixed[b]) continue;
@@ -200,13 +210,17 @@ export class Fields {
       else if (field === "order") colors[b] = this.orderColor(run.order[b]);
       else if (field === "displacement") {
         const d = Math.hypot(...blockDisplacement(run, b, u, since));
-        colors[b] = pick(this.viridis, place(scale, d));
+        colors[b] = pick(this.displacementColors, place(scale, d));
       } else {
-        const map = field === "shear" ? this.viridis : this.compression;
-        colors[b] = pick(map, place(scale, this.stressValue(field, moment, b)));
+        colors[b] = pick(stressMap, place(scale, this.stressValue(field, moment, b)));
       }
     }
     return colors;
+  }
+
+  /** Colours from the smallest (most compressive) to the largest value; for the shear stress, from nothing up. */
+  private stressMap(field: BlockField): string[] {
+    return field === "shear" ? this.stressColors : [...this.stressColors].reverse();
   }
 
   private stressScaleOf(field: BlockField): Scale {
@@ -227,7 +241,7 @@ export class Fields {
       const value = field === "slip" ? run.pieceSlip[piece] : run.pieceGap[piece];
       if (!(value > scale.min)) return null;
       const t = place(scale, value);
-      return { color: this.slipColors[Math.round(t * (this.slipColors.length - 1))], width: 1 + 3 * t };
+      return { color: this.jointColors[Math.round(t * (this.jointColors.length - 1))], width: 1 + 3 * t };
     }
     return this.stateStyles[run.pieceState[piece]];
   }
@@ -264,17 +278,21 @@ export class Fields {
       case "displacement":
         return {
           title: "Displacement of the blocks",
-          bar: { colors: this.viridis, scale: this.displacementScale(since), format: (v) => length(v, 2) },
+          bar: {
+            colors: this.displacementColors,
+            scale: this.displacementScale(since),
+            format: (v) => length(v, 2),
+          },
         };
       default:
         return {
-          title: `${field === "shear" ? "Largest shear stress" : field === "mean" ? "Mean stress (σxx + σyy)/2" : field === "major" ? "Most compressive principal stress" : "Least compressive principal stress"}`,
+          title: stressTitles[field],
           note:
             field === "shear"
               ? undefined
               : "compression negative; colours end at the 2nd and 98th percentile",
           bar: {
-            colors: field === "shear" ? this.viridis : this.compression,
+            colors: this.stressMap(field),
             scale: this.stressScale(field),
             format: (v) => stress(v, 2),
           },
@@ -306,9 +324,9 @@ export class Fields {
           title: field === "slip" ? "Slip of the joints" : "Opening of the joints",
           note:
             field === "slip"
-              ? "shear displacement since the excavation; thin line: less"
-              : "gap; thin line: less",
-          bar: { colors: this.slipColors, scale: this.pieceScale(field), format: (v) => length(v, 2) },
+              ? "shear displacement since the excavation; less than the scale is not drawn"
+              : "gap of the contacts; less than the scale is not drawn",
+          bar: { colors: this.jointColors, scale: this.pieceScale(field), format: (v) => length(v, 2) },
         };
     }
   }

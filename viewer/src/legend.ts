@@ -1,6 +1,9 @@
-import { place, ticks } from "./colors";
+import { place, ticks, type Scale } from "./colors";
 import { h } from "./dom";
 import type { Legend } from "./fields";
+
+/** Of .legend-bar in style.css, px. */
+const barWidth = 320;
 
 /** A legend as HTML, so that it prints sharply and can be read out. */
 export function legendElement(legend: Legend): HTMLElement {
@@ -10,12 +13,9 @@ export function legendElement(legend: Legend): HTMLElement {
     const bar = h("div", { class: "legend-bar", "aria-hidden": "true" });
     bar.style.background = `linear-gradient(to right, ${colors.join(",")})`;
     const labels = h("div", { class: "legend-ticks" });
-    for (const value of ticks(scale, 4)) {
-      const tick = h("span", {}, format(value));
-      const at = 100 * place(scale, value);
-      tick.style.left = `${at}%`;
-      if (at < 6) tick.classList.add("first");
-      else if (at > 94) tick.classList.add("last");
+    for (const { value, text, align } of barLabels(scale, format)) {
+      const tick = h("span", { class: align }, text);
+      tick.style.left = `${100 * place(scale, value)}%`;
       labels.append(tick);
     }
     box.append(bar, labels);
@@ -31,4 +31,35 @@ export function legendElement(legend: Legend): HTMLElement {
   }
   if (legend.note) box.append(h("div", { class: "legend-note" }, legend.note));
   return box;
+}
+
+interface BarLabel {
+  value: number;
+  text: string;
+  align: "first" | "middle" | "last";
+}
+
+/** Labels of a colour bar: its two ends, and of the round values between them those that do not run into others. */
+function barLabels(scale: Scale, format: (value: number) => string): BarLabel[] {
+  const labels: BarLabel[] = [
+    { value: scale.min, text: format(scale.min), align: "first" },
+    { value: scale.max, text: format(scale.max), align: "last" },
+  ];
+  const taken = labels.map((l) => reach(l, scale));
+  for (const value of ticks(scale, 4)) {
+    const label: BarLabel = { value, text: format(value), align: "middle" };
+    const [from, to] = reach(label, scale);
+    if (taken.some(([a, b]) => from < b && a < to)) continue;
+    taken.push([from, to]);
+    labels.push(label);
+  }
+  return labels;
+}
+
+/** From where to where a label reaches, px, with some room; widths are estimated from the number of characters. */
+function reach(label: BarLabel, scale: Scale): [number, number] {
+  const width = 7.2 * label.text.length + 8;
+  const x = barWidth * place(scale, label.value);
+  const from = label.align === "first" ? x : label.align === "last" ? x - width : x - 0.5 * width;
+  return [from, from + width];
 }

@@ -1,19 +1,20 @@
 import { Animation } from "./animation";
 import { Clock } from "./clock";
 import { readPage, type Header } from "./data";
-import { css, h, section, type Child } from "./dom";
+import { h, section, type Child } from "./dom";
 import { Fields } from "./fields";
+import { NowFacts } from "./now_facts";
 import { count, integer } from "./format";
 import { Pictures } from "./pictures";
 import type { Plot } from "./plots";
 import { historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { Run } from "./run";
-import { cuttingFacts, damageTable, movingTable, runFacts, solverFacts, stageTable } from "./tables";
-import { checks, findings, type Finding } from "./verdict";
+import { cuttingFacts, damageTable, movingTable, qualityTable, runFacts, stageTable } from "./tables";
+import { findings, type Finding } from "./verdict";
 
 function findingList(items: readonly Finding[]): HTMLElement {
   const list = h("ul", { class: "findings" });
-  for (const { grade, text } of items) list.append(h("li", { class: grade }, text));
+  for (const { grade, text } of items) list.append(h("li", { class: `finding ${grade}` }, text));
   return list;
 }
 
@@ -51,7 +52,7 @@ function conventions(): HTMLElement {
         "A block has fallen when it has left its place for the opening; loosened means moved beyond the limit of the scenario without having fallen. Damage is cumulative since the first excavation; the user guide has the definitions.",
       ),
       item(
-        "Energies: kinetic + strain + gravity + contact + friction + numerical − input = residual, where friction and numerical are losses and input is the work of motion, loads and supports.",
+        "Energies: kinetic + strain + gravity + contact + friction + damping + numerical − input = residual, where friction, damping and numerical are losses and input is the work of motion, loads and supports.",
       ),
     ),
   );
@@ -114,9 +115,10 @@ function build(run: Run, main: HTMLElement): void {
   if (pictures) parts.push(section("states", "The blocks before and after each stage", pictures.element));
   const motion = track(motionPlots(run, clock));
   if (animation) {
+    const excavated = run.header.model.excavations.length > 0;
     const aside =
-      motion.length > 0
-        ? h("div", { class: "motion" }, h("h3", {}, "Ground motion of the base"), ...motion)
+      motion.length > 0 || excavated
+        ? h("div", { class: "aside" }, ...motion, excavated ? new NowFacts(run, clock).element : null)
         : null;
     parts.push(
       section(
@@ -154,8 +156,7 @@ function build(run: Run, main: HTMLElement): void {
     section(
       "quality",
       "Quality of the computation",
-      findingList(checks(run)),
-      solverFacts(run),
+      qualityTable(run),
       h("div", { class: "plots" }, ...track(solverPlots(run, clock))),
     ),
   );
@@ -167,17 +168,18 @@ function build(run: Run, main: HTMLElement): void {
   const themeChanged = () => {
     fields.readTheme();
     animation?.view.readTheme();
+    pictures?.readTheme();
     drawn.forEach((d) => d.redraw());
     plots.forEach((p) => p.rebuild());
   };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themeChanged);
-  // Paper is white, whatever the screen.
+  // Paper is white whatever the screen, and as wide as the style says: figures are drawn for it before printing.
   addEventListener("beforeprint", () => {
-    document.documentElement.dataset.theme = "light";
-    if (css("--scheme")) themeChanged();
+    document.documentElement.dataset.printing = "true";
+    themeChanged();
   });
   addEventListener("afterprint", () => {
-    delete document.documentElement.dataset.theme;
+    delete document.documentElement.dataset.printing;
     themeChanged();
   });
 }

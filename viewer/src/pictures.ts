@@ -38,7 +38,11 @@ export class Pictures {
       "aria-label": "Enlarged picture",
       close: () => this.closed(),
     });
-    for (const picture of this.pictures()) this.grid.append(this.figure(picture));
+    const pictures = this.pictures();
+    for (const picture of pictures) this.grid.append(this.figure(picture));
+    // Rows of like length: 5 or 6 pictures stand in two rows of three.
+    const columns = [5, 6, 9].includes(pictures.length) ? 3 : Math.min(4, pictures.length);
+    this.grid.style.setProperty("--columns", String(columns));
     this.element = h("div", { class: "picture-box" }, this.controls(), this.legends, this.grid, this.dialog);
     this.updateLegends();
     new ResizeObserver(() => this.redraw()).observe(this.grid);
@@ -143,6 +147,10 @@ export class Pictures {
 
   private updateLegends(): void {
     this.legends.replaceChildren(...this.legendElements());
+  }
+
+  readTheme(): void {
+    for (const view of this.views) view.readTheme();
   }
 
   redraw(): void {

@@ -1,6 +1,6 @@
 import uPlot from "uplot";
 import type { Clock } from "./clock";
-import { css, h } from "./dom";
+import { css, h, symbols } from "./dom";
 import { significant } from "./format";
 
 export interface Series {
@@ -21,9 +21,11 @@ export interface PlotOptions {
   series: Series[];
   height?: number;
   logarithmic?: boolean;
+  /** Takes two columns of the grid of plots. */
+  wide?: boolean;
   range?: [number, number];
   /** A second axis at the right: values of the left one divided by `divisor`. */
-  right?: { unit: string; divisor: number };
+  right?: { divisor: number };
   /** Plots of one group share the pointer's position. */
   group: string;
   /** The abscissa at which the animation stands, and the way back. */
@@ -32,6 +34,12 @@ export interface PlotOptions {
 }
 
 const colorOf = (s: Series) => (s.color.startsWith("--") ? css(s.color) : s.color);
+
+function decades(min: number, max: number): number[] {
+  const values: number[] = [];
+  for (let k = Math.ceil(Math.log10(min) - 1e-9); 10 ** k <= max * (1 + 1e-9); k++) values.push(10 ** k);
+  return values;
+}
 
 /** A plot over time or steps with a line at the moment of the animation; a click moves the animation there. */
 export class Plot {
@@ -50,12 +58,12 @@ export class Plot {
       "figcaption",
       {},
       h("strong", {}, options.title),
-      h("span", { class: "unit" }, options.unit),
+      h("span", { class: "unit" }, symbols(options.unit)),
     );
     caption.append(this.key());
     this.element = h(
       "figure",
-      { class: "plot", "aria-label": `${options.title} (${options.unit})` },
+      { class: options.wide ? "plot wide" : "plot", "aria-label": `${options.title} (${options.unit})` },
       caption,
       this.target,
     );
@@ -98,21 +106,18 @@ export class Plot {
         size: 26,
         values: number,
       },
-      { ...axis, size: 56, values: number, space: 26 },
+      {
+        ...axis,
+        size: 56,
+        values: number,
+        space: 26,
+        ...(options.logarithmic
+          ? { splits: (_: uPlot, __: number, min: number, max: number) => decades(min, max) }
+          : {}),
+      },
     ];
     if (options.right)
-      axes.push({
-        ...axis,
-        scale: "right",
-        side: 1,
-        size: 48,
-        values: number,
-        grid: { show: false },
-        label: options.right.unit,
-        labelFont: axis.font,
-        labelSize: 16,
-        labelGap: 0,
-      });
+      axes.push({ ...axis, scale: "right", side: 1, size: 44, values: number, grid: { show: false } });
     const divisor = options.right?.divisor ?? 1;
     const plot = new uPlot(
       {
@@ -187,7 +192,9 @@ export class Plot {
       swatch.style.background = s.color.startsWith("--") ? `var(${s.color})` : s.color;
       const reading = h("span", { class: "reading" });
       this.readings.push(reading);
-      key.append(h("span", {}, ...(this.options.series.length > 1 ? [swatch, s.name] : []), reading));
+      key.append(
+        h("span", {}, ...(this.options.series.length > 1 ? [swatch, symbols(s.name)] : []), reading),
+      );
     }
     return key;
   }

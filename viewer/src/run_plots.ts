@@ -4,7 +4,9 @@ import type { Run } from "./run";
 
 const g = 9.81;
 
-function overTime(run: Run, clock: Clock): Pick<PlotOptions, "now" | "seek" | "group" | "xName"> {
+type Axis = Pick<PlotOptions, "now" | "seek" | "group" | "xName">;
+
+function overTime(run: Run, clock: Clock): Axis {
   return {
     now: () => run.timeAt(clock.moment),
     seek: (t) => {
@@ -13,6 +15,18 @@ function overTime(run: Run, clock: Clock): Pick<PlotOptions, "now" | "seek" | "g
     },
     group: "time",
     xName: "run time (s)",
+  };
+}
+
+function overSteps(run: Run, clock: Clock): Axis {
+  return {
+    now: () => run.stepAt(clock.moment),
+    seek: (step) => {
+      clock.pause();
+      clock.seek(run.momentAtStep(step));
+    },
+    group: "step",
+    xName: "step",
   };
 }
 
@@ -41,21 +55,24 @@ export function motionPlots(run: Run, clock: Clock): Plot[] {
   });
   if (time.length === 0) return [];
   const limit = 1.08 * (largest || 1);
-  const plot = (title: string, values: (number | null)[], color: string) =>
+  const plot = (title: string, symbol: string, values: (number | null)[], color: string) =>
     new Plot(
       {
         ...overTime(run, clock),
         title,
-        unit: "m/s², right axis g",
+        unit: `${symbol} in m/s², right axis in g`,
         x: time,
         series: [{ name: title, values, color, width: 0.9 }],
         range: [-limit, limit],
-        right: { unit: "g", divisor: g },
-        height: 200,
+        right: { divisor: g },
+        height: 230,
       },
       clock,
     );
-  return [plot("Horizontal, a_x", ax, "--curve-1"), plot("Vertical, a_y", ay, "--curve-2")];
+  return [
+    plot("Horizontal acceleration", "a_x", ax, "--curve-1"),
+    plot("Vertical acceleration", "a_y", ay, "--curve-2"),
+  ];
 }
 
 /** Displacement, velocity and stress of each chosen point. */
@@ -66,13 +83,11 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
   if (names.length === 0 || rows === 0) return [];
   const values = run.arrays.get("history.values", "f32");
   const column = (point: number, c: number) =>
-    values.subarray((7 * point + c) * rows, (7 * point + c + 1) * rows);
-  // A static run takes no time: its rows are plotted one after the other.
+    values.subarray((1 + 7 * point + c) * rows, (2 + 7 * point + c) * rows);
+  // A static run takes no time: it is plotted over its steps.
   const isStatic = time[rows - 1] <= time[0];
-  const x = isStatic ? Float64Array.from(time, (_, i) => i + 1) : time;
-  const axis = isStatic
-    ? { ...overTime(run, clock), xName: "recorded row", now: () => NaN, seek: () => undefined, group: "rows" }
-    : overTime(run, clock);
+  const x = isStatic ? Float64Array.from(values.subarray(0, rows)) : time;
+  const axis = isStatic ? overSteps(run, clock) : overTime(run, clock);
   const scaled = (v: Float32Array, factor: number) => v.map((a) => a * factor);
   return names.map((name, p) => {
     const largest = column(p, 0).reduce((m, a, i) => Math.max(m, Math.abs(a), Math.abs(column(p, 1)[i])), 0);
@@ -90,7 +105,7 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
       plots: [
         plot("Displacement", inMetres ? "m" : "mm", [line("u_x", 0, length, 1), line("u_y", 1, length, 2)]),
         plot("Velocity", "m/s", [line("v_x", 2, 1, 1), line("v_y", 3, 1, 2)]),
-        plot("Stress, compression negative", "kPa", [
+        plot("Stress", "kPa, compression negative", [
           line("σ_xx", 4, 1e-3, 1),
           line("σ_yy", 5, 1e-3, 2),
           line("σ_xy", 6, 1e-3, 3),
@@ -113,16 +128,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
   const scaled = (name: string, factor: number) => column(name).map((v) => v * factor);
   const positive = (name: string, factor: number) =>
     Array.from(column(name), (v) => (v > 0 ? factor * v : null));
-  const axis = {
-    now: () => run.stepAt(clock.moment),
-    seek: (s: number) => {
-      clock.pause();
-      clock.seek(run.momentAtStep(s));
-    },
-    group: "step",
-    xName: "step",
-    x: step,
-  };
+  const axis = { ...overSteps(run, clock), x: step };
   const plot = (title: string, unit: string, series: Series[], more: Partial<PlotOptions> = {}) =>
     new Plot({ ...axis, title, unit, series, ...more }, clock);
   const energies: [string, string][] = [
@@ -131,6 +137,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
     ["gravity", "#7A5C00"],
     ["contact", "#CC79A7"],
     ["friction", "#D55E00"],
+    ["damping", "#E69F00"],
     ["numerical", "#56B4E9"],
     ["input", "#B8A900"],
   ];
@@ -139,7 +146,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
       { name: "iterations", values: column("iterations"), color: "--curve-1", style: "steps", width: 1 },
     ]),
     plot(
-      "Depth of contacts and movement in a step",
+      "Penetration and movement",
       "mm, logarithmic",
       [
         { name: "penetration", values: positive("penetration", 1e3), color: "--curve-2", width: 1 },
@@ -154,7 +161,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
       "Energy",
       "kJ per metre",
       energies.map(([name, color]) => ({ name, color, values: scaled(name, 1e-3) })),
-      { height: 260 },
+      { height: 260, wide: true },
     ),
     plot(
       "Energy residual",

@@ -1,8 +1,8 @@
 import type { Damage, Stage } from "./data";
 import { h, type Child } from "./dom";
-import { count, duration, fixed, integer, length, signed, significant } from "./format";
+import { count, duration, fixed, integer, signed, significant } from "./format";
 import type { Run } from "./run";
-import { excavatedArea, marginalStages } from "./verdict";
+import { checks, excavatedArea, marginalStages } from "./verdict";
 
 /** A table in a box that scrolls sideways where the page is too narrow. */
 function tableBox(caption: string, head: Child[][], rows: Child[][], className = ""): HTMLElement {
@@ -12,6 +12,15 @@ function tableBox(caption: string, head: Child[][], rows: Child[][], className =
   for (const cells of rows) body.append(h("tr", {}, ...cells));
   const table = h("table", { class: className }, h("caption", {}, caption), header, body);
   return h("div", { class: "table-box", tabindex: "0", role: "region", "aria-label": caption }, table);
+}
+
+function column(text: string, unit = "", isText = false): HTMLElement {
+  return h(
+    "th",
+    { scope: "col", class: isText ? "text" : "" },
+    text,
+    unit ? h("span", { class: "unit" }, unit) : null,
+  );
 }
 
 function factList(facts: [string, Child][]): HTMLElement {
@@ -44,9 +53,8 @@ export function runFacts(run: Run): HTMLElement {
     ["Seed, realization", `${model.seed}, ${model.realization}`],
     ["Time step", `${significant(1e3 * model.step_size_s, 4)} ms`],
     ["Steps", integer(record.steps)],
-    ["Wall time", duration(record.wall_time_s)],
+    ["Wall time", `${duration(record.wall_time_s)} with ${count(model.threads, "thread")}`],
     ["Per step", record.steps > 0 ? `${significant((1e3 * record.wall_time_s) / record.steps, 3)} ms` : "–"],
-    ["Threads", integer(model.threads)],
     ["Program", `keyblock ${model.version}`],
     ["State hash", h("code", {}, record.state_hash || "–")],
   ];
@@ -60,19 +68,17 @@ export function runFacts(run: Run): HTMLElement {
 const kinds = { settle: "static", shake: "shaking", rest: "dynamic, no shaking" };
 
 export function stageTable(run: Run): HTMLElement {
-  const th = (text: string, unit = "") =>
-    h("th", { scope: "col" }, text, unit ? h("span", { class: "unit" }, unit) : null);
   const head = [
-    th("Stage"),
-    th("Kind"),
-    th("Excavates"),
-    th("Steps"),
-    th("Duration", "s"),
-    th("Peak acceleration", "m/s²"),
-    th("Equilibrium"),
-    th("Worst residual", "of weight"),
-    th("Still moving"),
-    th("Wall time"),
+    column("Stage", "", true),
+    column("Kind", "", true),
+    column("Excavates", "", true),
+    column("Steps"),
+    column("Duration", "s"),
+    column("Peak acceleration", "m/s²"),
+    column("Equilibrium", "", true),
+    column("Worst residual", "of weight"),
+    column("Still moving"),
+    column("Wall time"),
   ];
   const rows = run.stages.map((s) => [
     h("th", { scope: "row" }, s.name, s.interrupted ? h("span", { class: "sub" }, "interrupted") : null),
@@ -101,7 +107,7 @@ interface Measure {
 }
 
 const measures: Measure[] = [
-  { name: "Fallen blocks", unit: "–", decimals: 0, of: (d) => d.fallen_blocks },
+  { name: "Fallen blocks", unit: "", decimals: 0, of: (d) => d.fallen_blocks },
   { name: "Fallen area", unit: "m²", decimals: 2, of: (d) => d.fallen_area_m2 },
   { name: "Opening filled", unit: "%", decimals: 1, of: (d) => 100 * d.opening_filled_ratio },
   { name: "Loosened area", unit: "m²", decimals: 2, of: (d) => d.loosened_area_m2 },
@@ -134,7 +140,7 @@ export function damageTable(run: Run): HTMLElement | null {
   if (first < 0) return null;
   const head = [
     h("th", { scope: "col" }, "At the end of"),
-    ...measures.map((m) => h("th", { scope: "col" }, m.name, h("span", { class: "unit" }, m.unit))),
+    ...measures.map((m) => column(m.name, m.unit || "number")),
   ];
   const rows = run.stages.slice(first).map((stage, k, all) => [
     stageCell(stage),
@@ -174,14 +180,12 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
       h("td", {}, m.carried === null ? "–" : fixed(100 * m.carried, 0)),
     ]),
   );
-  const th = (text: string, unit = "") =>
-    h("th", { scope: "col" }, text, unit ? h("span", { class: "unit" }, unit) : null);
   const head = [
-    th("Block"),
-    th("Stage"),
-    th("Area", "m²"),
-    th("Weight", "kN/m"),
-    th("Carried by contacts", "% of weight"),
+    column("Block"),
+    column("Stage", "", true),
+    column("Area", "m²"),
+    column("Weight", "kN/m"),
+    column("Carried by contacts", "% of weight"),
   ];
   return h(
     "details",
@@ -191,19 +195,39 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
   );
 }
 
-export function solverFacts(run: Run): HTMLElement {
-  const { open_close: oc, max_overlap_m, max_area_change, energy, steps } = run.header.run;
-  return factList([
+/** The checks with their limits, and above them what they say together. */
+export function qualityTable(run: Run): HTMLElement {
+  const all = checks(run);
+  const bad = all.filter((c) => !c.good).length;
+  const verdict =
+    bad === 0
+      ? h("p", { class: "finding good" }, "All checks of the computation are passed.")
+      : h(
+          "p",
+          { class: "finding attention" },
+          `${bad} of ${count(all.length, "check")} of the computation ${bad === 1 ? "needs" : "need"} attention.`,
+        );
+  const rows = all.map((c) => [
+    h("th", { scope: "row" }, c.name),
+    h("td", {}, c.value),
+    h("td", { class: "text" }, c.limit),
+    h("td", { class: c.good ? "text good" : "text attention" }, c.good ? "✓ passed" : "! look here"),
+  ]);
+  const head = [column("Check", "", true), column("Found"), column("Wanted", "", true), column("", "", true)];
+  const { open_close: oc, steps } = run.header.run;
+  const effort = factList([
     [
       "Open-close iterations per step",
       `${significant(oc.mean_iterations, 3)} on average, ${integer(oc.max_iterations)} at most`,
     ],
     ["Steps retried with a smaller time step", `${integer(oc.retried_steps)} of ${integer(steps)}`],
-    ["Steps that did not converge", integer(oc.unconverged_steps)],
-    ["Largest true overlap", length(max_overlap_m)],
-    ["Largest relative change of area", significant(max_area_change, 2)],
-    ["Energy residual", `${significant(100 * (energy.residual_ratio ?? NaN), 2)} % of the largest term`],
   ]);
+  return h(
+    "div",
+    {},
+    verdict,
+    h("div", { class: "quality" }, tableBox("Checks", [head], rows, "narrow unnamed"), effort),
+  );
 }
 
 export function cuttingFacts(run: Run): HTMLElement | null {

@@ -1,8 +1,8 @@
 import type { Stage } from "./data";
-import { count, fixed, length, list, significant } from "./format";
+import { count, fixed, integer, length, list, significant } from "./format";
 import { Status, type Run } from "./run";
 
-export type Grade = "good" | "attention" | "plain";
+export type Grade = "attention" | "plain";
 
 export interface Finding {
   grade: Grade;
@@ -38,7 +38,7 @@ export function findings(run: Run): Finding[] {
     result.push({
       grade: "attention",
       text: last
-        ? `The run was interrupted: the numbers hold for what was computed${last.interrupted ? `, up to the middle of ${quoted(last.name)}` : ` up to the end of ${quoted(last.name)}`}.`
+        ? `The run was interrupted: the numbers hold for what was computed${last.interrupted ? `, up to a point within ${quoted(last.name)}` : ` up to the end of ${quoted(last.name)}`}.`
         : "The run was interrupted before its first stage had ended.",
     });
   }
@@ -116,42 +116,52 @@ function marginalFinding(run: Run, stage: Stage): Finding {
   };
 }
 
-/** How far the numbers can be trusted: one line per check, with its limit. */
-export function checks(run: Run): Finding[] {
+export interface Check {
+  name: string;
+  value: string;
+  limit: string;
+  good: boolean;
+}
+
+/** How far the numbers can be trusted. */
+export function checks(run: Run): Check[] {
   const { open_close: oc, max_overlap_m, max_area_change, energy, steps } = run.header.run;
-  const grade = (good: boolean): Grade => (good ? "good" : "attention");
   const overlap = max_overlap_m ?? Infinity;
   const residual = energy.residual_ratio ?? Infinity;
-  const result: Finding[] = [
+  const result: Check[] = [
     {
-      grade: grade(oc.unconverged_steps === 0),
-      text:
-        oc.unconverged_steps === 0
-          ? `Every one of ${count(steps, "step")} converged.`
-          : `${count(oc.unconverged_steps, "step")} of ${count(steps, "step")} did not converge.`,
+      name: "Steps that did not converge",
+      value: `${integer(oc.unconverged_steps)} of ${integer(steps)}`,
+      limit: "none",
+      good: oc.unconverged_steps === 0,
     },
     {
-      grade: grade(overlap < 1e-3),
-      text: `Largest true overlap of two blocks ${length(max_overlap_m)} (good below 1 mm).`,
+      name: "Largest true overlap of two blocks",
+      value: length(max_overlap_m),
+      limit: "below 1 mm",
+      good: overlap < 1e-3,
     },
     {
-      grade: grade(residual < 0.01),
-      text: `Energy balance closed to ${significant(Number.isFinite(residual) ? 100 * residual : null, 2)} % of its largest term (good below 1 %).`,
+      name: "Energy residual, of the largest term",
+      value: `${significant(Number.isFinite(residual) ? 100 * residual : null, 2)} %`,
+      limit: "below 1 %",
+      good: residual < 0.01,
     },
     {
-      grade: grade((max_area_change ?? Infinity) < 0.01),
-      text: `Largest relative change of a block's area ${significant(max_area_change, 2)} (elastic strain included; good below 0.01).`,
+      name: "Largest change of a block's area, elastic strain included",
+      value: `${significant(max_area_change === null ? null : 100 * max_area_change, 2)} %`,
+      limit: "below 1 %",
+      good: (max_area_change ?? Infinity) < 0.01,
     },
   ];
   const settled = run.stages.filter((s) => s.kind === "settle");
   if (settled.length > 0) {
     const marginal = marginalStages(run).map(({ stage }) => quoted(stage.name));
     result.push({
-      grade: grade(marginal.length === 0),
-      text:
-        marginal.length === 0
-          ? `${settled.length === 1 ? "The static stage" : "All static stages"} ended in equilibrium.`
-          : `No equilibrium at the end of ${list(marginal)}.`,
+      name: "Static stages that ended without equilibrium",
+      value: marginal.length === 0 ? `0 of ${settled.length}` : list(marginal),
+      limit: "none",
+      good: marginal.length === 0,
     });
   }
   return result;

@@ -7,14 +7,18 @@ namespace {
 
 using simulation::ContactRecord;
 
-/// A square 0…4, its top edge in two pieces: vertices 0 (0,0), 1 (4,0), 2 (4,4), 3 (3,4), 4 (0,4).
+/// Block 0, a square 0…4 with its top edge in two pieces: vertices 0 (0,0), 1 (4,0), 2 (4,4), 3 (3,4), 4 (0,4).
+/// Block 1, a diamond that stands on it with its lowest corner, vertex 5, at (1.5,4).
+/// Block 2, a box on it that begins at vertex 9, (2,4), and extends to the right.
 simulation::ModelRecord square() {
   simulation::ModelRecord model;
-  model.vertices = {{0, 0}, {4, 0}, {4, 4}, {3, 4}, {0, 4}};
-  model.edge_label.assign(5, {cutting::EdgeKind::joint_set, 0});
-  simulation::ModelRecord::Block block;
-  block.ring_start = {0, 5};
-  model.blocks = {block};
+  model.vertices = {{0, 0},   {4, 0}, {4, 4}, {3, 4}, {0, 4}, {1.5, 4}, {2, 5},
+                    {1.5, 6}, {1, 5}, {2, 4}, {6, 4}, {6, 5}, {2, 5}};
+  model.edge_label.assign(model.vertices.size(), {cutting::EdgeKind::joint_set, 0});
+  model.blocks.resize(3);
+  model.blocks[0].ring_start = {0, 5};
+  model.blocks[1].ring_start = {5, 9};
+  model.blocks[2].ring_start = {9, 13};
   return model;
 }
 
@@ -28,6 +32,7 @@ std::vector<JointPiece> located(const simulation::ModelRecord& model, ContactRec
 
 ContactRecord on_top(double x, double length) {
   ContactRecord contact;
+  contact.block_a = 1;
   contact.position = {x, 4.0};
   contact.normal = {0.0, 1.0};
   contact.length = length;
@@ -42,6 +47,16 @@ TEST(JointLocator, LaysTheLengthAroundTheContact) {
   EXPECT_FLOAT_EQ(pieces[0].from, 1.0F / 3.0F);
   EXPECT_FLOAT_EQ(pieces[0].to, 2.0F / 3.0F);
   EXPECT_FLOAT_EQ(pieces[0].slip, 0.02F);
+}
+
+TEST(JointLocator, LaysTheLengthTowardsTheSideOnWhichTheBlockLies) {
+  ContactRecord corner = on_top(2.0, 0.9);
+  corner.block_a = 2;
+  const auto pieces = located(square(), corner);
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_EQ(pieces[0].vertex, 3U);  // runs to the left, from x = 3 to 0
+  EXPECT_NEAR(pieces[0].from, 0.1 / 3.0, 1e-6);
+  EXPECT_NEAR(pieces[0].to, 1.0 / 3.0, 1e-6);
 }
 
 TEST(JointLocator, ShiftsTheLengthInwardsAtACornerAndGoesOverDisplayVertices) {

@@ -246,7 +246,7 @@ class Wall {
   }
 
   void add_contacts(const simulation::Frame& frame) {
-    simulation::ContactFrame snapshot{frame.time, frame.stage, {}};
+    simulation::ContactFrame snapshot{frame.time, frame.stage, {}, frame.step};
     for (std::size_t a = 0; a < boxes_.size(); ++a) {
       if (run_.model.blocks[a].fixed || frame.status[a] == BlockStatus::excavated) continue;
       for (std::size_t b = 0; b < boxes_.size(); ++b) {
@@ -297,14 +297,15 @@ class Wall {
     simulation::RunRecord& record = run_.run;
     for (std::size_t k = 0; k < plan_.size(); ++k) {
       const StagePlan& plan = plan_[k];
-      if (options_.interrupted && k + 1 == plan_.size()) break;  // complete up to the last stage that ended
+      const bool cut = options_.interrupted && k + 1 == plan_.size();
       simulation::StageRecord stage;
       stage.stage.name = plan.name;
       stage.stage.kind = plan.kind;
       if (k == 1 && options_.excavation) stage.stage.excavate = {0};
-      stage.steps = step_of(static_cast<int>(k), 1.0) - step_of(static_cast<int>(k), 0.0);
+      stage.interrupted = cut;
+      stage.steps = step_of(static_cast<int>(k), cut ? 0.6 : 1.0) - step_of(static_cast<int>(k), 0.0);
       stage.start_time = plan.start;
-      stage.duration = plan.duration;
+      stage.duration = (cut ? 0.6 : 1.0) * plan.duration;
       stage.pga = plan.pga;
       stage.wall_time = 1.3e-3 * static_cast<double>(stage.steps);
       stage.equilibrium_reached = plan.kind == StageKind::settle && !(options_.marginal && k == 1);
@@ -388,11 +389,19 @@ class Wall {
         row.closed_contacts = 700 - static_cast<int>(80.0 * busy);
         friction += 8.0 * busy;
         input += 10.0 * busy;
-        row.energy = {500.0 * busy, 3000.0, -0.3 * friction, 800.0,
-                      friction,     input,  0.1 * friction,  0.001 * share};
+        row.energy = {.kinetic = 500.0 * busy,
+                      .strain = 3000.0,
+                      .gravity = -0.3 * friction,
+                      .contact = 800.0,
+                      .friction = friction,
+                      .damping = 0.05 * friction,
+                      .input = input,
+                      .numerical = 0.1 * friction,
+                      .residual_ratio = 0.001 * share};
         run_.steps.push_back(row);
         simulation::HistoryRow history;
         history.time = row.time;
+        history.step = row.step;
         for (const double height : {1.0, 0.4}) {
           const Vec2 a = plan_[k].kind == StageKind::shake ? acceleration(row.time) : Vec2{};
           history.points.push_back({1e-3 * height * a.x, -1.5e-3 * height + 1e-4 * a.y, 0.02 * a.x,
