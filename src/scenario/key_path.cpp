@@ -104,7 +104,7 @@ std::string join_index(std::string_view path, std::size_t index) {
 
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  std::size_t fewest = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::size_t fewest = std::max<std::size_t>(1, (word.size() + 1) / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t edits = edit_distance(lower_case(word), lower_case(candidate));
     if (edits < fewest && edits < candidate.size()) {

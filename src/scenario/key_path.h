@@ -24,7 +24,7 @@ std::string join_path(std::string_view path, std::string_view key);
 std::string join_index(std::string_view path, std::size_t index);
 
 /// The candidate that `word` was probably meant to be: smallest number of letters put in, left out, replaced or
-/// swapped with a neighbour, at most a third of the word's length (at least 1); capitals do not count.
+/// swapped with a neighbour, at most a third of the word's length, rounded (at least 1); capitals do not count.
 /// Empty when there is none.
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates);
 

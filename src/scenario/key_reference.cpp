@@ -37,10 +37,10 @@ std::string scenario_reference() {
   for (const SectionReference& section : key_reference()) {
     const bool is_table = section.title.starts_with('[');
     const std::string title = is_table ? "`" + section.title + "`" : section.title;
-    text += "## " + (title.empty() ? "Keys outside all tables" : title) + "\n\n" + section.meaning + "\n\n";
+    text += (text.empty() ? "## " : "\n## ") + (title.empty() ? "Keys outside all tables" : title) + "\n\n" +
+            section.meaning + "\n\n";
     text += "| key | type | default | unit | meaning |\n|---|---|---|---|---|\n";
     for (const KeyReference& key : section.keys) text += row(key);
-    text += "\n";
   }
   return text;
 }

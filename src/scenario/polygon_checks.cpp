@@ -27,23 +27,26 @@ double distance_to_boundary(const Polygon& polygon, Vec2 p) {
 
 }  // namespace
 
-std::string orient_and_check(Polygon& polygon) {
+std::optional<PolygonFault> orient_and_check(Polygon& polygon) {
   for (std::size_t k = 0; k < polygon.ring_count(); ++k) {
     const double length = perimeter({polygon.ring(k), {}});
-    if (std::abs(signed_area(polygon.ring(k))) <= flat_ratio * length * length) {
-      return k == 0 ? "a polygon without area" : fmt::format("a hole without area (holes[{}])", k - 1);
-    }
+    if (std::abs(signed_area(polygon.ring(k))) > flat_ratio * length * length) continue;
+    if (k == 0) return PolygonFault{false, "a polygon without area"};
+    return PolygonFault{true, fmt::format("a hole without area (holes[{}])", k - 1)};
   }
   orient(polygon);
-  if (self_intersects(polygon)) return "a polygon that crosses or touches itself";
+  if (self_intersects(polygon)) return PolygonFault{false, "a polygon that crosses or touches itself"};
   for (std::size_t k = 0; k < polygon.holes.size(); ++k) {
     const Vec2 p = polygon.holes[k].front();
-    if (!contains(polygon.outer, p)) return fmt::format("a hole outside the outer ring (holes[{}])", k);
+    if (!contains(polygon.outer, p)) {
+      return PolygonFault{true, fmt::format("a hole outside the outer ring (holes[{}])", k)};
+    }
     for (std::size_t j = 0; j < polygon.holes.size(); ++j) {
-      if (j != k && contains(polygon.holes[j], p)) return fmt::format("a hole inside a hole (holes[{}])", k);
+      if (j == k || !contains(polygon.holes[j], p)) continue;
+      return PolygonFault{true, fmt::format("a hole inside a hole (holes[{}])", k)};
     }
   }
-  return {};
+  return std::nullopt;
 }
 
 bool lies_on_boundary(const Polygon& polygon, Vec2 p) {

@@ -1,13 +1,20 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "geometry/polygon.h"
 
 namespace keyblock::scenario {
 
-/// Turns the rings the right way round. Returns what is wrong with the polygon in words: no area, a ring that crosses
-/// or touches another or itself, a hole outside or in another hole; empty when all is well.
-std::string orient_and_check(Polygon& polygon);
+/// What is wrong with a polygon, in words.
+struct PolygonFault {
+  bool in_holes = false;
+  std::string text;
+};
+
+/// Turns the rings the right way round. Faults: no area, a ring that crosses or touches another or itself, a hole
+/// outside or in another hole.
+std::optional<PolygonFault> orient_and_check(Polygon& polygon);
 
 /// Whether p lies on the boundary, to 1e-6 of the perimeter: coordinates are typed with a few digits.
 bool lies_on_boundary(const Polygon& polygon, Vec2 p);

@@ -261,8 +261,8 @@ void read_support(TableReader& t, Support& support, const Scenario& scenario) {
   }
   read_directions(t, support);
   t.number("stiffness", support.stiffness,
-           {.meaning = "Stiffness of the springs: N/m per unit thickness at a point, Pa/m along a stretch.",
-            .unit = "N/m², Pa/m",
+           {.meaning = "Stiffness of the springs at a point, per unit thickness, or along a stretch.",
+            .unit = "N/m per m; Pa/m",
             .above = 0.0,
             .fallback = "1000 young"});
   t.table("motion", {.meaning = "Prescribed displacement of the ground end of the springs."},

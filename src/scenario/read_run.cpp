@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenario/key_path.h"
+#include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -26,7 +26,18 @@ Rule only(bool applies, std::string_view condition, Rule rule) {
   return rule;
 }
 
-void read_stage(TableReader& t, Stage& stage) {
+void check_excavated_once(TableReader& t, const Stage& stage, const Scenario& scenario) {
+  for (const Stage& before : scenario.stages) {
+    for (const int index : before.excavate) {
+      if (std::find(stage.excavate.begin(), stage.excavate.end(), index) == stage.excavate.end()) continue;
+      t.fail("excavate",
+             fmt::format("\"{}\" again", scenario.excavations[static_cast<std::size_t>(index)].name),
+             fmt::format("an excavation that the stage '{}' has not taken out", before.name));
+    }
+  }
+}
+
+void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.name("name", stage.name, "stage", {.meaning = "Name in results and key paths.", .required = true});
   const bool known = t.word(
       "kind", stage.kind, stage_kinds,
@@ -38,6 +49,7 @@ void read_stage(TableReader& t, Stage& stage) {
   const bool shake = any || stage.kind == StageKind::shake;
   t.references("excavate", stage.excavate, "excavation",
                {.meaning = "Excavations taken out at the start of the stage."});
+  check_excavated_once(t, stage, scenario);
   std::string motion;
   if (t.reference("motion", motion, "motion",
                   only(shake, "kind = \"shake\"",
@@ -66,22 +78,6 @@ void read_stage(TableReader& t, Stage& stage) {
                  .below = 1.0}));
 }
 
-void check_excavated_once(TableReader& root, const Scenario& scenario) {
-  std::vector<int> excavated;
-  for (const Stage& stage : scenario.stages) {
-    for (const int index : stage.excavate) {
-      if (std::find(excavated.begin(), excavated.end(), index) != excavated.end()) {
-        const std::string path = join_path("stage", stage.name) + ".excavate";
-        root.context().diagnostics.push_back(
-            {root.context().where(path), path,
-             fmt::format("\"{}\" again", scenario.excavations[static_cast<std::size_t>(index)].name),
-             "every excavation taken out once", ""});
-      }
-      excavated.push_back(index);
-    }
-  }
-}
-
 void check_step_count(TableReader& t, const Scenario& scenario) {
   double duration = 0.0;
   for (const Stage& stage : scenario.stages) duration += stage.duration.value_or(0.0);
@@ -91,13 +87,31 @@ void check_step_count(TableReader& t, const Scenario& scenario) {
   }
 }
 
-void read_history(TableReader& t, simulation::History& history) {
+// With a domain, only the cut blocks tell whether one holds the point.
+void check_history(TableReader& t, const simulation::History& history, const Scenario& scenario) {
+  if (history.block.empty() && scenario.domain) return;
+  bool some_block = false;
+  for (const BlockSpec& block : scenario.blocks) {
+    if (!history.block.empty() && block.name != history.block) continue;
+    if (block.polygon.outer.empty()) return;
+    some_block = true;
+    if (lies_in(block.polygon, history.point)) return;
+  }
+  if (!some_block) return;
+  t.fail(
+      "point", fmt::format("[{}, {}], outside", history.point.x, history.point.y),
+      history.block.empty() ? "a point of a block" : fmt::format("a point of the block '{}'", history.block));
+}
+
+void read_history(TableReader& t, simulation::History& history, const Scenario& scenario) {
   t.name("name", history.name, "history",
          {.meaning = "Name of its columns in histories.csv.", .required = true});
   t.reference("block", history.block, "block",
               {.meaning = "The block it belongs to.", .fallback = "the block that holds the point"});
-  t.point("point", history.point,
-          {.meaning = "Material point, by its place before the run.", .unit = "m", .required = true});
+  if (t.point("point", history.point,
+              {.meaning = "Material point, by its place before the run.", .unit = "m", .required = true})) {
+    check_history(t, history, scenario);
+  }
 }
 
 void read_damage(TableReader& t, simulation::DamageLimits& damage) {
@@ -189,8 +203,7 @@ void read_run(TableReader& root, Scenario& scenario) {
       "stage", scenario.stages,
       {.meaning = "What happens, one stage after the other. Without stages only `keyblock cut` has work to "
                   "do."},
-      [](TableReader& t, Stage& stage) { read_stage(t, stage); });
-  check_excavated_once(root, scenario);
+      [&](TableReader& t, Stage& stage) { read_stage(t, stage, scenario); });
   root.table("time", {.meaning = "Steps.", .required = root.find("stage") != nullptr}, [&](TableReader& t) {
     t.number("step", scenario.time_step,
              {.meaning = "Time step; halved for a while where a step does not converge.",
@@ -201,7 +214,7 @@ void read_run(TableReader& root, Scenario& scenario) {
   });
   root.tables("history", scenario.histories,
               {.meaning = "A point whose displacement, velocity and stress are recorded in histories.csv."},
-              [](TableReader& t, simulation::History& history) { read_history(t, history); });
+              [&](TableReader& t, simulation::History& history) { read_history(t, history, scenario); });
   root.table("damage", {.meaning = "Limits of the damage measures."},
              [&](TableReader& t) { read_damage(t, scenario.damage); });
   root.table("output", {.meaning = "How often results are recorded."},

@@ -4,7 +4,6 @@
 
 #include "rockmass/trace_generator.h"
 #include "scenario/key_path.h"
-#include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -22,7 +21,6 @@ class Consistency {
     const Value* section = root_.find("section");
     if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
     check_trace_counts();
-    check_histories();
   }
 
  private:
@@ -73,22 +71,6 @@ class Consistency {
            fmt::format("about {:.2g} traces in the domain", count),
            fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",
                        rockmass::max_traces));
-    }
-  }
-
-  void check_histories() {
-    if (root_.find("domain") != nullptr) return;
-    for (const simulation::History& history : scenario_.histories) {
-      const bool held =
-          std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), [&](const BlockSpec& block) {
-            return (history.block.empty() || history.block == block.name) && block.polygon.outer.size() > 2 &&
-                   lies_in(block.polygon, history.point);
-          });
-      if (held) continue;
-      const std::string path = join_path(join_path("history", history.name), "point");
-      fail(path, path, fmt::format("[{}, {}], outside", history.point.x, history.point.y),
-           history.block.empty() ? "a point of a block"
-                                 : fmt::format("a point of the block '{}'", history.block));
     }
   }
 

@@ -107,8 +107,9 @@ void read_polygon(TableReader& t, Polygon& polygon, bool holes, const Rule& oute
     valid = valid && (!has_holes || valid_holes);
   }
   if (!valid) return;
-  const std::string fault = orient_and_check(polygon);
-  if (!fault.empty()) t.fail("outer", fault, "rings that enclose an area and do not cross");
+  if (const auto fault = orient_and_check(polygon)) {
+    t.fail(fault->in_holes ? "holes" : "outer", fault->text, "rings that enclose an area and do not cross");
+  }
 }
 
 Ring excavation_outline(const ExcavationSpec& spec) {

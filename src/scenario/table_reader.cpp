@@ -96,11 +96,13 @@ void TableReader::finish() {
   if (table_ == nullptr) return;
   for (const Value& member : table_->items) {
     if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    const std::string hint = suggestion(member.key, known_);
+    std::string hint = suggestion(member.key, known_);
+    if (hint.empty() && context_.find_elsewhere) hint = context_.find_elsewhere(member.key);
     std::string keys;
     for (const std::string& key : known_) keys += (keys.empty() ? "" : ", ") + key;
-    context_.diagnostics.push_back({member.key_where, path_of(member.key), "an unknown key",
-                                    hint.empty() ? "one of " + keys : "a key of the scenario", hint});
+    context_.diagnostics.push_back(
+        {member.key_where, path_of(member.key), "an unknown key",
+         hint.empty() ? "one of " + keys : "a key of " + (path_.empty() ? "the scenario" : path_), hint});
   }
 }
 

@@ -279,7 +279,7 @@ bool TableReader::table(std::string_view key, const Rule& rule,
     describe_table(key, rule, false, read);
     return false;
   }
-  const Value* found = take(key, rule, "table", "");
+  const Value* found = take(key, rule, path_.empty() ? "[" + std::string(key) + "]" : "table", "");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::table)) {
     const bool list =

@@ -1,0 +1,198 @@
+#include "scenario/parse.h"
+
+#include <gtest/gtest.h>
+
+#include "scenario_text.h"
+
+namespace keyblock::scenario {
+namespace {
+
+std::string with(const std::string& more) {
+  return two_blocks + more;
+}
+
+TEST(Defaults, OfWhatIsNotInTheFile) {
+  const Scenario s = parse(two_blocks);
+  EXPECT_EQ(s.title, "");
+  EXPECT_EQ(s.seed, 1U);
+  EXPECT_EQ(s.gravity, (Vec2{0.0, -9.81}));
+  EXPECT_FALSE(s.section_azimuth);
+  EXPECT_FALSE(s.domain);
+  EXPECT_EQ(s.rock.state, PlaneState::plane_stress);
+  EXPECT_EQ(s.rock.order, 1);
+  EXPECT_FALSE(s.joints.cohesion);
+  EXPECT_FALSE(s.blocks[1].fixed);
+  EXPECT_EQ(s.blocks[1].velocity, Vec2{});
+  EXPECT_EQ(s.stages[0].scale, 1.0);
+  EXPECT_EQ(s.stages[0].motion, -1);
+  EXPECT_EQ(s.solver.theta, dynamics::SolverOptions{}.theta);
+  EXPECT_EQ(s.output.frame_interval, simulation::OutputOptions{}.frame_interval);
+  EXPECT_FALSE(s.damage.fall_distance);
+}
+
+TEST(Domain, FrameAndFree) {
+  const Scenario frame = parse(jointed_domain, {"domain.frame_friction=20"});
+  EXPECT_TRUE(frame.domain->frame);
+  EXPECT_EQ(frame.domain->frame_friction, 20.0);
+  EXPECT_FALSE(parse(jointed_domain, {"domain.boundary=free"}).domain->frame);
+}
+
+TEST(JointSet, DistributionsAsNumberOrTable) {
+  const std::string table = "joint_set.bedding.length={mean=2, std=0.5, distribution=\"lognormal\"}";
+  const rockmass::JointSet set = parse(jointed_domain, {table}).joint_sets[0].set;
+  EXPECT_EQ(set.spacing.kind, rockmass::DistributionKind::constant);
+  EXPECT_EQ(set.spacing.mean, 0.5);
+  EXPECT_EQ(set.length.kind, rockmass::DistributionKind::lognormal);
+  EXPECT_EQ(set.length.mean, 2.0);
+  EXPECT_EQ(set.length.std, 0.5);
+}
+
+TEST(JointSet, StandardDeviationWhereItHasAMeaning) {
+  const auto spacing = [](const std::string& rest) {
+    return mistakes(jointed_domain, {"joint_set.bedding.spacing={mean=2, distribution=" + rest + "}"});
+  };
+  EXPECT_EQ(spacing("\"exponential\""), "");
+  EXPECT_EQ(spacing("\"exponential\", std=1"), "");
+  EXPECT_EQ(spacing("\"constant\""), "");
+  EXPECT_NE(spacing("\"normal\""), "");
+  EXPECT_NE(spacing("\"uniform\""), "");
+  EXPECT_EQ(spacing("\"uniform\", std=1"), "");
+}
+
+TEST(JointSet, OptionalKeys) {
+  const Scenario s = parse(
+      jointed_domain, {"joint_set.bedding.spacing_measure=trace", "joint_set.bedding.dip_std=3",
+                       "joint_set.bedding.dip_direction_std=5", "joint_set.bedding.friction=25",
+                       "joint_set.bedding.normal_stiffness=1e10", "joint_set.bedding.shear_stiffness=5e9"});
+  EXPECT_EQ(s.joint_sets[0].set.spacing_measure, rockmass::SpacingMeasure::trace_spacing);
+  EXPECT_EQ(s.joint_sets[0].set.dip_std, 3.0);
+  EXPECT_EQ(s.joint_sets[0].set.dip_direction_std, 5.0);
+  EXPECT_EQ(s.joint_sets[0].joints.friction, 25.0);
+  EXPECT_EQ(s.joint_sets[0].joints.shear_stiffness, 5e9);
+}
+
+TEST(Blocks, RingsMayRunEitherWayAndBeClosed) {
+  const Scenario s = parse(two_blocks, {"block.top.outer=[[1,1],[1,2],[3,2],[3,1],[1,1]]"});
+  EXPECT_EQ(s.blocks[1].polygon.outer.size(), 4U);
+  EXPECT_GT(signed_area(s.blocks[1].polygon.outer), 0.0);
+}
+
+TEST(Blocks, Holes) {
+  const Scenario s = parse(two_blocks, {"block.top.holes=[[[1.5,1.2],[2.5,1.2],[2.5,1.8]]]"});
+  ASSERT_EQ(s.blocks[1].polygon.holes.size(), 1U);
+  EXPECT_LT(signed_area(s.blocks[1].polygon.holes[0]), 0.0);
+}
+
+TEST(Loads, TractionIsConstantUnlessItsEndIsGiven) {
+  const Scenario s = parse(with(R"(
+[[load]]
+block = "top"
+from = [1, 2]
+to = [3, 2]
+traction = [0, -5]
+)"));
+  EXPECT_TRUE(s.loads[0].is_line);
+  EXPECT_EQ(s.loads[0].value_end, (Vec2{0.0, -5.0}));
+}
+
+TEST(Supports, AlongAnEdgeInOneDirection) {
+  const Scenario s = parse(with(R"(
+[[support]]
+block = "top"
+from = [1, 1]
+to = [1, 2]
+directions = ["y"]
+stiffness = 1e12
+)"));
+  EXPECT_TRUE(s.supports[0].is_edge);
+  EXPECT_EQ(s.supports[0].points, (std::vector{Vec2{1.0, 1.0}, Vec2{1.0, 2.0}}));
+  EXPECT_FALSE(s.supports[0].along_x);
+  EXPECT_TRUE(s.supports[0].along_y);
+  EXPECT_EQ(s.supports[0].stiffness, 1e12);
+}
+
+TEST(Motions, TableAndSine) {
+  const Scenario s = parse(with(R"(
+[[motion]]
+name = "table"
+x = [[0, 0], [1, 2], [1, 3]]
+
+[[motion]]
+name = "sine"
+x = { amplitude = 2, frequency = 1.5, cycles = 4 }
+y = [[0, 1], [2, 1]]
+
+[[stage]]
+name = "shaken"
+kind = "shake"
+motion = "sine"
+scale = 0.5
+)"));
+  ASSERT_EQ(s.motions.size(), 2U);
+  EXPECT_EQ(s.motions[0].x.size(), 3U);
+  EXPECT_EQ(s.motions[0].x[2], (std::pair{1.0, 3.0}));
+  ASSERT_TRUE(s.motions[1].sine_x);
+  EXPECT_EQ(s.motions[1].sine_x->frequency, 1.5);
+  EXPECT_EQ(s.motions[1].y.size(), 2U);
+  EXPECT_EQ(s.stages[1].motion, 1);
+  EXPECT_EQ(s.stages[1].scale, 0.5);
+}
+
+TEST(Study, ValuesAreKeptAsToml) {
+  const Scenario s = parse(with(R"(
+[study]
+realizations = 100
+[[study.vary]]
+key = "stage.quiet.duration"
+values = [0.5, 1]
+[[study.vary]]
+key = "block.top.fixed"
+values = [true, false]
+)"));
+  ASSERT_TRUE(s.study);
+  EXPECT_EQ(s.study->realizations, 100);
+  ASSERT_EQ(s.study->vary.size(), 2U);
+  EXPECT_EQ(s.study->vary[0].key, "stage.quiet.duration");
+  EXPECT_EQ(s.study->vary[0].values, (std::vector<std::string>{"0.5", "1"}));
+  EXPECT_EQ(s.study->vary[1].values, (std::vector<std::string>{"true", "false"}));
+}
+
+TEST(Study, OverridesMadeFromItAreRead) {
+  const Scenario s = parse(with("[[study.vary]]\nkey = \"rock.order\"\nvalues = [2]\n"));
+  const auto& vary = s.study->vary[0];
+  EXPECT_EQ(parse(two_blocks, {vary.key + "=" + vary.values[0]}).rock.order, 2);
+}
+
+TEST(Positions, OfValuesAndOfTheNearestTable) {
+  const Scenario s = parse(two_blocks);
+  EXPECT_EQ(s.where("rock.young").line, 3);
+  EXPECT_EQ(s.where("rock.young").column, 9);
+  EXPECT_EQ(s.where("block.top.outer").line, 19);
+  EXPECT_EQ(s.where("block.top.spin").line, 17);
+  EXPECT_EQ(s.where("nowhere").line, 0);
+  EXPECT_EQ(s.where("nowhere").file, s.file);
+}
+
+TEST(Positions, OfMistakesAreExact) {
+  try {
+    parse_scenario_text(
+        "[rock]\ndensity =  -1.0\nyoung = 1e9\npoisson = 0.2\n[[block]]\nouter = [[0,0], [1,0], [0, \"1\"]]",
+        "f.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 2U);
+    EXPECT_EQ(error.diagnostics()[0].where.line, 2);
+    EXPECT_EQ(error.diagnostics()[0].where.column, 12);
+    EXPECT_EQ(error.diagnostics()[0].key, "rock.density");
+    EXPECT_EQ(error.diagnostics()[1].where.line, 6);
+    EXPECT_EQ(error.diagnostics()[1].where.column, 24);
+    EXPECT_EQ(error.diagnostics()[1].key, "block[0].outer[2]");
+  }
+}
+
+TEST(Parse, AFileThatIsNotThere) {
+  EXPECT_THROW(parse_scenario("no/such/file.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace keyblock::scenario

@@ -1,0 +1,95 @@
+#include "scenario/value.h"
+
+#include <gtest/gtest.h>
+
+namespace keyblock::scenario {
+namespace {
+
+constexpr const char* text = R"(title = "a \"b\""
+[rock]
+young = 1e9
+  [rock.inner]
+  flags = [true, 3, -2.5]
+[[stage]]
+name = "first"
+[[stage]]
+name = "second"
+table = { x = 1, "two words" = [] }
+when = 07:32:00
+)";
+
+TEST(Toml, PositionsAreThoseOfKeysAndValues) {
+  const Value document = parse_toml(text, "f.toml");
+  const Value* rock = document.find("rock");
+  ASSERT_NE(rock, nullptr);
+  EXPECT_EQ(rock->where.file, "f.toml");
+  EXPECT_EQ(rock->where.line, 2);
+  const Value* young = rock->find("young");
+  ASSERT_NE(young, nullptr);
+  EXPECT_EQ(young->key_where.line, 3);
+  EXPECT_EQ(young->key_where.column, 1);
+  EXPECT_EQ(young->where.column, 9);
+  const Value& number = rock->find("inner")->find("flags")->items[2];
+  EXPECT_EQ(number.where.line, 5);
+  EXPECT_EQ(number.where.column, 21);
+}
+
+TEST(Toml, MembersKeepTheOrderOfTheFile) {
+  const Value document = parse_toml("b = 1\na = 2\nc = 3", "");
+  ASSERT_EQ(document.items.size(), 3U);
+  EXPECT_EQ(document.items[0].key, "b");
+  EXPECT_EQ(document.items[1].key, "a");
+  EXPECT_EQ(document.items[2].key, "c");
+}
+
+TEST(Toml, NamesOfElements) {
+  const Value document = parse_toml(text, "");
+  const Value& stages = *document.find("stage");
+  ASSERT_EQ(stages.items.size(), 2U);
+  ASSERT_NE(stages.items[1].name(), nullptr);
+  EXPECT_EQ(*stages.items[1].name(), "second");
+  EXPECT_EQ(document.find("rock")->name(), nullptr);
+}
+
+TEST(Toml, SyntaxErrorsHaveAPosition) {
+  try {
+    parse_toml("a = 1\nb = = 2\n", "f.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 1U);
+    EXPECT_EQ(error.diagnostics()[0].where.file, "f.toml");
+    EXPECT_EQ(error.diagnostics()[0].where.line, 2);
+  }
+}
+
+TEST(Describe, TypeAndValue) {
+  const Value document = parse_toml(text, "");
+  EXPECT_EQ(describe(*document.find("title")), R"(the string "a \"b\"")");
+  EXPECT_EQ(describe(*document.find("rock")), "a table");
+  const Value& flags = *document.find("rock")->find("inner")->find("flags");
+  EXPECT_EQ(describe(flags), "an array of 3");
+  EXPECT_EQ(describe(flags.items[0]), "the boolean true");
+  EXPECT_EQ(describe(flags.items[1]), "the integer 3");
+  EXPECT_EQ(describe(flags.items[2]), "the number -2.5");
+  EXPECT_EQ(describe(*document.find("stage")->items[1].find("when")), "the date or time 07:32:00");
+}
+
+TEST(ToToml, IsReadBack) {
+  const Value document = parse_toml(text, "");
+  const std::string once = to_toml(document);
+  const Value again = parse_toml("v = " + once, "");
+  EXPECT_EQ(to_toml(again.items.front()), once);
+  EXPECT_EQ(to_toml(*document.find("stage")->items[1].find("table")), R"({ x = 1, 'two words' = [] })");
+}
+
+TEST(ToToml, NumbersKeepTheirTypeAndDigits) {
+  const Value document = parse_toml("a = 1.0\nb = 1\nc = 0.1\nd = 1e300\ne = inf", "");
+  EXPECT_EQ(to_toml(document.items[0]), "1.0");
+  EXPECT_EQ(to_toml(document.items[1]), "1");
+  EXPECT_EQ(to_toml(document.items[2]), "0.1");
+  EXPECT_EQ(to_toml(document.items[3]), "1e+300");
+  EXPECT_EQ(to_toml(document.items[4]), "inf");
+}
+
+}  // namespace
+}  // namespace keyblock::scenario
