@@ -9,11 +9,16 @@ namespace keyblock::cutting {
 /// domain's edge or on an excavation outline are not removed. Counts into `statistics`.
 void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics);
 
+/// Undoes what rounding did to lines that run along one another or meet near one point: vertices a few steps
+/// of the grid apart become one, and faces a few steps wide are merged; of their borders the one of the lowest
+/// rank goes (see rank), be it an outline.
+void remove_rounding(PlanarGraph& graph);
+
 /// Moves vertices onto others closer than `distance` (m) that lie at the same face, the closest pairs first. Of a pair
 /// the one moves that sweeps the smaller area. A vertex on the domain's edge or on an outline moves only to a vertex on
 /// the same ones, so that the domain keeps its shape. A move is made only if no vertex lies in the triangles that the
 /// edges sweep and the way crosses no edge: then no face turns over and no edges cross. Every face at the vertex
-/// changes alike, so neighbours stay conforming.
-void cluster_vertices(PlanarGraph& graph, double distance, CutStatistics& statistics);
+/// changes alike, so neighbours stay conforming. Returns the number of vertices moved.
+int cluster_vertices(PlanarGraph& graph, double distance);
 
 }  // namespace keyblock::cutting

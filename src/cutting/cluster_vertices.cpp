@@ -200,10 +200,12 @@ class ClusterPass {
 
 }  // namespace
 
-void cluster_vertices(PlanarGraph& graph, double distance, CutStatistics& statistics) {
-  if (!(distance > 0.0)) return;
-  while (const int moved = ClusterPass(graph, distance / graph.grid).run())
-    statistics.merged_vertices += moved;
+int cluster_vertices(PlanarGraph& graph, double distance) {
+  int total = 0;
+  if (distance > 0.0) {
+    while (const int moved = ClusterPass(graph, distance / graph.grid).run()) total += moved;
+  }
+  return total;
 }
 
 }  // namespace keyblock::cutting

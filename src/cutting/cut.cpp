@@ -137,11 +137,12 @@ BlockSystem cut(const CutInput& input) {
 
   PlanarGraph graph = bounded_blocks(node(work), statistics);
   graph.trace_faces();
+  remove_rounding(graph);
   find_excavations(graph, work.excavations);
   check_area(graph, work.domain_area);
 
   merge_slivers(graph, tolerances, statistics);
-  cluster_vertices(graph, tolerances.cluster, statistics);
+  statistics.merged_vertices += cluster_vertices(graph, tolerances.cluster);
   merge_slivers(graph, tolerances, statistics);
   check_area(graph, work.domain_area);
 

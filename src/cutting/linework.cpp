@@ -16,6 +16,8 @@ namespace keyblock::cutting {
 namespace {
 
 constexpr int grid_bits = 44;  ///< steps of the grid across the domain, as a power of two
+/// Steps by which rounding moves an end off a line it was on.
+constexpr double rounding_reach = 2.0;
 
 Ring checked_ring(const Ring& ring, const std::string& key, std::vector<Diagnostic>& mistakes) {
   Polygon polygon{ring, {}};
@@ -82,23 +84,23 @@ struct GridPointHash {
   }
 };
 
-/// Puts loose ends of traces on the lines they nearly reach, one end after the other in the order of the input.
+/// Puts ends of traces on the lines they nearly reach, one place after the other in the order of the input.
 class EndSnapper {
  public:
   EndSnapper(std::vector<SourceLine>& lines, const Box& domain, double reach)
       : lines_(lines), near_domain_(domain.grown(reach)), reach_(reach), index_(domain, columns(lines)) {
     for (std::size_t k = 0; k < lines.size(); ++k) {
       index_.add(static_cast<int>(k), to_vec2(lines[k].a), to_vec2(lines[k].b));
-      ++ends_[lines[k].a];
-      ++ends_[lines[k].b];
+      lines_at_[lines[k].a].push_back(k);
+      lines_at_[lines[k].b].push_back(k);
     }
   }
 
   void run() {
-    for (std::size_t k = 0; k < lines_.size(); ++k) {
-      if (lines_[k].trace < 0) continue;
-      snap(static_cast<int>(k), lines_[k].a, lines_[k].b);
-      snap(static_cast<int>(k), lines_[k].b, lines_[k].a);
+    for (const SourceLine& line : lines_) {
+      if (line.trace < 0) continue;
+      snap(line, line.a);
+      snap(line, line.b);
     }
   }
 
@@ -107,15 +109,48 @@ class EndSnapper {
     return std::clamp(static_cast<int>(2.0 * std::sqrt(static_cast<double>(lines.size()))), 8, 1024);
   }
 
-  /// The line nearest to p within reach, the lower one of equals; −1 if there is none.
-  [[nodiscard]] int nearest_line(int own, Vec2 p) const {
-    const SourceLine& line = lines_[static_cast<std::size_t>(own)];
+  [[nodiscard]] GridPoint far_end(std::size_t line, GridPoint end) const {
+    return lines_[line].a == end ? lines_[line].b : lines_[line].a;
+  }
+
+  /// A corner of the domain or of an outline.
+  [[nodiscard]] bool is_fixed(GridPoint end) const {
+    const std::vector<std::size_t>& here = lines_at_.at(end);
+    return std::any_of(here.begin(), here.end(), [&](std::size_t k) { return lines_[k].trace < 0; });
+  }
+
+  /// How far the lines that end in a place may be moved: where a trace passes through (a vertex of a polyline), only
+  /// by what rounding does.
+  [[nodiscard]] double reach_at(GridPoint end) const {
+    const std::vector<std::size_t>& here = lines_at_.at(end);
+    const Vec2 p = to_vec2(end);
+    for (const std::size_t i : here) {
+      for (const std::size_t j : here) {
+        if (dot(to_vec2(far_end(i, end)) - p, to_vec2(far_end(j, end)) - p) < 0.0) return rounding_reach;
+      }
+    }
+    return reach_;
+  }
+
+  /// A line that ends here, or that continues a short one from here: no target.
+  [[nodiscard]] bool is_joined(const SourceLine& other, GridPoint end) const {
+    if (other.a == end || other.b == end) return true;
+    const std::vector<std::size_t>& here = lines_at_.at(end);
+    return std::any_of(here.begin(), here.end(), [&](std::size_t k) {
+      const GridPoint far = far_end(k, end);
+      return (other.a == far || other.b == far) && norm(to_vec2(far) - to_vec2(end)) <= 2.0 * reach_;
+    });
+  }
+
+  /// The line nearest to an end within reach, the lower one of equals; null if there is none.
+  [[nodiscard]] SourceLine* nearest_line(GridPoint end, double reach) const {
+    const Vec2 p = to_vec2(end);
     int best = -1;
-    double best_distance = reach_;
-    index_.near({{p.x - reach_, p.y - reach_}, {p.x + reach_, p.y + reach_}}, [&](int id) {
+    double best_distance = reach;
+    const double margin = reach + reach_;  // lines may have been moved by reach_ since they were indexed
+    index_.near({{p.x - margin, p.y - margin}, {p.x + margin, p.y + margin}}, [&](int id) {
       const SourceLine& other = lines_[static_cast<std::size_t>(id)];
-      const bool joined = other.a == line.a || other.a == line.b || other.b == line.a || other.b == line.b;
-      if (id == own || joined || other.a == other.b) return;
+      if (other.a == other.b || is_joined(other, end)) return;
       Vec2 foot;
       const double distance = distance_to_segment(p, to_vec2(other.a), to_vec2(other.b), foot);
       if (distance < best_distance || (distance == best_distance && (best < 0 || id < best))) {
@@ -123,37 +158,49 @@ class EndSnapper {
         best_distance = distance;
       }
     });
-    return best;
+    return best < 0 ? nullptr : &lines_[static_cast<std::size_t>(best)];
   }
 
-  void snap(int own, GridPoint& end, GridPoint start) {
+  void snap(const SourceLine& line, GridPoint end) {
     const Vec2 p = to_vec2(end);
-    if (end == start || !near_domain_.contains(p) || ends_[end] > 1) return;
-    const int target = nearest_line(own, p);
-    if (target < 0) return;
-    SourceLine& other = lines_[static_cast<std::size_t>(target)];
-    const Vec2 a = to_vec2(other.a), b = to_vec2(other.b);
+    if (line.a == line.b || !near_domain_.contains(p) || is_fixed(end)) return;
+    const double reach = reach_at(end);
+    SourceLine* target = nearest_line(end, reach);
+    if (target == nullptr) return;
+    const Vec2 a = to_vec2(target->a), b = to_vec2(target->b);
     Vec2 place;
     distance_to_segment(p, a, b, place);
     // Along the trace itself where that is not much farther, so that it is not turned.
-    const Vec2 u = b - a, v = p - to_vec2(start);
-    if (const double sine = cross(u, v); sine != 0.0) {
-      const double s = cross(to_vec2(start) - a, v) / sine;
-      const Vec2 meeting = a + s * u;
-      if (s >= 0.0 && s <= 1.0 && norm(meeting - p) <= 2.0 * reach_) place = meeting;
+    const Vec2 start = to_vec2(line.a == end ? line.b : line.a);
+    if (const double sine = cross(b - a, p - start); sine != 0.0) {
+      const double s = cross(start - a, p - start) / sine;
+      const Vec2 meeting = lerp(a, b, s);
+      if (s >= 0.0 && s <= 1.0 && norm(meeting - p) <= 2.0 * reach) place = meeting;
     }
     const GridPoint node = nearest_grid_point(place);
-    if (!(node == other.a) && !(node == other.b)) other.nodes.push_back(node);
-    --ends_[end];
-    ++ends_[node];
-    end = node;
+    if (!(node == target->a) && !(node == target->b)) target->nodes.push_back(node);
+    move(end, node);
+  }
+
+  void move(GridPoint end, GridPoint node) {
+    if (end == node) return;
+    const std::vector<std::size_t> moved = std::move(lines_at_[end]);
+    lines_at_.erase(end);
+    for (const std::size_t k : moved) {
+      SourceLine& line = lines_[k];
+      if (line.a == end) line.a = node;
+      if (line.b == end) line.b = node;
+    }
+    std::vector<std::size_t>& there = lines_at_[node];
+    there.insert(there.end(), moved.begin(), moved.end());
   }
 
   std::vector<SourceLine>& lines_;
   Box near_domain_;
-  double reach_;  ///< grid steps
+  double reach_;  ///< steps
   SegmentIndex index_;
-  std::unordered_map<GridPoint, int, GridPointHash> ends_;  ///< looked up only, never walked through
+  std::unordered_map<GridPoint, std::vector<std::size_t>, GridPointHash>
+      lines_at_;  ///< looked up, never walked
 };
 
 /// Puts vertices of an outline that lie within reach of the domain's edge on it.
@@ -217,7 +264,7 @@ Linework make_linework(const CutInput& input, double snapping) {
     if (!(from == to))
       work.lines.push_back({from, to, label_of(input.traces[k].source), static_cast<int>(k)});
   }
-  EndSnapper(work.lines, bounds({work.domain, {}}), std::max(snapping / work.grid, 2.0)).run();
+  EndSnapper(work.lines, bounds({work.domain, {}}), std::max(snapping / work.grid, rounding_reach)).run();
   std::erase_if(work.lines, [](const SourceLine& line) { return line.a == line.b && line.nodes.empty(); });
   return work;
 }

@@ -1,17 +1,27 @@
+#include <algorithm>
 #include <map>
 #include <queue>
 #include <tuple>
 
 #include "cutting/cleaning.h"
+#include "cutting/noding.h"
 
 namespace keyblock::cutting {
 
 namespace {
 
+/// What is merged, and across what.
+struct Rule {
+  double area = 0.0;       ///< m²; faces of less
+  double thickness = 0.0;  ///< m; faces of less area over perimeter
+  bool across_outlines = false;
+  bool lowest_label_first = false;  ///< take away the edges of the lowest rank, not the longest border
+};
+
 class SliverMerger {
  public:
-  SliverMerger(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics)
-      : graph_(graph), tolerances_(tolerances), statistics_(statistics), regions_(graph.faces.size()) {
+  SliverMerger(PlanarGraph& graph, const Rule& rule)
+      : graph_(graph), rule_(rule), regions_(graph.faces.size()) {
     for (std::size_t f = 0; f < regions_.size(); ++f) {
       regions_[f].area = graph.faces[f].area;
       regions_[f].perimeter = graph.faces[f].perimeter;
@@ -26,18 +36,20 @@ class SliverMerger {
   }
 
   void run() {
-    const int before = statistics_.merged_slivers;
     while (!queue_.empty()) {
       const auto [area, f] = queue_.top();
       queue_.pop();
       if (regions_[f].into == f && regions_[f].area == area) merge(f);
     }
-    if (statistics_.merged_slivers == before) return;
+    if (merged_ == 0) return;
     std::erase_if(graph_.edges, [&](const GraphEdge& e) {
       return e.left >= 0 && e.right >= 0 && root(e.left) == root(e.right);
     });
     graph_.trace_faces();
   }
+
+  [[nodiscard]] int merged() const { return merged_; }
+  [[nodiscard]] double merged_area() const { return merged_area_; }
 
  private:
   struct Region {
@@ -48,7 +60,7 @@ class SliverMerger {
 
   void consider(std::size_t f) {
     const Region& r = regions_[f];
-    if (r.area < tolerances_.sliver_area || r.area < tolerances_.sliver_thickness * r.perimeter) {
+    if (r.area < rule_.area || r.area < rule_.thickness * r.perimeter) {
       queue_.emplace(r.area, f);
     }
   }
@@ -61,33 +73,38 @@ class SliverMerger {
 
   /// The region across edge e as seen from f; f itself where there is none to merge with.
   std::size_t neighbour(std::size_t f, const GraphEdge& e) {
-    if (e.label.kind == EdgeKind::domain || e.label.kind == EdgeKind::excavation) return f;
+    if (e.label.kind == EdgeKind::excavation && !rule_.across_outlines) return f;
     if (e.left < 0 || e.right < 0) return f;
     const std::size_t left = root(e.left), right = root(e.right);
     return left == f ? right : left;
   }
 
+  struct Border {
+    double length = 0.0;
+    std::pair<int, int> rank;  ///< the lowest of its labels; what sorts last is lowest
+  };
+
   void merge(std::size_t f) {
-    std::map<std::size_t, double> shared;
+    std::map<std::size_t, Border> borders;
     for (const std::size_t e : regions_[f].edges) {
       const std::size_t other = neighbour(f, graph_.edges[e]);
-      if (other != f && same_excavations(f, other)) shared[other] += graph_.length(graph_.edges[e]);
+      if (other == f || graph_.faces[f].excavations != graph_.faces[other].excavations) continue;
+      Border& border = borders[other];
+      border.length += graph_.length(graph_.edges[e]);
+      border.rank = std::max(border.rank, rank(graph_.edges[e].label));
     }
-    std::size_t best = f;
-    double longest = 0.0;
-    for (const auto& [other, length] : shared) {
-      if (length > longest) {
-        best = other;
-        longest = length;
-      }
-    }
-    if (best == f) return;
-    statistics_.merged_slivers += 1;
-    statistics_.sliver_area += regions_[f].area;
+    if (borders.empty()) return;
+    const auto worse = [&](const auto& a, const auto& b) {
+      if (rule_.lowest_label_first && a.second.rank != b.second.rank) return a.second.rank < b.second.rank;
+      return a.second.length < b.second.length;
+    };
+    const auto& [best, border] = *std::max_element(borders.begin(), borders.end(), worse);
+    ++merged_;
+    merged_area_ += regions_[f].area;
     Region& target = regions_[best];
     regions_[f].into = best;
     target.area += regions_[f].area;
-    target.perimeter += regions_[f].perimeter - 2.0 * longest;
+    target.perimeter += regions_[f].perimeter - 2.0 * border.length;
     target.edges.insert(target.edges.end(), regions_[f].edges.begin(), regions_[f].edges.end());
     std::erase_if(target.edges, [&](std::size_t e) {
       const GraphEdge& edge = graph_.edges[e];
@@ -96,14 +113,11 @@ class SliverMerger {
     consider(best);
   }
 
-  [[nodiscard]] bool same_excavations(std::size_t f, std::size_t g) const {
-    return graph_.faces[f].excavations == graph_.faces[g].excavations;
-  }
-
   PlanarGraph& graph_;
-  const CutTolerances& tolerances_;
-  CutStatistics& statistics_;
+  Rule rule_;
   std::vector<Region> regions_;
+  int merged_ = 0;
+  double merged_area_ = 0.0;
   using Entry = std::tuple<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
@@ -111,9 +125,20 @@ class SliverMerger {
 }  // namespace
 
 void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics) {
-  if (tolerances.sliver_area > 0.0 || tolerances.sliver_thickness > 0.0) {
-    SliverMerger(graph, tolerances, statistics).run();
-  }
+  if (!(tolerances.sliver_area > 0.0) && !(tolerances.sliver_thickness > 0.0)) return;
+  SliverMerger merger(graph, {.area = tolerances.sliver_area, .thickness = tolerances.sliver_thickness});
+  merger.run();
+  statistics.merged_slivers += merger.merged();
+  statistics.sliver_area += merger.merged_area();
+}
+
+void remove_rounding(PlanarGraph& graph) {
+  // Lines that should coincide or meet are about two steps apart at most.
+  constexpr double vertex_steps = 4.0, width_steps = 2.0;
+  cluster_vertices(graph, vertex_steps * graph.grid);
+  SliverMerger merger(
+      graph, {.thickness = width_steps * graph.grid, .across_outlines = true, .lowest_label_first = true});
+  merger.run();
 }
 
 }  // namespace keyblock::cutting

@@ -141,7 +141,9 @@ std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, Ve
         seen[static_cast<std::size_t>(v)] |= 1;
       }
     }
-    for (const LabelledRing& ring : full) rings.push_back(simplifier.simplified(ring, times));
+    for (const LabelledRing& ring : full) {
+      rings.push_back(collinear > 0.0 ? simplifier.simplified(ring, times) : ring);
+    }
     if (crosses_itself(graph, rings)) rings = full;
     CutBlock block;
     block.excavations = face.excavations;

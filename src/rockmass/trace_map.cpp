@@ -237,7 +237,7 @@ class CsvReader {
     }
     if (!header_read) map_.mistake(1, 1, "", "an empty file", "a header with the columns trace, x, y");
     for (const Polyline& trace : traces_) {
-      if (!trace.vertices.empty()) map_.add(trace.vertices, trace.line, 1, "trace " + trace.name);
+      if (trace.complete) map_.add(trace.vertices, trace.line, 1, "trace " + trace.name);
     }
   }
 
@@ -245,6 +245,7 @@ class CsvReader {
   struct Polyline {
     std::string name;
     int line = 0;
+    bool complete = true;  ///< no row of it had a mistake
     std::vector<Vec2> vertices;
   };
 
@@ -282,12 +283,16 @@ class CsvReader {
       return value;
     };
     const std::optional<double> x = coordinate(1), y = coordinate(2);
-    if (x && y) trace.vertices.push_back({*x, *y});
+    if (x && y) {
+      trace.vertices.push_back({*x, *y});
+    } else {
+      trace.complete = false;
+    }
   }
 
   Polyline& trace_named(const std::string& name, int number) {
     const auto [place, is_new] = by_name_.try_emplace(name, traces_.size());
-    if (is_new) traces_.push_back({name, number, {}});
+    if (is_new) traces_.push_back({name, number, true, {}});
     return traces_[place->second];
   }
 

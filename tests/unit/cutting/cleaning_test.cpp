@@ -1,0 +1,175 @@
+#include "cutting/cleaning.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "check_blocks.h"
+#include "cutting/cut.h"
+#include "geos_oracle.h"
+#include "tunnel.h"
+
+namespace keyblock::cutting {
+namespace {
+
+using rockmass::TraceSource;
+
+/// The same cases in every run, unless the environment says otherwise.
+const bool seeded = ::setenv("RC_PARAMS", "seed=2001 max_success=200", 0) == 0;
+
+bool is_sliver(const CutBlock& block, const CutTolerances& t) {
+  // Dropping collinear vertices changes the last digits after the sizes were compared.
+  const double slack = 1.0 - 1e-4;
+  const double a = area(block.polygon);
+  return a < slack * t.sliver_area || a < slack * t.sliver_thickness * perimeter(block.polygon);
+}
+
+/// Whether an edge leads to a block with which this one could be merged.
+bool has_neighbour(const CutBlock& block) {
+  for (const auto& ring : block.labels) {
+    for (const EdgeLabel label : ring) {
+      if (label.kind == EdgeKind::joint_set || label.kind == EdgeKind::trace_map) return true;
+    }
+  }
+  return false;
+}
+
+/// Joints between points of a coarse lattice meet in nodes, overlap, repeat and end on one another; those between
+/// any points leave slivers.
+CutInput random_input() {
+  CutInput input;
+  input.domain = {{0, 0}, {10, 0}, {10, 8}, {4, 10}, {0, 8}};
+  const auto lattice = rc::gen::map(rc::gen::inRange(-1, 12), [](int k) { return static_cast<double>(k); });
+  const auto fine = rc::gen::map(rc::gen::inRange(-100000, 1200000), [](int k) { return 1e-5 * k; });
+  const bool coarse = *rc::gen::arbitrary<bool>();
+  const int lines = *rc::gen::inRange(0, 40);
+  for (int k = 0; k < lines; ++k) {
+    const auto coordinate = [&] { return coarse ? *lattice : *fine; };
+    const Vec2 a{coordinate(), coordinate()}, b{coordinate(), coordinate()};
+    const auto kind =
+        *rc::gen::arbitrary<bool>() ? TraceSource::Kind::joint_set : TraceSource::Kind::trace_map;
+    if (!(a == b)) RC_LOG() << "{{" << a.x << "," << a.y << "},{" << b.x << "," << b.y << "}}, ";
+    if (!(a == b)) input.traces.push_back({a, b, {kind, *rc::gen::inRange(0, 3)}});
+  }
+  if (*rc::gen::arbitrary<bool>())
+    input.excavations.push_back({{3, 3}, {6, 3}, {6.5, 5}, {4.5, 6.5}, {2.5, 5}});
+  return input;
+}
+
+RC_GTEST_PROP(Cleaning, LeavesAConformingCoverOfTheDomain, ()) {
+  RC_PRE(seeded);
+  const CutInput input = random_input();
+  const double domain_area = signed_area(input.domain);
+  const CutTolerances tolerances = CutTolerances::for_domain(domain_area);
+  const BlockSystem system = cut(input);
+  const double covered = GeosOracle().union_area(system.blocks);
+  // Neighbours may differ by the collinear tolerance along all edges.
+  double tiny = 1e-9 * domain_area;
+  for (const CutBlock& block : system.blocks) tiny += tolerances.collinear * perimeter(block.polygon);
+  RC_ASSERT(std::abs(covered - domain_area) < tiny);         // no gaps
+  RC_ASSERT(std::abs(covered - total_area(system)) < tiny);  // no overlaps
+  RC_ASSERT(GeosOracle().all_valid(system.blocks));
+  double excavated = 0.0;
+  for (const CutBlock& block : system.blocks) {
+    RC_ASSERT(!is_sliver(block, tolerances) || !has_neighbour(block));
+    if (!block.excavations.empty()) excavated += area(block.polygon);
+  }
+  const double outline = input.excavations.empty() ? 0.0 : signed_area(input.excavations[0]);
+  RC_ASSERT(std::abs(excavated - outline) < tolerances.cluster * 12.0);
+}
+
+RC_GTEST_PROP(Cleaning, RawBlocksShareTheirEdges, ()) {
+  CutInput input = random_input();
+  input.tolerances = CutTolerances{};
+  const BlockSystem system = cut(input);
+  RC_ASSERT(mistake_of_shared_edges(system) == "");
+  expect_canonical(system);
+  const double domain_area = signed_area(input.domain);
+  RC_ASSERT(std::abs(total_area(system) - domain_area) < 1e-11 * domain_area);
+}
+
+/// No two vertices of one block closer than the tolerance, unless a move would have turned a block over.
+TEST(Cleaning, VerticesAreClustered) {
+  std::size_t close = 0;
+  for (int realization = 0; realization < 10; ++realization) {
+    const BlockSystem system = cut(paper_tunnel(realization));
+    for (const CutBlock& block : system.blocks) {
+      const Ring& ring = block.polygon.outer;
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        for (std::size_t i = 0; i < k; ++i) close += norm(ring[k] - ring[i]) < 0.005;
+      }
+    }
+  }
+  EXPECT_EQ(close, 0u);
+}
+
+TEST(Cleaning, ASliverGoesToTheLongestBorder) {
+  CutInput input;
+  input.domain = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+  // A strip 4 mm wide between two joints, cut in two: the right piece borders above and below on different blocks.
+  input.traces = {
+      {{0, 5}, {10, 5}, {}}, {{0, 5.004}, {10, 5.004}, {}}, {{7, 0}, {7, 5}, {}}, {{4, 5.004}, {4, 10}, {}}};
+  input.tolerances = CutTolerances{};
+  input.tolerances->sliver_thickness = 2.5e-3;
+  const BlockSystem system = cut(input);
+  ASSERT_EQ(system.blocks.size(), 4u);
+  EXPECT_EQ(system.statistics.merged_slivers, 1);
+  EXPECT_NEAR(system.statistics.sliver_area, 0.04, 1e-9);
+  // The strip is one block; it shares 7 m with the lower left, 6 m with the upper right one.
+  EXPECT_NEAR(area(system.blocks[1].polygon), 35.0 + 0.04, 1e-9);
+}
+
+TEST(Cleaning, ASliverNeverCrossesAnOutline) {
+  CutInput input;
+  input.domain = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+  input.excavations = {{{2, 2}, {8, 2}, {8, 8}, {2, 8}}};
+  input.traces = {{{0, 8.003}, {10, 8.003}, {}},
+                  {{0, 2}, {10, 2}, {}},
+                  {{3, 0}, {3, 10}, {}},
+                  {{2, 8}, {2, 10}, {}},
+                  {{8, 8}, {8, 10}, {}}};
+  const BlockSystem system = cut(input);
+  double inside = 0.0;
+  for (const CutBlock& block : system.blocks) {
+    if (!block.excavations.empty()) inside += area(block.polygon);
+  }
+  EXPECT_NEAR(inside, 36.0, 1e-7);
+  EXPECT_GT(system.statistics.merged_slivers, 0);
+}
+
+TEST(Cleaning, CloseVerticesBecomeOneForAllBlocks) {
+  CutInput input;
+  input.domain = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+  // Two Ts 4 mm apart on either side of a joint, and a crossing 2 mm beside the corner of the domain.
+  input.traces = {{{0, 5}, {10, 5}, {}},
+                  {{4, 0}, {4, 5}, {}},
+                  {{4.00390625, 5}, {4.00390625, 10}, {}},
+                  {{0, 0.002}, {5, 5}, {}}};
+  input.tolerances = CutTolerances{};
+  input.tolerances->cluster = 0.005;
+  const BlockSystem system = cut(input);
+  EXPECT_EQ(system.statistics.merged_vertices, 2);
+  EXPECT_EQ(mistake_of_shared_edges(system), "");
+  EXPECT_NEAR(total_area(system), 100.0, 1e-10);
+  std::set<std::pair<double, double>> corners;
+  for (const CutBlock& block : system.blocks) {
+    for (const Vec2 p : block.polygon.outer) corners.emplace(p.x, p.y);
+  }
+  EXPECT_TRUE(corners.contains({0.0, 0.0}));
+  EXPECT_FALSE(corners.contains({0.0, 0.002}));
+  EXPECT_NE(corners.contains({4.0, 5.0}), corners.contains({4.00390625, 5.0}));
+}
+
+TEST(Cleaning, TheDomainKeepsItsCorners) {
+  CutInput input;
+  input.domain = {{0, 0}, {10, 0}, {10.0, 0.001}, {10.001, 0.002}, {10, 10}, {0, 10}};
+  input.traces = {{{9.9985, -1}, {9.9985, 11}, {}}};
+  const BlockSystem system = cut(input);
+  EXPECT_NEAR(total_area(system), signed_area(input.domain), 1e-9 * 100.0);
+}
+
+}  // namespace
+}  // namespace keyblock::cutting
