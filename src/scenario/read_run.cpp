@@ -168,6 +168,8 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
                 "Error of the friction bounds (L2 over all contacts, over their norm) beyond which they are "
                 "taken anew within a step.",
             .above = 0.0});
+  t.number("bound_accuracy", solver.bound_accuracy,
+           {.meaning = "The error they are then brought below.", .above = 0.0});
   t.integer("max_bound_updates", solver.max_bound_updates,
             {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
   t.word("linear", solver.linear, linear_solvers,

@@ -409,6 +409,12 @@ motion = "sine"
   EXPECT_THAT(plausibility_warnings(parse(jointed_domain)), UnorderedElementsAre(HasSubstr("no [[stage]]")));
 }
 
+TEST(Warnings, OfBlocksThatOverlap) {
+  EXPECT_THAT(warnings_of(two_blocks), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"block.top.outer=[[1, 0.9], [3, 0.9], [3, 2], [1, 2]]"}),
+              UnorderedElementsAre(HasSubstr("block.base and block.top overlap by 0.1 m at")));
+}
+
 TEST(Warnings, OfDistributionsThatAreCutOff) {
   EXPECT_THAT(
       warnings_of(runnable_domain, {"joint_set.bedding.gap={mean=0.5, std=0.5, distribution=\"normal\"}"}),
