@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
+#include "results/record_fields.h"
 
 namespace keyblock::results {
 namespace {
@@ -65,16 +66,15 @@ std::string contact_table(const RunData& data) {
 }
 
 std::string step_table(const RunData& data) {
-  std::string text =
-      "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts,kinetic,strain,"
-      "gravity,contact,friction,input,"
-      "numerical,residual_ratio\n";
+  std::string text = "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts";
+  for (const auto& [name, member] : energy_fields) text += fmt::format(",{}", name);
+  text += "\n";
   auto out = std::back_inserter(text);
   for (const simulation::StepRow& r : data.steps) {
-    const simulation::Energy& e = r.energy;
-    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.time, r.stage, r.step,
-                   r.iterations, r.step_size, r.penetration, r.max_displacement, r.closed_contacts, e.kinetic,
-                   e.strain, e.gravity, e.contact, e.friction, e.input, e.numerical, e.residual_ratio);
+    fmt::format_to(out, "{},{},{},{},{},{},{},{}", r.time, r.stage, r.step, r.iterations, r.step_size,
+                   r.penetration, r.max_displacement, r.closed_contacts);
+    for (const auto& [name, member] : energy_fields) fmt::format_to(out, ",{}", r.energy.*member);
+    text += "\n";
   }
   return text;
 }

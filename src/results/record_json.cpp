@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "results/record_fields.h"
 
 namespace keyblock::results {
 namespace {
@@ -46,27 +47,12 @@ std::vector<Vec2> read_points(const ordered_json& list) {
 template <class Record, class Visit>
 void visit_damage(Record& d, const Visit& visit) {
   visit("fallen_blocks", d.fallen_blocks);
-  visit("fallen_area", d.fallen_area);
-  visit("opening_filled_ratio", d.opening_filled_ratio);
-  visit("loosened_area", d.loosened_area);
-  visit("slip_max", d.slip_max);
-  visit("slip_mean", d.slip_mean);
-  visit("slipped_length", d.slipped_length);
-  visit("opened_length", d.opened_length);
-  visit("closure_vertical", d.closure_vertical);
-  visit("closure_horizontal", d.closure_horizontal);
+  for (const auto& [name, member] : damage_fields) visit(name, d.*member);
 }
 
 template <class Record, class Visit>
 void visit_energy(Record& e, const Visit& visit) {
-  visit("kinetic", e.kinetic);
-  visit("strain", e.strain);
-  visit("gravity", e.gravity);
-  visit("contact", e.contact);
-  visit("friction", e.friction);
-  visit("input", e.input);
-  visit("numerical", e.numerical);
-  visit("residual_ratio", e.residual_ratio);
+  for (const auto& [name, member] : energy_fields) visit(name, e.*member);
 }
 
 template <class Record, class Visit>

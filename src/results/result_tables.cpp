@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 
 #include "core/error.h"
+#include "results/record_fields.h"
 
 namespace keyblock::results {
 namespace {
@@ -14,7 +16,7 @@ namespace {
 using hdf5::Array;
 using hdf5::read_array;
 
-constexpr std::size_t energy_terms = 8;
+constexpr std::size_t energy_terms = std::size(energy_fields);
 constexpr std::size_t history_values = 7;
 
 static_assert(sizeof(simulation::HistoryRow::Point) == history_values * sizeof(double));
@@ -257,12 +259,15 @@ StepTable::StepTable(hid_t file)
       penetration_(group_, "penetration", {}),
       max_displacement_(group_, "max_displacement", {}),
       energy_(group_, "energy", {energy_terms}),
-      time_(group_, "time", {}) {}
+      time_(group_, "time", {}) {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : energy_fields) names.emplace_back(name);
+  hdf5::write_strings(group_, "energy_names", names);
+}
 
 void StepTable::append(const simulation::StepRow& row) {
-  const simulation::Energy& e = row.energy;
-  const double energy[energy_terms] = {e.kinetic,  e.strain, e.gravity,   e.contact,
-                                       e.friction, e.input,  e.numerical, e.residual_ratio};
+  std::array<double, energy_terms> energy{};
+  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*energy_fields[k].second;
   stage_.append(row.stage);
   iterations_.append(row.iterations);
   closed_contacts_.append(row.closed_contacts);
@@ -297,7 +302,6 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
       common_rows(time, {stage.rows(), iterations.rows(), closed_contacts.rows(), step.rows(),
                          step_size.rows(), penetration.rows(), max_displacement.rows(), energy.rows()}));
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double* e = energy.values.data() + energy_terms * k;
     rows[k] = {time.values[k],
                step.values[k],
                stage.values[k],
@@ -306,7 +310,10 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
                penetration.values[k],
                max_displacement.values[k],
                closed_contacts.values[k],
-               {e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7]}};
+               {}};
+    for (std::size_t i = 0; i < energy_terms; ++i) {
+      rows[k].energy.*energy_fields[i].second = energy.values[energy_terms * k + i];
+    }
   }
   return rows;
 }

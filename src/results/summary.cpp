@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/atomic_file.h"
+#include "results/record_fields.h"
 #include "results/record_json.h"
 
 namespace keyblock::results {
@@ -12,12 +13,37 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// The frame around a domain is a block of the model, fixed and with no edge but the domain's.
+bool is_frame(const simulation::ModelRecord& model, const simulation::ModelRecord::Block& block) {
+  bool along_domain = block.fixed;
+  for (int k = block.ring_start.front(); k < block.ring_start.back() && along_domain; ++k) {
+    along_domain = model.edge_label[static_cast<std::size_t>(k)].kind == cutting::EdgeKind::domain;
+  }
+  return along_domain;
+}
+
+struct Count {
+  std::size_t blocks = 0;
+  int vertices = 0;
+};
+
+Count count(const simulation::ModelRecord& model) {
+  Count count;
+  for (const auto& block : model.blocks) {
+    if (is_frame(model, block)) continue;
+    ++count.blocks;
+    count.vertices += block.ring_start.back() - block.ring_start.front();
+  }
+  return count;
+}
+
 ordered_json areas(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
   std::set<int> opened;
   for (const auto& stage : run.stages)
     opened.insert(stage.stage.excavate.begin(), stage.stage.excavate.end());
   double blocks = 0.0, excavated = 0.0;
   for (const auto& block : model.blocks) {
+    if (is_frame(model, block)) continue;
     const bool out = std::any_of(block.excavations.begin(), block.excavations.end(),
                                  [&](int e) { return opened.contains(e); });
     (out ? excavated : blocks) += block.area;
@@ -35,10 +61,9 @@ ordered_json cutting(const cutting::CutStatistics& c) {
 }
 
 ordered_json energy(const simulation::Energy& e) {
-  return {{"kinetic", e.kinetic},     {"strain", e.strain},
-          {"gravity", e.gravity},     {"contact", e.contact},
-          {"friction", e.friction},   {"input", e.input},
-          {"numerical", e.numerical}, {"residual_ratio", e.residual_ratio}};
+  ordered_json json;
+  for (const auto& [name, member] : energy_fields) json[name] = e.*member;
+  return json;
 }
 
 // Equilibrium is a question only where the stage seeks it.
@@ -55,16 +80,9 @@ ordered_json equilibrium(const simulation::StageRecord& r) {
 }
 
 ordered_json damage(const simulation::Damage& d) {
-  return {{"fallen_blocks", d.fallen_blocks},
-          {"fallen_area_m2", d.fallen_area},
-          {"opening_filled_ratio", d.opening_filled_ratio},
-          {"loosened_area_m2", d.loosened_area},
-          {"slip_max_m", d.slip_max},
-          {"slip_mean_m", d.slip_mean},
-          {"slipped_length_m", d.slipped_length},
-          {"opened_length_m", d.opened_length},
-          {"closure_vertical_m", d.closure_vertical},
-          {"closure_horizontal_m", d.closure_horizontal}};
+  ordered_json json{{"fallen_blocks", d.fallen_blocks}};
+  for (const auto& [name, member] : damage_fields) json[name] = d.*member;
+  return json;
 }
 
 ordered_json stage(const simulation::StageRecord& r) {
@@ -86,14 +104,15 @@ ordered_json stage(const simulation::StageRecord& r) {
 std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
   ordered_json stages = ordered_json::array();
   for (const auto& record : run.stages) stages.push_back(stage(record));
+  const auto [blocks, vertices] = count(model);
   const ordered_json json{
       {"title", model.title},
       {"version", model.version},
       {"seed", model.seed},
       {"realization", model.realization},
       {"interrupted", run.interrupted},
-      {"blocks", model.blocks.size()},
-      {"vertices", model.vertices.size()},
+      {"blocks", blocks},
+      {"vertices", vertices},
       {"dof", run.dof},
       {"joints", model.cutting.joints_used},
       {"area", areas(model, run)},

@@ -9,6 +9,7 @@ namespace keyblock::results {
 /// What a run came to, for people and scripts: the fields are described in the user guide. Areas in m², times in s;
 /// every number can be read back to its last bit; what is not a number is null.
 ///
+/// The frame around a domain counts nowhere. `vertices` are the display vertices of the blocks (ModelRecord).
 /// `area.excavated` counts the blocks inside excavations that were opened, `area.blocks` all others. `joints` are the
 /// traces of which some piece bounds two blocks.
 std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run);

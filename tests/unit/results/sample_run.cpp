@@ -69,10 +69,9 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
 }
 
 void expect_equal(const simulation::Energy& a, const simulation::Energy& b) {
-  for (const auto member :
-       {&simulation::Energy::kinetic, &simulation::Energy::strain, &simulation::Energy::gravity,
-        &simulation::Energy::contact, &simulation::Energy::friction, &simulation::Energy::input,
-        &simulation::Energy::numerical, &simulation::Energy::residual_ratio}) {
+  using E = simulation::Energy;
+  for (const auto member : {&E::kinetic, &E::strain, &E::gravity, &E::contact, &E::friction, &E::damping,
+                            &E::input, &E::numerical, &E::residual_ratio}) {
     EXPECT_TRUE(same(a.*member, b.*member));
   }
 }
@@ -252,8 +251,9 @@ simulation::StepRow SampleRun::step_row(int stage, long step) {
                           noise(step, 2),
                           17,
                           {}};
-  row.energy = {noise(step, 3), noise(step, 4), noise(step, 5), noise(step, 6),
-                noise(step, 7), noise(step, 8), noise(step, 9), 1e-3};
+  row.energy = {noise(step, 3), noise(step, 4),  noise(step, 5),
+                noise(step, 6), noise(step, 7),  noise(step, 8),
+                noise(step, 9), noise(step, 10), 1e-3};
   return row;
 }
 

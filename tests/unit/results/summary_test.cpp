@@ -84,6 +84,19 @@ TEST(Summary, NumbersComeBackToTheLastBit) {
   EXPECT_EQ(summary["stages"][1]["kind"], "shake");
 }
 
+TEST(Summary, TheFrameDoesNotCount) {
+  SampleRun sample;
+  const json before = json::parse(summary_json(sample.model, sample.run()));
+  const int first = static_cast<int>(sample.model.vertices.size());
+  sample.model.vertices.insert(sample.model.vertices.end(), {{-1, -1}, {9, -1}, {9, 9}, {-1, 9}});
+  sample.model.edge_label.resize(sample.model.vertices.size(), {cutting::EdgeKind::domain, 0});
+  sample.model.blocks.push_back({"frame", 1, true, 100.0, 0.0, {}, {4, 4}, {first, first + 4}});
+  const json after = json::parse(summary_json(sample.model, sample.run()));
+  EXPECT_EQ(after["blocks"], 3);
+  EXPECT_EQ(after["vertices"], 14);
+  EXPECT_EQ(after["area"], before["area"]);
+}
+
 // The block in both excavations goes with the first; the one in the second alone stays, as that is never opened.
 TEST(Summary, AreasOfWhatWasExcavated) {
   SampleRun sample;
