@@ -28,6 +28,22 @@ struct GeometryDeleter {
 };
 using Geometry = std::unique_ptr<GEOSGeometry, GeometryDeleter>;
 
+// Whether the points lie on the inner side of every edge of a hole, and so in the hole (in its kernel).
+bool lies_in_hole(const Ring& points, const Ring& hole) {
+  for (std::size_t k = 0; k < hole.size(); ++k) {
+    const Vec2 a = hole[k], edge = hole[(k + 1) % hole.size()] - a;
+    for (const Vec2 p : points) {
+      if (cross(edge, p - a) > 0.0) return false;
+    }
+  }
+  return true;
+}
+
+bool lies_in_a_hole(const Ring& points, const Polygon& polygon) {
+  return std::any_of(polygon.holes.begin(), polygon.holes.end(),
+                     [&](const Ring& hole) { return lies_in_hole(points, hole); });
+}
+
 struct Pair {
   double bound = 0.0;  // of the depth, from above
   int a = 0, b = 0;
@@ -55,6 +71,7 @@ class Finder {
   [[nodiscard]] Geometry own(GEOSGeometry* geometry) const {
     return {geometry, GeometryDeleter{context_.get()}};
   }
+  [[nodiscard]] double upper_bound(std::size_t a, std::size_t b) const;
   [[nodiscard]] GEOSGeometry* geos_ring(const Ring& ring) const;
   const GEOSGeometry* geometry(int block);
   Ring read_ring(const GEOSGeometry* ring) const;
@@ -70,6 +87,11 @@ class Finder {
   double largest_ = 0.0;
 };
 
+double Finder::upper_bound(std::size_t a, std::size_t b) const {
+  if (lies_in_a_hole(hulls_[a], blocks_[b]) || lies_in_a_hole(hulls_[b], blocks_[a])) return 0.0;
+  return hull_penetration(hulls_[a], hulls_[b]);
+}
+
 std::vector<Pair> Finder::candidates(double least) const {
   std::vector<int> order(blocks_.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
@@ -83,8 +105,7 @@ std::vector<Pair> Finder::candidates(double least) const {
     for (std::size_t j = i + 1; j < order.size() && box(order[j]).min.x < box(a).max.x; ++j) {
       const int b = order[j];
       if (!box(a).overlaps(box(b))) continue;
-      const double bound =
-          hull_penetration(hulls_[static_cast<std::size_t>(a)], hulls_[static_cast<std::size_t>(b)]);
+      const double bound = upper_bound(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
       if (bound > least) pairs.push_back({bound, std::min(a, b), std::max(a, b)});
     }
   }
