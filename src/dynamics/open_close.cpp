@@ -25,10 +25,10 @@ bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& sol
   for (std::size_t c = 0; c < rows.size(); ++c) {
     const contact::Spring& s = rows[c].spring;
     const double normal = assumed_[c].normal ? s.normal_stiffness() * s.depth() : 0.0;
-    const double shear = assumed_[c].shear ? s.shear_stiffness() * s.shear() : s.shear_force(s.shear());
+    const double shear = assumed_[c].shear ? s.shear_stiffness() * s.shear() : s.sliding_force();
     problem.add_contact_force(rows[c], normal * rows[c].normal - shear * rows[c].tangent, d);
   }
-  solver.solve(d);
+  solver.solve(d.first(problem.unknowns()));
   return true;
 }
 
@@ -87,7 +87,8 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
     if (!first_solve(problem, solver, d, result)) return false;
     evaluate(problem, d);
     problem.gradient(d, r_, gradient_);
-    if (active_ == assumed_) return true;
+    // The same springs act; what may still differ is the direction in which a contact slides.
+    if (active_ == assumed_ && problem.residual_ratio(gradient_) < options.tolerance) return true;
   } else {
     evaluate(problem, d);
     problem.gradient(d, r_, gradient_);
@@ -101,7 +102,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
       if (!solver.factor()) return false;
     }
     for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
-    solver.solve(direction_);
+    solver.solve(std::span(direction_).first(problem.unknowns()));
     const double alpha = line_search(problem, d);
     for (std::size_t k = 0; k < d.size(); ++k) d[k] += alpha * direction_[k];
     evaluate(problem, d);

@@ -56,7 +56,8 @@ class StepProblem {
 
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  [[nodiscard]] std::size_t size() const { return b_.size(); }
+  /// Unknowns come first among the coefficients; those of fixed blocks follow.
+  [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
 
   /// r of a contact for increment D.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const;

@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene.h"
+
+namespace keyblock::simulation {
+namespace {
+
+constexpr double g = 9.81;
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// Horizontal ground acceleration A sin ωt, integrated exactly over a step.
+class Sine final : public dynamics::GroundAcceleration {
+ public:
+  Sine(double amplitude, double frequency) : a_(amplitude), omega_(2.0 * std::numbers::pi * frequency) {}
+  [[nodiscard]] Vec2 mean(double t0, double t1) const override {
+    return {a_ * (std::cos(omega_ * t0) - std::cos(omega_ * t1)) / (omega_ * (t1 - t0)), 0.0};
+  }
+
+ private:
+  double a_, omega_;
+};
+
+// A block on a spring to the ground: Shi's scheme loses 1 − 1/√(1 + Ω²/2) of the amplitude per step, Ω = ωΔt.
+TEST(TimeIntegration, SpectralRadiusOnASpring) {
+  const double mass = 2600.0, dt = 0.001;
+  for (const auto& [omega_dt, expected] : {std::pair{0.1, 0.99750934}, {0.5, 0.94280904}, {1.0, 0.81649658}, {2.0, 0.57735027}}) {
+    Scene scene(1e12, 0.0);
+    scene.setup.gravity = {0.0, 0.0};
+    scene.rectangle({0.0, 0.0}, 1.0, 1.0);
+    scene.setup.properties[0].velocity = {1.0, 0.0};
+    loading::Support support;
+    support.block = "b0";
+    support.points = {{0.5, 0.5}};
+    support.along_y = false;
+    support.stiffness = mass * omega_dt * omega_dt / (dt * dt);
+    scene.setup.supports.push_back(support);
+    Simulator s(scene);
+    // Amplitude of the damped oscillation from an invariant of the recurrence: x² scaled, over many steps.
+    const double start_x = 0.5;
+    double x0 = 0.0, x1 = 0.0, x2 = 0.0;
+    s.run(dt, dt);
+    x0 = s.centroid(0).x - start_x;
+    s.run(dt, dt);
+    x1 = s.centroid(0).x - start_x;
+    s.run(dt, dt);
+    x2 = s.centroid(0).x - start_x;
+    s.run(dt, dt);
+    const double x3 = s.centroid(0).x - start_x;
+    // x_{n+1} = t x_n − d x_{n−1}; d = ρ².
+    const double determinant = x0 * x2 - x1 * x1;
+    const double d = (x1 * x3 - x2 * x2) / determinant;
+    EXPECT_NEAR(std::sqrt(d), expected, 1e-8) << omega_dt;
+  }
+}
+
+// The linear update of classic DDA multiplies the area by 1 + r² per step of rotation r; this one keeps it.
+TEST(Rotation, FullTurnKeepsAreaAndStress) {
+  for (int order : {1, 2, 3}) {
+    Scene scene(1e9, 0.0);
+    scene.setup.gravity = {0.0, 0.0};
+    scene.rectangle({0.0, 0.0}, 1.0, 0.6, 0.0, false, order);
+    scene.setup.properties[0].spin = 2.0 * std::numbers::pi;
+    scene.setup.solver.rock_damping = 0.0;
+    for (int steps : {100, 1000}) {
+      Simulator s(scene);
+      const dynamics::Block& block = s.model.blocks[0];
+      const double before = block.pose.area(&s.state.position[block.first]);
+      const double kinetic = s.stepper.kinetic_energy(s.state);
+      s.run(1.0, 1.0 / steps);
+      EXPECT_NEAR(block.pose.area(&s.state.position[block.first]) / before, 1.0, 1e-9) << order << ' ' << steps;
+      EXPECT_NEAR(s.stepper.kinetic_energy(s.state) / kinetic, 1.0, 1e-9);
+    }
+  }
+}
+
+// Goodman & Seed: an incline shaken along a sine; the rigid block slides downhill once per cycle.
+TEST(ShakenIncline, SlidesAsNewmarkSays) {
+  const double alpha = 20.0, phi = 30.0, amplitude = 0.5 * g, omega = 2.0 * std::numbers::pi;
+  Scene scene(5e10, phi);
+  scene.rectangle({-10.0 * std::cos(alpha * degree), -10.0 * std::sin(alpha * degree)}, 14.0, -1.0, alpha, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5, alpha);
+  // Sliding downhill while C0 + C1 sin ωt has pushed it, from θ on; 0.313620 m per cycle.
+  for (double dt : {0.005, 0.002, 0.001}) {
+    Simulator s(scene);
+    const Vec2 from = s.centroid(1);
+    // The incline runs down to the left; a ground acceleration to the right throws the block to the left.
+    const Sine ground(amplitude, 1.0);
+    s.run(3.0, dt, &ground);
+    const Vec2 down{-std::cos(alpha * degree), -std::sin(alpha * degree)};
+    EXPECT_NEAR(dot(s.centroid(1) - from, down) / (3.0 * 0.313620), 1.0, 5e-3) << dt;
+    EXPECT_EQ(s.unconverged, 0);
+  }
+  (void)omega;
+}
+
+TEST(Column, ContactForceAtDepthIsTheWeightAbove) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  for (int k = 0; k < 5; ++k) scene.rectangle({0.0, 1.0 * k}, 1.0, 1.0);
+  Simulator s(scene);
+  const std::vector<double> scale(6, 1.0);
+  for (int k = 0; k < 400; ++k) s.stepper.relax(s.state, 0.05, scale);
+  std::vector<double> force(6, 0.0);
+  for (std::size_t c = 0; c < s.stepper.contacts().size(); ++c) {
+    const contact::Contact& contact = s.stepper.contacts()[c];
+    const int upper = std::max(contact.block_a, contact.block_b);
+    force[static_cast<std::size_t>(upper)] += s.stepper.forces()[c].normal;
+  }
+  for (int k = 1; k <= 5; ++k) EXPECT_NEAR(force[static_cast<std::size_t>(k)] / ((6 - k) * 2600.0 * g), 1.0, 1e-6) << k;
+}
+
+TEST(Bond, CohesionHoldsAndBreaksOnce) {
+  // A block on a vertical wall face holds by c·L alone until its weight exceeds it.
+  const double weight = 2600.0 * g;
+  for (const auto& [cohesion, holds] : {std::pair{1.5 * weight, true}, {0.9 * weight, false}}) {
+    Scene scene(1e9, 0.0);
+    scene.setup.joints.standard.cohesion = cohesion;
+    scene.setup.joints.standard.tension = 1e9;
+    scene.rectangle({-1.0, -1.0}, 1.0, 3.0, 0.0, true);
+    scene.rectangle({0.0, 0.0}, 1.0, 1.0);
+    Simulator s(scene);
+    const std::vector<double> scale(2, 1.0);
+    for (int k = 0; k < 300; ++k) s.stepper.relax(s.state, 0.002, scale);
+    s.run(0.5, 0.002);
+    const double fallen = 0.5 - s.centroid(1).y;
+    if (holds) {
+      EXPECT_LT(std::abs(fallen), 1e-4);
+    } else {
+      EXPECT_GT(fallen, 0.5);
+    }
+  }
+}
+
+TEST(Threads, GiveTheSameBits) {
+  const auto run = [](int threads) {
+    Scene scene(1e9, 35.0);
+    scene.rectangle({-2.0, -1.0}, 30.0, 1.0, 0.0, true);
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 16; ++column) scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
+    }
+    Simulator s(scene, threads);
+    const Sine ground(0.6 * g, 2.0);
+    s.run(0.4, 0.002, &ground);
+    return s.state.position;
+  };
+  EXPECT_EQ(run(1), run(2));
+  EXPECT_EQ(run(1), run(3));
+}
+
+TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
+  const auto run = [](dynamics::LinearSolver linear) {
+    Scene scene(1e9, 35.0);
+    scene.setup.solver.linear = linear;
+    scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 1 + row % 2);
+    }
+    Simulator s(scene);
+    const Sine ground(0.3 * g, 2.0);
+    s.run(0.2, 0.002, &ground);
+    return s.state.position;
+  };
+  const std::vector<double> block = run(dynamics::LinearSolver::block), direct = run(dynamics::LinearSolver::direct);
+  for (std::size_t k = 0; k < block.size(); ++k) EXPECT_NEAR(block[k], direct[k], 1e-9);
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
