@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <compare>
 #include <set>
+#include <tuple>
+#include <vector>
 
 #include "cutting/cleaning.h"
 #include "cutting/noding.h"
@@ -15,33 +17,46 @@ struct Pair {
   int u, v;
 };
 
-/// One pass over all close pairs: those are moved together that have no face in common with one moved before.
+/// A vertex in a cell of a grid of the size of the reach.
+struct Cell {
+  std::int64_t row, column;
+  int vertex;
+  friend auto operator<=>(const Cell&, const Cell&) = default;
+};
+
+bool share(const std::vector<int>& a, const std::vector<int>& b) {
+  return std::any_of(a.begin(), a.end(), [&](int f) { return std::binary_search(b.begin(), b.end(), f); });
+}
+
+/// One pass over all close pairs. A move that takes away more than the edge between two vertices leaves the rings of
+/// its faces out of date; those faces wait for the next pass.
 class ClusterPass {
  public:
   ClusterPass(PlanarGraph& graph, double reach)
-      : graph_(graph), reach_(reach), incident_(graph.points.size()) {
+      : graph_(graph), reach_(reach), incident_(graph.points.size()), stale_(graph.faces.size(), false) {
     for (std::size_t e = 0; e < graph.edges.size(); ++e) {
       incident_[index(graph.edges[e].from)].push_back(static_cast<int>(e));
       incident_[index(graph.edges[e].to)].push_back(static_cast<int>(e));
     }
-    touched_.resize(graph.faces.size(), false);
   }
 
   /// Number of vertices moved.
   int run() {
     int moved = 0;
     for (const Pair& pair : close_pairs()) {
-      std::set<int> faces = faces_at(pair.u);
-      const std::set<int> others = faces_at(pair.v);
-      const bool common = std::any_of(faces.begin(), faces.end(), [&](int f) { return others.contains(f); });
-      faces.insert(others.begin(), others.end());
-      if (!common || std::any_of(faces.begin(), faces.end(), [&](int f) { return touched_[index(f)]; }))
+      const std::vector<int> faces = faces_at(pair.u), others = faces_at(pair.v);
+      const auto stale = [&](int f) { return stale_[index(f)]; };
+      if (!share(faces, others) || std::any_of(faces.begin(), faces.end(), stale) ||
+          std::any_of(others.begin(), others.end(), stale)) {
         continue;
-      if (!move_either(pair.u, pair.v)) continue;
-      for (const int f : faces) touched_[index(f)] = true;
-      ++moved;
+      }
+      moved += move_either(pair.u, pair.v);
     }
-    if (moved > 0) remove_collapsed();
+    if (moved > 0) {
+      std::erase_if(graph_.edges, [](const GraphEdge& e) { return e.from == e.to; });
+      graph_.remove_trees();
+      graph_.trace_faces();
+    }
     return moved;
   }
 
@@ -49,28 +64,27 @@ class ClusterPass {
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
   [[nodiscard]] std::vector<Pair> close_pairs() const {
-    // Vertices by the cell of a hash grid, sorted; only pairs of neighbouring cells can be close.
-    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<int>> cells;
-    const auto cell = [&](GridPoint p) {
-      return std::pair{static_cast<std::int64_t>(std::floor(static_cast<double>(p.x) / reach_)),
-                       static_cast<std::int64_t>(std::floor(static_cast<double>(p.y) / reach_))};
-    };
+    std::vector<Cell> cells;
     for (std::size_t v = 0; v < incident_.size(); ++v) {
-      if (!incident_[v].empty()) cells[cell(graph_.points[v])].push_back(static_cast<int>(v));
+      if (incident_[v].empty()) continue;
+      const Vec2 p = to_vec2(graph_.points[v]) / reach_;
+      cells.push_back({static_cast<std::int64_t>(std::floor(p.y)), static_cast<std::int64_t>(std::floor(p.x)),
+                       static_cast<int>(v)});
     }
+    std::sort(cells.begin(), cells.end());
     std::vector<Pair> pairs;
-    for (const auto& [place, members] : cells) {
-      for (std::int64_t dx = -1; dx <= 1; ++dx) {
-        for (std::int64_t dy = -1; dy <= 1; ++dy) {
-          const auto other = cells.find({place.first + dx, place.second + dy});
-          if (other == cells.end()) continue;
-          for (const int u : members) {
-            for (const int v : other->second) {
-              const double d = squared_norm(to_vec2(graph_.point(u)) - to_vec2(graph_.point(v)));
-              if (u < v && d < reach_ * reach_) pairs.push_back({d, u, v});
-            }
-          }
-        }
+    // Partners lie in the own cell, the next one of the row, or one of three in the row above.
+    auto above = cells.begin();
+    for (auto cell = cells.begin(); cell != cells.end(); ++cell) {
+      for (auto other = cell + 1; other != cells.end() && other->row == cell->row; ++other) {
+        if (other->column > cell->column + 1) break;
+        add_pair(pairs, cell->vertex, other->vertex);
+      }
+      const Cell first{cell->row + 1, cell->column - 1, -1};
+      while (above != cells.end() && *above < first) ++above;
+      for (auto other = above; other != cells.end() && other->row == first.row; ++other) {
+        if (other->column > cell->column + 1) break;
+        add_pair(pairs, cell->vertex, other->vertex);
       }
     }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
@@ -79,20 +93,35 @@ class ClusterPass {
     return pairs;
   }
 
-  [[nodiscard]] std::set<int> faces_at(int v) const {
-    std::set<int> faces;
+  void add_pair(std::vector<Pair>& pairs, int u, int v) const {
+    const double d = squared_norm(to_vec2(graph_.point(u)) - to_vec2(graph_.point(v)));
+    if (d < reach_ * reach_) pairs.push_back({d, std::min(u, v), std::max(u, v)});
+  }
+
+  [[nodiscard]] std::vector<int> faces_at(int v) const {
+    std::vector<int> faces;
     for (const int e : incident_[index(v)]) {
       const GraphEdge& edge = graph_.edges[index(e)];
       for (const int f : {edge.left, edge.right}) {
-        if (f >= 0) faces.insert(f);
+        if (f >= 0) faces.push_back(f);
       }
     }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
   }
 
   [[nodiscard]] int other_end(int e, int v) const {
     const GraphEdge& edge = graph_.edges[index(e)];
     return edge.from == v ? edge.to : edge.from;
+  }
+
+  /// The edge between two vertices, −1 if there is none.
+  [[nodiscard]] int edge_between(int v, int w) const {
+    for (const int e : incident_[index(v)]) {
+      if (other_end(e, v) == w) return e;
+    }
+    return -1;
   }
 
   /// The sides of the domain and the outlines on which v lies.
@@ -121,7 +150,7 @@ class ClusterPass {
     return move(u, v) || move(v, u);
   }
 
-  [[nodiscard]] bool in_triangle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) const {
+  static bool in_triangle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
     const int s = orientation(a, b, p), t = orientation(b, c, p), r = orientation(c, a, p);
     if (s == 0 && t == 0 && r == 0) {  // a flat triangle: the segment between its extremes
       return std::min({a, b, c}) <= p && p <= std::max({a, b, c});
@@ -129,46 +158,73 @@ class ClusterPass {
     return (s >= 0 && t >= 0 && r >= 0) || (s <= 0 && t <= 0 && r <= 0);
   }
 
+  /// Whether u can go to v without an edge passing a vertex or the way crossing an edge. It is enough to look at the
+  /// faces at u: what is hit first lies on the border of one of them.
   [[nodiscard]] bool is_free(int u, int v) const {
-    const GridPoint from = graph_.point(u), to = graph_.point(v);
+    Box way, swept;
+    for (const int end : {u, v}) way.add(to_vec2(graph_.point(end)));
+    swept.add(way);
+    for (const int e : incident_[index(u)]) swept.add(to_vec2(graph_.point(other_end(e, u))));
     for (const int f : faces_at(u)) {
       for (const auto& ring : graph_.faces[index(f)].rings) {
         for (const HalfEdge h : ring) {
-          const int a = graph_.origin(h), b = graph_.target(h);
-          if (a != u && a != v && b != u && b != v &&
-              cross_properly(from, to, graph_.point(a), graph_.point(b))) {
-            return false;
-          }
-          if (a == u || a == v) continue;
-          const GridPoint p = graph_.point(a);
-          if (in_triangle(from, to, to, p)) return false;
-          for (const int e : incident_[index(u)]) {
-            const int w = other_end(e, u);
-            if (w != a && w != v && in_triangle(from, to, graph_.point(w), p)) return false;
-          }
+          if (crosses_way(u, v, way, h)) return false;
+          const int a = graph_.origin(h);
+          if (a != u && a != v && swept.contains(to_vec2(graph_.point(a))) && is_swept(u, v, a)) return false;
         }
       }
     }
     return true;
   }
 
+  [[nodiscard]] bool crosses_way(int u, int v, const Box& way, HalfEdge h) const {
+    const int a = graph_.origin(h), b = graph_.target(h);
+    if (a == u || a == v || b == u || b == v) return false;
+    Box edge;
+    for (const int end : {a, b}) edge.add(to_vec2(graph_.point(end)));
+    return edge.overlaps(way) &&
+           cross_properly(graph_.point(u), graph_.point(v), graph_.point(a), graph_.point(b));
+  }
+
+  [[nodiscard]] bool is_swept(int u, int v, int a) const {
+    const GridPoint from = graph_.point(u), to = graph_.point(v), p = graph_.point(a);
+    if (in_triangle(from, to, to, p)) return true;
+    return std::any_of(incident_[index(u)].begin(), incident_[index(u)].end(), [&](int e) {
+      const int w = other_end(e, u);
+      return w != a && w != v && in_triangle(from, to, graph_.point(w), p);
+    });
+  }
+
   bool move(int u, int v) {
     const auto ties_u = ties(u), ties_v = ties(v);
     if (!std::includes(ties_v.begin(), ties_v.end(), ties_u.begin(), ties_u.end())) return false;
     if (!is_free(u, v)) return false;
+    std::vector<int> faces = faces_at(u);
+    bool simple = false;  // only the edge between the two goes
+    bool united = false;
+    std::vector<int>& at_v = incident_[index(v)];
     for (const int e : incident_[index(u)]) {
-      const int w = other_end(e, u);
       GraphEdge& edge = graph_.edges[index(e)];
-      const auto twin = std::find_if(incident_[index(v)].begin(), incident_[index(v)].end(),
-                                     [&](int g) { return w != v && other_end(g, v) == w; });
+      const int w = other_end(e, u);
+      const int twin = w == v ? -1 : edge_between(v, w);
       if (w == v) {
+        std::erase(at_v, e);
         edge.from = edge.to = v;
-      } else if (twin != incident_[index(v)].end()) {
-        unite(graph_.edges[index(*twin)], edge, u, v, w);
+        simple = true;
+      } else if (twin >= 0) {
+        unite(graph_.edges[index(twin)], edge, u, v, w);
+        std::erase(incident_[index(w)], e);
         edge.from = edge.to = v;
+        united = true;
       } else {
         (edge.from == u ? edge.from : edge.to) = v;
+        at_v.push_back(e);
       }
+    }
+    incident_[index(u)].clear();
+    if (united || !simple) {
+      for (const int f : faces) stale_[index(f)] = true;
+      for (const int f : faces_at(v)) stale_[index(f)] = true;
     }
     return true;
   }
@@ -186,16 +242,10 @@ class ClusterPass {
     }
   }
 
-  void remove_collapsed() {
-    std::erase_if(graph_.edges, [](const GraphEdge& e) { return e.from == e.to; });
-    graph_.remove_trees();
-    graph_.trace_faces();
-  }
-
   PlanarGraph& graph_;
   double reach_;  ///< steps
   std::vector<std::vector<int>> incident_;
-  std::vector<bool> touched_;
+  std::vector<bool> stale_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -90,10 +91,10 @@ std::vector<Segment> noded_segments(const std::vector<SourceLine>& lines) {
 /// Finds the source lines along which a noded segment runs.
 class SourceFinder {
  public:
-  SourceFinder(const std::vector<SourceLine>& lines, const Box& bounds)
+  /// About as many cells as there are segments to find sources for.
+  SourceFinder(const std::vector<SourceLine>& lines, const Box& bounds, std::size_t segments)
       : lines_(lines),
-        index_(bounds,
-               std::clamp(static_cast<int>(3.0 * std::sqrt(static_cast<double>(lines.size()))), 8, 2048)) {
+        index_(bounds, std::clamp(static_cast<int>(std::sqrt(static_cast<double>(segments))), 8, 4096)) {
     for (std::size_t k = 0; k < lines.size(); ++k) {
       index_.add(static_cast<int>(k), to_vec2(lines[k].a), to_vec2(lines[k].b));
     }
@@ -148,7 +149,7 @@ NodedLinework node(const Linework& work) {
                             graph.points.begin());
   };
 
-  const SourceFinder finder(lines, bounds({work.domain, {}}));
+  const SourceFinder finder(lines, bounds({work.domain, {}}), segments.size());
   for (const Segment& segment : segments) {
     const std::vector<int> sources = finder.find(segment);
     if (sources.empty()) {
