@@ -120,7 +120,7 @@ void Detection::find(const Surface& surface, std::span<const double> reach,
       memory.tracked = true;
       memory.offset = std::max(0.0, -found_[k].gap);
       memory.shear = 0.0;
-      memory.normal_force = 0.0;
+      memory.normal_force = memory.bounding_force = 0.0;
       memory.state = State::open;
     } else if (memory.offset > 0.0) {
       memory.offset = std::min(memory.offset, std::max(0.0, -found_[k].gap));

@@ -23,7 +23,7 @@ struct SolverOptions {
   /// `bound_tolerance` of the bounds (L2 over all contacts): a first contact, an impact. They are then taken anew until
   /// less than `bound_accuracy` changes, at most `max_bound_updates` times. The lag of one step otherwise costs about
   /// 0.05 % of a shaken slide.
-  double bound_tolerance = 1e-3;
+  double bound_tolerance = 1e-2;
   double bound_accuracy = 1e-4;
   int max_bound_updates = 8;
   LinearSolver linear = LinearSolver::block;

@@ -80,7 +80,7 @@ void Stepper::start(State& state) {
     const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
     const double bound = law.fused ? HUGE_VAL : law.friction_coefficient * normal + law.cohesion * c.length;
     const double shear = std::clamp(dot(traction, c.tangent) * c.length, -bound, bound);
-    memory.normal_force = normal;
+    memory.normal_force = memory.bounding_force = normal;
     memory.offset = -c.gap - normal / c.normal_stiffness;
     memory.shear = shear / c.shear_stiffness;
     memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
@@ -252,7 +252,7 @@ void Stepper::account(State& state, const Drive& drive) {
 }
 
 /// Contact memory for the next step.
-void Stepper::remember(StepReport& report) {
+void Stepper::remember(const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
   contact_energy_ = 0.0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -262,7 +262,10 @@ void Stepper::remember(StepReport& report) {
     const Vec2 r = open_close_.relative()[c];
     const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
     contact_energy_ += s.balance(depth, shear).stored;
+    const double change = std::max(0.0, normal_force) - memory.normal_force;
     memory.normal_force = std::max(0.0, normal_force);
+    const bool slides = s.closed(depth) && !s.locked(shear) && s.bound() > 0.0;
+    memory.bounding_force = std::max(0.0, memory.normal_force + (slides && !drive.is_static ? change : 0.0));
     memory.shear = s.closed(depth) ? s.elastic_shear(shear) : 0.0;
     memory.slip += dot(row.tangent, r);
     memory.state = !s.closed(depth)  ? contact::State::open
@@ -277,7 +280,7 @@ void Stepper::remember(StepReport& report) {
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   account(state, drive);
-  remember(report);
+  remember(drive, report);
   const double theta = model_.solver.theta, g = norm(model_.gravity);
   const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {

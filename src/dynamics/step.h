@@ -85,7 +85,7 @@ class Stepper {
   bool moved_too_far();
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
-  void remember(StepReport& report);
+  void remember(const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
 

@@ -138,7 +138,7 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     row.spring =
         contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
                          dashpot(c.shear_stiffness), c.depth, memory.shear,
-                         c.fused ? HUGE_VAL : c.friction_coefficient * memory.normal_force + c.cohesion,
+                         c.fused ? HUGE_VAL : c.friction_coefficient * memory.bounding_force + c.cohesion,
                          c.fused || (memory.bonded && c.tension > 0.0)});
   }
 }
