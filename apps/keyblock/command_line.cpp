@@ -31,9 +31,11 @@ void describe(CLI::App& app) {
       "Each command has its own --help.\n"
       "Exit codes: 0 done, 1 the input is wrong, 2 the run failed or was interrupted, 3 internal error.");
   app.require_subcommand(1);
+  add_run(app);
   add_check(app);
   add_cut(app);
   add_report(app);
+  add_export(app);
   add_motion(app);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "simulation/checkpoint.h"
 
 namespace keyblock::app {
 namespace {
@@ -41,28 +42,23 @@ void check_holds_no_run(const fs::path& folder) {
 
 ResultFolder::ResultFolder(fs::path folder, const simulation::RunSetup& setup, Use use)
     : folder_(std::move(folder)),
-      input_(fmt::format("{}\n# realization {}\n", setup.scenario, setup.realization)),
-      use_(use) {
+      input_(fmt::format("{}\n# realization {}\n", setup.scenario, setup.realization)) {
   make_folder(folder_);
-  const bool has_results = fs::exists(folder_ / result_name);
-  if (use_ == Use::resume && !has_results) {
-    refuse(folder_, "no results", "those of a run that was interrupted",
-           "without --resume the run starts afresh");
+  const fs::path input = folder_ / input_name;
+  const bool same = fs::exists(input) && read_file(input) == input_;
+  if (fs::exists(folder_ / result_name) && !same && use != Use::replace) {
+    refuse(folder_, "results of other input",
+           use == Use::resume ? "those of this scenario with the same --set and --realization"
+                              : "another folder, or --force to replace them",
+           "the input of the results there is in " + input.string());
   }
-  if (use_ == Use::replace || !has_results) return;
-  const bool same = fs::exists(folder_ / input_name) && read_file(folder_ / input_name) == input_;
-  if (same) return;
-  const std::string hint = "the input of the results there is in " + (folder_ / input_name).string();
-  if (use_ == Use::resume) {
-    refuse(folder_, "results of other input", "those of this scenario with the same --set and --realization",
-           hint);
-  }
-  refuse(folder_, "results of other input", "another folder, or --force to replace them", hint);
+  resumes_ = use == Use::resume && same && fs::exists(simulation::checkpoint_path(folder_));
 }
 
 void ResultFolder::begin(const simulation::ModelRecord&) {
-  if (use_ == Use::resume) return;
+  if (resumes_) return;
   for (const char* name : {"summary.json", "histories.csv", "report.html"}) fs::remove(folder_ / name);
+  fs::remove(simulation::checkpoint_path(folder_));
   write_file_atomically(folder_ / input_name, input_);
 }
 

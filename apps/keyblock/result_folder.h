@@ -19,17 +19,20 @@ class ResultFolder : public simulation::RunObserver {
  public:
   enum class Use { fresh, replace, resume };
 
-  /// Throws InputError when `folder` holds results of other input, unless they are to be replaced, or when there is
-  /// nothing to resume. Nothing is changed yet.
+  /// Throws InputError when `folder` holds results of other input, unless they are to be replaced. Nothing is changed yet.
   ResultFolder(std::filesystem::path folder, const simulation::RunSetup& setup, Use use);
 
-  /// The run begins: keeps its input, and takes away what an earlier run had concluded.
+  /// Whether there is something to go on from. A run that was stopped before its first checkpoint, or never started,
+  /// begins anew, which leads to the same end.
+  [[nodiscard]] bool resumes() const { return resumes_; }
+
+  /// The run begins: unless it is resumed, keeps its input, and takes away what an earlier run had concluded.
   void begin(const simulation::ModelRecord& model) override;
 
  private:
   std::filesystem::path folder_;
   std::string input_;
-  Use use_;
+  bool resumes_ = false;
 };
 
 }  // namespace keyblock::app

@@ -75,9 +75,9 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.record.max_area_change);
 }
 
-std::filesystem::path path_in(const std::filesystem::path& directory) { return directory / "checkpoint.bin"; }
-
 }  // namespace
+
+std::filesystem::path checkpoint_path(const std::filesystem::path& directory) { return directory / "checkpoint.bin"; }
 
 void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state) {
   ArchiveWriter archive;
@@ -89,18 +89,18 @@ void write_checkpoint(const std::filesystem::path& directory, const RunSetup& se
   Hash hash;
   hash.add(archive.data().data(), archive.data().size());
   archive(hash.value());
-  write_file_atomically(path_in(directory), archive.data());
+  write_file_atomically(checkpoint_path(directory), archive.data());
 }
 
 RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup& setup) {
   const auto refuse = [&](const char* found, const char* expected) {
     Diagnostic diagnostic;
-    diagnostic.where.file = path_in(directory).string();
+    diagnostic.where.file = checkpoint_path(directory).string();
     diagnostic.found = found;
     diagnostic.expected = expected;
     throw InputError(std::move(diagnostic));
   };
-  const std::string data = read_file(path_in(directory));
+  const std::string data = read_file(checkpoint_path(directory));
   std::uint64_t number = 0;
   if (data.size() < 3 * sizeof(number)) refuse("a truncated file", "a checkpoint");
   const std::string_view content(data.data(), data.size() - sizeof(number));

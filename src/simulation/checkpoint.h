@@ -23,6 +23,8 @@ struct RunState {
   RunRecord record;                   ///< what has been summed up so far, with the stages that have ended
 };
 
+std::filesystem::path checkpoint_path(const std::filesystem::path& directory);
+
 /// DIR/checkpoint.bin. Written atomically. Reading throws InputError when there is none, when it is damaged, or when it
 /// belongs to another setup or version.
 void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state);

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "core/error.h"
+#include "fan_out.h"
+#include "interrupt.h"
+#include "outcome.h"
+#include "progress.h"
+#include "report/report.h"
+#include "result_folder.h"
+#include "results/result_writer.h"
+#include "results/run_data.h"
+#include "scenario/build.h"
+#include "scenario_arguments.h"
+#include "simulation/run.h"
+
+namespace keyblock::app {
+namespace {
+
+struct RunArguments {
+  ScenarioArguments scenario;
+  std::string folder;
+  int threads = 1;
+  bool resume = false;
+  bool force = false;
+};
+
+/// Everything but what the run says at its end: the page from what the result file holds.
+void write_report(const std::filesystem::path& folder) {
+  report::write_report(results::read_run(folder), folder);
+}
+
+simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const RunArguments& arguments) {
+  const std::filesystem::path folder = arguments.folder;
+  ResultFolder guard(folder, setup,
+                     arguments.resume  ? ResultFolder::Use::resume
+                     : arguments.force ? ResultFolder::Use::replace
+                                       : ResultFolder::Use::fresh);
+  if (arguments.resume && !guard.resumes()) {
+    std::cerr << arguments.folder << ": nothing to go on from; starting at the beginning\n";
+  }
+  results::ResultWriter writer(folder, guard.resumes());
+  ProgressObserver progress = ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()));
+  FanOut observers({&guard, &writer, &progress});
+  simulation::RunOptions options;
+  options.threads = arguments.threads;
+  options.directory = folder;
+  options.resume = guard.resumes();
+  options.stop = &stop_on_interrupt();
+  return simulation::run(setup, options, observers);
+}
+
+void run_scenario(const RunArguments& arguments) {
+  std::vector<std::string> warnings;
+  simulation::RunSetup setup =
+      scenario::build_setup(arguments.scenario.read(), arguments.scenario.realization, &warnings);
+  setup.version = KEYBLOCK_VERSION;
+  print_warnings(arguments.scenario, warnings);
+  simulation::RunRecord record;
+  try {
+    record = run_and_record(setup, arguments);
+  } catch (const RunError&) {
+    try {
+      write_report(arguments.folder);
+    } catch (const std::exception& error) {  // the first failure is the one to be told about
+      std::cerr << "keyblock: no report: " << error.what() << "\n";
+    }
+    throw;
+  }
+  write_report(arguments.folder);
+  std::cout << "\n" << outcome_text(record, setup.system.blocks.size());
+  std::cout << "report: " << arguments.folder << "/report.html" << std::endl;
+  if (record.interrupted) {
+    throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
+  }
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Cut, excavate, shake: the whole job, and its report");
+  add_scenario_arguments(*command, arguments->scenario);
+  command
+      ->add_option("-o,--output", arguments->folder,
+                   "Folder of the results: summary.json, result.h5, histories.csv, report.html")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--threads", arguments->threads, "Threads; any number gives the same bits")
+      ->check(CLI::Range(1, 1024).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  CLI::Option* force =
+      command->add_flag("--force", arguments->force, "Replace results of other input in DIR");
+  command
+      ->add_flag("--resume", arguments->resume,
+                 "Go on where an interrupted run stopped; the end is the same, bit for bit")
+      ->excludes(force);
+  command->footer(
+      "Ctrl-C ends the run after the step at hand, with everything so far readable.\n\n"
+      "Examples:\n"
+      "  keyblock run tunnel.toml -o out/tunnel --threads 2\n"
+      "  keyblock run tunnel.toml -o out/tunnel --resume\n"
+      "  keyblock run tunnel.toml -o out/7 --realization 7 --set rock.order=2");
+  command->callback([arguments] { run_scenario(*arguments); });
+}
+
+}  // namespace keyblock::app

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""The command line: help, exit codes, messages about wrong input."""
+
+import json
+import re
+import unittest
+
+from program import ROOT, Scenario
+
+COMMANDS = ("run", "check", "cut", "report", "export", "motion")
+
+
+class Help(Scenario):
+    def test_help_names_every_command(self):
+        text = self.keyblock("--help").stdout
+        for command in COMMANDS:
+            self.assertRegex(text, rf"\n  {command} +[A-Z]")
+            self.assertIn("Example", self.keyblock(command, "--help").stdout)
+
+    def test_version(self):
+        self.assertRegex(self.keyblock("--version").stdout, r"^keyblock \d+\.\d+\.\d+\n$")
+
+
+class WrongCommandLine(Scenario):
+    def test_no_command(self):
+        self.assertIn("keyblock --help", self.keyblock(expect=1).stderr)
+
+    def test_mistyped_command(self):
+        self.assertIn("did you mean 'check'?", self.keyblock("chekc", "incline.toml", expect=1).stderr)
+
+    def test_unknown_option(self):
+        self.assertIn("--thread", self.keyblock("run", "incline.toml", "-o", "out", "--thread", "2", expect=1).stderr)
+
+    def test_missing_folder(self):
+        self.assertIn("--output", self.keyblock("run", "incline.toml", expect=1).stderr)
+
+    def test_numbers_out_of_range(self):
+        self.assertIn("--threads", self.keyblock("run", "incline.toml", "-o", "out", "--threads", "0", expect=1).stderr)
+        self.assertIn("--realization", self.keyblock("cut", "incline.toml", "-o", "out", "--realization", "-1", expect=1).stderr)
+
+
+class Check(Scenario):
+    def test_a_good_scenario(self):
+        self.assertIn("incline.toml: ok", self.keyblock("check", "incline.toml").stdout)
+
+    def test_every_mistake_with_its_place(self):
+        text = self.scenario.read_text().replace("young = 1.0e9", "yuong = 1.0e9").replace("friction = 20.0", 'friction = "rough"')
+        self.write("bad.toml", text)
+        lines = self.keyblock("check", "bad.toml", expect=1).stderr.splitlines()
+        where = [re.match(r"bad\.toml:\d+:\d+: ([\w.]+): ", line) for line in lines]
+        self.assertTrue(all(where), lines)
+        self.assertLessEqual({"rock.yuong", "joints.friction"}, {match[1] for match in where})
+        self.assertIn("did you mean 'young'?", "\n".join(lines))
+
+    def test_a_file_that_is_not_there(self):
+        self.assertIn("gone.toml", self.keyblock("check", "gone.toml", expect=1).stderr)
+
+    def test_an_override_that_is_wrong(self):
+        self.assertIn("--set rock.young=-1", self.keyblock("check", "incline.toml", "--set", "rock.young=-1", expect=1).stderr)
+
+    def test_the_same_mistake_stops_a_run(self):
+        self.write("bad.toml", "title = 3\n")
+        checked = self.keyblock("check", "bad.toml", expect=1).stderr
+        self.assertEqual(self.keyblock("run", "bad.toml", "-o", "out", expect=1).stderr, checked)
+        self.assertFalse((self.folder / "out").exists())
+
+
+class Cut(Scenario):
+    def test_writes_blocks_and_a_picture(self):
+        out = self.folder / "cut"
+        self.keyblock("cut", ROOT / "examples/01-tunnel.toml", "-o", out)
+        summary = self.summary("cut")
+        blocks = json.loads((out / "blocks.geojson").read_text())
+        self.assertEqual(len(blocks["features"]), summary["blocks"])
+        self.assertGreater(summary["blocks"], 500)
+        self.assertAlmostEqual(summary["area"]["blocks"] + summary["area"]["excavated"], 400.0, places=6)
+        self.assertTrue((out / "blocks.svg").read_text().startswith("<svg"))
+
+    def test_realizations_differ_and_repeat(self):
+        for folder, realization in (("a", 0), ("b", 1), ("c", 1)):
+            self.keyblock("cut", ROOT / "examples/01-tunnel.toml", "-o", folder, "--realization", realization)
+        a, b, c = ((self.folder / name / "blocks.geojson").read_bytes() for name in "abc")
+        self.assertNotEqual(a, b)
+        self.assertEqual(b, c)
+
+    def test_a_folder_that_cannot_be_made(self):
+        self.assertIn("incline.toml/out", self.keyblock("cut", "incline.toml", "-o", "incline.toml/out", expect=1).stderr)
+
+
+class Motion(Scenario):
+    def test_says_what_a_record_holds(self):
+        self.write("a.csv", "time,acceleration\n0,0\n0.01,1.5\n0.02,-2.5\n")
+        text = self.keyblock("motion", "a.csv", "--plot", "-o", "a.svg").stdout
+        self.assertRegex(text, r"2\.5\b")
+        self.assertIn("0.01", text)
+        self.assertIn("<svg", (self.folder / "a.svg").read_text())
+
+    def test_names_every_file_that_is_no_record(self):
+        error = self.keyblock("motion", "gone.smc", "incline.toml", expect=1).stderr
+        self.assertIn("gone.smc", error)
+        self.assertIn("incline.toml", error)
+
+
+class Results(Scenario):
+    def test_report_and_export_need_results(self):
+        (self.folder / "empty").mkdir()
+        self.assertIn("empty", self.keyblock("report", "empty", expect=1).stderr)
+        self.assertIn("gone", self.keyblock("report", "gone", expect=1).stderr)
+        self.assertIn("empty", self.keyblock("export", "empty", "--format", "csv", expect=1).stderr)
+        self.assertIn("--format", self.keyblock("export", "empty", "--format", "xls", expect=1).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""Runs from end to end: what is written, that it is the same again, that nothing is lost, that Ctrl-C is survived."""
+
+import csv
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, Scenario
+
+SUMMARY_FIELDS = {
+    "": "title version seed realization blocks vertices dof joints area merged_slivers steps step_size wall_time_s ms_per_step "
+    "threads state_hash open_close max_overlap_m max_area_change energy stages",
+    "area": "blocks excavated domain",
+    "open_close": "mean_iterations max_iterations retried_steps unconverged_steps",
+    "energy": "kinetic strain gravity contact friction input numerical residual_ratio",
+}
+STAGE_FIELDS = {
+    "": "name kind steps duration pga_m_s2 equilibrium damage",
+    "equilibrium": "reached worst_residual_ratio moving_blocks",
+    "damage": "fallen_blocks fallen_area_m2 opening_filled_ratio loosened_area_m2 slip_max_m slip_mean_m slipped_length_m "
+    "opened_length_m closure_vertical_m closure_horizontal_m",
+}
+
+
+class Run(Scenario):
+    def assert_fields(self, table, fields):
+        for part, names in fields.items():
+            self.assertLessEqual(set(names.split()), set(table[part] if part else table), part)
+
+    def test_leaves_summary_result_histories_and_report(self):
+        done = self.keyblock("run", "incline.toml", "-o", "out")
+        out = self.folder / "out"
+        summary = self.summary("out")
+        self.assert_fields(summary, SUMMARY_FIELDS)
+        self.assert_fields(summary["stages"][0], STAGE_FIELDS)
+        self.assertEqual((summary["title"], summary["blocks"], summary["steps"]), ("A block on an incline", 2, 500))
+        self.assertEqual(summary["open_close"]["unconverged_steps"], 0)
+        self.assertEqual((out / "result.h5").read_bytes()[:4], b"\x89HDF")
+        self.assertIn("A block on an incline", (out / "report.html").read_text())
+        self.assertEqual([p.name for p in out.iterdir() if p.name.endswith(".tmp")], [])
+        self.assertIn("report: out/report.html", done.stdout)
+
+    def test_the_block_slides_as_it_must(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        with open(self.folder / "out/histories.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(
+            list(rows[0]), ["time", *(f"s.{quantity}" for quantity in ("ux", "uy", "vx", "vy", "sxx", "syy", "sxy"))]
+        )
+        last = {key: float(value) for key, value in rows[-1].items()}
+        self.assertAlmostEqual(last["time"], 0.5, places=9)
+        # ½ g (sin 30° − cos 30° tan 20°) t²
+        expected = 0.5 * 9.81 * (0.5 - 0.8660254037844386 * 0.36397023426620234) * 0.25
+        self.assertAlmostEqual((last["s.ux"] ** 2 + last["s.uy"] ** 2) ** 0.5 / expected, 1.0, delta=0.002)
+        self.assertGreater(last["s.ux"], 0.0)
+        self.assertLess(last["s.uy"], 0.0)
+
+    def test_same_bits_again_and_for_two_threads(self):
+        for folder, threads in (("a", 1), ("b", 1), ("c", 2)):
+            self.keyblock("run", "incline.toml", "-o", folder, "--threads", threads)
+        hashes = {self.summary(folder)["state_hash"] for folder in "abc"}
+        self.assertEqual(len(hashes), 1)
+        self.assertNotIn("", hashes)
+
+    def test_an_override_changes_the_result(self):
+        self.keyblock("run", "incline.toml", "-o", "a")
+        self.keyblock("run", "incline.toml", "-o", "b", "--set", "joints.friction=10", "--set", "rock.order=2")
+        a, b = self.summary("a"), self.summary("b")
+        self.assertNotEqual(a["state_hash"], b["state_hash"])
+        self.assertEqual((a["dof"], b["dof"]), (6, 12))
+
+    def test_report_can_be_written_again(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        report = self.folder / "out/report.html"
+        first = report.read_bytes()
+        report.unlink()
+        self.keyblock("report", "out")
+        self.assertEqual(report.read_bytes(), first)
+
+    def test_export(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        for kind in ("vtk", "csv", "geojson"):
+            before = set((self.folder / "out").rglob("*"))
+            self.keyblock("export", "out", "--format", kind)
+            self.assertGreater(len(set((self.folder / "out").rglob("*")) - before), 0, kind)
+
+    def test_log_in_a_pipe(self):
+        log = self.keyblock("run", "incline.toml", "-o", "out").stderr
+        self.assertNotIn("\x1b", log)
+        self.assertNotIn("\r", log)
+        self.assertRegex(log, r"(?m)^1/1 slide: 0\.50 s, 500 steps, ")
+
+
+class Folder(Scenario):
+    """The folder of results: what is there is not lost."""
+
+    def setUp(self):
+        super().setUp()
+        self.keyblock("run", "incline.toml", "-o", "out")
+
+    def content(self):
+        return {p.name: p.read_bytes() for p in (self.folder / "out").iterdir()}
+
+    def test_the_same_run_again(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+
+    def test_other_input_is_refused_unless_forced(self):
+        before = self.content()
+        other = ("run", "incline.toml", "-o", "out", "--set", "joints.friction=10")
+        self.assertIn("--force", self.keyblock(*other, expect=1).stderr)
+        self.assertIn("out", self.keyblock("run", "incline.toml", "-o", "out", "--realization", "1", expect=1).stderr)
+        self.assertIn("out", self.keyblock("cut", "incline.toml", "-o", "out", expect=1).stderr)
+        self.assertEqual(self.content(), before)
+        self.keyblock(*other, "--force")
+        self.assertNotEqual(self.content()["summary.json"], before["summary.json"])
+
+    def test_other_input_is_not_resumed(self):
+        before = self.content()
+        self.keyblock("run", "incline.toml", "-o", "out", "--resume", "--set", "joints.friction=10", expect=1)
+        self.assertEqual(self.content(), before)
+
+    def test_resuming_what_never_began_begins(self):
+        log = self.keyblock("run", "incline.toml", "-o", "new", "--resume").stderr
+        self.assertIn("new: nothing to go on from", log)
+        self.assertEqual(self.summary("new")["state_hash"], self.summary("out")["state_hash"])
+
+    def test_resuming_a_finished_run_changes_nothing(self):
+        before = self.summary("out")
+        self.keyblock("run", "incline.toml", "-o", "out", "--resume")
+        for field in ("steps", "state_hash", "stages", "open_close", "max_overlap_m"):
+            self.assertEqual(self.summary("out")[field], before[field], field)
+
+
+class Interrupt(Scenario):
+    def start(self, folder, duration):
+        """A run that has begun to write its results."""
+        run = subprocess.Popen(
+            [PROGRAM, "run", "incline.toml", "-o", folder, "--set", f"stage.slide.duration={duration}"],
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        self.addCleanup(run.stdout.close)
+        self.addCleanup(run.stderr.close)
+        end = time.monotonic() + 20.0
+        while not (self.folder / folder / "result.h5").exists() and run.poll() is None and time.monotonic() < end:
+            time.sleep(0.005)
+        return run
+
+    def interrupted(self, folder):
+        """Interrupts a run in its middle; returns how long it would have lasted, in simulated seconds."""
+        duration = 16.0  # the first checkpoint comes after 2000 steps, 2 s
+        while duration < 1000.0:
+            run = self.start(folder, duration)
+            run.send_signal(signal.SIGINT)
+            _, errors = run.communicate(timeout=30)
+            if run.returncode != 0:  # it had not ended by itself
+                self.assertEqual(run.returncode, 2, errors)
+                self.assertIn("--resume", errors)
+                return duration
+            for path in (self.folder / folder).iterdir():
+                path.unlink()
+            duration *= 2.0
+        self.fail("no run lasted long enough to be interrupted")
+
+    def test_results_so_far_are_readable_and_resuming_gives_the_same_bits(self):
+        duration = self.interrupted("out")
+        summary = self.summary("out")
+        self.assertTrue(summary["interrupted"])
+        self.assertLess(summary["steps"], duration * 1000)
+        self.assertTrue((self.folder / "out/report.html").stat().st_size > 1000)
+        self.keyblock("report", "out")
+
+        length = ("--set", f"stage.slide.duration={duration}")
+        self.keyblock("run", "incline.toml", "-o", "out", "--resume", *length)
+        self.keyblock("run", "incline.toml", "-o", "whole", *length)
+        resumed, whole = self.summary("out"), self.summary("whole")
+        self.assertFalse(resumed["interrupted"])
+        for field in ("steps", "state_hash", "energy", "open_close", "max_overlap_m", "max_area_change"):
+            self.assertEqual(resumed[field], whole[field], field)
+        for field in ("steps", "duration", "damage"):
+            self.assertEqual(resumed["stages"][0][field], whole["stages"][0][field], field)
+        histories = [(self.folder / folder / "histories.csv").read_bytes() for folder in ("out", "whole")]
+        self.assertEqual(*histories)
+
+    def test_a_second_interrupt_ends_at_once(self):
+        run = self.start("out", 1e5)
+        run.send_signal(signal.SIGSTOP)  # both signals arrive before the next step
+        run.send_signal(signal.SIGINT)
+        run.send_signal(signal.SIGTERM)
+        run.send_signal(signal.SIGCONT)
+        run.communicate(timeout=30)
+        self.assertIn(run.returncode, (-signal.SIGINT, -signal.SIGTERM))
+
+
+if __name__ == "__main__":
+    unittest.main()
