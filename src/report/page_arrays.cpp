@@ -186,8 +186,7 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
                              e.damping,
                              e.numerical,
                              e.input,
-                             residual,
-                             e.residual_ratio};
+                             residual};
     curves.columns.resize(std::size(values));
     curves.x.push_back(static_cast<double>(row.step));
     for (std::size_t c = 0; c < std::size(values); ++c) curves.columns[c].push_back(values[c]);
@@ -201,7 +200,7 @@ void add_motions(const results::RunData& run, ArrayPack& pack) {
     if (stage.motion_time.empty()) continue;
     std::vector<double> time;
     std::vector<float> x, y;
-    for (std::size_t i = 0; i < stage.motion_time.size(); ++i) {
+    for (std::size_t i = 0; i < stage.motion_time.size() && stage.motion_time[i] <= stage.duration; ++i) {
       time.push_back(stage.start_time + stage.motion_time[i]);
       x.push_back(static_cast<float>(stage.motion[i].x));
       y.push_back(static_cast<float>(stage.motion[i].y));

@@ -129,17 +129,17 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
   ordered_json entries = ordered_json::array();
   for (const ArrayPack::Entry& e : arrays.entries())
     entries.push_back({{"name", e.name}, {"type", e.type}, {"offset", e.offset}, {"count", e.count}});
-  const ordered_json header{{"model", model_json(run.model)},
-                            {"run", run_json(run.run)},
-                            {"recorded_frames", run.frames.size()},
-                            {"displacement_quantum", displacement_quantum(run)},
-                            {"stress_quantum", stress_quantum(run)},
-                            // In the order of the values in add_steps, page_arrays.cpp.
-                            {"step_columns",
-                             {"stage", "time", "iterations", "step_size", "penetration", "max_displacement",
-                              "closed_contacts", "kinetic", "strain", "gravity", "contact", "friction",
-                              "damping", "numerical", "input", "residual", "residual_ratio"}},
-                            {"arrays", entries}};
+  const ordered_json header{
+      {"model", model_json(run.model)},
+      {"run", run_json(run.run)},
+      {"recorded_frames", run.frames.size()},
+      {"displacement_quantum", displacement_quantum(run)},
+      {"stress_quantum", stress_quantum(run)},
+      // In the order of the values in add_steps, page_arrays.cpp.
+      {"step_columns",
+       {"stage", "time", "iterations", "step_size", "penetration", "max_displacement", "closed_contacts",
+        "kinetic", "strain", "gravity", "contact", "friction", "damping", "numerical", "input", "residual"}},
+      {"arrays", entries}};
   const std::string text = header.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   std::string safe;
   for (const char c : text) c == '<' ? safe += "\\u003c" : safe += c;

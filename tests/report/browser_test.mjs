@@ -144,7 +144,7 @@ const tests = {
     );
     assert.match(
       await text(page, ".verdict"),
-      /^\d+ blocks? \([\d.]+ m²\) ha(s|ve) fallen; the opening \(tunnel\) is [\d.]+ % filled/,
+      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen; the opening \(tunnel\) is [\d.]+\s% filled/,
     );
     assert.equal(await page.locator("#verdict .attention").count(), 0);
     assert.equal(await page.locator("#quality td.attention").count(), 0);

@@ -33,7 +33,7 @@ export class Animation {
     this.view = new SectionView(
       run,
       fields,
-      { moment: 0, since, exaggeration: 1, blocks: "displacement", joints: "plain" },
+      { moment: clock.moment, since, exaggeration: 1, blocks: "displacement", joints: "plain" },
       { axes: true, label: "Block system at the moment of the animation", minHeight: 260, maxHeight: 860 },
     );
     this.slider = h("input", {
@@ -158,21 +158,23 @@ export class Animation {
       if (first < 0) continue;
       const from = k === 0 ? 0 : Math.max(0, first - 1);
       const name = run.stageName(k);
+      const share = (run.lastFrame(k) - from) / whole;
       const part = h(
         "button",
         {
           type: "button",
           title: `Go to the start of “${name}”`,
+          "aria-label": `Go to the start of “${name}”`,
           class: `stage-part ${run.stages[k]?.kind ?? ""}`,
           click: () => {
             this.clock.pause();
             this.clock.seek(first);
           },
         },
-        name,
+        share > 0.08 ? name : "",
       );
       part.style.left = `${(100 * from) / whole}%`;
-      part.style.width = `${(100 * (run.lastFrame(k) - from)) / whole}%`;
+      part.style.width = `${100 * share}%`;
       band.append(part);
     }
     return band;

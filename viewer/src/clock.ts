@@ -5,13 +5,16 @@ const staticFramesPerSecond = 12;
 
 /** The moment that the page shows. All figures that follow the animation listen to it. */
 export class Clock {
-  moment: Moment = 0;
+  /** At first the end, which is what a reader, or paper, wants to see; playing then starts over. */
+  moment: Moment;
   playing = false;
   speed = 1;
   private readonly listeners: (() => void)[] = [];
   private last = 0;
 
-  constructor(private readonly run: Run) {}
+  constructor(private readonly run: Run) {
+    this.moment = Math.max(0, run.frameCount - 1);
+  }
 
   onChange(listener: () => void): void {
     this.listeners.push(listener);

@@ -241,7 +241,7 @@ export class Fields {
       const value = field === "slip" ? run.pieceSlip[piece] : run.pieceGap[piece];
       if (!(value > scale.min)) return null;
       const t = place(scale, value);
-      return { color: this.jointColors[Math.round(t * (this.jointColors.length - 1))], width: 1 + 3 * t };
+      return { color: this.jointColors[Math.round(t * (this.jointColors.length - 1))], width: 1.2 + 3 * t };
     }
     return this.stateStyles[run.pieceState[piece]];
   }

@@ -3,7 +3,7 @@ import { h } from "./dom";
 import type { Legend } from "./fields";
 
 /** Of .legend-bar in style.css, px. */
-const barWidth = 320;
+const barWidth = 360;
 
 /** A legend as HTML, so that it prints sharply and can be read out. */
 export function legendElement(legend: Legend): HTMLElement {
@@ -58,7 +58,7 @@ function barLabels(scale: Scale, format: (value: number) => string): BarLabel[] 
 
 /** From where to where a label reaches, px, with some room; widths are estimated from the number of characters. */
 function reach(label: BarLabel, scale: Scale): [number, number] {
-  const width = 7.2 * label.text.length + 8;
+  const width = 6.6 * label.text.length + 6;
   const x = barWidth * place(scale, label.value);
   const from = label.align === "first" ? x : label.align === "last" ? x - width : x - 0.5 * width;
   return [from, from + width];

@@ -7,7 +7,7 @@ import { NowFacts } from "./now_facts";
 import { count, integer } from "./format";
 import { Pictures } from "./pictures";
 import type { Plot } from "./plots";
-import { historyPlots, motionPlots, solverPlots } from "./run_plots";
+import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { Run } from "./run";
 import { cuttingFacts, damageTable, movingTable, qualityTable, runFacts, stageTable } from "./tables";
 import { findings, type Finding } from "./verdict";
@@ -118,7 +118,13 @@ function build(run: Run, main: HTMLElement): void {
     const excavated = run.header.model.excavations.length > 0;
     const aside =
       motion.length > 0 || excavated
-        ? h("div", { class: "aside" }, ...motion, excavated ? new NowFacts(run, clock).element : null)
+        ? h(
+            "div",
+            { class: "aside" },
+            ...motion,
+            ...track(damagePlots(run, clock)),
+            excavated ? new NowFacts(run, clock).element : null,
+          )
         : null;
     parts.push(
       section(

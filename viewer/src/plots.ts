@@ -26,12 +26,17 @@ export interface PlotOptions {
   range?: [number, number];
   /** A second axis at the right: values of the left one divided by `divisor`. */
   right?: { divisor: number };
+  /** Leaves the room of a right axis free, so that plots above each other are as wide. */
+  rightSpace?: boolean;
   /** Plots of one group share the pointer's position. */
   group: string;
   /** The abscissa at which the animation stands, and the way back. */
   now: () => number;
   seek: (x: number) => void;
 }
+
+/** Width of a right axis, px. */
+const rightAxis = 44;
 
 const colorOf = (s: Series) => (s.color.startsWith("--") ? css(s.color) : s.color);
 
@@ -117,13 +122,13 @@ export class Plot {
       },
     ];
     if (options.right)
-      axes.push({ ...axis, scale: "right", side: 1, size: 44, values: number, grid: { show: false } });
+      axes.push({ ...axis, scale: "right", side: 1, size: rightAxis, values: number, grid: { show: false } });
     const divisor = options.right?.divisor ?? 1;
     const plot = new uPlot(
       {
         width,
         height: options.height ?? 190,
-        padding: [8, options.right ? 0 : 12, 0, 0],
+        padding: [8, options.right ? 0 : options.rightSpace ? rightAxis : 12, 0, 0],
         scales: {
           x: { time: false },
           y: {

@@ -1,6 +1,6 @@
 import type { Clock } from "./clock";
 import { Plot, type PlotOptions, type Series } from "./plots";
-import type { Run } from "./run";
+import { Status, type Run } from "./run";
 
 const g = 9.81;
 
@@ -54,6 +54,18 @@ export function motionPlots(run: Run, clock: Clock): Plot[] {
     }
   });
   if (time.length === 0) return [];
+  // As wide in time as the run, so that plots above each other can be compared.
+  const frames = run.frameCount;
+  if (frames > 0 && run.time[0] < time[0]) {
+    time.unshift(run.time[0]);
+    ax.unshift(null);
+    ay.unshift(null);
+  }
+  if (frames > 0 && run.time[frames - 1] > time[time.length - 1]) {
+    time.push(run.time[frames - 1]);
+    ax.push(null);
+    ay.push(null);
+  }
   const limit = 1.08 * (largest || 1);
   const plot = (title: string, symbol: string, values: (number | null)[], color: string) =>
     new Plot(
@@ -72,6 +84,35 @@ export function motionPlots(run: Run, clock: Clock): Plot[] {
   return [
     plot("Horizontal acceleration", "a_x", ax, "--curve-1"),
     plot("Vertical acceleration", "a_y", ay, "--curve-2"),
+  ];
+}
+
+/** Area of the fallen and of the loosened blocks over time. */
+export function damagePlots(run: Run, clock: Clock): Plot[] {
+  if (run.header.model.excavations.length === 0 || run.frameCount < 2) return [];
+  if (run.time[run.frameCount - 1] <= run.time[0]) return [];
+  const areas = (status: Status) =>
+    Float32Array.from(run.time, (_, f) => {
+      let sum = 0;
+      for (let b = 0; b < run.blockCount; b++) if (run.statusAt(f, b) === status) sum += run.area[b];
+      return sum;
+    });
+  return [
+    new Plot(
+      {
+        ...overTime(run, clock),
+        title: "Area of blocks",
+        unit: "m²",
+        x: run.time,
+        series: [
+          { name: "fallen", values: areas(Status.fallen), color: "--curve-2", width: 1.6 },
+          { name: "loosened", values: areas(Status.loosened), color: "--curve-1", width: 1.6 },
+        ],
+        height: 200,
+        rightSpace: true,
+      },
+      clock,
+    ),
   ];
 }
 
@@ -141,6 +182,9 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
     ["numerical", "#56B4E9"],
     ["input", "#B8A900"],
   ];
+  const largest = Math.max(
+    ...energies.map(([name]) => column(name).reduce((m, v) => Math.max(m, Math.abs(v)), 0)),
+  );
   return [
     plot("Open-close iterations", "per step", [
       { name: "iterations", values: column("iterations"), color: "--curve-1", style: "steps", width: 1 },
@@ -166,7 +210,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
     plot(
       "Energy residual",
       "% of the largest term",
-      [{ name: "residual", values: scaled("residual_ratio", 100), color: "--curve-1", width: 1 }],
+      [{ name: "residual", values: scaled("residual", 100 / (largest || 1)), color: "--curve-1", width: 1 }],
       { height: 260 },
     ),
   ];

@@ -293,7 +293,7 @@ export class SectionView {
     const { run, look, context: c, drawn } = this;
     if (look.joints === "plain") return;
     const n = run.vertexCount;
-    const fine = this.options.axes ? 1 : 0.6;
+    const fine = this.options.axes ? 1 : 0.75;
     const batches = new Map<string, { color: string; width: number; path: Path2D }>();
     const add = (color: string, width: number, v: number, from: number, to: number) => {
       const w = run.next[v];
@@ -368,19 +368,19 @@ export class SectionView {
     c.textBaseline = "top";
     const label = (value: number, range: number) =>
       Math.abs(value) < 1e-9 * range ? "0" : significant(value, 8);
-    let last = -Infinity;
+    let last = left - 7;
     for (const t of ticks({ min: x0 + ox, max: x1 + ox, logarithmic: false }, Math.max(2, width / 90))) {
       const [px] = this.toPixel(t - ox, 0);
       c.moveTo(Math.round(px) + 0.5, top + height);
       c.lineTo(Math.round(px) + 0.5, top + height + 4);
       const text = label(t, x1 - x0);
       const half = 0.5 * c.measureText(text).width;
-      if (px - half < last + 8 || px + half > this.width - 22) continue;
+      if (px - half < last + 8 || px + half > this.width) continue;
       c.fillText(text, px, top + height + 6);
       last = px + half;
     }
     c.textAlign = "right";
-    c.fillText("m", this.width - 4, top + height + 6);
+    c.fillText("m", left - 7, top + height + 6);
     c.textBaseline = "middle";
     for (const t of ticks({ min: y0 + oy, max: y1 + oy, logarithmic: false }, Math.max(2, height / 70))) {
       const [, py] = this.toPixel(0, t - oy);

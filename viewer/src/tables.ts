@@ -67,6 +67,12 @@ export function runFacts(run: Run): HTMLElement {
 
 const kinds = { settle: "static", shake: "shaking", rest: "dynamic, no shaking" };
 
+function equilibrium(stage: Stage): string {
+  if (stage.kind !== "settle") return "–";
+  if (!stage.equilibrium_reached) return "not reached";
+  return stage.moving.length > 0 ? "of the others" : "reached";
+}
+
 export function stageTable(run: Run): HTMLElement {
   const head = [
     column("Stage", "", true),
@@ -91,7 +97,7 @@ export function stageTable(run: Run): HTMLElement {
       {},
       s.kind === "shake" ? `${significant(s.pga_m_s2, 3)} (${fixed(s.pga_m_s2 / 9.81, 2)} g)` : "–",
     ),
-    h("td", { class: "text" }, s.kind !== "settle" ? "–" : s.equilibrium_reached ? "reached" : "not reached"),
+    h("td", { class: "text" }, equilibrium(s)),
     h("td", {}, s.kind === "settle" ? significant(s.worst_residual_ratio, 2) : "–"),
     h("td", {}, s.kind === "settle" ? count(s.moving.length, "block") : "–"),
     h("td", {}, duration(s.wall_time_s)),

@@ -13,11 +13,11 @@ const quoted = (name: string) => `“${name}”`;
 
 /** Peak ground acceleration as "1.18 m/s² (0.12 g)". */
 export function acceleration(a: number): string {
-  return `${significant(a, 3)} m/s² (${fixed(a / 9.81, 2)} g)`;
+  return `${significant(a, 3)}\u00a0m/s² (${fixed(a / 9.81, 2)}\u00a0g)`;
 }
 
 function fallen(blocks: number, area: number): string {
-  return `${count(blocks, "block")} (${significant(area, 3)} m²)`;
+  return `${count(blocks, "block")} (${significant(area, 3)}\u00a0m²)`;
 }
 
 /** Settle stages that did not end in equilibrium: the case is marginal, and what moved is listed. */
@@ -59,7 +59,7 @@ function damageFindings(run: Run, excavated: number): Finding[] {
   const openings = list(run.header.model.excavations);
   const verdict =
     end.fallen_blocks > 0
-      ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)} % filled; ${loosened}.`
+      ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled; ${loosened}.`
       : `No block has fallen since the excavation (${openings}); ${loosened.replace(" more", "")}.`;
   const result: Finding[] = [{ grade: "plain", text: verdict }];
   const parts: string[] = [];
