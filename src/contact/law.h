@@ -46,7 +46,9 @@ class Spring {
   [[nodiscard]] double normal_force(double y) const { return closed(y) ? normal_ * y : 0.0; }
   [[nodiscard]] double shear_force(double w) const { return std::clamp(shear_ * w, -k_.bound, k_.bound); }
   /// T of a contact that goes on sliding the way its spring is stretched.
-  [[nodiscard]] double sliding_force() const { return origin_ == 0.0 ? 0.0 : std::copysign(k_.bound, origin_); }
+  [[nodiscard]] double sliding_force() const {
+    return origin_ == 0.0 ? 0.0 : std::copysign(k_.bound, origin_);
+  }
   /// Minus the integral of the forces: ∂potential/∂y = N, ∂potential/∂w = T.
   [[nodiscard]] double potential(double y, double w) const {
     const double force = shear_force(w);

@@ -15,7 +15,7 @@ namespace keyblock {
 class ArchiveWriter {
  public:
   template <typename T>
-    requires std::is_trivially_copyable_v<T>
+  requires std::is_trivially_copyable_v<T>
   void operator()(const T& value) {
     const auto* bytes = reinterpret_cast<const char*>(&value);
     data_.append(bytes, sizeof(T));
@@ -45,10 +45,8 @@ class ArchiveReader {
  public:
   explicit ArchiveReader(std::string_view data) : data_(data) {}
   template <typename T>
-    requires std::is_trivially_copyable_v<T>
-  void operator()(T& value) {
-    std::memcpy(&value, take(sizeof(T)), sizeof(T));
-  }
+  requires std::is_trivially_copyable_v<T>
+  void operator()(T& value) { std::memcpy(&value, take(sizeof(T)), sizeof(T)); }
   template <typename A, typename B>
   void operator()(std::pair<A, B>& pair) {
     (*this)(pair.first);
@@ -92,10 +90,8 @@ class Hash {
     }
   }
   template <typename T>
-    requires std::is_arithmetic_v<T>
-  void add(const std::vector<T>& values) {
-    add(values.data(), values.size() * sizeof(T));
-  }
+  requires std::is_arithmetic_v<T>
+  void add(const std::vector<T>& values) { add(values.data(), values.size() * sizeof(T)); }
   [[nodiscard]] std::uint64_t value() const { return value_; }
 
  private:

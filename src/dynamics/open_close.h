@@ -11,8 +11,8 @@ namespace keyblock::dynamics {
 /// What an open-close iteration did.
 struct OpenCloseResult {
   bool converged = false;
-  bool bond_broken = false;     ///< some contact lost its cohesion and tension on the way
-  int iterations = 0;           ///< linear solves
+  bool bond_broken = false;  ///< some contact lost its cohesion and tension on the way
+  int iterations = 0;        ///< linear solves
   int factorizations = 0;
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
   double residual_ratio = 0.0;  ///< at the end

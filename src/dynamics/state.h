@@ -21,7 +21,7 @@ struct State {
   long step = 0;
   std::vector<double> position;  ///< coefficients a, by Block::first
   std::vector<double> velocity;
-  std::vector<double> moved;     ///< m, per block: largest displacement of a vertex in the last step
+  std::vector<double> moved;  ///< m, per block: largest displacement of a vertex in the last step
   std::vector<contact::Candidate> contacts;  ///< candidates with their memory
   std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for
   EnergyLedger ledger;

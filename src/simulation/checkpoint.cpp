@@ -16,8 +16,9 @@ std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
   hash.add(setup.version.data(), setup.version.size());
   hash.add(setup.scenario.data(), setup.scenario.size());
-  const double numbers[] = {static_cast<double>(setup.seed), static_cast<double>(setup.realization), setup.time_step,
-                            static_cast<double>(setup.system.blocks.size()), static_cast<double>(setup.stages.size())};
+  const double numbers[] = {static_cast<double>(setup.seed), static_cast<double>(setup.realization),
+                            setup.time_step, static_cast<double>(setup.system.blocks.size()),
+                            static_cast<double>(setup.stages.size())};
   hash.add(numbers, sizeof(numbers));
   return hash.value();
 }
@@ -77,7 +78,9 @@ void transfer(Archive& archive, RunStateOrConst& s) {
 
 }  // namespace
 
-std::filesystem::path checkpoint_path(const std::filesystem::path& directory) { return directory / "checkpoint.bin"; }
+std::filesystem::path checkpoint_path(const std::filesystem::path& directory) {
+  return directory / "checkpoint.bin";
+}
 
 void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state) {
   ArchiveWriter archive;
@@ -130,8 +133,9 @@ std::string state_hash(const dynamics::State& state) {
   hash.add(state.velocity);
   for (const contact::Candidate& c : state.contacts) {
     if (!c.memory.tracked) continue;
-    const double numbers[] = {static_cast<double>(c.vertex), static_cast<double>(c.edge), c.memory.offset, c.memory.shear,
-                              c.memory.normal_force, static_cast<double>(c.memory.state)};
+    const double numbers[] = {
+        static_cast<double>(c.vertex), static_cast<double>(c.edge),        c.memory.offset, c.memory.shear,
+        c.memory.normal_force,         static_cast<double>(c.memory.state)};
     hash.add(numbers, sizeof(numbers));
   }
   return fmt::format("{:016x}", hash.value());

@@ -14,13 +14,13 @@ struct RunState {
   dynamics::State mechanics;
   std::vector<std::uint8_t> present;  ///< per block
   DamageGauge::Reference damage;
-  Settler::Memory settler;            ///< of the stage at hand, if it is a settle stage
+  Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   int stage = 0;
-  long stage_step = 0;                ///< steps done in it
-  double initial_energy = 0.0;        ///< J
-  double wall_time = 0.0;             ///< s
+  long stage_step = 0;          ///< steps done in it
+  double initial_energy = 0.0;  ///< J
+  double wall_time = 0.0;       ///< s
   long iterations = 0;
-  RunRecord record;                   ///< what has been summed up so far, with the stages that have ended
+  RunRecord record;  ///< what has been summed up so far, with the stages that have ended
 };
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& directory);

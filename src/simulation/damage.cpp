@@ -11,7 +11,9 @@ namespace keyblock::simulation {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 
 Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
   return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
@@ -49,8 +51,9 @@ void DamageGauge::start(const dynamics::State& state, std::span<const contact::C
   start_.clear();
   pieces_.clear();
   for (const dynamics::Block& block : model_.blocks) start_.push_back(centroid_now(block, state));
+  const auto is_frame = [&](int b) { return at(b) >= setup_.properties.size(); };
   for (const contact::Contact& c : contacts) {
-    if (c.length <= 0.0 || !model_.moves(at(c.block_a)) || !model_.moves(at(c.block_b))) continue;
+    if (c.length <= 0.0 || is_frame(c.block_a) || is_frame(c.block_b)) continue;
     pieces_.push_back({c.vertex, c.edge, c.position, c.length});
   }
   std::sort(pieces_.begin(), pieces_.end(), [](const JointPiece& x, const JointPiece& y) {
@@ -66,14 +69,16 @@ void DamageGauge::restore(Reference reference) {
 DamageGauge::Offset DamageGauge::offset(const JointPiece& piece) const {
   const contact::Surface& surface = model_.surface;
   const Vec2 a = surface.position[at(piece.edge)], b = surface.position[at(surface.next[at(piece.edge)])];
-  const Vec2 tangent = normalized(b - a), apart = surface.position[at(piece.vertex)] - lerp(a, b, piece.along);
+  const Vec2 tangent = normalized(b - a),
+             apart = surface.position[at(piece.vertex)] - lerp(a, b, piece.along);
   return {dot(tangent, apart), dot(Vec2{tangent.y, -tangent.x}, apart)};
 }
 
 double DamageGauge::slip(int vertex, int edge) const {
-  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), std::pair{vertex, edge}, [](const JointPiece& p, const auto& key) {
-    return std::pair{p.vertex, p.edge} < key;
-  });
+  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), std::pair{vertex, edge},
+                                      [](const JointPiece& p, const auto& key) {
+                                        return std::pair{p.vertex, p.edge} < key;
+                                      });
   return piece != pieces_.end() && piece->vertex == vertex && piece->edge == edge ? offset(*piece).slip : 0.0;
 }
 
@@ -104,7 +109,8 @@ std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const
     if (norm(moved) <= setup_.damage.loosened_distance) continue;
     status[b] = BlockStatus::loosened;
     if (fall <= 0.0 || norm(moved) <= fall) continue;
-    if (-moved.y > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area) status[b] = BlockStatus::fallen;
+    if (-moved.y > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area)
+      status[b] = BlockStatus::fallen;
   }
   return status;
 }
@@ -123,12 +129,14 @@ Damage DamageGauge::measure(const dynamics::State& state) const {
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
     if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(deformed_polygon(model_, b));
   }
-  for (const Excavation& excavation : setup_.excavations) openings += std::abs(signed_area(excavation.outline));
+  for (const Excavation& excavation : setup_.excavations)
+    openings += std::abs(signed_area(excavation.outline));
   if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
 
   double length = 0.0, slip_length = 0.0;
   for (const JointPiece& piece : pieces_) {
-    const std::size_t a = at(model_.surface.block[at(piece.vertex)]), b = at(model_.surface.block[at(piece.edge)]);
+    const std::size_t a = at(model_.surface.block[at(piece.vertex)]),
+                      b = at(model_.surface.block[at(piece.edge)]);
     if (status_now[a] >= BlockStatus::fallen || status_now[b] >= BlockStatus::fallen) continue;
     const Offset now = offset(piece);
     const double slip = std::abs(now.slip);
@@ -161,7 +169,9 @@ double DamageGauge::closure(const dynamics::State& state, Vec2 direction) const 
       if (s >= 0.0 && s <= 1.0) reach = std::max(reach, t);
     }
     const Vec2 point = centre + 1.001 * reach * out;
-    const auto holds = [&](std::size_t b) { return model_.moves(b) && contains(model_.blocks[b].reference, point); };
+    const auto holds = [&](std::size_t b) {
+      return model_.moves(b) && contains(model_.blocks[b].reference, point);
+    };
     std::size_t b = 0;
     while (b < model_.blocks.size() && !holds(b)) ++b;
     if (b == model_.blocks.size()) return 0.0;
@@ -169,7 +179,8 @@ double DamageGauge::closure(const dynamics::State& state, Vec2 direction) const 
     std::vector<double> phi(at(block.size));
     block.basis.evaluate(point, phi.data());
     before[end] = point;
-    for (std::size_t k = 0; k < phi.size(); ++k) now[end] += phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
+    for (std::size_t k = 0; k < phi.size(); ++k)
+      now[end] += phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
   }
   return norm(before[0] - before[1]) - norm(now[0] - now[1]);
 }

@@ -18,7 +18,7 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block);
 ///
 /// Joints are followed by material points: at the excavation every contact in place becomes a piece of joint, of a
 /// length, between a point on either side. Slip is the displacement of the one point against the other along the joint as
-/// it lies now, opening that across it. Pieces beside a fallen block no longer count.
+/// it lies now, opening that across it. Pieces beside a fallen block no longer count; those along the frame never do.
 class DamageGauge {
  public:
   DamageGauge(const RunSetup& setup, const dynamics::Model& model) : setup_(setup), model_(model) {}

@@ -36,8 +36,9 @@ struct ModelRecord {
     std::vector<int> ring_start;
   };
   std::vector<Block> blocks;
-  std::vector<Vec2> vertices;                  ///< reference positions of all display vertices, m
-  std::vector<cutting::EdgeLabel> edge_label;  ///< of the piece from each display vertex to the next of its ring
+  std::vector<Vec2> vertices;  ///< reference positions of all display vertices, m
+  std::vector<cutting::EdgeLabel>
+      edge_label;  ///< of the piece from each display vertex to the next of its ring
   std::vector<std::string> joint_set_names, trace_map_names, excavation_names;
   std::vector<std::vector<Vec2>> excavation_outlines;
   std::vector<std::string> history_names;
@@ -51,7 +52,7 @@ enum class BlockStatus : std::uint8_t { in_place = 0, loosened = 1, fallen = 2, 
 struct Frame {
   double time = 0.0;  ///< s of simulated time; static steps count none
   int stage = 0;
-  long step = 0;  ///< of the run, over all stages
+  long step = 0;                                   ///< of the run, over all stages
   std::vector<std::array<float, 2>> displacement;  ///< of every display vertex since the start, m
   std::vector<std::array<float, 3>> stress;        ///< mean Cauchy stress of every block: xx, yy, xy, Pa
   std::vector<BlockStatus> status;                 ///< of every block
@@ -70,7 +71,7 @@ struct ContactRecord {
   double slip = 0.0;          ///< m, relative shear displacement since the excavation, signed
   double normal_force = 0.0;  ///< N per metre thickness, compression positive
   double shear_force = 0.0;
-  cutting::EdgeLabel label;   ///< of the edge
+  cutting::EdgeLabel label;  ///< of the edge
 };
 
 struct ContactFrame {
@@ -95,12 +96,13 @@ struct HistoryRow {
 struct Energy {
   double kinetic = 0.0;
   double strain = 0.0;
-  double gravity = 0.0;    ///< potential, relative to the start
-  double contact = 0.0;    ///< stored in contact and support springs
-  double friction = 0.0;   ///< dissipated
-  double damping = 0.0;    ///< dissipated by the dashpots of contacts
-  double input = 0.0;      ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
-  double numerical = 0.0;  ///< dissipated by the time integration, computed step by step
+  double gravity = 0.0;   ///< potential, relative to the start
+  double contact = 0.0;   ///< stored in contact and support springs
+  double friction = 0.0;  ///< dissipated
+  double damping = 0.0;   ///< dissipated by the dashpots of contacts
+  double input =
+      0.0;  ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
+  double numerical = 0.0;       ///< dissipated by the time integration, computed step by step
   double residual_ratio = 0.0;  ///< |residual| over the largest term
 };
 
@@ -109,9 +111,9 @@ struct StepRow {
   double time = 0.0;
   long step = 0;  ///< of the run, over all stages
   int stage = 0;
-  int iterations = 0;         ///< open-close iterations of the step
-  double step_size = 0.0;     ///< s
-  double penetration = 0.0;   ///< m, largest depth seen by the contact code
+  int iterations = 0;             ///< open-close iterations of the step
+  double step_size = 0.0;         ///< s
+  double penetration = 0.0;       ///< m, largest depth seen by the contact code
   double max_displacement = 0.0;  ///< m, largest of a step
   int closed_contacts = 0;
   Energy energy;
@@ -120,12 +122,12 @@ struct StepRow {
 /// Measures as defined in the user guide; cumulative since the first excavation.
 struct Damage {
   int fallen_blocks = 0;
-  double fallen_area = 0.0;           ///< m²
+  double fallen_area = 0.0;  ///< m²
   double opening_filled_ratio = 0.0;
-  double loosened_area = 0.0;         ///< m²
-  double slip_max = 0.0, slip_mean = 0.0;                    ///< m
-  double slipped_length = 0.0, opened_length = 0.0;          ///< m
-  double closure_vertical = 0.0, closure_horizontal = 0.0;   ///< m
+  double loosened_area = 0.0;                               ///< m²
+  double slip_max = 0.0, slip_mean = 0.0;                   ///< m
+  double slipped_length = 0.0, opened_length = 0.0;         ///< m
+  double closure_vertical = 0.0, closure_horizontal = 0.0;  ///< m
 };
 
 struct MovingBlock {
@@ -142,7 +144,7 @@ struct StageRecord {
   double worst_residual_ratio = 0.0;        ///< settle only: over blocks that are not moving
   std::vector<MovingBlock> moving;
   Damage damage;
-  double wall_time = 0.0;                   ///< s
+  double wall_time = 0.0;  ///< s
   bool interrupted = false;
   /// The motion as applied, thinned to what a plot needs: time in the stage (s), acceleration (m/s²).
   std::vector<double> motion_time;
@@ -174,11 +176,11 @@ struct Progress {
   int stage = 0, stage_count = 0;
   std::string stage_name;
   StageKind kind = StageKind::settle;
-  long step = 0;                 ///< of the stage
-  double fraction = 0.0;         ///< of the stage, 0 … 1; an estimate while settling
-  double time = 0.0;             ///< s simulated in the stage
+  long step = 0;          ///< of the stage
+  double fraction = 0.0;  ///< of the stage, 0 … 1; an estimate while settling
+  double time = 0.0;      ///< s simulated in the stage
   double steps_per_second = 0.0;
-  double seconds_left = 0.0;     ///< of the stage; negative: unknown
+  double seconds_left = 0.0;  ///< of the stage; negative: unknown
   double mean_iterations = 0.0;
   double worst_residual_ratio = 0.0;  ///< settle
 };

@@ -12,7 +12,9 @@
 namespace keyblock::simulation {
 
 namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
 }  // namespace
 
 Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
@@ -21,8 +23,9 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
     for (std::size_t r = 0; r < model.blocks[b].reference.ring_count(); ++r) {
       const Ring& ring = model.blocks[b].reference.ring(r);
       for (std::size_t k = 0; k < ring.size(); ++k) {
-        const cutting::EdgeLabel label = b < setup.system.blocks.size() ? setup.system.blocks[b].labels[r][k]
-                                                                        : cutting::EdgeLabel{cutting::EdgeKind::domain, 0};
+        const cutting::EdgeLabel label = b < setup.system.blocks.size()
+                                             ? setup.system.blocks[b].labels[r][k]
+                                             : cutting::EdgeLabel{cutting::EdgeKind::domain, 0};
         const int pieces = edge_pieces(norm(ring[(k + 1) % ring.size()] - ring[k]), model.blocks[b].area,
                                        model.blocks[b].basis.order());
         labels_.insert(labels_.end(), at(pieces), label);
@@ -101,14 +104,16 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
     frame.displacement.push_back({static_cast<float>(u.x), static_cast<float>(u.y)});
   }
   for (const dynamics::Block& block : model_.blocks) {
-    const block::Stress s = block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&state.position[block.first]);
+    const block::Stress s =
+        block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&state.position[block.first]);
     frame.stress.push_back({static_cast<float>(s.xx), static_cast<float>(s.yy), static_cast<float>(s.xy)});
   }
   frame.status = gauge_.status(state);
   return frame;
 }
 
-ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::Stepper& stepper, int stage) const {
+ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
+                                int stage) const {
   ContactFrame frame;
   frame.time = state.time;
   frame.stage = stage;
@@ -146,7 +151,8 @@ HistoryRow Recorder::history(const dynamics::State& state) const {
       v += point.phi[k] * Vec2{state.velocity[block.first + 2 * k], state.velocity[block.first + 2 * k + 1]};
     }
     const Vec2 u = x - point.reference;
-    const block::Stress s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
+    const block::Stress s =
+        block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
     row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy});
   }
   return row;

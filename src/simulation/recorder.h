@@ -16,7 +16,8 @@ class Recorder {
 
   [[nodiscard]] ModelRecord model() const;
   [[nodiscard]] Frame frame(const dynamics::State& state, int stage) const;
-  [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper, int stage) const;
+  [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
+                                      int stage) const;
   [[nodiscard]] HistoryRow history(const dynamics::State& state) const;
   /// Largest true overlap of any two blocks, m.
   [[nodiscard]] double overlap() const;

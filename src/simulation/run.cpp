@@ -27,13 +27,18 @@ constexpr double step_row_interval = 0.02;   // s between rows of step statistic
 constexpr double overlap_interval = 1.0;     // s between measurements of the true overlap
 constexpr std::size_t motion_points = 4000;  // of the applied motion kept for plots
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// The ground motion of a stage, scaled, in the time of the run.
 class StageMotion final : public dynamics::GroundAcceleration {
  public:
-  StageMotion(const loading::GroundMotion& motion, double scale, double start) : motion_(motion), scale_(scale), start_(start) {}
-  [[nodiscard]] Vec2 mean(double t0, double t1) const override { return scale_ * motion_.mean(t0 - start_, t1 - start_); }
+  StageMotion(const loading::GroundMotion& motion, double scale, double start)
+      : motion_(motion), scale_(scale), start_(start) {}
+  [[nodiscard]] Vec2 mean(double t0, double t1) const override {
+    return scale_ * motion_.mean(t0 - start_, t1 - start_);
+  }
 
  private:
   const loading::GroundMotion& motion_;
@@ -103,9 +108,11 @@ Energy Runner::energy() const {
   e.numerical = ledger.numerical;
   e.input = ledger.input;
   e.gravity = stepper_.gravity_energy(now_.mechanics) - now_.initial_energy;
-  const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
+  const double residual =
+      e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
   double largest = 0.0;
-  for (const double term : {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.numerical, e.input}) {
+  for (const double term :
+       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.numerical, e.input}) {
     largest = std::max(largest, std::abs(term));
   }
   e.residual_ratio = largest > 0.0 ? std::abs(residual) / largest : 0.0;
@@ -149,7 +156,9 @@ void Runner::excavate(const Stage& stage) {
   now_.mechanics.ledger.input += total_energy() - before;
 }
 
-void Runner::record_frame() { observer_.frame(recorder_.frame(now_.mechanics, now_.stage)); }
+void Runner::record_frame() {
+  observer_.frame(recorder_.frame(now_.mechanics, now_.stage));
+}
 
 void Runner::check_overlap() {
   now_.record.max_overlap = std::max(now_.record.max_overlap, recorder_.overlap());
@@ -165,7 +174,8 @@ void Runner::checkpoint() {
 }
 
 /// What follows every step, static or dynamic: statistics, records that are due, progress.
-void Runner::after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction) {
+void Runner::after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio,
+                        double fraction) {
   ++now_.stage_step;
   now_.iterations += report.iterations;
   stage_iterations_ += report.iterations;
@@ -183,7 +193,8 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   const long step = now_.stage_step;
   const auto due = [&](double interval) { return step % every(interval) == 0; };
   if (steps_left > 0) {
-    if (is_static ? step % setup_.output.settle_frame_interval == 0 : due(setup_.output.frame_interval)) record_frame();
+    if (is_static ? step % setup_.output.settle_frame_interval == 0 : due(setup_.output.frame_interval))
+      record_frame();
     if (!is_static && due(setup_.output.contact_interval)) {
       observer_.contacts(recorder_.contacts(now_.mechanics, stepper_, now_.stage));
     }
@@ -193,8 +204,9 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
     observer_.history(recorder_.history(now_.mechanics));
   }
   if (due(step_row_interval)) {
-    observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations, setup_.time_step / report.substeps,
-                    report.penetration, report.max_displacement, report.closed_contacts, energy()});
+    observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations,
+                    setup_.time_step / report.substeps, report.penetration, report.max_displacement,
+                    report.closed_contacts, energy()});
   }
   if (step % checkpoint_steps == 0) checkpoint();
   if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
@@ -250,7 +262,8 @@ void Runner::shake(StageRecord& record) {
   }
   const long steps = std::lround(duration / setup_.time_step);
   while (now_.stage_step < steps && !stopped()) {
-    const dynamics::StepReport report = stepper_.advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
+    const dynamics::StepReport report =
+        stepper_.advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
     const long left = steps - now_.stage_step - 1;
     after_step(report, left, 0.0, static_cast<double>(now_.stage_step + 1) / static_cast<double>(steps));
   }
@@ -287,7 +300,8 @@ void Runner::run_stage() {
   record.damage = gauge_.measure(now_.mechanics);
   observer_.stage_end(now_.stage, record);
   if (record.interrupted) {
-    now_.record.stages.push_back(record);  // of this run alone; the checkpoint, written before, has it as unfinished
+    now_.record.stages.push_back(
+        record);  // of this run alone; the checkpoint, written before, has it as unfinished
     return;
   }
   now_.record.stages.push_back(record);
@@ -305,7 +319,8 @@ RunRecord Runner::run() {
     record.wall_time = wall_before_ + seconds_since(run_start_);
     record.dof = static_cast<int>(model_.unknowns);
     record.state_hash = state_hash(now_.mechanics);
-    record.open_close.mean_iterations = record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
+    record.open_close.mean_iterations =
+        record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
     record.energy = energy();
     record.interrupted = stopped();
     observer_.end(record);

@@ -6,11 +6,11 @@
 namespace keyblock::simulation {
 
 namespace {
-constexpr double longest_step_factor = 50.0;   // pseudo time steps grow up to this many time steps
-constexpr double creep_share = 2e-4;           // of the block size: largest displacement of a block in a static step
-constexpr double travel_share = 0.02;          // of the block size: creep beyond which a block is called moving
-constexpr int steps_to_hold = 5;               // equilibrium has to last this many steps
-constexpr int quick_iterations = 8;            // a step that takes no more lets the pseudo time step grow
+constexpr double longest_step_factor = 50.0;  // pseudo time steps grow up to this many time steps
+constexpr double creep_share = 2e-4;   // of the block size: largest displacement of a block in a static step
+constexpr double travel_share = 0.02;  // of the block size: creep beyond which a block is called moving
+constexpr int steps_to_hold = 5;       // equilibrium has to last this many steps
+constexpr int quick_iterations = 8;    // a step that takes no more lets the pseudo time step grow
 }  // namespace
 
 Settler::Settler(const dynamics::Model& model, double time_step, double tolerance)
@@ -61,7 +61,8 @@ std::vector<MovingBlock> Settler::moving() const {
 double Settler::progress() const {
   if (worst_ratio_ <= tolerance_) return 1.0;
   if (memory_.first_ratio <= tolerance_) return 0.0;
-  return std::clamp(std::log(memory_.first_ratio / worst_ratio_) / std::log(memory_.first_ratio / tolerance_), 0.0, 1.0);
+  return std::clamp(std::log(memory_.first_ratio / worst_ratio_) / std::log(memory_.first_ratio / tolerance_),
+                    0.0, 1.0);
 }
 
 }  // namespace keyblock::simulation

@@ -26,7 +26,8 @@ struct BlockProperties {
 
 /// Joint properties by what an edge is a piece of.
 struct JointTable {
-  JointProperties standard;  ///< [joints]: explicit blocks, excavation outlines, and new contacts between them
+  JointProperties
+      standard;  ///< [joints]: explicit blocks, excavation outlines, and new contacts between them
   std::vector<JointProperties> joint_sets;
   std::vector<JointProperties> trace_maps;
   JointProperties frame;  ///< between the rock and the frame; frictionless unless given
@@ -75,9 +76,9 @@ struct RunSetup {
   std::vector<std::string> joint_set_names, trace_map_names;
   std::vector<Excavation> excavations;
 
-  Vec2 gravity{0.0, -9.81};              ///< m/s²
+  Vec2 gravity{0.0, -9.81};  ///< m/s²
   std::optional<InSituStress> in_situ;
-  double time_step = 0.0;                ///< s
+  double time_step = 0.0;  ///< s
   std::vector<loading::GroundMotion> motions;
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;

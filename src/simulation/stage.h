@@ -14,12 +14,12 @@ enum class StageKind {
 struct Stage {
   std::string name;
   StageKind kind = StageKind::settle;
-  std::vector<int> excavate;        ///< excavations opened at the start, by index
-  int motion = -1;                  ///< shake: index of the ground motion
-  double scale = 1.0;               ///< shake: factor on the accelerations
-  std::optional<double> duration;   ///< s; shake: default the motion's
-  std::optional<int> max_steps;     ///< settle
-  double tolerance = 0.01;          ///< settle: largest residual of a block over its weight at equilibrium
+  std::vector<int> excavate;       ///< excavations opened at the start, by index
+  int motion = -1;                 ///< shake: index of the ground motion
+  double scale = 1.0;              ///< shake: factor on the accelerations
+  std::optional<double> duration;  ///< s; shake: default the motion's
+  std::optional<int> max_steps;    ///< settle
+  double tolerance = 0.01;         ///< settle: largest residual of a block over its weight at equilibrium
 };
 
 }  // namespace keyblock::simulation

@@ -26,7 +26,8 @@ class Sine final : public dynamics::GroundAcceleration {
 // A block on a spring to the ground: Shi's scheme loses 1 − 1/√(1 + Ω²/2) of the amplitude per step, Ω = ωΔt.
 TEST(TimeIntegration, SpectralRadiusOnASpring) {
   const double mass = 2600.0, dt = 0.001;
-  for (const auto& [omega_dt, expected] : {std::pair{0.1, 0.99750934}, {0.5, 0.94280904}, {1.0, 0.81649658}, {2.0, 0.57735027}}) {
+  for (const auto& [omega_dt, expected] :
+       {std::pair{0.1, 0.99750934}, {0.5, 0.94280904}, {1.0, 0.81649658}, {2.0, 0.57735027}}) {
     Scene scene(1e12, 0.0);
     scene.setup.gravity = {0.0, 0.0};
     scene.rectangle({0.0, 0.0}, 1.0, 1.0);
@@ -70,7 +71,8 @@ TEST(Rotation, FullTurnKeepsAreaAndStress) {
       const double before = block.pose.area(&s.state.position[block.first]);
       const double kinetic = s.stepper.kinetic_energy(s.state);
       s.run(1.0, 1.0 / steps);
-      EXPECT_NEAR(block.pose.area(&s.state.position[block.first]) / before, 1.0, 1e-9) << order << ' ' << steps;
+      EXPECT_NEAR(block.pose.area(&s.state.position[block.first]) / before, 1.0, 1e-9)
+          << order << ' ' << steps;
       EXPECT_NEAR(s.stepper.kinetic_energy(s.state) / kinetic, 1.0, 1e-9);
     }
   }
@@ -80,7 +82,8 @@ TEST(Rotation, FullTurnKeepsAreaAndStress) {
 TEST(ShakenIncline, SlidesAsNewmarkSays) {
   const double alpha = 20.0, phi = 30.0, amplitude = 0.5 * g, omega = 2.0 * std::numbers::pi;
   Scene scene(5e10, phi);
-  scene.rectangle({-10.0 * std::cos(alpha * degree), -10.0 * std::sin(alpha * degree)}, 14.0, -1.0, alpha, true);
+  scene.rectangle({-10.0 * std::cos(alpha * degree), -10.0 * std::sin(alpha * degree)}, 14.0, -1.0, alpha,
+                  true);
   scene.rectangle({0.0, 0.0}, 1.0, 0.5, alpha);
   // Sliding downhill while C0 + C1 sin ωt has pushed it, from θ on; 0.313620 m per cycle.
   for (double dt : {0.005, 0.002, 0.001}) {
@@ -109,7 +112,8 @@ TEST(Column, ContactForceAtDepthIsTheWeightAbove) {
     const int upper = std::max(contact.block_a, contact.block_b);
     force[static_cast<std::size_t>(upper)] += s.stepper.forces()[c].normal;
   }
-  for (int k = 1; k <= 5; ++k) EXPECT_NEAR(force[static_cast<std::size_t>(k)] / ((6 - k) * 2600.0 * g), 1.0, 1e-6) << k;
+  for (int k = 1; k <= 5; ++k)
+    EXPECT_NEAR(force[static_cast<std::size_t>(k)] / ((6 - k) * 2600.0 * g), 1.0, 1e-6) << k;
 }
 
 TEST(Bond, CohesionHoldsAndBreaksOnce) {
@@ -139,7 +143,8 @@ TEST(Threads, GiveTheSameBits) {
     Scene scene(1e9, 35.0);
     scene.rectangle({-2.0, -1.0}, 30.0, 1.0, 0.0, true);
     for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < 16; ++column) scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
+      for (int column = 0; column < 16; ++column)
+        scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
     }
     Simulator s(scene, threads);
     const Sine ground(0.6 * g, 2.0);
@@ -156,14 +161,16 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
     scene.setup.solver.linear = linear;
     scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
     for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 4; ++column) scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 1 + row % 2);
+      for (int column = 0; column < 4; ++column)
+        scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 1 + row % 2);
     }
     Simulator s(scene);
     const Sine ground(0.3 * g, 2.0);
     s.run(0.2, 0.002, &ground);
     return s.state.position;
   };
-  const std::vector<double> block = run(dynamics::LinearSolver::block), direct = run(dynamics::LinearSolver::direct);
+  const std::vector<double> block = run(dynamics::LinearSolver::block),
+                            direct = run(dynamics::LinearSolver::direct);
   for (std::size_t k = 0; k < block.size(); ++k) EXPECT_NEAR(block[k], direct[k], 1e-9);
 }
 

@@ -1,0 +1,79 @@
+#include "dynamics/step_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "scene.h"
+
+namespace keyblock::dynamics {
+namespace {
+
+class StepProblemOrder : public ::testing::TestWithParam<int> {};
+
+// The matrix that is assembled is the derivative of the gradient, and the gradient that of the forces, at every order.
+TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
+  simulation::Scene scene(1e7, 30.0);
+  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5, 0.0, false, GetParam());
+  scene.rectangle({1.0, 0.0}, 1.0, 0.5, 0.0, false, 1);
+  scene.rectangle({0.5, 0.5}, 1.0, 0.5, 0.0, false, GetParam());
+  simulation::Simulator s(scene);
+  s.run(0.05, 0.005);
+
+  StepProblem problem;
+  Drive drive;
+  drive.step = 0.005;
+  drive.end_time = s.state.time + drive.step;
+  const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
+  problem.build(s.model, s.state, drive, s.model.surface, contacts, s.team);
+  std::vector<int> sizes;
+  for (const Block& block : s.model.blocks) {
+    if (!block.fixed) sizes.push_back(2 * block.size);
+  }
+  const std::vector<std::pair<int, int>> pairs{{0, 1}, {0, 2}, {1, 2}};
+  for (StepProblem::Row& row : problem.rows()) {
+    if (row.unknown_a < 0 || row.unknown_b < 0) continue;
+    const auto pair = std::minmax(row.unknown_a, row.unknown_b);
+    row.pair =
+        static_cast<int>(std::find(pairs.begin(), pairs.end(), std::pair<int, int>(pair)) - pairs.begin());
+  }
+
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> d(s.model.coefficients, 0.0), direction(d.size(), 0.0);
+  for (std::size_t k = 0; k < s.model.unknowns; ++k) {
+    d[k] = 1e-7 * uniform(random);
+    direction[k] = uniform(random);
+  }
+  const auto gradient = [&](double step, std::vector<StepProblem::Active>* active) {
+    std::vector<double> x = d, g(d.size());
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] += step * direction[k];
+    std::vector<Vec2> r;
+    for (const StepProblem::Row& row : problem.rows()) {
+      r.push_back(problem.relative(row, x));
+      if (active != nullptr) active->push_back(StepProblem::active(row, r.back()));
+    }
+    problem.gradient(x, r, g);
+    return g;
+  };
+  std::vector<StepProblem::Active> active;
+  gradient(0.0, &active);
+  const double h = 1e-11;
+  const std::vector<double> up = gradient(h, nullptr), down = gradient(-h, nullptr);
+
+  // K direction, by solving: K⁻¹ (∂g · direction) must give the direction back.
+  const auto solver = linalg::make_block_cholesky();
+  solver->analyse(sizes, pairs);
+  problem.assemble(active, *solver);
+  ASSERT_TRUE(solver->factor());
+  std::vector<double> x(s.model.unknowns);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = (up[k] - down[k]) / (2 * h);
+  solver->solve(x);
+  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], direction[k], 1e-4) << k;
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, StepProblemOrder, ::testing::Values(1, 2, 3, 5));
+
+}  // namespace
+}  // namespace keyblock::dynamics
