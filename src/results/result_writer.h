@@ -10,8 +10,9 @@ namespace keyblock::results {
 /// were chosen, histories.csv.
 ///
 /// The layout is documented in docs/result-file.md. The file is written in HDF5's single-writer-multiple-reader mode
-/// and flushed at the end of every stage and every `flush_interval` seconds: it can be read while the run goes on, and
-/// after it was killed, up to the last flush (read_run; in Python h5py.File(path, swmr=True)).
+/// and flushed at the end of every stage and every `flush_interval` seconds (more seldom in runs of more than a few
+/// minutes: every hundredth of the time that has passed): it can be read while the run goes on, and after it was killed,
+/// up to the last flush (read_run; in Python h5py.File(path, swmr=True)).
 ///
 /// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps what
 /// the earlier one had reported before the first step that is now reported (by the step counts of the events, which
