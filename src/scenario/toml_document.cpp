@@ -1,3 +1,8 @@
+// The parser of toml++ 3.3 asserts, or without assertions lets the compiler assume, what some malformed files violate
+// (`[ = ]`), just before it finds the mistake itself and reports it. So: no assertions, and no assumptions either.
+#undef NDEBUG
+#define TOML_ASSERT(expr) static_assert(true)
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -52,9 +57,82 @@ Value convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
+// Finds characters beyond ASCII outside of strings and comments, where TOML has none. The parser of toml++ 3.3 has
+// undefined behaviour for some of them. Up to the first mistake in the text this walks as the parser does.
+class StrayCharacters {
+ public:
+  explicit StrayCharacters(std::string_view text) : text_(text) {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
+  }
+
+  // Offset of the first one, or npos.
+  std::size_t find() {
+    for (; at_ < text_.size(); ++at_) {
+      const char c = text_[at_];
+      if (static_cast<unsigned char>(c) >= 0x80) return at_;
+      if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size());
+      if (c == '"' || c == '\'') skip_string(c);
+    }
+    return std::string_view::npos;
+  }
+
+ private:
+  // Moves to the last character of the string that begins here.
+  void skip_string(char quote) {
+    const std::string three(3, quote);
+    const bool multi_line = text_.substr(at_).starts_with(three);
+    for (at_ += multi_line ? 3 : 1; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '\\' && quote == '"') {
+        ++at_;
+      } else if (multi_line && text_.substr(at_).starts_with(three)) {
+        at_ += 2;
+        while (at_ + 1 < text_.size() && text_[at_ + 1] == quote) ++at_;  // up to two quotes before the end
+        return;
+      } else if (!multi_line && (text_[at_] == quote || text_[at_] == '\n')) {
+        return;
+      }
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+bool continues_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
+// The UTF-8 character at `at`, and its code point.
+std::string character_at(std::string_view text, std::size_t at) {
+  std::size_t end = at + 1;
+  while (end < text.size() && continues_character(text[end])) ++end;
+  const auto lead = static_cast<unsigned char>(text[at]);
+  unsigned code = end - at == 2 ? lead & 0x1FU : end - at == 3 ? lead & 0x0FU : lead & 0x07U;
+  for (std::size_t k = at + 1; k < end; ++k)
+    code = code << 6U | (static_cast<unsigned char>(text[k]) & 0x3FU);
+  return fmt::format("the character '{}' (U+{:04X})", text.substr(at, end - at), code);
+}
+
+void refuse_stray_characters(std::string_view text, const std::string& file) {
+  const std::size_t at = StrayCharacters(text).find();
+  if (at == std::string_view::npos) return;
+  const std::string_view before = text.substr(0, at);
+  const std::size_t newline = before.rfind('\n');
+  const std::string_view line = before.substr(newline == std::string_view::npos ? 0 : newline + 1);
+  Diagnostic diagnostic;
+  diagnostic.where = {
+      file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
+      1 + static_cast<int>(line.size() - static_cast<std::size_t>(
+                                             std::count_if(line.begin(), line.end(), continues_character)))};
+  diagnostic.found = character_at(text, at);
+  diagnostic.expected = "letters, digits and signs of ASCII outside of strings and comments";
+  throw InputError(std::move(diagnostic));
+}
+
 }  // namespace
 
 Value parse_toml(std::string_view text, const std::string& file) {
+  refuse_stray_characters(text, file);
   try {
     return convert(toml::parse(text, file), file);
   } catch (const toml::parse_error& error) {

@@ -62,6 +62,33 @@ TEST(Toml, SyntaxErrorsHaveAPosition) {
   }
 }
 
+TEST(Toml, MalformedTextIsAlwaysAnInputError) {
+  for (const char* malformed :
+       {"[ = ]", "a = [}", "a = {]", "[[a]", "a.=1", "= 1", "a = \xC3\x97", "\"a", "a = 'b\n", "[\xC2\xA0x]",
+        "a = \"\xFF\"", "a = 1e", "a = 99999999999999999999"}) {
+    EXPECT_THROW(parse_toml(malformed, ""), InputError) << malformed;
+  }
+}
+
+TEST(Toml, CharactersBeyondAsciiBelongIntoStringsAndComments) {
+  const char* right =
+      "\xEF\xBB\xBF# größe\n"
+      R"(a = "\"größe\"" # ×
+b = 'ß\'
+c = """ß"ß"""""
+d = '''
+ß''')";
+  EXPECT_NO_THROW(parse_toml(right, ""));
+  try {
+    parse_toml("a = 'ü'\nbß = 1", "f.toml");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.diagnostics()[0].where.line, 2);
+    EXPECT_EQ(error.diagnostics()[0].where.column, 2);
+    EXPECT_EQ(error.diagnostics()[0].found, "the character 'ß' (U+00DF)");
+  }
+}
+
 TEST(Describe, TypeAndValue) {
   const Value document = parse_toml(text, "");
   EXPECT_EQ(describe(*document.find("title")), R"(the string "a \"b\"")");
