@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <utility>
 
 namespace keyblock::dynamics {
 
@@ -84,6 +84,7 @@ void Stepper::start(State& state) {
     memory.offset = -c.gap - normal / c.normal_stiffness;
     memory.shear = shear / c.shear_stiffness;
     memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
+    contact_energy_ += 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
   }
   ensure_pattern(state, true);
 }
@@ -107,6 +108,10 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
 }
 
 void Stepper::remove_absent(State& state) {
+  for (std::size_t c = 0; c < stored_.size(); ++c) {
+    const bool stays = model_.surface.present[at(contacts_[c].block_a)] && model_.surface.present[at(contacts_[c].block_b)];
+    if (!stays) contact_energy_ -= std::exchange(stored_[c], 0.0);
+  }
   candidates_.invalidate();
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
@@ -254,6 +259,7 @@ void Stepper::account(State& state, const Drive& drive) {
 /// Contact memory for the next step.
 void Stepper::remember(const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
+  stored_.resize(contacts_.size());
   contact_energy_ = 0.0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
@@ -261,7 +267,8 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
     contact::Memory& memory = *memory_[c];
     const Vec2 r = open_close_.relative()[c];
     const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
-    contact_energy_ += s.balance(depth, shear).stored;
+    stored_[c] = s.balance(depth, shear).stored;
+    contact_energy_ += stored_[c];
     const double change = std::max(0.0, normal_force) - memory.normal_force;
     memory.normal_force = std::max(0.0, normal_force);
     const bool slides = s.closed(depth) && !s.locked(shear) && s.bound() > 0.0;

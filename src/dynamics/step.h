@@ -104,6 +104,7 @@ class Stepper {
   bool analysed_ = false;
   std::vector<double> reach_, increment_;
   std::vector<Force> forces_;
+  std::vector<double> stored_;  ///< J, elastic energy of each contact at the end of the last step
   std::vector<Balance> balance_;
   double contact_energy_ = 0.0;
 };

@@ -1,0 +1,168 @@
+#include "simulation/run.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+
+#include "core/error.h"
+#include "scene.h"
+#include "simulation/checkpoint.h"
+
+namespace keyblock::simulation {
+namespace {
+
+/// Motion A sin ωt sampled finely enough for its integral.
+loading::GroundMotion sine(double amplitude, double frequency, double cycles) {
+  std::vector<double> time;
+  std::vector<Vec2> acceleration;
+  const int count = static_cast<int>(cycles * 400);
+  for (int k = 0; k <= count; ++k) {
+    time.push_back(k / (400.0 * frequency));
+    acceleration.push_back({amplitude * std::sin(2.0 * std::numbers::pi * frequency * time.back()), 0.0});
+  }
+  return {"sine", time, acceleration};
+}
+
+Stage stage(const char* name, StageKind kind, double duration = 0.0) {
+  Stage s;
+  s.name = name;
+  s.kind = kind;
+  if (kind == StageKind::shake) s.motion = 0;
+  if (kind == StageKind::rest) s.duration = duration;
+  return s;
+}
+
+/// A block on an incline of 20°, φ 30°, settled and then shaken n times by the same motion.
+RunSetup shaken_incline(int shakings) {
+  const double alpha = 20.0 * std::numbers::pi / 180.0;
+  Scene scene(5e10, 30.0);
+  scene.rectangle({-20.0 * std::cos(alpha), -20.0 * std::sin(alpha)}, 24.0, -1.0, 20.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5, 20.0);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.motions.push_back(sine(0.5 * 9.81, 1.0, 2.0));
+  setup.stages.push_back(stage("settle", StageKind::settle));
+  for (int k = 0; k < shakings; ++k) setup.stages.push_back(stage("shake", StageKind::shake));
+  setup.histories.push_back({"block", "b1", {0.3, 0.4}});
+  return setup;
+}
+
+struct LastHistory final : RunObserver {
+  HistoryRow last;
+  int rows = 0;
+  void history(const HistoryRow& row) override {
+    last = row;
+    ++rows;
+  }
+};
+
+double slid(int shakings) {
+  LastHistory observer;
+  const RunRecord record = run(shaken_incline(shakings), {}, observer);
+  EXPECT_EQ(record.open_close.unconverged_steps, 0);
+  EXPECT_TRUE(record.stages[0].equilibrium_reached);
+  EXPECT_LT(record.energy.residual_ratio, 0.01);
+  return std::hypot(observer.last.points[0].ux, observer.last.points[0].uy);
+}
+
+TEST(Run, RepeatedShakingGivesRepeatedSlip) {
+  const double once = slid(1);
+  EXPECT_NEAR(once / (2.0 * 0.313620), 1.0, 5e-3);
+  EXPECT_NEAR(slid(5) / (5.0 * once), 1.0, 5e-3);
+}
+
+/// Stops the run after some steps.
+struct Stopper final : RunObserver {
+  std::atomic<bool> stop = false;
+  long after = 0;
+  void step(const StepRow& row) override { stop = row.step >= after; }
+};
+
+TEST(Run, ResumedFromItsCheckpointEndsInTheSameBits) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_resume_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const RunSetup setup = shaken_incline(5);
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+
+  Stopper stopper;
+  stopper.after = 3500;
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  const RunRecord part = run(setup, options, stopper);
+  EXPECT_TRUE(part.interrupted);
+  EXPECT_LT(part.steps, whole.steps);
+
+  options.stop = nullptr;
+  options.resume = true;
+  const RunRecord resumed = run(setup, options, nobody);
+  EXPECT_EQ(resumed.state_hash, whole.state_hash);
+  EXPECT_EQ(resumed.steps, whole.steps);
+  EXPECT_EQ(resumed.stages.size(), whole.stages.size());
+  EXPECT_EQ(resumed.energy.friction, whole.energy.friction);
+
+  RunSetup other = setup;
+  other.time_step = 0.001;
+  EXPECT_THROW(run(other, options, nobody), InputError);
+  std::filesystem::resize_file(folder / "checkpoint.bin", 1000);
+  EXPECT_THROW(run(setup, options, nobody), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+RunSetup shaken_wall() {
+  Scene scene(1e9, 35.0);
+  scene.add({{-2.0, -1.0}, {8.0, -1.0}, {8.0, 0.0}, {-2.0, 0.0}}, true);
+  for (int row = 0; row < 5; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, row == 4 ? 2 : 1);
+    }
+  }
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.motions.push_back(sine(6.0, 2.0, 2.0));
+  setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake),
+                  stage("rest", StageKind::rest, 0.5)};
+  return setup;
+}
+
+// The same bits on every rerun and for any number of threads, and as long as nobody changes the mechanics: whoever does
+// so on purpose puts the new value here.
+TEST(Run, GoldenStateHash) {
+  RunObserver nobody;
+  RunOptions two;
+  two.threads = 2;
+  const RunRecord record = run(shaken_wall(), {}, nobody);
+  EXPECT_EQ(record.open_close.unconverged_steps, 0);
+  EXPECT_EQ(record.state_hash, "1bc29134006b81ba");
+  EXPECT_EQ(run(shaken_wall(), two, nobody).state_hash, record.state_hash);
+  EXPECT_LT(record.max_overlap, 1e-3);
+}
+
+// A loose block in the roof of an opening: it keeps moving while the rest comes to equilibrium, is named, and falls
+// when time runs.
+TEST(Settle, NamesTheBlockThatMovesAndLetsItFall) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 3.0, 0.5, 0.0, true);
+  scene.rectangle({0.0, 0.5}, 1.0, 1.0);
+  scene.rectangle({2.0, 0.5}, 1.0, 1.0);
+  scene.rectangle({1.2, 1.0}, 0.6, 0.4);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages = {stage("settle", StageKind::settle), stage("fall", StageKind::rest, 1.0)};
+  RunObserver nobody;
+  const RunRecord record = run(setup, {}, nobody);
+  ASSERT_EQ(record.stages[0].moving.size(), 1u);
+  EXPECT_EQ(record.stages[0].moving[0].block, 3);
+  EXPECT_NEAR(record.stages[0].moving[0].carried, 0.0, 0.01);
+  EXPECT_TRUE(record.stages[0].equilibrium_reached);
+  EXPECT_LE(record.stages[0].worst_residual_ratio, 0.01);
+  EXPECT_LT(record.max_overlap, 1e-3);
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
