@@ -1,10 +1,12 @@
 #include "scenario/parse.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <tuple>
 
 #include "core/atomic_file.h"
+#include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/override.h"
 #include "scenario/sections.h"
@@ -95,10 +97,38 @@ void check_study(const Value& document, const std::filesystem::path& file,
   }
 }
 
-// In the order of the file, then overrides.
-void sort_by_position(std::vector<Diagnostic>& diagnostics) {
-  const auto rank = [](const Diagnostic& d) {
-    return std::tuple(d.where.line == 0, d.where.line, d.where.column);
+bool concerns(const Diagnostic& diagnostic, const std::string& path) {
+  const std::string_view key = diagnostic.key;
+  return key.starts_with(path) &&
+         (key.size() == path.size() || key[path.size()] == '.' || key[path.size()] == '[');
+}
+
+// A scenario that is wrong is refused anyway; mistakes in the files of those motions and trace maps that are right are
+// then said at once, too.
+void add_mistakes_of_files(const Scenario& scenario, std::vector<Diagnostic>& diagnostics) {
+  Scenario sound;
+  sound.file = scenario.file;
+  sound.positions = scenario.positions;
+  sound.section_azimuth = scenario.section_azimuth.value_or(0.0);
+  const auto is_sound = [&](const auto& spec) {
+    return std::none_of(diagnostics.begin(), diagnostics.end(),
+                        [&](const Diagnostic& diagnostic) { return concerns(diagnostic, spec.path); });
+  };
+  std::copy_if(scenario.motions.begin(), scenario.motions.end(), std::back_inserter(sound.motions), is_sound);
+  std::copy_if(scenario.trace_maps.begin(), scenario.trace_maps.end(), std::back_inserter(sound.trace_maps),
+               is_sound);
+  try {
+    check_inputs(sound);
+  } catch (const InputError& error) {
+    merge(diagnostics, error.diagnostics());
+  }
+}
+
+// Mistakes in the scenario in the order of the file, then overrides.
+void sort_by_position(std::vector<Diagnostic>& diagnostics, const std::string& file) {
+  const auto rank = [&](const Diagnostic& d) {
+    const int place = d.where.file == file ? 0 : d.where.line == 0 ? 1 : 2;
+    return place == 0 ? std::tuple(place, d.where.line, d.where.column) : std::tuple(place, 0, 0);
   };
   std::stable_sort(diagnostics.begin(), diagnostics.end(),
                    [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
@@ -122,7 +152,8 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
   merge(diagnostics, std::move(reading.diagnostics));
   check_study(document, file, diagnostics);
   if (!diagnostics.empty()) {
-    sort_by_position(diagnostics);
+    add_mistakes_of_files(reading.scenario, diagnostics);
+    sort_by_position(diagnostics, file.string());
     throw InputError(std::move(diagnostics));
   }
   Scenario scenario = std::move(reading.scenario);

@@ -9,7 +9,7 @@
 namespace keyblock::scenario {
 
 /// Reads and checks a scenario file. `overrides` are `key=value`, applied in order before the file is checked; a
-/// later one wins. Files the scenario names must exist but are not read.
+/// later one wins. Files the scenario names must exist; they are read only to report their mistakes beside others.
 ///
 /// Throws one InputError with every mistake found, in the order of the file. A mistake in an overridden value has
 /// `--set key=value` in the place of the file. The values of [[study.vary]] are checked, each alone, as if they were

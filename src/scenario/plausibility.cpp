@@ -42,7 +42,7 @@ class Plausibility {
       for (const auto& [key, distribution] : lengths) {
         if (distribution->mean <= 0.0) continue;
         const double mean = rockmass::truncated_mean(*distribution);
-        if (mean <= (1.0 + mean_tolerance) * distribution->mean) continue;
+        if (!(mean > (1.0 + mean_tolerance) * distribution->mean)) continue;
         warn("{}.{}: cut off at zero, its mean is {:.4g} instead of {:.4g}", spec.path, key, mean,
              distribution->mean);
       }

@@ -30,9 +30,10 @@ void check_excavated_once(TableReader& t, const Stage& stage, const Scenario& sc
   for (const Stage& before : scenario.stages) {
     for (const int index : before.excavate) {
       if (std::find(stage.excavate.begin(), stage.excavate.end(), index) == stage.excavate.end()) continue;
-      t.fail("excavate",
-             fmt::format("\"{}\" again", scenario.excavations[static_cast<std::size_t>(index)].name),
-             fmt::format("an excavation that the stage '{}' has not taken out", before.name));
+      t.fail(
+          "excavate",
+          fmt::format("\"{}\" again", t.context().list_names["excavation"][static_cast<std::size_t>(index)]),
+          fmt::format("an excavation that the stage '{}' has not taken out", before.name));
     }
   }
 }

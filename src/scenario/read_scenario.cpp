@@ -66,7 +66,7 @@ class Consistency {
       const rockmass::JointSet& set = spec.set;
       if (set.spacing.mean <= 0.0 || set.length.mean <= 0.0) continue;
       const double count = rockmass::expected_traces(set, *scenario_.section_azimuth, window);
-      if (count <= rockmass::max_traces) continue;
+      if (!(count > rockmass::max_traces)) continue;
       fail(spec.path, join_path(spec.path, "spacing"),
            fmt::format("about {:.2g} traces in the domain", count),
            fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",

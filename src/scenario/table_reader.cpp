@@ -168,9 +168,8 @@ bool TableReader::number(std::string_view key, std::optional<double>& value, con
 }
 
 bool TableReader::integer(std::string_view key, std::optional<int>& value, const Rule& rule) {
-  Rule bounded = rule;
   const auto text = value ? std::to_string(*value) : std::string();
-  const auto number = take_number(key, bounded, true, text);
+  const auto number = take_number(key, rule, true, text);
   if (!number) return false;
   if (std::abs(*number) > std::numeric_limits<int>::max()) {
     fail(key, describe(*find(key)), fmt::format("an integer of at most {}", std::numeric_limits<int>::max()));

@@ -199,7 +199,7 @@ bool TableReader::find_name(const Value& value, const std::string& path, std::st
     fail_at(value, path, describe(value), fmt::format("the name of a [[{}]]", list));
     return false;
   }
-  if (std::find(names.begin(), names.end(), value.text) == names.end()) {
+  if (value.text.empty() || std::find(names.begin(), names.end(), value.text) == names.end()) {
     std::vector<std::string> known;
     std::copy_if(names.begin(), names.end(), std::back_inserter(known),
                  [](const auto& n) { return !n.empty(); });
