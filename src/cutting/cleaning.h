@@ -9,16 +9,16 @@ namespace keyblock::cutting {
 /// domain's edge or on an excavation outline are not removed. Counts into `statistics`.
 void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics);
 
-/// Undoes what rounding did to lines that run along one another or meet near one point: vertices a few steps
-/// of the grid apart become one, and faces a few steps wide are merged; of their borders the one of the lowest
-/// rank goes (see rank), be it an outline.
-void remove_rounding(PlanarGraph& graph);
-
 /// Moves vertices onto others closer than `distance` (m) that lie at the same face, the closest pairs first. Of a pair
 /// the one moves that sweeps the smaller area. A vertex on the domain's edge or on an outline moves only to a vertex on
 /// the same ones, so that the domain keeps its shape. A move is made only if no vertex lies in the triangles that the
 /// edges sweep and the way crosses no edge: then no face turns over and no edges cross. Every face at the vertex
 /// changes alike, so neighbours stay conforming. Returns the number of vertices moved.
 int cluster_vertices(PlanarGraph& graph, double distance);
+
+/// Bends edges to vertices of their faces that lie within `distance` (m) of them, the nearest first: closes gaps and
+/// tongues thinner than that. An edge of the domain stays where it is and the vertex moves. Only where the
+/// triangles that are swept hold no other vertex.
+void snap_vertices_to_edges(PlanarGraph& graph, double distance);
 
 }  // namespace keyblock::cutting

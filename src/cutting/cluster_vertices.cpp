@@ -150,14 +150,6 @@ class ClusterPass {
     return move(u, v) || move(v, u);
   }
 
-  static bool in_triangle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
-    const int s = orientation(a, b, p), t = orientation(b, c, p), r = orientation(c, a, p);
-    if (s == 0 && t == 0 && r == 0) {  // a flat triangle: the segment between its extremes
-      return std::min({a, b, c}) <= p && p <= std::max({a, b, c});
-    }
-    return (s >= 0 && t >= 0 && r >= 0) || (s <= 0 && t <= 0 && r <= 0);
-  }
-
   /// Whether u can go to v without an edge passing a vertex or the way crossing an edge. It is enough to look at the
   /// faces at u: what is hit first lies on the border of one of them.
   [[nodiscard]] bool is_free(int u, int v) const {

@@ -29,6 +29,10 @@ namespace {
 
 /// Share of the domain's area by which the blocks may miss it.
 constexpr double area_tolerance = 1e-9;
+/// An edge goes through a vertex that it passes within this share of the cluster distance.
+constexpr double edge_share = 0.2;
+/// Lines that should coincide or meet were rounded to less than this many steps of the grid apart.
+constexpr double vertex_rounding = 4.0, edge_rounding = 2.0;
 /// A domain farther from the origin than this many times its size gets a local origin.
 constexpr double far_away = 1000.0;
 
@@ -137,12 +141,14 @@ BlockSystem cut(const CutInput& input) {
 
   PlanarGraph graph = bounded_blocks(node(work), statistics);
   graph.trace_faces();
-  remove_rounding(graph);
+  cluster_vertices(graph, vertex_rounding * graph.grid);
+  snap_vertices_to_edges(graph, edge_rounding * graph.grid);
   find_excavations(graph, work.excavations);
   check_area(graph, work.domain_area);
 
   merge_slivers(graph, tolerances, statistics);
   statistics.merged_vertices += cluster_vertices(graph, tolerances.cluster);
+  snap_vertices_to_edges(graph, edge_share * tolerances.cluster);
   merge_slivers(graph, tolerances, statistics);
   check_area(graph, work.domain_area);
 

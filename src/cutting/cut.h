@@ -20,8 +20,9 @@ struct CutTolerances {
   /// m. Blocks of less area over perimeter are merged (a long strip of width w has w/2, a square of side w has
   /// w/4). Usual: 2.5e-4 L [5 mm]. Must exceed a few times the depth at which a contact is looked for.
   double sliver_thickness = 0.0;
-  /// m. Vertices closer than this become one. Usual: 2.5e-4 L [5 mm]. Too small: edges shorter than the end
-  /// zones of contacts; too large: shapes and angles change.
+  /// m. Vertices closer than this become one, and an edge that passes a vertex within a fifth of it is bent to
+  /// go through it. Usual: 2.5e-4 L [5 mm]. Too small: edges shorter than the end zones of contacts, tongues
+  /// thinner than a penetration; too large: shapes and angles change.
   double cluster = 0.0;
   /// m. A vertex of a block nearer than this to the straight line between its neighbours is dropped. The sides of
   /// neighbouring blocks then differ by at most this. Usual: 5e-8 L [1 µm]; it must stay far below the
@@ -46,8 +47,8 @@ struct CutInput {
 /// 2. Dead ends and joints that bound no block are removed (tree cutting): after that the two sides of every edge
 ///    are different blocks. A ring of joints within a block makes a hole in it and a block of its own.
 /// 3. Cleaning: slivers are merged into the neighbour with the longest common edge, smallest first, never across
-///    an excavation outline; vertices closer than `cluster` become one for all blocks at them, where that turns
-///    no block over; slivers are merged again; near-collinear vertices are dropped, the foot of a T from
+///    an excavation outline; vertices closer than `cluster` become one for all blocks at them, and edges take in
+///    the vertices they nearly touch, where that turns no block over; slivers are merged again; near-collinear vertices are dropped, the foot of a T from
 ///    the straight side only.
 ///
 /// Where lines overlap, the edge is labelled domain before excavation before trace map before joint set, the

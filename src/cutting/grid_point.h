@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 
@@ -44,6 +46,13 @@ inline GridPoint nearest_grid_point(Vec2 p) {
 /// Whether segments ab and cd cross in a point inside both.
 constexpr bool cross_properly(GridPoint a, GridPoint b, GridPoint c, GridPoint d) {
   return orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0;
+}
+
+/// Whether p lies in the closed triangle abc, which may be flat.
+constexpr bool in_triangle(GridPoint a, GridPoint b, GridPoint c, GridPoint p) {
+  const int s = orientation(a, b, p), t = orientation(b, c, p), r = orientation(c, a, p);
+  if (s == 0 && t == 0 && r == 0) return std::min({a, b, c}) <= p && p <= std::max({a, b, c});
+  return (s >= 0 && t >= 0 && r >= 0) || (s <= 0 && t <= 0 && r <= 0);
 }
 
 }  // namespace keyblock::cutting

@@ -4,24 +4,15 @@
 #include <tuple>
 
 #include "cutting/cleaning.h"
-#include "cutting/noding.h"
 
 namespace keyblock::cutting {
 
 namespace {
 
-/// What is merged, and across what.
-struct Rule {
-  double area = 0.0;       ///< m²; faces of less
-  double thickness = 0.0;  ///< m; faces of less area over perimeter
-  bool across_outlines = false;
-  bool lowest_label_first = false;  ///< take away the edges of the lowest rank, not the longest border
-};
-
 class SliverMerger {
  public:
-  SliverMerger(PlanarGraph& graph, const Rule& rule)
-      : graph_(graph), rule_(rule), regions_(graph.faces.size()) {
+  SliverMerger(PlanarGraph& graph, const CutTolerances& tolerances)
+      : graph_(graph), tolerances_(tolerances), regions_(graph.faces.size()) {
     for (std::size_t f = 0; f < regions_.size(); ++f) {
       regions_[f].area = graph.faces[f].area;
       regions_[f].perimeter = graph.faces[f].perimeter;
@@ -60,7 +51,7 @@ class SliverMerger {
 
   void consider(std::size_t f) {
     const Region& r = regions_[f];
-    if (r.area < rule_.area || r.area < rule_.thickness * r.perimeter) {
+    if (r.area < tolerances_.sliver_area || r.area < tolerances_.sliver_thickness * r.perimeter) {
       queue_.emplace(r.area, f);
     }
   }
@@ -73,38 +64,28 @@ class SliverMerger {
 
   /// The region across edge e as seen from f; f itself where there is none to merge with.
   std::size_t neighbour(std::size_t f, const GraphEdge& e) {
-    if (e.label.kind == EdgeKind::excavation && !rule_.across_outlines) return f;
+    if (e.label.kind == EdgeKind::excavation) return f;
     if (e.left < 0 || e.right < 0) return f;
     const std::size_t left = root(e.left), right = root(e.right);
     return left == f ? right : left;
   }
 
-  struct Border {
-    double length = 0.0;
-    std::pair<int, int> rank;  ///< the lowest of its labels; what sorts last is lowest
-  };
-
   void merge(std::size_t f) {
-    std::map<std::size_t, Border> borders;
+    std::map<std::size_t, double> borders;  // by neighbour, m
     for (const std::size_t e : regions_[f].edges) {
       const std::size_t other = neighbour(f, graph_.edges[e]);
       if (other == f || graph_.faces[f].excavations != graph_.faces[other].excavations) continue;
-      Border& border = borders[other];
-      border.length += graph_.length(graph_.edges[e]);
-      border.rank = std::max(border.rank, rank(graph_.edges[e].label));
+      borders[other] += graph_.length(graph_.edges[e]);
     }
     if (borders.empty()) return;
-    const auto worse = [&](const auto& a, const auto& b) {
-      if (rule_.lowest_label_first && a.second.rank != b.second.rank) return a.second.rank < b.second.rank;
-      return a.second.length < b.second.length;
-    };
-    const auto& [best, border] = *std::max_element(borders.begin(), borders.end(), worse);
+    const auto& [best, length] = *std::max_element(
+        borders.begin(), borders.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     ++merged_;
     merged_area_ += regions_[f].area;
     Region& target = regions_[best];
     regions_[f].into = best;
     target.area += regions_[f].area;
-    target.perimeter += regions_[f].perimeter - 2.0 * border.length;
+    target.perimeter += regions_[f].perimeter - 2.0 * length;
     target.edges.insert(target.edges.end(), regions_[f].edges.begin(), regions_[f].edges.end());
     std::erase_if(target.edges, [&](std::size_t e) {
       const GraphEdge& edge = graph_.edges[e];
@@ -114,7 +95,7 @@ class SliverMerger {
   }
 
   PlanarGraph& graph_;
-  Rule rule_;
+  const CutTolerances& tolerances_;
   std::vector<Region> regions_;
   int merged_ = 0;
   double merged_area_ = 0.0;
@@ -126,19 +107,10 @@ class SliverMerger {
 
 void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics) {
   if (!(tolerances.sliver_area > 0.0) && !(tolerances.sliver_thickness > 0.0)) return;
-  SliverMerger merger(graph, {.area = tolerances.sliver_area, .thickness = tolerances.sliver_thickness});
+  SliverMerger merger(graph, tolerances);
   merger.run();
   statistics.merged_slivers += merger.merged();
   statistics.sliver_area += merger.merged_area();
-}
-
-void remove_rounding(PlanarGraph& graph) {
-  // Lines that should coincide or meet are about two steps apart at most.
-  constexpr double vertex_steps = 4.0, width_steps = 2.0;
-  cluster_vertices(graph, vertex_steps * graph.grid);
-  SliverMerger merger(
-      graph, {.thickness = width_steps * graph.grid, .across_outlines = true, .lowest_label_first = true});
-  merger.run();
 }
 
 }  // namespace keyblock::cutting
