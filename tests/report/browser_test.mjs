@@ -346,9 +346,13 @@ const tests = {
     await close(page);
   },
 
-  async "a run without excavation has no damage table"() {
+  async "a run without excavation has the measures of damage that apply"() {
     const page = await open("no_excavation");
-    assert.equal(await page.locator("#damage").count(), 0);
+    const columns = await page.$$eval("#damage thead th", (all) =>
+      all.map((e) => e.firstChild.textContent),
+    );
+    assert.deepEqual(columns, ["At the end of", "Largest slip"]);
+    assert.equal(await page.locator("#damage tbody tr").count(), 4);
     assert.match(
       await text(page, ".verdict"),
       /no excavation in this model; the largest displacement/,

@@ -1,5 +1,5 @@
 import type { Clock } from "./clock";
-import { choice, css, h } from "./dom";
+import { choice, h } from "./dom";
 import { blockDisplacement, blockFields, jointFields, principal } from "./fields";
 import type { BlockField, Fields, JointField } from "./fields";
 import { fixed, length, significant, stress } from "./format";
@@ -293,7 +293,6 @@ export class Animation {
     const { offsetWidth: w, offsetHeight: hh } = this.tooltip;
     this.tooltip.style.left = `${x + 16 + w < box.width ? x + 16 : Math.max(0, x - w - 12)}px`;
     this.tooltip.style.top = `${Math.min(Math.max(0, y + 14), Math.max(0, box.height - hh))}px`;
-    this.tooltip.style.setProperty("--accent-line", css("--mark"));
   }
 }
 

@@ -129,6 +129,7 @@ export class Fields {
       const u = new Float32Array(u0.length);
       const values: number[] = [];
       for (const moment of this.keyMoments()) {
+        if (moment < since) continue;
         run.displacementAt(moment, u);
         for (let b = 0; b < run.blockCount; b++) {
           if (run.fixed[b] || run.statusAt(moment, b) === Status.excavated) continue;
@@ -199,34 +200,43 @@ export class Fields {
     sinceMoment: Moment,
   ): string[] {
     const { run } = this;
-    const colors = new Array<string>(run.blockCount).fill(this.plain);
-    if (field === "plain" || (field === "displacement" && moment < sinceMoment)) return colors;
-    const pick = (map: string[], t: number) => map[Math.round(t * (map.length - 1))];
-    const stressMap = this.stressMap(field);
-    const scale = field === "displacement" ? this.displacementScale(sinceMoment) : this.stressScaleOf(field);
-    for (let b = 0; b < run.blockCount; b++) {
-      if (run.fixed[b]) continue;
-      if (field === "status") colors[b] = this.statusColors[run.statusAt(moment, b)];
-      else if (field === "order") colors[b] = this.orderColor(run.order[b]);
-      else if (field === "displacement") {
-        const d = Math.hypot(...blockDisplacement(run, b, u, since));
-        colors[b] = pick(this.displacementColors, place(scale, d));
-      } else {
-        colors[b] = pick(stressMap, place(scale, this.stressValue(field, moment, b)));
-      }
+    const color = this.colorOf(field, moment, u, since, sinceMoment);
+    return Array.from({ length: run.blockCount }, (_, b) => (run.fixed[b] ? this.plain : color(b)));
+  }
+
+  private colorOf(
+    field: BlockField,
+    moment: Moment,
+    u: Float32Array,
+    since: Float32Array,
+    sinceMoment: Moment,
+  ): (block: number) => string {
+    const { run } = this;
+    const onScale = (map: string[], scale: Scale, value: (block: number) => number) => (block: number) =>
+      map[Math.round(place(scale, value(block)) * (map.length - 1))];
+    switch (field) {
+      case "plain":
+        return () => this.plain;
+      case "status":
+        return (b) => this.statusColors[run.statusAt(moment, b)];
+      case "order":
+        return (b) => this.orderColor(run.order[b]);
+      case "displacement":
+        // Before the moment from which displacement counts there is none.
+        if (moment < sinceMoment) return () => this.plain;
+        return onScale(this.displacementColors, this.displacementScale(sinceMoment), (b) =>
+          Math.hypot(...blockDisplacement(run, b, u, since)),
+        );
+      default:
+        return onScale(this.stressMap(field), this.stressScale(field), (b) =>
+          this.stressValue(field, moment, b),
+        );
     }
-    return colors;
   }
 
   /** Colours from the smallest (most compressive) to the largest value; for the shear stress, from nothing up. */
   private stressMap(field: BlockField): string[] {
     return field === "shear" ? this.stressColors : [...this.stressColors].reverse();
-  }
-
-  private stressScaleOf(field: BlockField): Scale {
-    return field === "status" || field === "order"
-      ? { min: 0, max: 1, logarithmic: false }
-      : this.stressScale(field);
   }
 
   private orderColor(order: number): string {

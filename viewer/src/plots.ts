@@ -155,6 +155,7 @@ export class Plot {
             stroke: colorOf(s),
             width: s.width ?? 1.2,
             points: { show: false },
+            pxAlign: 0,
             spanGaps: false,
             value: (_: uPlot, v: number | null) => significant(v, 4),
             ...(s.style === "steps" ? { paths: uPlot.paths.stepped!({ align: 1 }) } : {}),

@@ -35,6 +35,10 @@ export class SectionView {
   private centerY = 0;
   private zoom = 1;
   private readonly extent: Box;
+  /** The camera while drawing: pixel = (ax + scaleNow x, ay − scaleNow y). */
+  private ax = 0;
+  private ay = 0;
+  private scaleNow = 1;
   private hatch: CanvasPattern | null = null;
 
   constructor(
@@ -98,10 +102,6 @@ export class SectionView {
     this.centerY = 0.5 * (this.extent.minY + this.extent.maxY);
   }
 
-  isFitted(): boolean {
-    return this.zoom === 1;
-  }
-
   /** Pixels per metre. */
   private get scale(): number {
     const { minX, maxX, minY, maxY } = this.extent;
@@ -133,7 +133,7 @@ export class SectionView {
   /** Zooms by a factor so that the point under a pixel stays there. */
   zoomAt(px: number, py: number, factor: number): void {
     const [x, y] = this.toModel(px, py);
-    this.zoom = Math.min(Math.max(this.zoom * factor, 0.5), 200);
+    this.zoomCentred(factor);
     const [x1, y1] = this.toModel(px, py);
     this.centerX += x - x1;
     this.centerY += y - y1;
@@ -205,7 +205,7 @@ export class SectionView {
     return -1;
   }
 
-  private tracePath(block: number, close = true): void {
+  private tracePath(block: number): void {
     const { run, drawn, context: c } = this;
     const n = run.vertexCount;
     for (let r = run.firstRing[block]; r < run.firstRing[block + 1]; r++) {
@@ -215,14 +215,9 @@ export class SectionView {
         if (v === run.ringBegin[r]) c.moveTo(x, y);
         else c.lineTo(x, y);
       }
-      if (close) c.closePath();
+      c.closePath();
     }
   }
-
-  // The camera while drawing: pixel = (ax + s x, ay − s y).
-  private ax = 0;
-  private ay = 0;
-  private scaleNow = 1;
 
   draw(): void {
     if (this.width === 0) return;

@@ -140,27 +140,29 @@ function stageCell(stage: Stage): HTMLElement {
   );
 }
 
-/** Damage at the end of each stage since the first excavation, and below each number what the stage added. */
+/**
+ * Damage at the end of each stage since the first excavation, and below each number what the stage added. Of a run
+ * without excavation, the measures that are not zero throughout, since the start; null where all are.
+ */
 export function damageTable(run: Run): HTMLElement | null {
-  const first = run.stages.findIndex((s) => s.excavate.length > 0);
-  if (first < 0) return null;
-  const head = [
-    h("th", { scope: "col" }, "At the end of"),
-    ...measures.map((m) => column(m.name, m.unit || "number")),
-  ];
-  const rows = run.stages.slice(first).map((stage, k, all) => [
+  const excavated = run.stages.findIndex((s) => s.excavate.length > 0);
+  const shown = measures.filter((m) => excavated >= 0 || run.stages.some((s) => m.of(s.damage) !== 0));
+  if (shown.length === 0) return null;
+  const head = [column("At the end of"), ...shown.map((m) => column(m.name, m.unit || "number"))];
+  const rows = run.stages.slice(Math.max(0, excavated)).map((stage, k, all) => [
     stageCell(stage),
-    ...measures.map((m) => {
+    ...shown.map((m) => {
       const now = m.of(stage.damage);
       const change = k > 0 ? signed(now - m.of(all[k - 1].damage), m.decimals) : "";
       return h("td", {}, fixed(now, m.decimals), h("span", { class: "sub" }, change));
     }),
   ]);
+  const since = excavated >= 0 ? "the first excavation" : "the start";
   return tableBox(
-    "Cumulative since the first excavation; in small print the difference to the stage before",
+    `Cumulative since ${since}; in small print the difference to the stage before`,
     [head],
     rows,
-    "damage",
+    shown.length < 6 ? "narrow" : "",
   );
 }
 

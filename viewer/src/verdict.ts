@@ -31,22 +31,26 @@ export function marginalStages(run: Run): { index: number; stage: Stage }[] {
 
 /** What happened to the rock, in sentences. The first is the verdict. */
 export function findings(run: Run): Finding[] {
-  const result: Finding[] = [];
-  const { stages, header } = run;
-  if (header.run.interrupted) {
-    const last = stages[stages.length - 1];
-    result.push({
-      grade: "attention",
-      text: last
-        ? `The run was interrupted: the numbers hold for what was computed${last.interrupted ? `, up to a point within ${quoted(last.name)}` : ` up to the end of ${quoted(last.name)}`}.`
-        : "The run was interrupted before its first stage had ended.",
-    });
-  }
-  const excavated = stages.findIndex((s) => s.excavate.length > 0);
-  if (excavated >= 0) result.unshift(...damageFindings(run, excavated));
-  else result.unshift(movementFinding(run));
-  for (const { stage } of marginalStages(run)) result.push(marginalFinding(run, stage));
-  return result;
+  const excavated = run.stages.findIndex((s) => s.excavate.length > 0);
+  return [
+    ...(excavated >= 0 ? damageFindings(run, excavated) : [movementFinding(run)]),
+    ...slipFindings(run),
+    ...(run.header.run.interrupted ? [interruption(run)] : []),
+    ...marginalStages(run).map(({ stage }) => marginalFinding(run, stage)),
+  ];
+}
+
+function interruption(run: Run): Finding {
+  const last = run.stages[run.stages.length - 1];
+  const where = last
+    ? last.interrupted
+      ? `within ${quoted(last.name)}`
+      : `after ${quoted(last.name)}`
+    : "before its first stage";
+  return {
+    grade: "attention",
+    text: `The run was interrupted ${where}: the numbers hold for what was computed until then.`,
+  };
 }
 
 function damageFindings(run: Run, excavated: number): Finding[] {
@@ -75,12 +79,19 @@ function damageFindings(run: Run, excavated: number): Finding[] {
   }
   if (end.fallen_blocks > 0 && parts.length > 0)
     result.push({ grade: "plain", text: `${capital(list(parts))}.` });
-  if (end.slip_max_m > 0)
-    result.push({
-      grade: "plain",
-      text: `Joints slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${significant(end.slipped_length_m, 3)} m of joint slipped and ${significant(end.opened_length_m, 3)} m opened.`,
-    });
   return result;
+}
+
+function slipFindings(run: Run): Finding[] {
+  const end = run.stages[run.stages.length - 1]?.damage;
+  if (!end || !(end.slip_max_m > 0)) return [];
+  const slipped = `${significant(end.slipped_length_m, 3)} m of joint slipped and ${significant(end.opened_length_m, 3)} m opened`;
+  return [
+    {
+      grade: "plain",
+      text: `Joints slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${slipped}.`,
+    },
+  ];
 }
 
 function movementFinding(run: Run): Finding {

@@ -311,7 +311,10 @@ class Wall {
       stage.equilibrium_reached = plan.kind == StageKind::settle && !(options_.marginal && k == 1);
       stage.worst_residual_ratio = plan.kind == StageKind::settle ? 0.0083 : 0.0;
       if (options_.marginal && k == 1) stage.moving = {{120, 0.62}, {121, 0.0}, {137, 0.35}};
-      if (options_.excavation) stage.damage = damage_at(k);
+      if (options_.excavation)
+        stage.damage = damage_at(k);
+      else
+        stage.damage.slip_max = 1e-3 * static_cast<double>(k);
       if (plan.kind == StageKind::shake) add_motion(stage);
       record.steps += stage.steps;
       record.wall_time += stage.wall_time;
