@@ -90,8 +90,7 @@ void check_study(const Value& document, const std::filesystem::path& file,
   for (const Value& axis : vary->items) {
     const Value *key = axis.find("key"), *values = axis.find("values");
     if (key == nullptr || values == nullptr || !key->is(Value::Type::string)) continue;
-    for (Value value : values->items) {
-      value.key_where = key->where;
+    for (const Value& value : values->items) {
       if (!try_value(key->text, value, without_study, file, diagnostics)) break;
     }
   }

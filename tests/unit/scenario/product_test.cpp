@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/atomic_file.h"
 #include "scenario_text.h"
 
 namespace keyblock::scenario {
@@ -116,6 +117,19 @@ TEST(Explicit, LoadsSupportsHistories) {
   EXPECT_EQ(s.histories[0].name, "s");
   EXPECT_EQ(s.histories[0].block, "slider");
   EXPECT_EQ(s.histories[0].point, (Vec2{1.433, 5.633}));
+}
+
+// The two scenarios are quoted from the description of the product, where it is at hand.
+TEST(Product, ScenariosAreThoseOfItsDescription) {
+  const auto page = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "../shared/design/product.md";
+  if (!exists(page)) GTEST_SKIP() << page << " is not there";
+  const std::string text = read_file(page), mark = "```toml\n";
+  std::size_t at = 0;
+  for (const auto& file : {examples / "01-tunnel.toml", data / "explicit.toml"}) {
+    at = text.find(mark, at) + mark.size();
+    const std::string quoted = text.substr(at, text.find("```", at) - at);
+    EXPECT_TRUE(read_file(file).ends_with(quoted)) << file;
+  }
 }
 
 }  // namespace
