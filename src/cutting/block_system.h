@@ -13,7 +13,7 @@ enum class EdgeKind : std::uint8_t {
   joint_set,   ///< index: of the joint set
   trace_map,   ///< index: of the trace map
   excavation,  ///< index: of the excavation whose outline it lies on
-  domain,      ///< the edge of the domain (where the frame is)
+  domain,      ///< the edge of the domain (where the frame is); index 0
 };
 
 struct EdgeLabel {
@@ -31,10 +31,10 @@ struct CutBlock {
   std::vector<int> excavations;
 };
 
-/// What the cutting did, for the user.
+/// What the cutting did, for the user. A trace is a straight piece; a curved one of a map counts several times.
 struct CutStatistics {
   int traces = 0;               ///< traces that meet the domain
-  int joints_used = 0;          ///< traces of which some piece bounds two blocks
+  int joints_used = 0;          ///< traces of which some piece bounds two blocks, before cleaning
   double trace_length = 0.0;    ///< m inside the domain
   double removed_length = 0.0;  ///< m of dead ends and of joints that bound no block (tree cutting)
   int removed_pieces = 0;

@@ -48,8 +48,8 @@ struct CutInput {
 ///    are different blocks. A ring of joints within a block makes a hole in it and a block of its own.
 /// 3. Cleaning: slivers are merged into the neighbour with the longest common edge, smallest first, never across
 ///    an excavation outline; vertices closer than `cluster` become one for all blocks at them, and edges take in
-///    the vertices they nearly touch, where that turns no block over; slivers are merged again; near-collinear vertices are dropped, the foot of a T from
-///    the straight side only.
+///    the vertices they nearly touch, where that turns no block over; slivers are merged again; near-collinear
+///    vertices are dropped, the foot of a T from the straight side only.
 ///
 /// Where lines overlap, the edge is labelled domain before excavation before trace map before joint set, the
 /// lower index first. Every block lies wholly inside or outside of every excavation outline.

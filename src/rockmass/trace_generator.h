@@ -10,7 +10,7 @@ namespace keyblock::rockmass {
 /// Most traces one joint set may have in a window; a set that expects more is refused.
 constexpr double max_traces = 5e6;
 
-/// Number of traces that generate_traces is expected to make: those that meet the window.
+/// Estimate, from above, of the number of traces that meet the window: for the box around it along the lines.
 double expected_traces(const JointSet& set, double section_azimuth, const Box& window);
 
 /// The traces of a joint set that meet `window`, whole (not clipped), in a section whose x axis points to
