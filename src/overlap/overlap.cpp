@@ -77,6 +77,7 @@ class Finder {
   Ring read_ring(const GEOSGeometry* ring) const;
   void add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur,
                    std::vector<Overlap>& found) const;
+  [[nodiscard]] double inscribed_width(const GEOSGeometry* polygon) const;
   [[nodiscard]] Overlap region(const GEOSGeometry* polygon, const Pair& pair, double blur) const;
 
   std::span<const Polygon> blocks_;
@@ -158,6 +159,21 @@ Ring Finder::read_ring(const GEOSGeometry* ring) const {
   return points;
 }
 
+/// Diameter of the largest disc in a region that cannot be cut into convex parts (a ring of a few ulps around an island),
+/// from above: to within 4e-5 of its extent.
+double Finder::inscribed_width(const GEOSGeometry* polygon) const {
+  double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
+  GEOSGeom_getXMin_r(context_.get(), polygon, &x0);
+  GEOSGeom_getYMin_r(context_.get(), polygon, &y0);
+  GEOSGeom_getXMax_r(context_.get(), polygon, &x1);
+  GEOSGeom_getYMax_r(context_.get(), polygon, &y1);
+  const double tolerance = 1e-5 * std::hypot(x1 - x0, y1 - y0);
+  const Geometry radius = own(GEOSMaximumInscribedCircle_r(context_.get(), polygon, tolerance));
+  double length = 0.0;
+  if (!radius || GEOSLength_r(context_.get(), radius.get(), &length) != 1) return HUGE_VAL;
+  return 2.0 * (length + tolerance);
+}
+
 Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blur) const {
   Polygon piece{read_ring(GEOSGetExteriorRing_r(context_.get(), polygon)), {}};
   const int holes = GEOSGetNumInteriorRings_r(context_.get(), polygon);
@@ -167,20 +183,25 @@ Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blu
   orient(piece);
   const Ring hull = convex_hull(piece.outer);
   Overlap found{convex_width(hull), pair.a, pair.b, centroid(piece), area(piece)};
+  std::vector<Ring> parts;
+  double covered = 0.0;
   try {
-    const std::vector<Ring> parts = convex_parts(piece);
-    if (parts.size() > 1) {
-      double widest = 0.0;
-      for (const Ring& part : parts) {
-        const double width = convex_width(part);
-        if (width <= widest) continue;
-        widest = width;
-        found.where = centroid({part, {}});
-      }
-      found.depth = std::min(found.depth, widest);
-    }
+    parts = convex_parts(piece);
+    for (const Ring& part : parts) covered += signed_area(part);
   } catch (const std::invalid_argument&) {
-    // Too thin to be cut up; the hull stands.
+    // Too thin to be cut up.
+  }
+  if (std::abs(covered - found.area) > 0.01 * found.area) {
+    found.depth = std::min(found.depth, inscribed_width(polygon));
+  } else if (parts.size() > 1) {
+    double widest = 0.0;
+    for (const Ring& part : parts) {
+      const double width = convex_width(part);
+      if (width <= widest) continue;
+      widest = width;
+      found.where = centroid({part, {}});
+    }
+    found.depth = std::min(found.depth, widest);
   }
   found.depth = std::min(found.depth + blur, pair.bound);
   return found;
