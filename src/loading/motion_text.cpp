@@ -74,7 +74,7 @@ std::vector<double> MotionText::numbers(std::size_t first, std::size_t count, st
   std::size_t k = first;
   for (; values.size() < count; ++k) {
     if (k >= lines_.size()) {
-      fail(lines_.size() == 0 ? 0 : lines_.size() - 1, 0,
+      fail(lines_.empty() ? 0 : lines_.size() - 1, 0,
            fmt::format("the end of the file after {} {}", values.size(), what),
            fmt::format("{} {}", count, what), "the file may have been cut short");
     }

@@ -24,10 +24,10 @@ class MotionText {
   /// First line ≥ `from` that contains `text` in any case; size() when there is none.
   [[nodiscard]] std::size_t find(std::string_view text, std::size_t from = 0) const;
 
-  /// Reads `count` numbers from line `first` on. Columns of `width` characters; with width 0 numbers end at a
-  /// blank, a comma, or where a sign that belongs to no exponent begins the next. Throws InputError for
-  /// anything that is no finite number, and when the file ends or `stop` (a line) is reached too early.
-  /// `next_line` receives the line after the last one read.
+  /// Reads `count` numbers from line `first` on, in columns of `width` characters; with width 0 numbers end at a
+  /// blank, a comma, or where a sign that belongs to no exponent begins the next. `what` they are is for the message.
+  /// `next_line` receives the line after the last one read. Throws InputError for anything that is no finite
+  /// number, and when the file ends too early.
   [[nodiscard]] std::vector<double> numbers(std::size_t first, std::size_t count, std::size_t width,
                                             const std::string& what, std::size_t* next_line = nullptr) const;
 
