@@ -152,6 +152,18 @@ void Elasticity::add_tangent(const double* a, double viscous, double floor, doub
   }
 }
 
+double Elasticity::material_work(const double* a, const double* d) const {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < weight_.size(); ++q) {
+    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
+    const Gradient2 f = deformation(a, g), h = deformation(d, g);
+    const double xx = f.xx * h.xx + f.yx * h.yx, yy = f.xy * h.xy + f.yy * h.yy;
+    const double two_xy = f.xx * h.xy + f.xy * h.xx + f.yx * h.yy + f.yy * h.yx;
+    sum += weight_[q] * (c11_ * (xx * xx + yy * yy) + 2.0 * c12_ * xx * yy + c33_ * two_xy * two_xy);
+  }
+  return sum;
+}
+
 namespace {
 Stress push_forward(double fxx, double fxy, double fyx, double fyy, const Stress& s) {
   const double j = fxx * fyy - fxy * fyx;

@@ -46,6 +46,9 @@ struct GroundSpring {
   double anchor = 0.0;        ///< m, coordinate of the point at the start
   double stiffness = 0.0;     ///< N/m per thickness
   loading::TimeTable motion;  ///< m; empty: none
+
+  /// Coordinate of the ground end at a time.
+  [[nodiscard]] double target(double time) const { return anchor + (motion.empty() ? 0.0 : motion(time)); }
 };
 
 /// Everything that does not change during a run but by excavation.

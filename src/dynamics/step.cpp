@@ -138,8 +138,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
   }
 }
 
-void Stepper::detect(State& state, const Drive& drive) {
-  (void)drive;
+void Stepper::detect(State& state) {
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
   detection_.find(model_.surface, reach_, state.contacts, contacts_);
   ensure_pattern(state, changed);
@@ -185,7 +184,7 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
 bool Stepper::attempt(State& state, const Drive& drive, StepReport& report) {
   predict_reach(state, drive);
   for (int look = 0; look < 3; ++look) {
-    detect(state, drive);
+    detect(state);
     problem_.build(model_, state, drive, model_.surface, contacts_, team_);
     memory_.clear();
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -223,7 +222,9 @@ bool Stepper::moved_too_far() {
 
 void Stepper::account(State& state, const Drive& drive) {
   EnergyLedger& ledger = state.ledger;
-  ledger.numerical += problem_.elastic_loss(increment_);
+  const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_);
+  ledger.numerical += elastic.numerical;
+  ledger.damping += elastic.damping;
   const double theta = model_.solver.theta;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
@@ -245,6 +246,22 @@ void Stepper::account(State& state, const Drive& drive) {
     const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
     for (std::size_t k = 0; k < load.force.size(); ++k)
       ledger.input += f * load.force[k] * increment_[model_.blocks[at(load.block)].first + k];
+  }
+  support_energy_ = 0.0;
+  for (const GroundSpring& spring : model_.springs) {
+    if (!model_.moves(at(spring.block))) continue;
+    const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
+    double coordinate = 0.0, moved = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
+      coordinate += spring.phi[k] * state.position[first + 2 * k];
+      moved += spring.phi[k] * increment_[first + 2 * k];
+    }
+    const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step), end = spring.target(drive.end_time);
+    const double stretch = coordinate + moved - end, change = moved - (end - before);
+    support_energy_ += 0.5 * spring.stiffness * stretch * stretch;
+    ledger.input -= spring.stiffness * stretch * (end - before);
+    // elastic_loss has taken ½ k moved² for a ground that stands still.
+    ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
@@ -282,7 +299,7 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
     if (memory.state != contact::State::open) ++report.closed_contacts;
     report.penetration = std::max(report.penetration, s.penetration(depth));
   }
-  report.contact_energy = contact_energy_;
+  report.contact_energy = contact_energy();
 }
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {

@@ -52,8 +52,8 @@ class Stepper {
 
   /// One dynamic step of length dt.
   StepReport advance(State& state, double dt, const GroundAcceleration* ground);
-  /// One static step: velocities are zero before and after. inertia_scale: factor on the inertia of each block.
-  /// residual[b]: what is out of balance, |force| over weight, of each block, as vector of coefficient 0 and as norm.
+  /// One static step: velocities are zero before and after. inertia_scale: factor on the inertia of each block. What is
+  /// out of balance is in balance().
   StepReport relax(State& state, double dt, std::span<const double> inertia_scale);
 
   /// Unbalanced force of each block in the last static step over its weight (all coefficients), and its share that is
@@ -74,12 +74,12 @@ class Stepper {
   [[nodiscard]] double kinetic_energy(const State& state) const;
   [[nodiscard]] double strain_energy(const State& state) const;
   [[nodiscard]] double gravity_energy(const State& state) const;
-  [[nodiscard]] double contact_energy() const { return contact_energy_; }
+  [[nodiscard]] double contact_energy() const { return contact_energy_ + support_energy_; }
 
  private:
   void place(State& state);
   void predict_reach(const State& state, const Drive& drive);
-  void detect(State& state, const Drive& drive);
+  void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
   bool attempt(State& state, const Drive& drive, StepReport& report);
   bool moved_too_far();
@@ -106,7 +106,7 @@ class Stepper {
   std::vector<Force> forces_;
   std::vector<double> stored_;  ///< J, elastic energy of each contact at the end of the last step
   std::vector<Balance> balance_;
-  double contact_energy_ = 0.0;
+  double contact_energy_ = 0.0, support_energy_ = 0.0;
 };
 
 }  // namespace keyblock::dynamics

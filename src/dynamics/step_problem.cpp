@@ -26,6 +26,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     h_.assign(used, 0.0);
     b_.assign(model.coefficients, 0.0);
     inertia_.assign(model.blocks.size(), 0.0);
+    viscous_.assign(model.blocks.size(), 0.0);
     weight_.assign(model.blocks.size(), 0.0);
     block_energy_.assign(model.blocks.size(), 0.0);
   }
@@ -55,9 +56,8 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       b[1] += block.body_force() * acceleration.y;
       const double frequency =
           std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
-      const double viscous =
-          drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
-      block.elasticity.add_tangent(a, viscous, 0.5 * inertia_[i], h, stride);
+      viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
+      block.elasticity.add_tangent(a, viscous_[i], 0.5 * inertia_[i], h, stride);
       for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
     }
   });
@@ -87,8 +87,7 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
     double coordinate = 0.0;
     for (std::size_t k = 0; k < spring.phi.size(); ++k)
       coordinate += spring.phi[k] * state.position[block.first + 2 * k + at(spring.axis)];
-    const double target = spring.anchor + (spring.motion.empty() ? 0.0 : spring.motion(drive.end_time));
-    const double force = -spring.stiffness * (coordinate - target);
+    const double force = -spring.stiffness * (coordinate - spring.target(drive.end_time));
     const int stride = linalg::padded_rows(2 * block.size);
     double* h = &h_[h_first_[at(spring.block)]];
     for (int l = 0; l < block.size; ++l) {
@@ -285,17 +284,20 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
   return worst;
 }
 
-double StepProblem::elastic_loss(std::span<const double> d) const {
+StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d) const {
   std::vector<double> hd(d.size());
   multiply(d, hd);
-  double sum = 0.0;
+  ElasticLoss loss;
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) continue;
     const Block& block = model_->blocks[i];
-    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
-      sum += d[k] * (hd[k] - inertia_[i] * d[k]);
+    const double damping = viscous_[i] * block.elasticity.material_work(&state.position[block.first], &d[block.first]);
+    double stiffness = 0.0;
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k) stiffness += d[k] * (hd[k] - inertia_[i] * d[k]);
+    loss.damping += damping;
+    loss.numerical += 0.5 * (stiffness - damping);
   }
-  return 0.5 * sum;
+  return loss;
 }
 
 }  // namespace keyblock::dynamics

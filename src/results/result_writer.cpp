@@ -82,6 +82,7 @@ struct ResultWriter::State {
   std::optional<OpenFile> file;
   Clock::time_point start, last_flush;
   bool published = false;
+  bool begins_with_stage = false;                           // the first stage reported has no steps yet
   std::vector<std::pair<int, std::string>> waiting_stages;  // lines from before the first row
 
   [[nodiscard]] std::filesystem::path path() const { return directory / "result.h5"; }
@@ -110,16 +111,19 @@ void ResultWriter::State::copy_earlier(long first_new_step) {
     diagnostic.hint = "run without --resume, or into another folder";
     throw InputError(std::move(diagnostic));
   }
-  const auto copy = [first_new_step](const auto& rows, auto& table) {
+  const int first_new_stage = waiting_stages.empty() ? 0 : waiting_stages.front().first;
+  // A stage that begins with the first new event begins at the step at which the one before ended.
+  const auto copy = [&](const auto& rows, auto& table) {
     for (const auto& row : rows) {
-      if (row.step < first_new_step) table.append(row);
+      if (row.step < first_new_step || row.stage < first_new_stage) table.append(row);
     }
   };
   copy(earlier.frames, file->frames);
   copy(earlier.contacts, file->contacts);
-  copy(earlier.histories, file->histories);
   copy(earlier.steps, file->steps);
-  const int first_new_stage = waiting_stages.empty() ? 0 : waiting_stages.front().first;
+  for (const simulation::HistoryRow& row : earlier.histories) {
+    if (row.step < first_new_step + (begins_with_stage ? 1 : 0)) file->histories.append(row);
+  }
   for (std::size_t k = 0; k < earlier.run.stages.size() && static_cast<int>(k) < first_new_stage; ++k) {
     file->stages.append_line(stage_json(static_cast<int>(k), earlier.run.stages[k], true));
   }
@@ -179,10 +183,12 @@ void ResultWriter::flush() {
 
 void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) {
   const std::string line = stage_json(index, stage, false);
-  if (!state_->published)
+  if (!state_->published) {
+    state_->begins_with_stage = stage.steps == 0;
     state_->waiting_stages.emplace_back(index, line);
-  else
+  } else {
     state_->file->stages.append_line(line);
+  }
 }
 
 void ResultWriter::frame(const simulation::Frame& frame) {

@@ -16,7 +16,8 @@ namespace keyblock::results {
 ///
 /// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps what
 /// the earlier one had reported before the first step that is now reported (by the step counts of the events, which
-/// therefore must count the whole run), and the stages that had ended.
+/// therefore must count the whole run), and the stages that had ended. stage_begin tells by StageRecord::steps whether
+/// its stage goes on or begins.
 ///
 /// Every call may throw RunError: the disk may be full.
 class ResultWriter : public simulation::RunObserver {

@@ -283,6 +283,7 @@ void Runner::run_stage() {
   stage_start_ = last_progress_ = Clock::now();
   first_step_of_stage_ = now_.stage_step;
   stage_iterations_ = 0;
+  record.steps = now_.stage_step;
   if (now_.stage_step == 0) {
     excavate(record.stage);
     observer_.stage_begin(now_.stage, record);

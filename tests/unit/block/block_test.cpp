@@ -98,6 +98,25 @@ TEST_P(ElasticityOrder, ForceAndTangentAreDerivatives) {
   }
 }
 
+TEST_P(ElasticityOrder, MaterialWorkIsWhatViscosityAddsToTheTangent) {
+  const Basis basis(l_shape, GetParam());
+  const Elasticity elasticity(l_shape, basis, rock, stress);
+  const std::vector<double> a = disturbed(basis, 0.02, 1), b = disturbed(basis, 0.01, 9);
+  const int n = 2 * basis.size();
+  std::vector<double> plain(a.size() * a.size(), 0.0), viscous(plain), d(a.size());
+  elasticity.add_tangent(a.data(), 0.0, 1e30, plain.data(), n);
+  elasticity.add_tangent(a.data(), 1.0, 1e30, viscous.data(), n);
+  for (std::size_t k = 0; k < d.size(); ++k) d[k] = b[k] - a[k];
+  double work = 0.0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const auto lower = static_cast<std::size_t>(std::min(i, j) * n + std::max(i, j));
+      work += d[static_cast<std::size_t>(i)] * (viscous[lower] - plain[lower]) * d[static_cast<std::size_t>(j)];
+    }
+  }
+  EXPECT_NEAR(elasticity.material_work(a.data(), d.data()) / work, 1.0, 1e-10);
+}
+
 TEST_P(ElasticityOrder, EnergyIsInvariantUnderRotationAndStressTurns) {
   const Basis basis(l_shape, GetParam());
   const Elasticity elasticity(l_shape, basis, rock, stress);
