@@ -21,8 +21,12 @@ void check_scenario(const ScenarioArguments& arguments) {
     scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
   }
   print_warnings(arguments, warnings);
-  std::cout << fmt::format("{}: ok: {} blocks, {} joint traces, {} stages\n", arguments.file,
-                           blocks.system.blocks.size(), blocks.traces.size(), scenario.stages.size());
+  const auto count = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  std::cout << fmt::format(
+      "{}: ok: {}, {}, {}\n", arguments.file, count(blocks.system.blocks.size(), "block"),
+      count(blocks.traces.size(), "joint trace"), count(scenario.stages.size(), "stage"));
 }
 
 }  // namespace
