@@ -13,7 +13,8 @@ struct Tolerances {
         least_length(0.05 * block_size),
         corner_tie(0.00075 * block_size),
         corner_depth(0.00015 * block_size),
-        in_place(1e-4 * block_size) {}
+        in_place(1e-4 * block_size),
+        turn(0.0002 * block_size) {}
 
   /// A gap below which a contact takes part in the step although it is open (1 mm), beside what motion adds. Too small:
   /// a contact is met only after it has been penetrated. Too large: more contacts to evaluate.
@@ -22,7 +23,7 @@ struct Tolerances {
   double end_zone;
   /// Depth up to which a vertex behind an edge is in contact with it (2 cm). Must stay below the thickness of a block:
   /// beyond it a vertex is grabbed by the far edge. Also how far an edge reaches past a reflex end, where a vertex
-  /// nested in a concave corner may slip by.
+  /// nested in a concave corner may slip by. A block of area A and perimeter P has A/P, should that be less.
   double depth_limit;
   /// How far candidates are collected beyond the activation distance (1 cm), each block on its own. Larger: fewer
   /// rebuilds, more candidates.
@@ -35,6 +36,11 @@ struct Tolerances {
   double corner_depth;
   /// Largest gap of a joint in place at the start (0.07 mm): such a contact has the joint's cohesion and tension.
   double in_place;
+
+  /// A block in contact may turn in one step only so far that its vertices leave the straight way that the step is
+  /// linear in by this much, ½ w² r (0.13 mm); beyond, the step is cut. Larger: small spinning blocks are pressed into
+  /// others by the rotation and thrown out again.
+  double turn;
 
   /// A vertex touches an edge only when both its own edges lie outside it, up to this angle (sin 2°).
   static constexpr double sine_inside = 0.0349;

@@ -195,9 +195,26 @@ bool Stepper::attempt(State& state, const Drive& drive, StepReport& report) {
         open_close_.solve(problem_, contacts_, memory_, *solver_, model_.solver, increment_);
     report.iterations += result.iterations;
     if (!result.converged) return false;
+    if (turned_too_far(state)) return false;
     if (!moved_too_far()) return true;
   }
   return true;
+}
+
+/// Whether a block in contact turned so far that the step, linear in its displacement, misses where its vertices go.
+bool Stepper::turned_too_far(const State& state) const {
+  const auto turned = [&](int b) {
+    if (!model_.moves(at(b))) return false;
+    const Block& block = model_.blocks[at(b)];
+    const double w = block.pose.mean_spin(&increment_[block.first], &state.position[block.first]);
+    return 0.5 * w * w * block.radius > tolerances_.turn;
+  };
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const StepProblem::Row& row = problem_.rows()[c];
+    if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
+    if (turned(contacts_[c].block_a) || turned(contacts_[c].block_b)) return true;
+  }
+  return false;
 }
 
 /// Whether a block moved beyond the reach within which its contacts were looked for; the reach is then raised.

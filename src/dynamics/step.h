@@ -33,7 +33,8 @@ struct StepReport {
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
 ///
 /// A step, in order: detect contacts; build the minimization; open-close iteration; take over the increment (pose update,
-/// contact memory, energies). When the iteration does not settle, the step is cut in two from where it started.
+/// contact memory, energies). When the iteration does not settle, or a block in contact turns too far for a linear step,
+/// the step is cut in two from where it started.
 class Stepper {
  public:
   Stepper(Model& model, ThreadTeam& team);
@@ -82,6 +83,7 @@ class Stepper {
   void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
   bool attempt(State& state, const Drive& drive, StepReport& report);
+  [[nodiscard]] bool turned_too_far(const State& state) const;
   bool moved_too_far();
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);

@@ -53,6 +53,8 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties,
               block::Pose(polygon, basis), properties.material};
   block.fixed = properties.fixed;
   block.area = area(polygon);
+  const Vec2 centre = centroid(polygon);
+  for (const Vec2 p : polygon.outer) block.radius = std::max(block.radius, norm(p - centre));
   block.size = basis.size();
   return block;
 }
@@ -84,6 +86,7 @@ void add_to_surface(Model& model, const Block& block, const std::vector<std::vec
     }
   }
   surface.block_begin.push_back(surface.vertices());
+  surface.thickness.push_back(block.area / perimeter(block.reference));
   surface.present.push_back(1);
   surface.fixed.push_back(block.fixed);
 }

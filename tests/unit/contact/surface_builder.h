@@ -22,6 +22,7 @@ inline void add_block(Surface& surface, const Polygon& polygon, bool fixed = fal
     }
   }
   surface.block_begin.push_back(surface.vertices());
+  surface.thickness.push_back(area(polygon) / perimeter(polygon));
   surface.present.push_back(1);
   surface.fixed.push_back(fixed);
 }
