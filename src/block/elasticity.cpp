@@ -107,7 +107,8 @@ void floor_eigenvalues(Eigen::MatrixXd& g, double floor) {
 
 }  // namespace
 
-void Elasticity::add_tangent(const double* a, double viscous, double floor, double* tangent, int stride) const {
+void Elasticity::add_tangent(const double* a, double viscous, double floor, double* tangent,
+                             int stride) const {
   Eigen::MatrixXd geometric = Eigen::MatrixXd::Zero(size_ - 1, size_ - 1);
   std::vector<std::array<double, 6>> b(
       static_cast<std::size_t>(size_));  // B_k, columns x and y of three rows

@@ -43,7 +43,8 @@ bool Detection::evaluate(const Surface& surface, std::span<const double> reach, 
   const int block_a = surface.block[at(c.vertex)], block_b = surface.block[at(c.edge)];
   const double motion = reach[at(block_a)] + reach[at(block_b)];
   if (!c.memory.bonded && gap > tolerances_.activation + motion) return false;
-  const double deepest = std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
+  const double deepest =
+      std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
   if (gap < -deepest) return false;
   const double zone = std::min(tolerances_.end_zone + motion, 0.5 * length);
   const double before = surface.reflex[at(c.edge)] ? std::max(deepest, zone) : zone;

@@ -12,7 +12,7 @@ struct Surface {
   std::vector<int> block_begin;            ///< vertices of block b: block_begin[b] … block_begin[b + 1]
   std::vector<std::uint8_t> present;       ///< per block: not excavated
   std::vector<std::uint8_t> fixed;         ///< per block
-  std::vector<double> thickness;  ///< m, per block: area over perimeter
+  std::vector<double> thickness;           ///< m, per block: area over perimeter
   std::vector<int> block, next, previous;  ///< per vertex
   std::vector<std::uint8_t>
       reflex;  ///< per vertex: the block's angle there exceeds 180°; such a vertex touches nothing

@@ -21,8 +21,8 @@ struct Block {
   block::Pose pose;
   Material material;
   bool fixed = false;
-  double area = 0.0;  ///< m², of the reference polygon
-  double radius = 0.0;    ///< m, from the centroid to the farthest vertex
+  double area = 0.0;    ///< m², of the reference polygon
+  double radius = 0.0;  ///< m, from the centroid to the farthest vertex
   std::size_t first =
       0;         ///< its coefficients start here in State::position: a_0x, a_0y, a_1x, …; fixed blocks last
   int size = 0;  ///< N, number of basis functions; 2N unknowns

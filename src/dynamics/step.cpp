@@ -109,7 +109,8 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
 
 void Stepper::remove_absent(State& state) {
   for (std::size_t c = 0; c < stored_.size(); ++c) {
-    const bool stays = model_.surface.present[at(contacts_[c].block_a)] && model_.surface.present[at(contacts_[c].block_b)];
+    const bool stays =
+        model_.surface.present[at(contacts_[c].block_a)] && model_.surface.present[at(contacts_[c].block_b)];
     if (!stays) contact_energy_ -= std::exchange(stored_[c], 0.0);
   }
   candidates_.invalidate();
@@ -273,7 +274,8 @@ void Stepper::account(State& state, const Drive& drive) {
       coordinate += spring.phi[k] * state.position[first + 2 * k];
       moved += spring.phi[k] * increment_[first + 2 * k];
     }
-    const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step), end = spring.target(drive.end_time);
+    const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step),
+                 end = spring.target(drive.end_time);
     const double stretch = coordinate + moved - end, change = moved - (end - before);
     support_energy_ += 0.5 * spring.stiffness * stretch * stretch;
     ledger.input -= spring.stiffness * stretch * (end - before);

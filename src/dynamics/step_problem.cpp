@@ -291,9 +291,11 @@ StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) continue;
     const Block& block = model_->blocks[i];
-    const double damping = viscous_[i] * block.elasticity.material_work(&state.position[block.first], &d[block.first]);
+    const double damping =
+        viscous_[i] * block.elasticity.material_work(&state.position[block.first], &d[block.first]);
     double stiffness = 0.0;
-    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k) stiffness += d[k] * (hd[k] - inertia_[i] * d[k]);
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      stiffness += d[k] * (hd[k] - inertia_[i] * d[k]);
     loss.damping += damping;
     loss.numerical += 0.5 * (stiffness - damping);
   }

@@ -82,7 +82,7 @@ class StepProblem {
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D.
   struct ElasticLoss {
     double numerical = 0.0;  ///< ½ Dᵀ (K_t + K_support) D, what end-of-step forces lose against the potential
-    double damping = 0.0;    ///< by the viscosity of the rock
+    double damping = 0.0;  ///< by the viscosity of the rock
   };
   [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d) const;
   [[nodiscard]] double strain_energy() const { return strain_energy_; }
@@ -100,7 +100,7 @@ class StepProblem {
   std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;
   std::vector<double> inertia_;  ///< per block, (1+θ)ρ/Δt²
-  std::vector<double> viscous_;       ///< per block, β/Δt: viscosity of the rock over its stiffness
+  std::vector<double> viscous_;  ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> weight_;   ///< per block, N-like scale of its coefficients
   std::vector<double> block_energy_;
   double strain_energy_ = 0.0;

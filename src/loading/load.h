@@ -21,7 +21,7 @@ struct Load {
 struct Support {
   std::string block;
   bool is_edge = false;
-  std::vector<Vec2> points;         ///< the points, or the two ends of the stretch
+  std::vector<Vec2> points;  ///< the points, or the two ends of the stretch
   bool along_x = true, along_y = true;
   std::optional<double> stiffness;  ///< N/m per thickness at a point, Pa/m on a stretch; default 1000 × young
   TimeTable motion_x, motion_y;     ///< m, prescribed displacement of the ground end; empty: none

@@ -60,6 +60,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.present);
   archive(s.damage.start);
   archive(s.damage.pieces);
+  archive(s.damage.height);
+  archive(s.damage.width);
   archive(s.settler.time_step);
   archive(s.settler.quiet_steps);
   archive(s.settler.first_ratio);

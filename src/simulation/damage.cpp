@@ -59,11 +59,15 @@ void DamageGauge::start(const dynamics::State& state, std::span<const contact::C
   std::sort(pieces_.begin(), pieces_.end(), [](const JointPiece& x, const JointPiece& y) {
     return std::tie(x.vertex, x.edge) < std::tie(y.vertex, y.edge);
   });
+  height_ = diameter(state, {0.0, 1.0});
+  width_ = diameter(state, {1.0, 0.0});
 }
 
 void DamageGauge::restore(Reference reference) {
   start_ = std::move(reference.start);
   pieces_ = std::move(reference.pieces);
+  height_ = reference.height;
+  width_ = reference.width;
 }
 
 DamageGauge::Offset DamageGauge::offset(const JointPiece& piece) const {
@@ -147,16 +151,16 @@ Damage DamageGauge::measure(const dynamics::State& state) const {
     if (now.opening > setup_.damage.opening) damage.opened_length += piece.length;
   }
   damage.slip_mean = length > 0.0 ? slip_length / length : 0.0;
-  damage.closure_vertical = closure(state, {0.0, 1.0});
-  damage.closure_horizontal = closure(state, {1.0, 0.0});
+  damage.closure_vertical = height_ - diameter(state, {0.0, 1.0});
+  damage.closure_horizontal = width_ - diameter(state, {1.0, 0.0});
   return damage;
 }
 
-double DamageGauge::closure(const dynamics::State& state, Vec2 direction) const {
+double DamageGauge::diameter(const dynamics::State& state, Vec2 direction) const {
   if (setup_.excavations.empty()) return 0.0;
   const Ring& outline = setup_.excavations.front().outline;
   const Vec2 centre = centroid({outline, {}});
-  Vec2 before[2], now[2];
+  Vec2 now[2];
   for (int end = 0; end < 2; ++end) {
     const Vec2 out = end == 0 ? direction : -direction;
     // Where a ray from the centre leaves the outline, and a little beyond: in the wall.
@@ -178,11 +182,10 @@ double DamageGauge::closure(const dynamics::State& state, Vec2 direction) const 
     const dynamics::Block& block = model_.blocks[b];
     std::vector<double> phi(at(block.size));
     block.basis.evaluate(point, phi.data());
-    before[end] = point;
     for (std::size_t k = 0; k < phi.size(); ++k)
       now[end] += phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
   }
-  return norm(before[0] - before[1]) - norm(now[0] - now[1]);
+  return norm(now[0] - now[1]);
 }
 
 }  // namespace keyblock::simulation

@@ -41,8 +41,9 @@ class DamageGauge {
   struct Reference {
     std::vector<Vec2> start;  ///< centroids, per block
     std::vector<JointPiece> pieces;
+    double height = 0.0, width = 0.0;  ///< m, diameters of the opening
   };
-  [[nodiscard]] Reference reference() const { return {start_, pieces_}; }
+  [[nodiscard]] Reference reference() const { return {start_, pieces_, height_, width_}; }
   void restore(Reference reference);
 
  private:
@@ -51,14 +52,15 @@ class DamageGauge {
   };
   [[nodiscard]] Offset offset(const JointPiece& piece) const;
   [[nodiscard]] double area_inside_openings(const Polygon& block) const;
-  /// Change of the distance between two material points, those where the walls stand at the ends of a diameter of the
-  /// first opening; 0 where no block does.
-  [[nodiscard]] double closure(const dynamics::State& state, Vec2 direction) const;
+  /// Distance between two material points, those where the walls stand at the ends of a diameter of the first opening;
+  /// 0 where no block does.
+  [[nodiscard]] double diameter(const dynamics::State& state, Vec2 direction) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
   std::vector<Vec2> start_;
   std::vector<JointPiece> pieces_;  ///< ascending by vertex, then edge
+  double height_ = 0.0, width_ = 0.0;
 };
 
 }  // namespace keyblock::simulation

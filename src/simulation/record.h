@@ -99,7 +99,7 @@ struct Energy {
   double gravity = 0.0;   ///< potential, relative to the start
   double contact = 0.0;   ///< stored in contact and support springs
   double friction = 0.0;  ///< dissipated
-  double damping = 0.0;   ///< dissipated by the dashpots of contacts
+  double damping = 0.0;   ///< dissipated by the dashpots of contacts and the viscosity of the rock
   double input =
       0.0;  ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
   double numerical = 0.0;       ///< dissipated by the time integration, computed step by step

@@ -46,7 +46,7 @@ function conventions(): HTMLElement {
         "Displacement and velocity are relative to the base, whose acceleration the ground motion is. Static steps take no simulated time.",
       ),
       item(
-        "Slip is the accumulated shear displacement along a joint contact since the excavation; gap is the opening normal to it, negative where contact springs are compressed.",
+        "Slip is the shear displacement of the two sides of a joint against each other since the excavation; gap is the opening normal to it, negative where contact springs are compressed.",
       ),
       item(
         "A block has fallen when it has left its place for the opening; loosened means moved beyond the limit of the scenario without having fallen. Damage is cumulative since the first excavation; the user guide has the definitions.",

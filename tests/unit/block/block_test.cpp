@@ -111,7 +111,8 @@ TEST_P(ElasticityOrder, MaterialWorkIsWhatViscosityAddsToTheTangent) {
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       const auto lower = static_cast<std::size_t>(std::min(i, j) * n + std::max(i, j));
-      work += d[static_cast<std::size_t>(i)] * (viscous[lower] - plain[lower]) * d[static_cast<std::size_t>(j)];
+      work +=
+          d[static_cast<std::size_t>(i)] * (viscous[lower] - plain[lower]) * d[static_cast<std::size_t>(j)];
     }
   }
   EXPECT_NEAR(elasticity.material_work(a.data(), d.data()) / work, 1.0, 1e-10);

@@ -304,7 +304,7 @@ void SampleRun::play(simulation::RunObserver& observer, long first, long last, b
     if (index != stage_now) {
       stage_now = index;
       simulation::StageRecord record = stage(index);
-      record.steps = 0;
+      record.steps = step - (index == 0 ? 1 : 11);  // done before: a resumed stage goes on
       record.duration = 0.0;
       observer.stage_begin(index, record);
     }

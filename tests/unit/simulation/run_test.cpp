@@ -1,7 +1,6 @@
 #include "simulation/run.h"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <atomic>
