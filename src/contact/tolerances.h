@@ -14,7 +14,7 @@ struct Tolerances {
         corner_tie(0.00075 * block_size),
         corner_depth(0.00015 * block_size),
         in_place(1e-4 * block_size),
-        turn(0.0002 * block_size) {}
+        turn(5e-5 * block_size) {}
 
   /// A gap below which a contact takes part in the step although it is open (1 mm), beside what motion adds. Too small:
   /// a contact is met only after it has been penetrated. Too large: more contacts to evaluate.
@@ -38,7 +38,7 @@ struct Tolerances {
   double in_place;
 
   /// A block in contact may turn in one step only so far that its vertices leave the straight way that the step is
-  /// linear in by this much, ½ w² r (0.13 mm); beyond, the step is cut. Larger: small spinning blocks are pressed into
+  /// linear in by this much, ½ w² r (0.03 mm); beyond, the step is cut. Larger: small spinning blocks are pressed into
   /// others by the rotation and thrown out again.
   double turn;
 
