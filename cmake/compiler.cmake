@@ -4,9 +4,15 @@ target_compile_options(keyblock_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
   # GCC 12 sees overlapping copies in `"literal" + std::string` that are not there (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
-  # The same bits from every build: no fused multiply-add behind our back, and never -ffast-math.
-  -ffp-contract=off)
+  # Vector registers are passed between inlined functions only, so their calling convention does not matter.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>
+  # The same bits from every build: no fused multiply-add behind our back, and never -ffast-math. GCC 12's vectorizer
+  # makes vfmaddsub of x·c ∓ y·s in spite of -ffp-contract=off (tests/integration/instructions.py).
+  -ffp-contract=off
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-vectorize>)
 target_include_directories(keyblock_options INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
+# Eigen would pick other instructions, and other roundings, on other machines.
+target_compile_definitions(keyblock_options INTERFACE EIGEN_DONT_VECTORIZE)
 if(KEYBLOCK_NATIVE)
   target_compile_options(keyblock_options INTERFACE -march=native)
 endif()

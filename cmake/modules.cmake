@@ -28,7 +28,7 @@ function(keyblock_tests)
     if(sources)
       add_executable(test_${module} ${sources})
       target_link_libraries(test_${module} PRIVATE keyblock_${module} GTest::gtest_main GTest::gmock rapidcheck Eigen3::Eigen)
-      target_compile_definitions(test_${module} PRIVATE EIGEN_DONT_VECTORIZE
+      target_compile_definitions(test_${module} PRIVATE
         KEYBLOCK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KEYBLOCK_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
       gtest_discover_tests(test_${module} TEST_PREFIX "unit." DISCOVERY_TIMEOUT 60 PROPERTIES LABELS unit)
       add_dependencies(unit_tests test_${module})

@@ -15,12 +15,14 @@ struct Memory {
   double offset =
       0.0;  ///< m, subtracted from the penetration: a contact born penetrated does not push that out;
             ///< negative: the closure of a joint that carries in-situ stress
+  double stiffness = 0.0;     ///< N/m per thickness, of the normal spring in the last step
   double shear = 0.0;         ///< m, elastic shear displacement
   double normal_force = 0.0;  ///< N per thickness, compression positive
   double bounding_force =
       0.0;  ///< N per thickness; times μ it bounds the friction of the next step: the normal force,
             ///< while sliding extrapolated, so that friction does not lag behind it
-  double slip = 0.0;  ///< m, shear displacement since the slip was last set to zero
+  double stored = 0.0;  ///< J per thickness, elastic energy of the springs
+  double slip = 0.0;    ///< m, shear displacement since the slip was last set to zero
   State state = State::open;
   bool tracked = false;  ///< took part in the last step
   bool bonded = false;   ///< in place, with cohesion and tension not yet broken

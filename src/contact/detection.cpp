@@ -121,13 +121,13 @@ void Detection::find(const Surface& surface, std::span<const double> reach,
     if (!memory.tracked) {
       memory.tracked = true;
       memory.offset = std::max(0.0, -found_[k].gap);
-      memory.shear = 0.0;
+      memory.shear = memory.stiffness = memory.stored = 0.0;
       memory.normal_force = memory.bounding_force = 0.0;
       memory.state = State::open;
     } else if (memory.offset > 0.0) {
       memory.offset = std::min(memory.offset, std::max(0.0, -found_[k].gap));
     }
-    complete(surface, candidates[at(found_[k].candidate)], found_[k]);
+    complete(surface, memory, found_[k]);
     contacts.push_back(found_[k]);
   }
 }
@@ -178,19 +178,37 @@ void Detection::compete(std::span<const Member> members, std::vector<Candidate>&
   }
 }
 
-void Detection::complete(const Surface& surface, const Candidate& c, Contact& contact) const {
+namespace {
+
+/// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
+/// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
+/// comes back from there when the joint gets shorter again.
+void keep_energy(Memory& memory, double gap, double stiffness) {
+  const double depth = -gap - memory.offset;
+  if (memory.stiffness > 0.0 && stiffness != memory.stiffness && depth > 0.0) {
+    const double scale = std::sqrt(memory.stiffness / stiffness);
+    memory.offset = std::max(-gap - scale * depth, std::min(memory.offset, 0.0));
+    memory.shear *= scale;
+  }
+  memory.stiffness = stiffness;
+}
+
+}  // namespace
+
+void Detection::complete(const Surface& surface, Memory& memory, Contact& contact) const {
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
   const double young = std::min(young_[at(contact.block_a)], young_[at(contact.block_b)]);
   const double per_length = law.normal_stiffness > 0.0 ? law.normal_stiffness : 20.0 * young;
   contact.normal_stiffness = per_length * std::max(contact.length, tolerances_.least_length);
   contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
   contact.friction_coefficient = law.friction_coefficient;
-  if (c.memory.bonded) {
+  if (memory.bonded) {
     contact.cohesion = law.cohesion * contact.length;
     contact.tension = law.tension * contact.length;
     contact.fused = law.fused;
   }
-  contact.depth = -contact.gap - c.memory.offset;
+  keep_energy(memory, contact.gap, contact.normal_stiffness);
+  contact.depth = -contact.gap - memory.offset;
 }
 
 }  // namespace keyblock::contact

@@ -59,7 +59,7 @@ class Detection {
   bool evaluate(const Surface& surface, std::span<const double> reach, int candidate, const Candidate& c,
                 Contact& contact, Member& member) const;
   void compete(std::span<const Member> members, std::vector<Candidate>& candidates);
-  void complete(const Surface& surface, const Candidate& c, Contact& contact) const;
+  void complete(const Surface& surface, Memory& memory, Contact& contact) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;

@@ -62,6 +62,11 @@ class Spring {
     return shear_force(w) / shear_ + (k_.shear - origin_);
   }
 
+  [[nodiscard]] double stored_at_start() const {
+    const bool pressed = k_.tensile || k_.depth > 0.0;
+    return 0.5 * (pressed ? k_.normal_stiffness * k_.depth * k_.depth : 0.0) +
+           0.5 * k_.shear_stiffness * k_.shear * k_.shear;
+  }
   /// Where the energy of a contact goes in a step: work of its forces on the blocks + stored − before + friction + damping
   /// + numerical = 0; the last is what end-of-step forces lose against the potential.
   struct Balance {
@@ -71,16 +76,14 @@ class Spring {
     const double x = penetration(y), normal = normal_force(y), shear = shear_force(w),
                  elastic = elastic_shear(w);
     const double x_force = k_.tensile || x > 0.0 ? k_.normal_stiffness * x : 0.0;
-    const double before =
-        0.5 * (k_.tensile || k_.depth > 0.0 ? k_.normal_stiffness * k_.depth * k_.depth : 0.0) +
-        0.5 * k_.shear_stiffness * k_.shear * k_.shear;
     Balance b;
-    b.stored = 0.5 * x_force * x + 0.5 * k_.shear_stiffness * elastic * elastic;
+    b.stored = 0.5 * x_force * x;
+    if (closed(y)) b.stored += 0.5 * k_.shear_stiffness * elastic * elastic;  // else shear is forgotten
     b.friction = std::abs(shear) * std::abs(w - shear / shear_);
     b.damping =
         (normal - x_force) * (x - k_.depth) + (shear - k_.shear_stiffness * elastic) * (elastic - k_.shear);
     const double work = -normal * (y - depth_) - shear * (w - origin_);
-    b.numerical = before - work - b.stored - b.friction - b.damping;
+    b.numerical = stored_at_start() - work - b.stored - b.friction - b.damping;
     return b;
   }
 

@@ -15,6 +15,9 @@ struct SolverOptions {
   /// its own sliding (mode coupling) as soon as Δt resolves them, and creeps below its friction angle.
   double rock_damping = 0.1;
   double contact_damping = 0.05;
+  /// Largest share of the speed of approach with which two blocks part after an impact that Δt does not resolve (ωΔt > 1,
+  /// ω of the contact spring with its blocks), at more than `impact_speed`: θ of the two in the steps of the impact.
+  double restitution = 0.5;
   /// Largest residual of a block over its weight for a step to count as converged.
   double tolerance = 1e-4;
   int max_iterations = 60;  ///< open-close iterations before the step is retried with half of Δt

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace keyblock::dynamics {
 
@@ -35,6 +34,10 @@ Stepper::Stepper(Model& model, ThreadTeam& team)
                                                          : linalg::make_cholmod()),
       reach_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
+      spin_(model.blocks.size(), 0.0),
+      theta_(model.blocks.size(), model.solver.theta),
+      impact_speed_(norm(model.gravity) > 0.0 ? 0.1 * std::sqrt(norm(model.gravity) * model.block_size)
+                                              : HUGE_VAL),
       balance_(model.blocks.size()) {
   for (const Block& block : model.blocks) {
     if (block.unknown >= 0) unknown_sizes_.push_back(2 * block.size);
@@ -84,9 +87,16 @@ void Stepper::start(State& state) {
     memory.offset = -c.gap - normal / c.normal_stiffness;
     memory.shear = shear / c.shear_stiffness;
     memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
-    contact_energy_ += 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
+    memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
+    contact_energy_ += memory.stored;
   }
   ensure_pattern(state, true);
+}
+
+double Stepper::stored_energy(const State& state) {
+  double sum = 0.0;
+  for (const contact::Candidate& c : state.contacts) sum += c.memory.tracked ? c.memory.stored : 0.0;
+  return sum;
 }
 
 void Stepper::resume(State& state) {
@@ -95,6 +105,7 @@ void Stepper::resume(State& state) {
   state.moved = moved;
   candidates_.invalidate();
   analysed_ = false;
+  contact_energy_ = stored_energy(state);
 }
 
 std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
@@ -108,14 +119,10 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
 }
 
 void Stepper::remove_absent(State& state) {
-  for (std::size_t c = 0; c < stored_.size(); ++c) {
-    const bool stays =
-        model_.surface.present[at(contacts_[c].block_a)] && model_.surface.present[at(contacts_[c].block_b)];
-    if (!stays) contact_energy_ -= std::exchange(stored_[c], 0.0);
-  }
   candidates_.invalidate();
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
+  contact_energy_ = stored_energy(state);
   analysed_ = false;
   state.pattern.clear();
 }
@@ -182,9 +189,12 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
   }
 }
 
-bool Stepper::attempt(State& state, const Drive& drive, StepReport& report) {
+bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
+  std::fill(theta_.begin(), theta_.end(), model_.solver.theta);
+  drive.theta = theta_;
   predict_reach(state, drive);
-  for (int look = 0; look < 3; ++look) {
+  constexpr int looks = 4;
+  for (int look = 1; look <= looks; ++look) {
     detect(state);
     problem_.build(model_, state, drive, model_.surface, contacts_, team_);
     memory_.clear();
@@ -195,25 +205,37 @@ bool Stepper::attempt(State& state, const Drive& drive, StepReport& report) {
     const OpenCloseResult result =
         open_close_.solve(problem_, contacts_, memory_, *solver_, model_.solver, increment_);
     report.iterations += result.iterations;
+    measure_spin(state);
     if (!result.converged) return false;
-    if (turned_too_far(state)) return false;
-    if (!moved_too_far()) return true;
+    if (turned_too_far()) return false;
+    const bool moved = moved_too_far(), impact = look < looks && meet_impacts(state, drive);
+    if (!moved && !impact) return true;
   }
   return true;
 }
 
-/// Whether a block in contact turned so far that the step, linear in its displacement, misses where its vertices go.
-bool Stepper::turned_too_far(const State& state) const {
-  const auto turned = [&](int b) {
-    if (!model_.moves(at(b))) return false;
-    const Block& block = model_.blocks[at(b)];
-    const double w = block.pose.mean_spin(&increment_[block.first], &state.position[block.first]);
-    return 0.5 * w * w * block.radius > tolerances_.turn;
-  };
+void Stepper::measure_spin(const State& state) {
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    const Block& block = model_.blocks[b];
+    spin_[b] =
+        model_.moves(b) ? block.pose.mean_spin(&increment_[block.first], &state.position[block.first]) : 0.0;
+  }
+}
+
+/// Whether the step, linear in the displacement, misses the gap at its end by too much: vertices of a turning block leave
+/// the straight way by ½ w² r, and the line of a turning edge moves away from a vertex that slides along it. That matters
+/// where a contact presses, and where it would come to press by that alone.
+bool Stepper::turned_too_far() const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
     const StepProblem::Row& row = problem_.rows()[c];
-    if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
-    if (turned(contacts_[c].block_a) || turned(contacts_[c].block_b)) return true;
+    const Vec2 r = open_close_.relative()[c];
+    const double missed = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
+                                 spin_[b] * spin_[b] * model_.blocks[b].radius) +
+                          std::abs(spin_[b] * dot(row.tangent, r));
+    if (missed <= tolerances_.turn) continue;
+    if (row.spring.normal_force(row.depth(r)) > 0.0 || contacts_[c].gap + dot(row.normal, r) < missed)
+      return true;
   }
   return false;
 }
@@ -238,17 +260,39 @@ bool Stepper::moved_too_far() {
   return any;
 }
 
+/// Impacts that the step does not resolve: the blocks come to rest against each other within it, D ≈ 0, and the rule
+/// v ← (1+θ)D/Δt − θv would send them back with θ times the speed they came with. Lowers θ of blocks that are pressed upon
+/// while they approach faster than the speed of an impact; true when there is a new one.
+bool Stepper::meet_impacts(const State& state, const Drive& drive) {
+  const double restitution = model_.solver.restitution;
+  if (drive.is_static || restitution >= model_.solver.theta) return false;
+  bool any = false;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const StepProblem::Row& row = problem_.rows()[c];
+    if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
+    if (-dot(row.normal, problem_.relative(row, state.velocity)) <= impact_speed_) continue;
+    if (contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
+      continue;
+    for (const int b : {contacts_[c].block_a, contacts_[c].block_b}) {
+      if (!model_.moves(at(b)) || theta_[at(b)] == restitution) continue;
+      theta_[at(b)] = restitution;
+      any = true;
+    }
+  }
+  return any;
+}
+
 void Stepper::account(State& state, const Drive& drive) {
   EnergyLedger& ledger = state.ledger;
-  const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_);
+  const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_, spin_);
   ledger.numerical += elastic.numerical;
   ledger.damping += elastic.damping;
-  const double theta = model_.solver.theta;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
     const double* v = &state.velocity[block.first];
+    const double theta = theta_[b];
     double jump = 0.0, squared = 0.0;
     for (int k = 0; k < 2 * block.size; ++k) {
       const double change = (1.0 + theta) * (d[k] / drive.step - v[k]);
@@ -282,7 +326,10 @@ void Stepper::account(State& state, const Drive& drive) {
     // elastic_loss has taken ½ k moved² for a ground that stands still.
     ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
   }
+  ledger.numerical +=
+      contact_energy_;  // what is stored in contacts that have ended, a vertex that left its edge, is lost
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    ledger.numerical -= memory_[c]->stored;
     const StepProblem::Row& row = problem_.rows()[c];
     const Vec2 r = open_close_.relative()[c];
     const contact::Spring::Balance balance = row.spring.balance(row.depth(r), row.shear(r));
@@ -295,7 +342,6 @@ void Stepper::account(State& state, const Drive& drive) {
 /// Contact memory for the next step.
 void Stepper::remember(const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
-  stored_.resize(contacts_.size());
   contact_energy_ = 0.0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
@@ -303,8 +349,8 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
     contact::Memory& memory = *memory_[c];
     const Vec2 r = open_close_.relative()[c];
     const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
-    stored_[c] = s.balance(depth, shear).stored;
-    contact_energy_ += stored_[c];
+    memory.stored = s.balance(depth, shear).stored;
+    contact_energy_ += memory.stored;
     const double change = std::max(0.0, normal_force) - memory.normal_force;
     memory.normal_force = std::max(0.0, normal_force);
     const bool slides = s.closed(depth) && !s.locked(shear) && s.bound() > 0.0;
@@ -324,7 +370,7 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   account(state, drive);
   remember(drive, report);
-  const double theta = model_.solver.theta, g = norm(model_.gravity);
+  const double g = norm(model_.gravity);
   const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
@@ -333,7 +379,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     double* v = &state.velocity[block.first];
     double squared = 0.0;
     for (int k = 0; k < 2 * block.size; ++k) {
-      v[k] = drive.is_static ? 0.0 : (1.0 + theta) * d[k] / drive.step - theta * v[k];
+      v[k] = drive.is_static ? 0.0 : (1.0 + theta_[b]) * d[k] / drive.step - theta_[b] * v[k];
       squared += d[k] * d[k];
     }
     if (drive.is_static) {

@@ -79,12 +79,15 @@ class Stepper {
 
  private:
   void place(State& state);
+  static double stored_energy(const State& state);
   void predict_reach(const State& state, const Drive& drive);
   void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
-  bool attempt(State& state, const Drive& drive, StepReport& report);
-  [[nodiscard]] bool turned_too_far(const State& state) const;
+  bool attempt(State& state, Drive& drive, StepReport& report);
+  void measure_spin(const State& state);
+  [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();
+  bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
   void remember(const Drive& drive, StepReport& report);
@@ -105,8 +108,10 @@ class Stepper {
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
   bool analysed_ = false;
   std::vector<double> reach_, increment_;
+  std::vector<double> spin_;   ///< rad, per block, of the last attempt
+  std::vector<double> theta_;  ///< per block, of the last attempt
+  double impact_speed_;        ///< m/s
   std::vector<Force> forces_;
-  std::vector<double> stored_;  ///< J, elastic energy of each contact at the end of the last step
   std::vector<Balance> balance_;
   double contact_energy_ = 0.0, support_energy_ = 0.0;
 };

@@ -7,6 +7,11 @@
 namespace keyblock::dynamics {
 
 namespace {
+/// The geometric stiffness of a step is kept above this share of its inertia. A block under extreme pressure then keeps a
+/// positive definite step; and a turn w, that the step takes for a stretch of ½ w², cannot draw more energy than
+/// twice this share of the rotation from a stress of impact.
+constexpr double geometric_floor = 0.05;
+
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -36,7 +41,6 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
 }
 
 void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
-  const double factor = (1.0 + model_->solver.theta) / (drive.step * drive.step);
   const Vec2 acceleration = model_->gravity - drive.ground_acceleration;
   team.for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -49,7 +53,8 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       const double* v = &state.velocity[block.first];
       double* h = &h_[h_first_[i]];
       std::fill(h, h + stride * n, 0.0);
-      inertia_[i] = factor * block.material.density * (drive.is_static ? drive.inertia_scale[i] : 1.0);
+      inertia_[i] = (1.0 + drive.theta[i]) / (drive.step * drive.step) * block.material.density *
+                    (drive.is_static ? drive.inertia_scale[i] : 1.0);
       block_energy_[i] = block.elasticity.add_force(a, b);
       for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
       b[0] += block.body_force() * acceleration.x;
@@ -57,7 +62,7 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       const double frequency =
           std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
       viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
-      block.elasticity.add_tangent(a, viscous_[i], 0.5 * inertia_[i], h, stride);
+      block.elasticity.add_tangent(a, viscous_[i], geometric_floor * inertia_[i], h, stride);
       for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
     }
   });
@@ -128,7 +133,7 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     used += at(b.size);
     row.normal = c.normal;
     row.tangent = c.tangent;
-    const double mass = a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
+    const double mass = reduced_mass(c);
     const auto dashpot = [&](double stiffness) {
       return drive.is_static
                  ? 0.0
@@ -140,6 +145,11 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
                          c.fused ? HUGE_VAL : c.friction_coefficient * memory.bounding_force + c.cohesion,
                          c.fused || (memory.bonded && c.tension > 0.0)});
   }
+}
+
+double StepProblem::reduced_mass(const contact::Contact& c) const {
+  const Block &a = model_->blocks[at(c.block_a)], &b = model_->blocks[at(c.block_b)];
+  return a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
 }
 
 Vec2 StepProblem::relative(const Row& row, std::span<const double> d) const {
@@ -284,20 +294,48 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
   return worst;
 }
 
-StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d) const {
-  std::vector<double> hd(d.size());
-  multiply(d, hd);
+StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d,
+                                                   std::span<const double> spin) const {
+  std::vector<double> turn(d.size()), product(d.size());
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    const Block& block = model_->blocks[i];
+    for (std::size_t k = block.first + 2; k < block.first + 2 * at(block.size); k += 2) {
+      turn[k] = -spin[i] * state.position[k + 1];
+      turn[k + 1] = spin[i] * state.position[k];
+    }
+  }
   ElasticLoss loss;
+  /// Σ x_k (H y)_k over the coefficients of a block, without inertia.
+  const auto stiffness = [&](std::size_t i, std::span<const double> x, std::span<const double> y) {
+    const Block& block = model_->blocks[i];
+    double sum = 0.0;
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      sum += x[k] * (product[k] - inertia_[i] * y[k]);
+    return sum;
+  };
+  multiply(d, product);
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) continue;
     const Block& block = model_->blocks[i];
     const double damping =
         viscous_[i] * block.elasticity.material_work(&state.position[block.first], &d[block.first]);
-    double stiffness = 0.0;
-    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
-      stiffness += d[k] * (hd[k] - inertia_[i] * d[k]);
     loss.damping += damping;
-    loss.numerical += 0.5 * (stiffness - damping);
+    loss.numerical += 0.5 * (stiffness(i, d, d) - damping);
+  }
+  multiply(turn, product);
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    if (model_->moves(i)) loss.numerical += stiffness(i, d, turn) - 0.5 * stiffness(i, turn, turn);
+  }
+  for (const GroundSpring& spring :
+       model_->springs) {  // linear in D: no part of what the pose update takes out
+    if (!model_->moves(at(spring.block))) continue;
+    const std::size_t first = model_->blocks[at(spring.block)].first + at(spring.axis);
+    double moved = 0.0, turned = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
+      moved += spring.phi[k] * d[first + 2 * k];
+      turned += spring.phi[k] * turn[first + 2 * k];
+    }
+    loss.numerical -= spring.stiffness * (moved - 0.5 * turned) * turned;
   }
   return loss;
 }

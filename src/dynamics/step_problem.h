@@ -19,6 +19,8 @@ struct Drive {
   bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
   /// Static only: factor on the inertia of each block.
   std::span<const double> inertia_scale;
+  /// θ of each block: SolverOptions::theta, less in an impact.
+  std::span<const double> theta;
 };
 
 /// The minimization that a step is (formulation, equation 3), with the Coulomb bounds frozen:
@@ -59,6 +61,8 @@ class StepProblem {
   /// Unknowns come first among the coefficients; those of fixed blocks follow.
   [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
 
+  /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
+  [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
   /// r of a contact for increment D.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const;
   /// g = ∇Π(D), given r of every contact.
@@ -79,12 +83,16 @@ class StepProblem {
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
-  /// Work that the elasticity of blocks and supports does not give back in a step of increment D.
+  /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
+  /// `spin`.
   struct ElasticLoss {
-    double numerical = 0.0;  ///< ½ Dᵀ (K_t + K_support) D, what end-of-step forces lose against the potential
+    double numerical =
+        0.0;  ///< what the forces at the end of the step lose against the potential: ½ Dᵀ (K_t + K_support) D
+              ///< + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out
     double damping = 0.0;  ///< by the viscosity of the rock
   };
-  [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d) const;
+  [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d,
+                                         std::span<const double> spin) const;
   [[nodiscard]] double strain_energy() const { return strain_energy_; }
 
  private:

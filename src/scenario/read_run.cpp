@@ -159,6 +159,12 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
   t.number("contact_damping", solver.contact_damping,
            {.meaning = "Damping of every contact spring with its two blocks, as a share of critical.",
             .at_least = 0.0});
+  t.number(
+      "restitution", solver.restitution,
+      {.meaning = "Largest share of the speed of approach with which blocks part after an impact that the "
+                  "time step does not resolve.",
+       .at_least = 0.0,
+       .at_most = 1.0});
   t.integer(
       "max_iterations", solver.max_iterations,
       {.meaning = "Open-close iterations before a step is retried with half its size.", .at_least = 1.0});

@@ -10,8 +10,6 @@
 namespace keyblock::rockmass {
 namespace {
 
-using testing::HasSubstr;
-
 class TraceMap : public testing::Test {
  protected:
   std::filesystem::path file(const std::string& content) {
