@@ -83,4 +83,14 @@ double Pose::update(const double* increment, double* a, double* v) const {
   return w;
 }
 
+void Pose::rotate(double w, double* u) const {
+  double c, s;
+  rotation(w, c, s);
+  for (int k = 1; k < size_; ++k) {
+    const double x = u[2 * k], y = u[2 * k + 1];
+    u[2 * k] = c * x - s * y;
+    u[2 * k + 1] = s * x + c * y;
+  }
+}
+
 }  // namespace keyblock::block

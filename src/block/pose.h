@@ -25,6 +25,8 @@ class Pose {
   ///     x ← c + D_c + R(w)(r + D_def),      relative part of v ← R(w) v.
   /// a, v: coefficients of position and velocity (2N values each), changed in place. Returns w.
   double update(const double* increment, double* a, double* v) const;
+  /// Turns the relative part of a vector of 2N coefficients by w.
+  void rotate(double w, double* u) const;
 
  private:
   int size_;

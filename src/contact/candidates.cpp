@@ -28,7 +28,7 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, s
   }
   for (std::size_t b = 0; b < blocks; ++b) {
     if (!dirty[b]) {
-      if (surface.fixed[b] || !surface.present[b]) continue;
+      if (!surface.present[b]) continue;
       double moved = 0.0;
       for (auto v = static_cast<std::size_t>(surface.block_begin[b]);
            v < static_cast<std::size_t>(surface.block_begin[b + 1]); ++v) {
@@ -38,7 +38,7 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, s
       dirty[b] = 1;
       any = true;
     }
-    margin_[b] = surface.fixed[b] ? 0.0 : tolerances_.margin + 4.0 * reach[b];
+    margin_[b] = surface.fixed[b] && reach[b] == 0.0 ? 0.0 : tolerances_.margin + 4.0 * reach[b];
     box_[b] = {};
     for (auto v = static_cast<std::size_t>(surface.block_begin[b]);
          v < static_cast<std::size_t>(surface.block_begin[b + 1]); ++v) {

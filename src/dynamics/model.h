@@ -39,6 +39,18 @@ struct GeneralizedLoad {
   loading::TimeTable factor;  ///< empty: 1
 };
 
+/// A fixed block that is moved rigidly by a prescribed displacement.
+struct PrescribedMotion {
+  int block = 0;
+  Vec2 start;               ///< m, centroid before the run
+  loading::TimeTable x, y;  ///< m; empty: none
+
+  /// Where the centroid is at a time.
+  [[nodiscard]] Vec2 centroid(double time) const {
+    return start + Vec2{x.empty() ? 0.0 : x(time), y.empty() ? 0.0 : y(time)};
+  }
+};
+
 /// A spring from a material point to the ground in one direction; edges are many of them, with Gauss weights.
 struct GroundSpring {
   int block = 0;
@@ -59,6 +71,7 @@ struct Model {
   std::vector<contact::JointLaw> laws;
   std::vector<GeneralizedLoad> loads;
   std::vector<GroundSpring> springs;
+  std::vector<PrescribedMotion> motions;
   std::optional<InSituStress> in_situ;
   Vec2 gravity;             ///< m/s²
   double block_size = 1.0;  ///< m, √(mean area of the blocks that move)

@@ -8,7 +8,7 @@ namespace keyblock::dynamics {
 void OpenClose::evaluate(const StepProblem& problem, std::span<const double> d) {
   const auto& rows = problem.rows();
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    r_[c] = problem.relative(rows[c], d);
+    r_[c] = problem.relative(rows[c], d) + rows[c].moved;
     active_[c] = StepProblem::active(rows[c], r_[c]);
   }
 }
@@ -24,8 +24,9 @@ bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& sol
   std::copy(problem.right().begin(), problem.right().end(), d.begin());
   for (std::size_t c = 0; c < rows.size(); ++c) {
     const contact::Spring& s = rows[c].spring;
-    const double normal = assumed_[c].normal ? s.normal_stiffness() * s.depth() : 0.0;
-    const double shear = assumed_[c].shear ? s.shear_stiffness() * s.shear() : s.sliding_force();
+    const double normal = assumed_[c].normal ? s.normal_stiffness() * rows[c].depth(rows[c].moved) : 0.0;
+    const double shear =
+        assumed_[c].shear ? s.shear_stiffness() * rows[c].shear(rows[c].moved) : s.sliding_force();
     problem.add_contact_force(rows[c], normal * rows[c].normal - shear * rows[c].tangent, d);
   }
   solver.solve(d.first(problem.unknowns()));

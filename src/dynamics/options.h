@@ -4,10 +4,15 @@ namespace keyblock::dynamics {
 
 enum class LinearSolver { block, direct };
 
+/// Rules of time integration; integrator.h has the formulas.
+enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
+
 /// How a step is solved. Defaults suit rock at engineering scale; every length is relative to the model, so that any
 /// consistent set of units works.
 struct SolverOptions {
-  /// Weight of the end of the step in the family M(1+θ)/Δt², v ← (1+θ)D/Δt − θv: 1 Shi, 0 backward Euler.
+  TimeIntegration integrator = TimeIntegration::shi;
+  double spectral_radius = 0.8;  ///< at infinite frequency, of generalized-α
+  /// Shi: weight of the end of the step in the family M(1+θ)/Δt², v ← (1+θ)D/Δt − θv: 1 Shi, 0 backward Euler.
   double theta = 1.0;
   /// Damping of elastic vibration, as shares of critical: of the rock at the first elastic frequency of each block
   /// (stiffness-proportional, so slower motion feels less), and of each contact spring with its two blocks. Rigid motion,

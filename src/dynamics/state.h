@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct State {
   long step = 0;
   std::vector<double> position;  ///< coefficients a, by Block::first
   std::vector<double> velocity;
+  /// Acceleration and sum of forces over mass of every coefficient at the end of the last step, for rules that need them;
+  /// valid for blocks whose last step left them known.
+  std::vector<double> acceleration, force;
+  std::vector<std::uint8_t> acceleration_known;  ///< per block
   std::vector<double> moved;  ///< m, per block: largest displacement of a vertex in the last step
   std::vector<contact::Candidate> contacts;  ///< candidates with their memory
   std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for

@@ -35,7 +35,9 @@ Stepper::Stepper(Model& model, ThreadTeam& team)
       reach_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       spin_(model.blocks.size(), 0.0),
-      theta_(model.blocks.size(), model.solver.theta),
+      rule_(model.blocks.size()),
+      in_impact_(model.blocks.size(), 0),
+      prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
       impact_speed_(norm(model.gravity) > 0.0 ? 0.1 * std::sqrt(norm(model.gravity) * model.block_size)
                                               : HUGE_VAL),
       balance_(model.blocks.size()) {
@@ -63,6 +65,11 @@ void Stepper::place(State& state) {
 
 void Stepper::start(State& state) {
   state.moved.assign(model_.blocks.size(), 0.0);
+  if (model_.solver.integrator != TimeIntegration::shi) {
+    state.acceleration.assign(model_.coefficients, 0.0);
+    state.force.assign(model_.coefficients, 0.0);
+    state.acceleration_known.assign(model_.blocks.size(), 0);
+  }
   place(state);
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   std::fill(reach_.begin(), reach_.end(), 0.0);
@@ -127,6 +134,17 @@ void Stepper::remove_absent(State& state) {
   state.pattern.clear();
 }
 
+/// What the step moves fixed blocks by: the way from where they are to where they are to be at its end.
+void Stepper::prescribe(const State& state, Drive& drive) {
+  for (const PrescribedMotion& motion : model_.motions) {
+    const Block& block = model_.blocks[at(motion.block)];
+    const Vec2 now =
+        Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
+    prescribed_[at(motion.block)] = motion.centroid(drive.end_time) - now;
+  }
+  drive.prescribed = prescribed_;
+}
+
 /// Bound on how far each block moves in the step: twice what its velocity and the body force make of it.
 void Stepper::predict_reach(const State& state, const Drive& drive) {
   const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
@@ -144,6 +162,8 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
     }
     reach_[b] = 2.0 * std::sqrt(fastest) * drive.step + 2.0 * acceleration;
   }
+  for (const PrescribedMotion& motion : model_.motions)
+    reach_[at(motion.block)] = norm(drive.prescribed[at(motion.block)]);
 }
 
 void Stepper::detect(State& state) {
@@ -190,8 +210,9 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
 }
 
 bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
-  std::fill(theta_.begin(), theta_.end(), model_.solver.theta);
-  drive.theta = theta_;
+  choose_rules(state, drive);
+  drive.rule = rule_;
+  prescribe(state, drive);
   predict_reach(state, drive);
   constexpr int looks = 4;
   for (int look = 1; look <= looks; ++look) {
@@ -260,26 +281,49 @@ bool Stepper::moved_too_far() {
   return any;
 }
 
+/// The rule of the scenario; Shi's as long as it needs an acceleration that is not known: in the first step, after an impact.
+void Stepper::choose_rules(const State& state, const Drive& drive) {
+  const SolverOptions& options = model_.solver;
+  const Integrator shi = Integrator::shi(options.theta);
+  Integrator chosen = shi;
+  if (options.integrator == TimeIntegration::average_acceleration)
+    chosen = Integrator::average_acceleration();
+  if (options.integrator == TimeIntegration::generalized_alpha)
+    chosen = Integrator::generalized_alpha(options.spectral_radius);
+  const bool dynamic = !drive.is_static && !state.acceleration_known.empty();
+  for (std::size_t b = 0; b < rule_.size(); ++b)
+    rule_[b] = dynamic && state.acceleration_known[b] != 0 ? chosen : shi;
+  std::fill(in_impact_.begin(), in_impact_.end(), std::uint8_t{0});
+}
+
 /// Impacts that the step does not resolve: the blocks come to rest against each other within it, D ≈ 0, and the rule
 /// v ← (1+θ)D/Δt − θv would send them back with θ times the speed they came with. Lowers θ of blocks that are pressed upon
 /// while they approach faster than the speed of an impact; true when there is a new one.
 bool Stepper::meet_impacts(const State& state, const Drive& drive) {
-  const double restitution = model_.solver.restitution;
-  if (drive.is_static || restitution >= model_.solver.theta) return false;
+  const SolverOptions& options = model_.solver;
+  const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
+  if (drive.is_static || options.restitution >= elastic) return false;
   bool any = false;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
     if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
-    if (-dot(row.normal, problem_.relative(row, state.velocity)) <= impact_speed_) continue;
+    const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;
+    if (-dot(row.normal, speed) <= impact_speed_) continue;
     if (contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
       continue;
     for (const int b : {contacts_[c].block_a, contacts_[c].block_b}) {
-      if (!model_.moves(at(b)) || theta_[at(b)] == restitution) continue;
-      theta_[at(b)] = restitution;
+      if (!model_.moves(at(b)) || in_impact_[at(b)] != 0) continue;
+      in_impact_[at(b)] = 1;
+      rule_[at(b)] = Integrator::shi(options.restitution);
       any = true;
     }
   }
   return any;
+}
+
+Motion Stepper::motion(const State& state, std::size_t coefficient) {
+  if (state.acceleration.empty()) return {state.velocity[coefficient], 0.0, 0.0};
+  return {state.velocity[coefficient], state.acceleration[coefficient], state.force[coefficient]};
 }
 
 void Stepper::account(State& state, const Drive& drive) {
@@ -292,15 +336,15 @@ void Stepper::account(State& state, const Drive& drive) {
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
     const double* v = &state.velocity[block.first];
-    const double theta = theta_[b];
-    double jump = 0.0, squared = 0.0;
-    for (int k = 0; k < 2 * block.size; ++k) {
-      const double change = (1.0 + theta) * (d[k] / drive.step - v[k]);
-      jump += change * change;
-      squared += d[k] * d[k];
+    if (drive.is_static) {
+      for (int k = 0; k < 2 * block.size; ++k) ledger.numerical += problem_.inertia(b) * d[k] * d[k];
+    } else {  // work of the forces at the end of the step, less what became kinetic energy
+      for (int k = 0; k < 2 * block.size; ++k) {
+        const Motion start = motion(state, block.first + at(k)), end = rule_[b].end(start, d[k], drive.step);
+        ledger.numerical +=
+            block.material.density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
+      }
     }
-    ledger.numerical += drive.is_static ? problem_.inertia(b) * squared
-                                        : 0.5 * (1.0 - theta) / (1.0 + theta) * block.material.density * jump;
     ledger.input -= block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
   }
   for (const GeneralizedLoad& load : model_.loads) {
@@ -334,6 +378,8 @@ void Stepper::account(State& state, const Drive& drive) {
     const Vec2 r = open_close_.relative()[c];
     const contact::Spring::Balance balance = row.spring.balance(row.depth(r), row.shear(r));
     ledger.friction += balance.friction;
+    const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
+    ledger.input -= dot(normal * row.normal - shear * row.tangent, row.moved);
     ledger.damping += balance.damping;
     ledger.numerical += balance.numerical;
   }
@@ -379,15 +425,24 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     double* v = &state.velocity[block.first];
     double squared = 0.0;
     for (int k = 0; k < 2 * block.size; ++k) {
-      v[k] = drive.is_static ? 0.0 : (1.0 + theta_[b]) * d[k] / drive.step - theta_[b] * v[k];
       squared += d[k] * d[k];
+      const std::size_t i = block.first + at(k);
+      const Motion end = drive.is_static ? Motion{} : rule_[b].end(motion(state, i), d[k], drive.step);
+      v[k] = end.velocity;
+      if (state.acceleration.empty()) continue;
+      state.acceleration[i] = end.acceleration;
+      state.force[i] = end.force;
     }
     if (drive.is_static) {
       const double weight = std::max(problem_.weight(b), 1e-300);
       balance_[b] = {problem_.inertia(b) * std::sqrt(squared) / weight,
                      problem_.inertia(b) * dot(down, {d[0], d[1]}) / weight};
     }
-    block.pose.update(d, &state.position[block.first], v);
+    const double w = block.pose.update(d, &state.position[block.first], v);
+    if (state.acceleration.empty()) continue;
+    block.pose.rotate(w, &state.acceleration[block.first]);
+    block.pose.rotate(w, &state.force[block.first]);
+    state.acceleration_known[b] = !drive.is_static && in_impact_[b] == 0;
   }
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
@@ -400,7 +455,8 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   Drive drive;
   drive.step = t1 - t0;
   drive.end_time = t1;
-  if (ground != nullptr) drive.ground_acceleration = ground->mean(t0, t1);
+  const bool shi = model_.solver.integrator == TimeIntegration::shi;
+  if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
   const std::vector<contact::Candidate> before = state.contacts;
   const bool converged = attempt(state, drive, report);
   if (converged || halvings >= model_.solver.max_halvings) {

@@ -12,11 +12,12 @@
 
 namespace keyblock::dynamics {
 
-/// Acceleration of the base as the stepper asks for it: mean over [t0, t1].
+/// Acceleration of the base as the stepper asks for it.
 class GroundAcceleration {
  public:
   virtual ~GroundAcceleration() = default;
   [[nodiscard]] virtual Vec2 mean(double t0, double t1) const = 0;
+  [[nodiscard]] virtual Vec2 at(double t) const = 0;
 };
 
 /// How a step went; data, not log lines.
@@ -80,6 +81,7 @@ class Stepper {
  private:
   void place(State& state);
   static double stored_energy(const State& state);
+  void prescribe(const State& state, Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
   void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
@@ -87,6 +89,8 @@ class Stepper {
   void measure_spin(const State& state);
   [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();
+  void choose_rules(const State& state, const Drive& drive);
+  static Motion motion(const State& state, std::size_t coefficient);
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
@@ -108,9 +112,11 @@ class Stepper {
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
   bool analysed_ = false;
   std::vector<double> reach_, increment_;
-  std::vector<double> spin_;   ///< rad, per block, of the last attempt
-  std::vector<double> theta_;  ///< per block, of the last attempt
-  double impact_speed_;        ///< m/s
+  std::vector<double> spin_;             ///< rad, per block, of the last attempt
+  std::vector<Integrator> rule_;         ///< per block, of the last attempt
+  std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
+  std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
+  double impact_speed_;                  ///< m/s
   std::vector<Force> forces_;
   std::vector<Balance> balance_;
   double contact_energy_ = 0.0, support_energy_ = 0.0;

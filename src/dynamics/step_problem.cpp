@@ -53,10 +53,16 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       const double* v = &state.velocity[block.first];
       double* h = &h_[h_first_[i]];
       std::fill(h, h + stride * n, 0.0);
-      inertia_[i] = (1.0 + drive.theta[i]) / (drive.step * drive.step) * block.material.density *
+      inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                     (drive.is_static ? drive.inertia_scale[i] : 1.0);
       block_energy_[i] = block.elasticity.add_force(a, b);
       for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+      if (!drive.is_static && !state.acceleration.empty()) {
+        const double c_a = drive.rule[i].acceleration() * block.material.density,
+                     c_f = drive.rule[i].force() * block.material.density;
+        for (std::size_t k = 0; k < at(n); ++k)
+          b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
+      }
       b[0] += block.body_force() * acceleration.x;
       b[1] += block.body_force() * acceleration.y;
       const double frequency =
@@ -133,6 +139,8 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     used += at(b.size);
     row.normal = c.normal;
     row.tangent = c.tangent;
+    row.moved =
+        drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
     const double mass = reduced_mass(c);
     const auto dashpot = [&](double stiffness) {
       return drive.is_static

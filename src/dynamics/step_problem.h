@@ -5,6 +5,7 @@
 #include "contact/detection.h"
 #include "contact/law.h"
 #include "core/parallel.h"
+#include "dynamics/integrator.h"
 #include "dynamics/model.h"
 #include "dynamics/state.h"
 #include "linalg/block_solver.h"
@@ -19,19 +20,20 @@ struct Drive {
   bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
   /// Static only: factor on the inertia of each block.
   std::span<const double> inertia_scale;
-  /// θ of each block: SolverOptions::theta, less in an impact.
-  std::span<const double> theta;
+  std::span<const Integrator> rule;  ///< of each block
+  /// m, of each block: what a fixed block is moved by in the step; empty when none is.
+  std::span<const Vec2> prescribed;
 };
 
 /// The minimization that a step is (formulation, equation 3), with the Coulomb bounds frozen:
 ///
-///     Π(D) = ½ Dᵀ H D − bᵀ D + Σ_contacts ψ_c(r_c(D)),      H = (1+θ)/Δt² M + K_t + K_support  (block diagonal)
-///     b = f_ext − f_int + f_support + (1+θ)/Δt M v
+///     Π(D) = ½ Dᵀ H D − bᵀ D + Σ_contacts ψ_c(r_c(D)),      H = (c/Δt² M + K_t + K_support  (block diagonal)
+///     b = f_ext − f_int + f_support + M (c v/Δt + c_a a + c_F F)
 ///
 /// Π is convex and piecewise quadratic. This class holds its data and evaluates it; it does not know how to minimize.
 class StepProblem {
  public:
-  /// r_c = φ_V · D_a − φ_P · D_b; a block that does not move contributes nothing.
+  /// r_c = φ_V · D_a − φ_P · D_b + moved; a fixed block contributes what it is moved by, nothing else.
   struct Row {
     std::ptrdiff_t first_a, first_b;  ///< of the block's coefficients; −1: fixed
     int size_a, size_b;
@@ -40,6 +42,7 @@ class StepProblem {
     const double* phi_a;
     std::size_t phi_b;  ///< into phi_b_
     Vec2 normal, tangent;
+    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b
     contact::Spring spring;
 
     [[nodiscard]] double depth(Vec2 r) const { return spring.depth() - dot(normal, r); }
@@ -63,7 +66,7 @@ class StepProblem {
 
   /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
-  /// r of a contact for increment D.
+  /// r of a contact for increment D, but for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const;
   /// g = ∇Π(D), given r of every contact.
   void gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const;
@@ -107,7 +110,7 @@ class StepProblem {
   std::vector<std::size_t> h_first_;  ///< per block, into h_
   std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;
-  std::vector<double> inertia_;  ///< per block, (1+θ)ρ/Δt²
+  std::vector<double> inertia_;  ///< per block, cρ/Δt²
   std::vector<double> viscous_;  ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> weight_;   ///< per block, N-like scale of its coefficients
   std::vector<double> block_energy_;

@@ -52,6 +52,8 @@ std::vector<BlockProperties> properties_of(const Scenario& scenario, const cutti
       rock = layered(rock, spec.rock);
       properties.name = spec.name;
       properties.fixed = spec.fixed;
+      properties.motion_x = spec.motion_x;
+      properties.motion_y = spec.motion_y;
       properties.velocity = spec.velocity;
       properties.spin = spec.spin;
     }

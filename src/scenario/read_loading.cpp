@@ -195,6 +195,13 @@ void read_load(TableReader& t, Load& load, const Scenario& scenario) {
   if (!documenting) load.value_end = load.value;
   Rule end{.meaning = "Force per area at the end; linear between.", .unit = "Pa", .fallback = "as traction"};
   t.point("traction_end", load.value_end, of_line(end));
+  t.point(
+      "traction_middle", load.value_middle,
+      of_line(
+          {.meaning =
+               "Force per area in the middle; then the traction is the parabola through the three values.",
+           .unit = "Pa",
+           .fallback = "linear"}));
   TimeRows rows;
   t.time_rows("time", rows, false,
               {.meaning = "Factor over time: rows `[[t, factor], …]`, linear between rows and held outside.",

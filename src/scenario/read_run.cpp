@@ -14,6 +14,10 @@ using simulation::StageKind;
 
 constexpr Word<StageKind> stage_kinds[] = {
     {"settle", StageKind::settle}, {"shake", StageKind::shake}, {"rest", StageKind::rest}};
+constexpr Word<dynamics::TimeIntegration> integrators[] = {
+    {"shi", dynamics::TimeIntegration::shi},
+    {"average-acceleration", dynamics::TimeIntegration::average_acceleration},
+    {"generalized-alpha", dynamics::TimeIntegration::generalized_alpha}};
 constexpr Word<LinearSolver> linear_solvers[] = {{"block", LinearSolver::block},
                                                  {"direct", LinearSolver::direct}};
 
@@ -143,8 +147,14 @@ void read_output(TableReader& t, simulation::OutputOptions& output) {
 }
 
 void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
+  t.word("integrator", solver.integrator, integrators, {.meaning = "Rule of time integration."});
+  t.number("spectral_radius", solver.spectral_radius,
+           {.meaning = "Of the generalized-alpha rule at infinite frequency: 1 damps nothing, 0 takes stiff "
+                       "vibration out in a step.",
+            .at_least = 0.0,
+            .at_most = 1.0});
   t.number("theta", solver.theta,
-           {.meaning = "Time integration, M(1+θ)/Δt²: 1 is Shi's rule, 0 backward Euler.",
+           {.meaning = "Shi's rule, M(1+θ)/Δt²: 1 is Shi's own, 0 backward Euler.",
             .at_least = 0.0,
             .at_most = 1.0});
   t.number("tolerance", solver.tolerance,

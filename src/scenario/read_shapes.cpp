@@ -76,14 +76,68 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
              .condition = "shape = \"circle\" or \"horseshoe\""});
 }
 
+loading::TimeTable read_prescribed(TableReader& t, std::string_view key) {
+  TimeRows rows;
+  t.time_rows(
+      key, rows, false,
+      {.meaning = "Displacement of the block: rows `[[t, u], …]`, linear between rows and held outside; it "
+                  "is zero at time 0.",
+       .unit = "s, m"});
+  loading::TimeTable table(std::move(rows));
+  if (!table.empty() && table(0.0) != 0.0) {
+    t.fail(key, fmt::format("a displacement of {} at time 0", table(0.0)), "a displacement that begins at 0");
+  }
+  return table;
+}
+
+/// Turns the outline counter-clockwise, about the centroid where no centre is given.
+void read_rotation(TableReader& t, BlockSpec& block) {
+  double degrees = 0.0;
+  std::optional<Vec2> centre;
+  t.number("rotation", degrees,
+           {.meaning =
+                "Angle by which the outline is turned before the run, counter-clockwise. Loads, supports and "
+                "histories are given by points of the turned block.",
+            .unit = "°",
+            .at_least = -360.0,
+            .at_most = 360.0});
+  t.point("rotation_center", centre,
+          {.meaning = "Point about which it is turned.",
+           .unit = "m",
+           .fallback = "its centroid",
+           .applies = t.documenting() || t.find("rotation") != nullptr,
+           .condition = "rotation"});
+  if (degrees == 0.0 || block.polygon.outer.size() < 3) return;
+  const double angle = degrees * std::numbers::pi / 180.0;
+  const Vec2 about = centre.value_or(centroid(block.polygon));
+  const Vec2 turned_x{std::cos(angle), std::sin(angle)};
+  const auto turn = [&](Ring& ring) {
+    for (Vec2& p : ring) p = about + (p.x - about.x) * turned_x + (p.y - about.y) * perpendicular(turned_x);
+  };
+  turn(block.polygon.outer);
+  for (Ring& hole : block.polygon.holes) turn(hole);
+}
+
 void read_block(TableReader& t, BlockSpec& block) {
   block.path = t.path();
   t.name("name", block.name, "block", {.meaning = "Name, for loads, supports and histories."});
   read_polygon(t, block.polygon, true,
                {.meaning = "Vertices, either way round.", .unit = "m", .required = true});
+  read_rotation(t, block);
   read_rock_keys(t, block.rock, false);
-  t.boolean("fixed", block.fixed, {.meaning = "The block neither moves nor deforms."});
+  t.boolean("fixed", block.fixed, {.meaning = "The block neither moves nor deforms, but by `motion`."});
   const bool moves = t.documenting() || !block.fixed;
+  t.table("motion",
+          {.meaning = "Prescribed displacement of a fixed block; it moves rigidly, and relative to the base.",
+           .applies = t.documenting() || block.fixed,
+           .condition = "fixed = true"},
+          [&](TableReader& m) {
+            block.motion_x = read_prescribed(m, "x");
+            block.motion_y = read_prescribed(m, "y");
+            if (!m.documenting() && m.find("x") == nullptr && m.find("y") == nullptr) {
+              m.missing("x", "rows [[t, u], …] in x or y");
+            }
+          });
   t.point("velocity", block.velocity,
           {.meaning = "Velocity of the centroid at the start.",
            .unit = "m/s",

@@ -85,6 +85,7 @@ struct BlockSpec {
   Polygon polygon;
   RockKeys rock;
   bool fixed = false;
+  loading::TimeTable motion_x, motion_y;  ///< of a fixed block
   Vec2 velocity;
   double spin = 0.0;
   std::string path;

@@ -140,11 +140,11 @@ void add_loads(const RunSetup& setup, Model& model) {
       add(load.from, load.value);
     } else {
       const LineRule& rule =
-          gauss_legendre((block.basis.order() + 3) / 2);  // degree n of φ, plus 1 of the traction
+          gauss_legendre((block.basis.order() + 4) / 2);  // degree n of φ, plus 2 of the traction
       const double length = norm(load.to - load.from);
       for (std::size_t q = 0; q < rule.points.size(); ++q) {
         add(lerp(load.from, load.to, rule.points[q]),
-            rule.weights[q] * length * lerp(load.value, load.value_end, rule.points[q]));
+            rule.weights[q] * length * load.traction(rule.points[q]));
       }
     }
     model.loads.push_back(std::move(g));
@@ -181,6 +181,15 @@ void add_supports(const RunSetup& setup, Model& model) {
         add(lerp(support.points[0], support.points[1], rule.points[q]), rule.weights[q] * length);
       }
     }
+  }
+}
+
+void add_prescribed_motions(const RunSetup& setup, Model& model) {
+  for (std::size_t b = 0; b < setup.properties.size(); ++b) {
+    const BlockProperties& properties = setup.properties[b];
+    if (properties.motion_x.empty() && properties.motion_y.empty()) continue;
+    model.motions.push_back(
+        {static_cast<int>(b), centroid(model.blocks[b].reference), properties.motion_x, properties.motion_y});
   }
 }
 
@@ -263,6 +272,7 @@ Model build_model(const RunSetup& setup) {
   number_coefficients(model);
   add_loads(setup, model);
   add_supports(setup, model);
+  add_prescribed_motions(setup, model);
   return model;
 }
 

@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0001;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0002;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -53,6 +53,9 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.step);
   archive(s.mechanics.position);
   archive(s.mechanics.velocity);
+  archive(s.mechanics.acceleration);
+  archive(s.mechanics.force);
+  archive(s.mechanics.acceleration_known);
   archive(s.mechanics.moved);
   archive(s.mechanics.contacts);
   archive(s.mechanics.pattern);

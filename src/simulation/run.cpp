@@ -39,6 +39,7 @@ class StageMotion final : public dynamics::GroundAcceleration {
   [[nodiscard]] Vec2 mean(double t0, double t1) const override {
     return scale_ * motion_.mean(t0 - start_, t1 - start_);
   }
+  [[nodiscard]] Vec2 at(double t) const override { return scale_ * motion_.at(t - start_); }
 
  private:
   const loading::GroundMotion& motion_;

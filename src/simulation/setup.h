@@ -18,10 +18,11 @@ namespace keyblock::simulation {
 struct BlockProperties {
   std::string name;  ///< empty for cut blocks
   Material material;
-  int order = 1;       ///< of the displacement polynomial, ≥ 1
-  bool fixed = false;  ///< neither moves nor deforms
-  Vec2 velocity;       ///< m/s at the start
-  double spin = 0.0;   ///< rad/s at the start, counter-clockwise, about the centroid
+  int order = 1;                          ///< of the displacement polynomial, ≥ 1
+  bool fixed = false;                     ///< neither moves nor deforms, but by `motion`
+  loading::TimeTable motion_x, motion_y;  ///< m, prescribed displacement of a fixed block; empty: none
+  Vec2 velocity;                          ///< m/s at the start
+  double spin = 0.0;                      ///< rad/s at the start, counter-clockwise, about the centroid
 };
 
 /// Joint properties by what an edge is a piece of.

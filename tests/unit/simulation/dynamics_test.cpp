@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "scene.h"
 
@@ -18,6 +21,7 @@ class Sine final : public dynamics::GroundAcceleration {
   [[nodiscard]] Vec2 mean(double t0, double t1) const override {
     return {a_ * (std::cos(omega_ * t0) - std::cos(omega_ * t1)) / (omega_ * (t1 - t0)), 0.0};
   }
+  [[nodiscard]] Vec2 at(double t) const override { return {a_ * std::sin(omega_ * t), 0.0}; }
 
  private:
   double a_, omega_;
@@ -54,6 +58,68 @@ TEST(TimeIntegration, SpectralRadiusOnASpring) {
     const double determinant = x0 * x2 - x1 * x1;
     const double d = (x1 * x3 - x2 * x2) / determinant;
     EXPECT_NEAR(std::sqrt(d), expected, 1e-8) << omega_dt;
+  }
+}
+
+/// Displacements of a mass on a spring with ω Δt = omega_dt, after each of `steps` steps, in units of Δt.
+std::vector<double> on_a_spring(dynamics::TimeIntegration integrator, double radius, double omega_dt,
+                                int steps) {
+  const double mass = 2600.0, dt = 0.001;
+  Scene scene(1e13, 0.0);
+  scene.setup.gravity = {0.0, 0.0};
+  scene.setup.solver.integrator = integrator;
+  scene.setup.solver.spectral_radius = radius;
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0);
+  scene.setup.properties[0].velocity = {1.0, 0.0};
+  loading::Support support;
+  support.block = "b0";
+  support.points = {{0.5, 0.5}};
+  support.along_y = false;
+  support.stiffness = mass * omega_dt * omega_dt / (dt * dt);
+  scene.setup.supports.push_back(support);
+  Simulator s(scene);
+  std::vector<double> x;
+  for (int k = 0; k < steps; ++k) {
+    s.run(dt, dt);
+    x.push_back((s.centroid(0).x - 0.5) / dt);
+  }
+  return x;
+}
+
+/// Amplification matrix of (x, Δt v, Δt² a) on a spring, from the formulas of Chung & Hulbert (1993).
+Eigen::Matrix3d amplification(double alpha_m, double alpha_f, double omega_dt) {
+  const double gamma = 0.5 - alpha_m + alpha_f, beta = 0.25 * std::pow(1.0 - alpha_m + alpha_f, 2),
+               k = omega_dt * omega_dt;
+  Eigen::Matrix3d end, start;  // end · (state at the end) = start · (state at the start)
+  end << 1.0, 0.0, -beta, 0.0, 1.0, -gamma, (1.0 - alpha_f) * k, 0.0, 1.0 - alpha_m;
+  start << 1.0, 1.0, 0.5 - beta, 0.0, 1.0, 1.0 - gamma, -alpha_f * k, 0.0, -alpha_m;
+  return end.inverse() * start;
+}
+
+// Steps on a spring obey the recurrence that the rule's amplification matrix A has by the theorem of Cayley and Hamilton. Its
+// spectral radius is then the rule's; at high frequency it is the one asked for.
+TEST(TimeIntegration, AverageAccelerationAndGeneralizedAlphaHaveTheirSpectralRadius) {
+  using dynamics::TimeIntegration;
+  for (const double radius : {-1.0, 1.0, 0.8, 0.5, 0.0}) {  // −1: average acceleration
+    const bool average = radius < 0.0;
+    const TimeIntegration rule =
+        average ? TimeIntegration::average_acceleration : TimeIntegration::generalized_alpha;
+    const double alpha_m = average ? 0.0 : (2.0 * radius - 1.0) / (radius + 1.0),
+                 alpha_f = average ? 0.0 : radius / (radius + 1.0);
+    for (const double omega_dt : {0.1, 1.0, 10.0}) {
+      const std::vector<double> x = on_a_spring(rule, radius, omega_dt, 12);
+      const Eigen::Matrix3d a = amplification(alpha_m, alpha_f, omega_dt);
+      const double minors = 0.5 * (a.trace() * a.trace() - (a * a).trace());
+      double largest = 0.0;
+      for (std::size_t k = 1; k + 3 < x.size(); ++k) {
+        const double next = a.trace() * x[k + 2] - minors * x[k + 1] + a.determinant() * x[k];
+        EXPECT_NEAR(x[k + 3], next, 1e-9) << radius << " " << omega_dt << " " << k;
+        largest = std::max(largest, std::abs(x[k + 3]));
+      }
+      EXPECT_GT(largest, radius == 0.0 ? 0.0 : 1e-4) << radius << " " << omega_dt;
+    }
+    const double at_infinity = amplification(alpha_m, alpha_f, 1e6).eigenvalues().cwiseAbs().maxCoeff();
+    EXPECT_NEAR(at_infinity, average ? 1.0 : radius, 1e-3);
   }
 }
 

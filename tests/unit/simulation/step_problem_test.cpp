@@ -25,8 +25,8 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   Drive drive;
   drive.step = 0.005;
   drive.end_time = s.state.time + drive.step;
-  const std::vector<double> theta(s.model.blocks.size(), s.model.solver.theta);
-  drive.theta = theta;
+  const std::vector<Integrator> rule(s.model.blocks.size());
+  drive.rule = rule;
   const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
   problem.build(s.model, s.state, drive, s.model.surface, contacts, s.team);
   std::vector<int> sizes;

@@ -1,0 +1,78 @@
+#pragma once
+
+namespace keyblock::dynamics {
+
+/// How one coefficient of a block moves: position increment D, velocity v, acceleration a, and F, the sum of all forces over the
+/// mass, which is a in schemes that balance them at the end of the step.
+struct Motion {
+  double velocity = 0.0, acceleration = 0.0, force = 0.0;
+};
+
+/// A rule of time integration in the form that a step needs:
+///
+///     M (c (D/Δt − v)/Δt − c_a a − c_F F) = force at the end of the step
+///
+/// with v, a, F at its start. Shi's family with θ (Shi 1988: θ = 1; backward Euler: 0) needs neither a nor F:
+///
+///     c = 1 + θ,   v′ = (1+θ) D/Δt − θ v
+///
+/// The generalized-α scheme (Chung & Hulbert 1993) of spectral radius ρ at infinite frequency:
+///
+///     (1−α_m) a′ + α_m a = (1−α_f) F′ + α_f F,     α_m = (2ρ−1)/(ρ+1),  α_f = ρ/(ρ+1)
+///     D = Δt v + Δt² ((½−β) a + β a′),   v′ = v + Δt ((1−γ) a + γ a′),   γ = ½ − α_m + α_f,  β = ¼ (1 − α_m + α_f)²
+///
+/// and the average-acceleration rule (Newmark 1959, β = ¼, γ = ½) is the same with α_m = α_f = 0.
+class Integrator {
+ public:
+  Integrator() : Integrator(shi(1.0)) {}
+
+  static Integrator shi(double theta) {
+    Integrator rule(Family::shi);
+    rule.theta_ = theta;
+    rule.inertia_ = 1.0 + theta;
+    return rule;
+  }
+  static Integrator average_acceleration() { return newmark(0.0, 0.0); }
+  static Integrator generalized_alpha(double radius) {
+    return newmark((2.0 * radius - 1.0) / (radius + 1.0), radius / (radius + 1.0));
+  }
+
+  [[nodiscard]] double inertia() const { return inertia_; }            ///< c
+  [[nodiscard]] double acceleration() const { return acceleration_; }  ///< c_a
+  [[nodiscard]] double force() const { return force_; }                ///< c_F
+
+  /// The motion at the end of a step of length dt and increment d.
+  [[nodiscard]] Motion end(const Motion& start, double d, double dt) const {
+    const double jump = (d / dt - start.velocity) / dt;
+    Motion m;
+    m.force = inertia_ * jump - acceleration_ * start.acceleration - force_ * start.force;
+    if (family_ == Family::shi) {
+      m.velocity = (1.0 + theta_) * d / dt - theta_ * start.velocity;
+      m.acceleration = m.force;
+    } else {
+      m.acceleration = jump / beta_ - (0.5 / beta_ - 1.0) * start.acceleration;
+      m.velocity = start.velocity + dt * ((1.0 - gamma_) * start.acceleration + gamma_ * m.acceleration);
+    }
+    return m;
+  }
+
+ private:
+  enum class Family { shi, newmark };
+  explicit Integrator(Family family) : family_(family) {}
+  static Integrator newmark(double alpha_m, double alpha_f) {
+    Integrator rule(Family::newmark);
+    rule.gamma_ = 0.5 - alpha_m + alpha_f;
+    rule.beta_ = 0.25 * (1.0 - alpha_m + alpha_f) * (1.0 - alpha_m + alpha_f);
+    rule.inertia_ = (1.0 - alpha_m) / ((1.0 - alpha_f) * rule.beta_);
+    rule.acceleration_ = ((1.0 - alpha_m) * (0.5 / rule.beta_ - 1.0) - alpha_m) / (1.0 - alpha_f);
+    rule.force_ = alpha_f / (1.0 - alpha_f);
+    return rule;
+  }
+
+  Family family_;
+  double theta_ = 1.0;
+  double beta_ = 0.5, gamma_ = 1.0;
+  double inertia_ = 2.0, acceleration_ = 0.0, force_ = 0.0;
+};
+
+}  // namespace keyblock::dynamics
