@@ -134,17 +134,6 @@ void Stepper::remove_absent(State& state) {
   state.pattern.clear();
 }
 
-/// What the step moves fixed blocks by: the way from where they are to where they are to be at its end.
-void Stepper::prescribe(const State& state, Drive& drive) {
-  for (const PrescribedMotion& motion : model_.motions) {
-    const Block& block = model_.blocks[at(motion.block)];
-    const Vec2 now =
-        Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
-    prescribed_[at(motion.block)] = motion.centroid(drive.end_time) - now;
-  }
-  drive.prescribed = prescribed_;
-}
-
 /// Bound on how far each block moves in the step: twice what its velocity and the body force make of it.
 void Stepper::predict_reach(const State& state, const Drive& drive) {
   const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
@@ -444,6 +433,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     block.pose.rotate(w, &state.force[block.first]);
     state.acceleration_known[b] = !drive.is_static && in_impact_[b] == 0;
   }
+  move_prescribed(state, drive);
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (model_.moves(b)) report.max_displacement = std::max(report.max_displacement, state.moved[b]);

@@ -82,6 +82,7 @@ class Stepper {
   void place(State& state);
   static double stored_energy(const State& state);
   void prescribe(const State& state, Drive& drive);
+  void move_prescribed(State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
   void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene.h"
+
+namespace keyblock::simulation {
+namespace {
+
+constexpr double dt = 0.001;
+
+loading::TimeTable table(double duration, const auto& displacement) {
+  std::vector<std::pair<double, double>> rows;
+  for (long k = 0; k <= std::lround(duration / dt); ++k) {
+    const double t = static_cast<double>(k) * dt;
+    rows.emplace_back(t, displacement(t));
+  }
+  return loading::TimeTable(std::move(rows));
+}
+
+/// A block at rest on a fixed base, block 1 on block 0.
+Scene on_base(double friction) {
+  Scene scene(5e10, friction);
+  scene.rectangle({-5.0, -1.0}, 10.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5);
+  return scene;
+}
+
+// Block on an oscillating base, u = D (1 − cos ωt), μ = 0.3 (MacLaughlin & Doolin 2006): absolute displacements from the
+// integral of the Coulomb slider.
+TEST(PrescribedMotion, DragsABlockByFriction) {
+  Scene scene = on_base(std::atan(0.3) * 180.0 / std::numbers::pi);
+  scene.setup.properties[0].motion_x =
+      table(5.0, [](double t) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * t)); });
+  Simulator s(scene);
+  const double start = s.centroid(1).x;
+  double before = 0.0;
+  for (const auto& [time, expected] : {std::pair{1.0, 0.52769}, {2.0, 0.81151}, {5.0, 1.09120}}) {
+    s.run(time - before, dt);
+    before = time;
+    EXPECT_NEAR(s.centroid(1).x - start, expected, 0.005 * expected) << time;
+  }
+  EXPECT_NEAR(s.centroid(0).x, scene.setup.properties[0].motion_x(5.0), 1e-12);
+  EXPECT_LT(std::abs(s.residual()), 1e-3 * std::max(s.state.ledger.friction, s.state.ledger.input));
+  EXPECT_EQ(s.unconverged, 0);
+}
+
+// A base that lifts a block does work on it.
+TEST(PrescribedMotion, WorkIsInput) {
+  Scene scene = on_base(30.0);
+  scene.setup.properties[0].motion_y = table(
+      2.0, [](double t) { return 0.1 * (t < 1.0 ? 0.5 * (1.0 - std::cos(std::numbers::pi * t)) : 1.0); });
+  Simulator s(scene);
+  const double start = s.centroid(1).y;
+  s.run(2.0, dt);
+  const double weight = 2600.0 * 0.5 * 9.81;
+  EXPECT_NEAR(s.centroid(1).y - start, 0.1, 1e-4);
+  EXPECT_NEAR(s.state.ledger.input, 0.1 * weight, 1e-2 * 0.1 * weight);
+  EXPECT_LT(std::abs(s.residual()), 1e-3 * s.state.ledger.input);
+}
+
+// A wall that comes from afar finds the block within the steps in which it meets it.
+TEST(PrescribedMotion, AWallPushesABlock) {
+  Scene scene(5e10, 0.0);
+  scene.setup.gravity = {0.0, 0.0};
+  scene.rectangle({-3.0, -1.0}, 1.0, 2.0, 0.0, true);
+  scene.rectangle({0.0, -0.5}, 1.0, 1.0);
+  scene.setup.properties[0].motion_x = loading::TimeTable({{0.0, 0.0}, {1.0, 4.0}});
+  scene.setup.solver.restitution = 0.0;
+  Simulator s(scene);
+  const double start = s.centroid(1).x;
+  s.run(1.0, dt);
+  EXPECT_GE(s.centroid(1).x - start, 2.0 - 1e-3);
+  EXPECT_GE(s.velocity(1).x, 4.0 - 0.05);
+  s.run(0.5, dt);
+  EXPECT_NEAR(s.centroid(0).x, 1.5, 1e-12);
+  EXPECT_EQ(s.velocity(0).x, 0.0);
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
