@@ -12,7 +12,8 @@ namespace keyblock::simulation {
 /// its force out of equilibrium over its weight. The pseudo time step grows while the solution comes quickly. A block that
 /// would move more than a small distance in a step gets more inertia, alone: loose blocks creep while the rock around
 /// them comes to rest. A block that has crept further than `travel_limit` out of balance is called moving; the system is
-/// in equilibrium when every block that is not moving has been within the tolerance for some steps.
+/// in equilibrium when every block that is not moving has been within the tolerance for some steps. A block on supports
+/// cannot fall: it is never called moving, however far its load bends it.
 class Settler {
  public:
   Settler(const dynamics::Model& model, double time_step, double tolerance);
@@ -39,7 +40,8 @@ class Settler {
 
  private:
   const dynamics::Model& model_;
-  double longest_step_, tolerance_, creep_limit_, travel_limit_;
+  double longest_step_, tolerance_;
+  std::vector<double> creep_limit_, travel_limit_;  ///< m, per block
   double worst_ratio_ = 0.0;
   Memory memory_;
 };

@@ -163,5 +163,34 @@ TEST(Settle, NamesTheBlockThatMovesAndLetsItFall) {
   EXPECT_LT(record.max_overlap, 1e-3);
 }
 
+// A slender cantilever bends by a tenth of its length: it is not in equilibrium until it has.
+TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
+  Scene scene(1e5, 0.0, 1.0);
+  scene.rectangle({0.0, -0.1}, 8.0, 0.2, 0.0, false, 4);
+  RunSetup setup = scene.setup;
+  setup.gravity = {0.0, 0.0};
+  setup.time_step = 1.0;
+  loading::Support support;
+  support.block = "b0";
+  support.is_edge = true;
+  support.points = {{0.0, -0.1}, {0.0, 0.1}};
+  support.stiffness = 1e8;
+  setup.supports.push_back(support);
+  loading::Load load;
+  load.block = "b0";
+  load.from = {8.0, 0.0};
+  load.value = {0.0, -0.3};
+  setup.loads.push_back(load);
+  setup.stages.push_back(stage("settle", StageKind::settle));
+  setup.stages.back().tolerance = 1e-8;
+  setup.histories.push_back({"tip", "b0", {8.0, 0.0}});
+  LastHistory observer;
+  const RunRecord record = run(setup, {}, observer);
+  EXPECT_TRUE(record.stages[0].equilibrium_reached);
+  EXPECT_TRUE(record.stages[0].moving.empty());
+  EXPECT_LT(record.stages[0].worst_residual_ratio, 1e-8);
+  EXPECT_NEAR(observer.last.points[0].uy, -0.3 * 512.0 / (3.0 * 1e5 * 0.2 * 0.2 * 0.2 / 12.0), 0.02);
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
