@@ -15,7 +15,7 @@
 namespace keyblock::app {
 namespace {
 
-void describe(CLI::App& app) {
+void describe(CLI::App& app, int& exit_code) {
   app.name("keyblock");
   app.description(
       "Jointed rock as a system of deformable blocks (2D discontinuous deformation analysis): joints are cut "
@@ -27,9 +27,11 @@ void describe(CLI::App& app) {
       "  keyblock check tunnel.toml\n"
       "  keyblock run tunnel.toml -o out/tunnel\n"
       "  keyblock run tunnel.toml -o out/strong --set \"stage.'first earthquake'.scale=2\"\n"
-      "  keyblock motion record.smc --plot\n\n"
+      "  keyblock motion record.smc --plot\n"
+      "  keyblock verify\n\n"
       "Each command has its own --help.\n"
-      "Exit codes: 0 done, 1 the input is wrong, 2 the run failed or was interrupted, 3 internal error.");
+      "Exit codes: 0 done, 1 the input is wrong or a check does not hold, 2 the run failed or was "
+      "interrupted, 3 internal error.");
   app.require_subcommand(1);
   add_run(app);
   add_check(app);
@@ -37,6 +39,7 @@ void describe(CLI::App& app) {
   add_report(app);
   add_export(app);
   add_motion(app);
+  add_verify(app, exit_code);
 }
 
 /// --help and --version arrive here too; they are no mistakes.
@@ -65,14 +68,15 @@ int explain(const CLI::App& app, const std::vector<std::string>& words, const CL
 int run_command_line(int argc, const char* const* argv) {
   try {
     CLI::App app;
-    describe(app);
+    int exit_code = done;
+    describe(app, exit_code);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
       return explain(app, {argv + 1, argv + argc}, error);
     }
     std::cout.flush();
-    return done;
+    return exit_code;
   } catch (const InputError& error) {
     std::cerr << error.what() << "\n";
     return input_wrong;

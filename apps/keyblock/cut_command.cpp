@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "cutting/picture.h"
 #include "result_folder.h"
 #include "scenario/build.h"
+#include "scenario/cut_summary.h"
 #include "scenario_arguments.h"
 
 namespace keyblock::app {
@@ -23,35 +23,6 @@ struct CutArguments {
   ScenarioArguments scenario;
   std::string folder;
 };
-
-/// Fields as in the summary of a run, as far as they are known without one; every excavation counts as opened.
-std::string summary(const scenario::Scenario& scenario, int realization, const cutting::BlockSystem& system) {
-  double left = 0.0, excavated = 0.0;
-  std::size_t vertices = 0;
-  for (const cutting::CutBlock& block : system.blocks) {
-    (block.excavations.empty() ? left : excavated) += area(block.polygon);
-    for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) vertices += block.polygon.ring(r).size();
-  }
-  const cutting::CutStatistics& cut = system.statistics;
-  using nlohmann::ordered_json;
-  const ordered_json json{{"title", scenario.title},
-                          {"version", KEYBLOCK_VERSION},
-                          {"seed", scenario.seed},
-                          {"realization", realization},
-                          {"blocks", system.blocks.size()},
-                          {"vertices", vertices},
-                          {"joints", cut.joints_used},
-                          {"area", {{"blocks", left}, {"excavated", excavated}, {"domain", cut.domain_area}}},
-                          {"merged_slivers", cut.merged_slivers},
-                          {"cutting",
-                           {{"traces", cut.traces},
-                            {"trace_length_m", cut.trace_length},
-                            {"removed_length_m", cut.removed_length},
-                            {"removed_pieces", cut.removed_pieces},
-                            {"merged_vertices", cut.merged_vertices},
-                            {"sliver_area_m2", cut.sliver_area}}}};
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
 
 std::string picture(const scenario::Scenario& scenario, const scenario::BlockModel& model) {
   cutting::PictureNames names;
@@ -70,7 +41,8 @@ void cut_scenario(const CutArguments& arguments) {
   check_holds_no_run(folder);
   write_file_atomically(folder / "blocks.geojson", cutting::to_geojson(model.system));
   write_file_atomically(folder / "blocks.svg", picture(scenario, model));
-  write_file_atomically(folder / "summary.json", summary(scenario, realization, model.system));
+  write_file_atomically(folder / "summary.json",
+                        scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION));
   const cutting::CutStatistics& cut = model.system.statistics;
   std::cout << fmt::format(
       "{} blocks from {} of {} traces; {:.1f} m of {:.1f} m end in rock or bound no block; {} slivers "

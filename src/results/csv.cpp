@@ -18,14 +18,21 @@ std::string csv_field(std::string_view text) {
   return out + "\"";
 }
 
-std::string histories_csv(const std::vector<std::string>& names,
-                          const std::vector<simulation::HistoryRow>& rows) {
-  std::string text = "time";
+std::vector<std::string> history_columns(const std::vector<std::string>& names) {
+  std::vector<std::string> columns{"time"};
   for (const std::string& name : names) {
     for (const char* quantity : {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"}) {
-      text += "," + csv_field(fmt::format("{}.{}", name, quantity));
+      columns.push_back(fmt::format("{}.{}", name, quantity));
     }
   }
+  return columns;
+}
+
+std::string histories_csv(const std::vector<std::string>& names,
+                          const std::vector<simulation::HistoryRow>& rows) {
+  std::string text;
+  for (const std::string& column : history_columns(names))
+    text += (text.empty() ? "" : ",") + csv_field(column);
   text += "\n";
   for (const simulation::HistoryRow& row : rows) {
     auto out = std::back_inserter(text);

@@ -11,6 +11,9 @@ namespace keyblock::results {
 /// A field as RFC 4180 has it: in quotes where it holds a comma, a quote or a line break.
 std::string csv_field(std::string_view text);
 
+/// Names of the columns: `time`, then seven per history, as below.
+std::vector<std::string> history_columns(const std::vector<std::string>& names);
+
 /// One row per recorded step: `time`, then per history `NAME.ux, NAME.uy, NAME.vx, NAME.vy, NAME.sxx, NAME.syy,
 /// NAME.sxy` (displacement since the start, m; velocity, m/s; Cauchy stress, Pa). Every number can be read back to its
 /// last bit.

@@ -1,0 +1,74 @@
+#include "scenario/cut_summary.h"
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "rockmass/intensity.h"
+#include "rockmass/section.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json joint_sets(const Scenario& scenario, const BlockModel& model) {
+  ordered_json sets = ordered_json::array();
+  if (!scenario.domain || !scenario.section_azimuth) return sets;
+  const Domain& domain = *scenario.domain;
+  const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+  for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k) {
+    const rockmass::JointSet& set = scenario.joint_sets[k].set;
+    const rockmass::TraceSource source{rockmass::TraceSource::Kind::joint_set, static_cast<int>(k)};
+    std::vector<rockmass::Trace> own;
+    std::copy_if(model.traces.begin(), model.traces.end(), std::back_inserter(own),
+                 [&](const rockmass::Trace& trace) { return trace.source == source; });
+    const rockmass::Intensity intensity = rockmass::measure_intensity(own, window);
+    const double azimuth = *scenario.section_azimuth;
+    sets.push_back({{"name", set.name},
+                    {"apparent_dip_deg", rockmass::apparent_dip(set.dip, set.dip_direction, azimuth)},
+                    {"spacing_factor", rockmass::trace_spacing_factor(set.dip, set.dip_direction, azimuth)},
+                    {"traces", intensity.traces},
+                    {"trace_length_m", intensity.length},
+                    {"p21_per_m", intensity.p21},
+                    {"p20_per_m2", intensity.p20},
+                    {"p10_across_per_m", intensity.p10_across},
+                    {"p10_down_per_m", intensity.p10_down}});
+  }
+  return sets;
+}
+
+ordered_json cutting_json(const cutting::CutStatistics& cut) {
+  return {{"traces", cut.traces},
+          {"trace_length_m", cut.trace_length},
+          {"removed_length_m", cut.removed_length},
+          {"removed_pieces", cut.removed_pieces},
+          {"merged_vertices", cut.merged_vertices},
+          {"sliver_area_m2", cut.sliver_area}};
+}
+
+}  // namespace
+
+std::string cut_summary(const Scenario& scenario, int realization, const BlockModel& model,
+                        const std::string& version) {
+  double left = 0.0, excavated = 0.0;
+  std::size_t vertices = 0;
+  for (const cutting::CutBlock& block : model.system.blocks) {
+    (block.excavations.empty() ? left : excavated) += area(block.polygon);
+    for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) vertices += block.polygon.ring(r).size();
+  }
+  const cutting::CutStatistics& cut = model.system.statistics;
+  const ordered_json json{{"title", scenario.title},
+                          {"version", version},
+                          {"seed", scenario.seed},
+                          {"realization", realization},
+                          {"blocks", model.system.blocks.size()},
+                          {"vertices", vertices},
+                          {"joints", cut.joints_used},
+                          {"area", {{"blocks", left}, {"excavated", excavated}, {"domain", cut.domain_area}}},
+                          {"merged_slivers", cut.merged_slivers},
+                          {"cutting", cutting_json(cut)},
+                          {"joint_sets", joint_sets(scenario, model)}};
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace keyblock::scenario

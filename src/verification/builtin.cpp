@@ -1,0 +1,34 @@
+#include "verification/builtin.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace keyblock::verification {
+namespace {
+
+constexpr std::pair<const char*, BuiltinResults (*)()> checks[] = {
+    {"polygon_integrals", polygon_integrals},
+};
+
+}  // namespace
+
+std::vector<std::string> builtin_names() {
+  std::vector<std::string> names;
+  for (const auto& check : checks) names.emplace_back(check.first);
+  return names;
+}
+
+bool is_builtin(const std::string& name) {
+  const auto names = builtin_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+BuiltinResults run_builtin(const std::string& name) {
+  for (const auto& check : checks) {
+    if (name == check.first) return check.second();
+  }
+  throw std::invalid_argument("no built-in check '" + name + "'");
+}
+
+}  // namespace keyblock::verification

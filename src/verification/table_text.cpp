@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "verification/report.h"
+
+namespace keyblock::verification {
+namespace {
+
+constexpr std::size_t columns = 9;
+using Line = std::array<std::string, columns>;
+
+const Line heading{"quantity", "order",     "parameters", "computed", "expected",
+                   "error",    "published", "tolerance",  ""};
+constexpr std::array<bool, columns> to_the_left{true, false, true, false, false, false, false, false, true};
+
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+Line line_of(const Row& row) {
+  const RowText text = row_text(row);
+  return {text.quantity, text.order,     text.parameters, text.computed,           text.expected,
+          text.error,    text.published, text.tolerance,  row.pass ? "ok" : "FAIL"};
+}
+
+std::string paint(const std::string& text, const char* code, const TextStyle& style) {
+  return style.color ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
+}
+
+// Signs that only Unicode has, for terminals that have none.
+std::string spelled(std::string text, const TextStyle& style) {
+  if (style.unicode) return text;
+  for (const auto& [sign, word] : {std::pair{"≤", "<="}, {"≥", ">="}, {"±", "+-"}}) {
+    for (auto at = text.find(sign); at != std::string::npos; at = text.find(sign)) {
+      text.replace(at, std::string_view(sign).size(), word);
+    }
+  }
+  std::string ascii;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) ascii += c;
+    if (byte >= 0xC0) ascii += '?';
+  }
+  return ascii;
+}
+
+std::string case_text(const CaseResult& result, const TextStyle& style) {
+  std::vector<Line> lines{heading};
+  for (const Row& row : result.rows) lines.push_back(line_of(row));
+  std::array<std::size_t, columns> width{};
+  for (Line& line : lines) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      line[c] = spelled(line[c], style);
+      width[c] = std::max(width[c], width_of(line[c]));
+    }
+  }
+  // Columns with nothing in them, as that of published figures often is, are left out.
+  std::array<bool, columns> used{};
+  for (std::size_t k = 1; k < lines.size(); ++k) {
+    for (std::size_t c = 0; c < columns; ++c) used[c] = used[c] || !lines[k][c].empty();
+  }
+  std::string text = paint(
+      spelled(fmt::format("{} {}: {}", result.file->number, result.file->name, result.file->title), style),
+      "1", style);
+  text += fmt::format("  ({:.1f} s)\n", result.wall_time);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    std::string line = " ";
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (!used[c]) continue;
+      const std::string padding(width[c] - width_of(lines[k][c]), ' ');
+      std::string cell = to_the_left[c] ? lines[k][c] + padding : padding + lines[k][c];
+      if (c + 1 == columns && k > 0) cell = paint(cell, result.rows[k - 1].pass ? "32" : "1;31", style);
+      line += " " + cell + (c + 1 < columns ? " " : "");
+    }
+    while (line.ends_with(' ')) line.pop_back();
+    text += line + "\n";
+    if (k > 0 && !result.rows[k - 1].failure.empty()) {
+      text += "      " + spelled(result.rows[k - 1].failure, style) + "\n";
+    }
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string table_text(const std::vector<CaseResult>& results, const TextStyle& style) {
+  std::string text;
+  for (const CaseResult& result : results) {
+    if (!result.rows.empty()) text += case_text(result, style);
+  }
+  return text + verdict_text(results) + "\n";
+}
+
+}  // namespace keyblock::verification
