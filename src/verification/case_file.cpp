@@ -54,30 +54,29 @@ bool formula(TableReader& t, std::string_view key, std::optional<Formula>& formu
   return true;
 }
 
-// A number for each order of the run.
-void by_order(TableReader& t, std::string_view key, std::vector<double>& numbers, const RunSpec& run,
-              const Rule& rule) {
-  const Value* value = t.any(key, "array of numbers", rule);
+// A number for each order, or for each point, of the run.
+void number_for_each(TableReader& t, std::string_view key, std::vector<double>& numbers, std::size_t count,
+                     std::string_view what) {
+  const std::string condition = fmt::format("{} of the run", what);
+  const Value* value = t.any(key, "array of numbers", only(count > 0, condition));
   if (value == nullptr) return;
   const bool right =
       value->is(Value::Type::array) && std::all_of(value->items.begin(), value->items.end(),
                                                    [](const Value& item) { return item.is_number(); });
-  if (!right) {
-    t.fail(key, describe(*value), "an array of numbers");
-  } else if (value->items.size() != run.orders.size()) {
-    t.fail(key, describe(*value), fmt::format("a number for each of the {} orders", run.orders.size()));
-  } else {
-    for (const Value& item : value->items) numbers.push_back(item.number);
+  if (!right || value->items.size() != count) {
+    t.fail(key, describe(*value), fmt::format("an array of {} numbers, one for each of the {}", count, what));
+    return;
   }
+  for (const Value& item : value->items) numbers.push_back(item.number);
 }
 
 void check_expectation(TableReader& t, const QuantitySpec& quantity) {
   int kinds = 0;
-  for (const char* key : {"expected", "expected_by_order", "at_most", "at_least"})
+  for (const char* key : {"expected", "expected_by_order", "expected_by_point", "at_most", "at_least"})
     kinds += t.find(key) != nullptr;
   if (kinds != 1) {
     t.fail("expected", kinds == 0 ? "nothing" : "several of them",
-           "one of expected, expected_by_order, at_most, at_least");
+           "one of expected, expected_by_order, expected_by_point, at_most, at_least");
   }
   const bool bound = quantity.at_most || quantity.at_least;
   const int tolerances = (t.find("tolerance") != nullptr) + (t.find("absolute_tolerance") != nullptr);
@@ -94,14 +93,16 @@ void read_quantity(TableReader& t, QuantitySpec& quantity, const RunSpec& run) {
   formula(t, "value", value, {.required = true});
   if (value) quantity.value = *value;
   formula(t, "expected", quantity.expected, {});
-  const bool orders = !run.orders.empty();
-  by_order(t, "expected_by_order", quantity.expected_by_order, run, only(orders, "orders of the run"));
+  const std::size_t orders = run.orders.size(), points = run.points.size();
+  number_for_each(t, "expected_by_order", quantity.expected_by_order, orders, "orders");
+  number_for_each(t, "expected_by_point", quantity.expected_by_point, points, "points");
   formula(t, "at_most", quantity.at_most, {});
   formula(t, "at_least", quantity.at_least, {});
   formula(t, "tolerance", quantity.tolerance, {});
   formula(t, "absolute_tolerance", quantity.absolute_tolerance, {});
   t.number("published", quantity.published, {});
-  by_order(t, "published_by_order", quantity.published_by_order, run, only(orders, "orders of the run"));
+  number_for_each(t, "published_by_order", quantity.published_by_order, orders, "orders");
+  number_for_each(t, "published_by_point", quantity.published_by_point, points, "points");
   t.string("source", quantity.source, {});
   check_expectation(t, quantity);
 }

@@ -22,13 +22,13 @@ struct Formula {
 struct QuantitySpec {
   std::string name, unit;
   Formula value;
-  /// What is known: a figure, one for each order, or a bound.
+  /// What is known: a figure, one for each order or point of the run, or a bound.
   std::optional<Formula> expected, at_most, at_least;
-  std::vector<double> expected_by_order;
-  std::optional<Formula> tolerance;           ///< relative to what is expected …
-  std::optional<Formula> absolute_tolerance;  ///< … or in the unit of the quantity
-  std::optional<double> published;            ///< figure of a DDA in the literature
-  std::vector<double> published_by_order;     ///< NaN: none for that order
+  std::vector<double> expected_by_order, expected_by_point;
+  std::optional<Formula> tolerance;                            ///< relative to what is expected …
+  std::optional<Formula> absolute_tolerance;                   ///< … or in the unit of the quantity
+  std::optional<double> published;                             ///< figure of a DDA in the literature
+  std::vector<double> published_by_order, published_by_point;  ///< NaN: none there
   std::string source;
 };
 

@@ -177,11 +177,14 @@ Row make_row(const QuantitySpec& spec, const SolvedRun& run, std::size_t index,
   row.wall_time = outcome.wall_time;
   row.failure = outcome.failure;
   row.published = spec.published;
-  if (const auto place = order_place(*run.spec, simulation)) {
-    if (!spec.expected_by_order.empty()) row.expected = spec.expected_by_order[*place];
-    if (!spec.published_by_order.empty() && std::isfinite(spec.published_by_order[*place])) {
-      row.published = spec.published_by_order[*place];
-    }
+  for (const auto& [numbers, place] : {std::pair(&spec.expected_by_order, order_place(*run.spec, simulation)),
+                                       std::pair(&spec.expected_by_point, simulation.point)}) {
+    if (place && !numbers->empty()) row.expected = (*numbers)[*place];
+  }
+  for (const auto& [numbers, place] :
+       {std::pair(&spec.published_by_order, order_place(*run.spec, simulation)),
+        std::pair(&spec.published_by_point, simulation.point)}) {
+    if (place && !numbers->empty() && std::isfinite((*numbers)[*place])) row.published = (*numbers)[*place];
   }
   row.computed = none;
   if (!outcome.failure.empty()) return row;

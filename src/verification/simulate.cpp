@@ -201,13 +201,13 @@ std::vector<Simulation> simulations(const RunSpec& run) {
   std::vector<Simulation> all(1);
   if (!run.orders.empty()) {
     all.clear();
-    for (const int order : run.orders) all.push_back({{}, order, {}, {}});
+    for (const int order : run.orders) all.push_back({{}, order, {}, {}, {}});
   }
   if (!run.points.empty()) {
     std::vector<Simulation> product;
     for (const Simulation& simulation : all) {
-      for (const Point& point : run.points) {
-        product.push_back({{}, simulation.order, point.parameters, label_of(point)});
+      for (std::size_t k = 0; k < run.points.size(); ++k) {
+        product.push_back({{}, simulation.order, run.points[k].parameters, k, label_of(run.points[k])});
       }
     }
     all = std::move(product);

@@ -16,6 +16,7 @@ struct Simulation {
   std::vector<std::string> overrides;  ///< key=value, all of them
   std::optional<int> order;            ///< where the run has orders
   Parameters parameters;               ///< those that differ between the simulations of the run
+  std::optional<std::size_t> point;    ///< place in the list of points of the run
   std::string label;                   ///< for people: the parameters in short
 };
 
