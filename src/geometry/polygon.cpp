@@ -141,6 +141,14 @@ bool in_triangle(Vec2 a, Vec2 b, Vec2 c, Vec2 p) {
   return cross(b - a, p - a) >= 0.0 && cross(c - b, p - b) >= 0.0 && cross(a - c, p - c) >= 0.0;
 }
 
+/// Whether the way from vertex k to p begins inside the ring. Where bridges end, copies of a vertex differ in this.
+bool starts_inside(const Ring& ring, std::size_t k, Vec2 p) {
+  const std::size_t n = ring.size();
+  const Vec2 v = ring[k], before = ring[(k + n - 1) % n], after = ring[(k + 1) % n];
+  const bool left_of_next = cross(after - v, p - v) > 0.0, left_of_last = cross(v - before, p - v) > 0.0;
+  return cross(v - before, after - v) > 0.0 ? left_of_next && left_of_last : left_of_next || left_of_last;
+}
+
 /// Joins a hole to the ring by a double edge from the hole's rightmost vertex to a ring vertex that it sees.
 void bridge_hole(Ring& ring, const Ring& hole) {
   const auto start = static_cast<std::size_t>(
@@ -150,7 +158,7 @@ void bridge_hole(Ring& ring, const Ring& hole) {
   double best_distance = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const double distance = squared_norm(ring[k] - p);
-    if (distance >= best_distance || ring[k].x < p.x) continue;
+    if (distance >= best_distance || ring[k].x < p.x || !starts_inside(ring, k, p)) continue;
     bool visible = true;
     for (std::size_t e = 0; e < ring.size() && visible; ++e) {
       const Vec2 a = ring[e], b = ring[(e + 1) % ring.size()];

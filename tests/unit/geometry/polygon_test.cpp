@@ -58,6 +58,19 @@ TEST(Triangulate, CoversExactly) {
   EXPECT_THROW(triangulate({{{0, 0}, {1, 1}}, {}}), std::invalid_argument);
 }
 
+// Both holes are joined to the vertex on the right, of which there are then two copies: one above, one below the bridge.
+TEST(Triangulate, TwoHolesSeeTheSameVertex) {
+  for (const double y : {-0.6, 0.6}) {
+    Polygon polygon{{{-3, -1.2}, {0, -1.2}, {2, 0}, {0, 1.2}, {-3, 1.2}},
+                    {{{-1, -0.1}, {1, 0}, {-1, 0.1}}, {{-1.2, y - 0.1}, {0.2, y}, {-1.2, y + 0.1}}}};
+    orient(polygon);
+    ASSERT_FALSE(self_intersects(polygon));
+    double sum = 0.0;
+    for (const auto& t : triangulate(polygon)) sum += signed_area(t);
+    EXPECT_NEAR(sum, area(polygon), 1e-14) << y;
+  }
+}
+
 // Oracle for the exact integrals: tensor Gauss on each triangle of an ear clipping.
 double triangulated_integral(const Polygon& polygon, int i, int j) {
   const LineRule& rule = gauss_legendre(14);
