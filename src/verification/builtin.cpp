@@ -7,8 +7,13 @@
 namespace keyblock::verification {
 namespace {
 
-constexpr std::pair<const char*, BuiltinResults (*)()> checks[] = {
+using Check = BuiltinResults (*)(const std::vector<std::filesystem::path>&);
+
+constexpr std::pair<const char*, Check> checks[] = {
     {"polygon_integrals", polygon_integrals},
+    {"cutting_of_chords", cutting_of_chords},
+    {"trace_statistics", trace_statistics},
+    {"trace_topology", trace_topology},
 };
 
 }  // namespace
@@ -24,9 +29,9 @@ bool is_builtin(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-BuiltinResults run_builtin(const std::string& name) {
+BuiltinResults run_builtin(const std::string& name, const std::vector<std::filesystem::path>& data) {
   for (const auto& check : checks) {
-    if (name == check.first) return check.second();
+    if (name == check.first) return check.second(data);
   }
   throw std::invalid_argument("no built-in check '" + name + "'");
 }

@@ -46,7 +46,7 @@ double triangulated(const std::vector<std::array<Vec2, 3>>& triangles, int i, in
 
 }  // namespace
 
-BuiltinResults polygon_integrals() {
+BuiltinResults polygon_integrals(const std::vector<std::filesystem::path>&) {
   double by_edges = 0.0, by_rule = 0.0;
   int integrals = 0;
   for (const Polygon& polygon : polygons()) {

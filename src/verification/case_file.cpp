@@ -207,6 +207,15 @@ void read_run(TableReader& t, RunSpec& run) {
     t.fail("builtin", '"' + run.builtin + '"', scenario::list_words(builtin_names()),
            scenario::suggestion(run.builtin, builtin_names()));
   }
+  std::vector<std::string> data;
+  read_strings(t, "data", data, only(builtin, "builtin"));
+  for (const std::string& file : data) {
+    run.data.push_back(t.context().directory / file);
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(run.data.back(), ignored)) {
+      t.fail("data", '"' + file + '"', "a file that exists", "paths are relative to the case file");
+    }
+  }
   const auto simulated = [&](Rule rule = {}) { return only(!builtin, "a scenario", rule); };
   t.file("scenario", run.scenario, simulated({.required = true}));
   t.word("command", run.command, commands, simulated());

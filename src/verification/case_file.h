@@ -47,6 +47,7 @@ struct RunSpec {
   bool is_long = false;
   std::filesystem::path scenario;  ///< empty for a built-in check
   std::string builtin;
+  std::vector<std::filesystem::path> data;  ///< files of a built-in check
   RunCommand command = RunCommand::run;
   std::vector<std::string> set;  ///< key=value
   std::vector<int> orders;       ///< empty: the order of the scenario

@@ -228,7 +228,7 @@ Outcome simulate(const RunSpec& run, const Simulation& simulation, const std::st
   Outcome outcome;
   try {
     if (!run.builtin.empty()) {
-      outcome.results = run_builtin(run.builtin);
+      outcome.results = run_builtin(run.builtin, run.data);
     } else {
       const scenario::Scenario scenario = scenario::parse_scenario(run.scenario, simulation.overrides);
       outcome.order = scenario.rock.order.value_or(1);
