@@ -21,8 +21,10 @@ struct Memory {
   double bounding_force =
       0.0;  ///< N per thickness; times μ it bounds the friction of the next step: the normal force,
             ///< while sliding extrapolated, so that friction does not lag behind it
-  double stored = 0.0;  ///< J per thickness, elastic energy of the springs
-  double slip = 0.0;    ///< m, shear displacement since the slip was last set to zero
+  double multiplier = 0.0;  ///< m, augmented Lagrangian: normal force over stiffness, in place of penetration
+  double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
+  double stored = 0.0;      ///< J per thickness, elastic energy of the springs
+  double slip = 0.0;        ///< m, shear displacement since the slip was last set to zero
   State state = State::open;
   bool tracked = false;  ///< took part in the last step
   bool bonded = false;   ///< in place, with cohesion and tension not yet broken

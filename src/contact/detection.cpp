@@ -121,7 +121,7 @@ void Detection::find(const Surface& surface, std::span<const double> reach,
     if (!memory.tracked) {
       memory.tracked = true;
       memory.offset = std::max(0.0, -found_[k].gap);
-      memory.shear = memory.stiffness = memory.stored = 0.0;
+      memory.shear = memory.stiffness = memory.stored = memory.multiplier = memory.drift = 0.0;
       memory.normal_force = memory.bounding_force = 0.0;
       memory.state = State::open;
     } else if (memory.offset > 0.0) {
@@ -185,7 +185,10 @@ namespace {
 /// comes back from there when the joint gets shorter again.
 void keep_energy(Memory& memory, double gap, double stiffness) {
   const double depth = -gap - memory.offset;
-  if (memory.stiffness > 0.0 && stiffness != memory.stiffness && depth > 0.0) {
+  if (memory.multiplier > 0.0) {  // a force that belongs to no penetration stays
+    memory.multiplier *= memory.stiffness / stiffness;
+    memory.shear *= memory.stiffness / stiffness;
+  } else if (memory.stiffness > 0.0 && stiffness != memory.stiffness && depth > 0.0) {
     const double scale = std::sqrt(memory.stiffness / stiffness);
     memory.offset = std::max(-gap - scale * depth, std::min(memory.offset, 0.0));
     memory.shear *= scale;
@@ -208,7 +211,7 @@ void Detection::complete(const Surface& surface, Memory& memory, Contact& contac
     contact.fused = law.fused;
   }
   keep_energy(memory, contact.gap, contact.normal_stiffness);
-  contact.depth = -contact.gap - memory.offset;
+  contact.depth = -contact.gap - memory.offset + memory.multiplier;
 }
 
 }  // namespace keyblock::contact

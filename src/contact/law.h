@@ -39,6 +39,11 @@ class Spring {
   [[nodiscard]] double bound() const { return k_.bound; }
   [[nodiscard]] bool tensile() const { return k_.tensile; }
   void set_bound(double bound) { k_.bound = bound; }
+  /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
+  void shift(double normal, double shear) {
+    depth_ += normal;
+    origin_ += shear;
+  }
   void break_bond() { k_.tensile = false; }
 
   [[nodiscard]] bool closed(double y) const { return k_.tensile || y > 0.0; }
@@ -84,6 +89,15 @@ class Spring {
         (normal - x_force) * (x - k_.depth) + (shear - k_.shear_stiffness * elastic) * (elastic - k_.shear);
     const double work = -normal * (y - depth_) - shear * (w - origin_);
     b.numerical = stored_at_start() - work - b.stored - b.friction - b.damping;
+    return b;
+  }
+
+  /// The same where forces are multipliers, which store nothing: `normal` and `slip` are n·r and t·r of the step.
+  [[nodiscard]] Balance rigid_balance(double y, double w, double normal, double slip) const {
+    const double shear = closed(y) ? shear_force(w) : 0.0;
+    Balance b;
+    b.friction = locked(w) ? 0.0 : shear * slip;
+    b.numerical = -normal_force(y) * normal + shear_force(w) * slip - b.friction;
     return b;
   }
 

@@ -139,6 +139,34 @@ bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Con
   return true;
 }
 
+/// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when
+/// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
+/// left alone.
+bool OpenClose::augment(StepProblem& problem, std::span<const contact::Contact> contacts,
+                        std::span<contact::Memory* const> memory, double tolerance) {
+  auto& rows = problem.rows();
+  double worst = 0.0;
+  shift_.assign(rows.size(), {});
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    const StepProblem::Row& row = rows[c];
+    if (!row.spring.closed(row.depth(r_[c]))) continue;
+    const double penetration = -(contacts[c].gap + dot(row.normal, r_[c])) - std::max(0.0, memory[c]->offset);
+    const bool holds = row.spring.bound() > 0.0 && row.spring.locked(row.shear(r_[c]));
+    const double drift = holds ? memory[c]->drift + dot(row.tangent, r_[c]) : 0.0;
+    worst = std::max({worst, std::abs(penetration), std::abs(drift)});
+    // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
+    shift_[c] = {penetration * (1.0 + 0.25 * row.inertia / row.spring.normal_stiffness()),
+                 drift * (1.0 + 0.25 * row.inertia / row.spring.shear_stiffness())};
+  }
+  if (worst <= tolerance) return false;
+  // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
+  stalls_ = worst > 0.9 * worst_ ? stalls_ + 1 : 0;
+  worst_ = worst;
+  if (stalls_ == 3) return false;
+  for (std::size_t c = 0; c < rows.size(); ++c) rows[c].spring.shift(shift_[c].x, shift_[c].y);
+  return true;
+}
+
 bool OpenClose::break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
                             std::span<contact::Memory* const> memory) {
   bool any = false;
@@ -173,6 +201,9 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::
                    memory[c]->state == contact::State::locked && s.bound() > 0.0};
   }
   OpenCloseResult result;
+  const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
+  worst_ = HUGE_VAL;
+  stalls_ = 0;
   bool warm = false;
   for (;;) {
     result.converged = minimize(problem, solver, options, warm, d, result);
@@ -182,7 +213,13 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::
       result.bond_broken = true;
       continue;
     }
-    const double tolerance = result.bound_updates == 0 ? options.bound_tolerance : options.bound_accuracy;
+    if (augmented &&
+        result.multiplier_updates < options.max_multiplier_updates &&
+        augment(problem, contacts, memory, options.penetration_tolerance * problem.block_size())) {
+      ++result.multiplier_updates;
+      continue;
+    }
+    const double tolerance = result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
     if (result.bound_updates >= options.max_bound_updates) break;
     if (!update_bounds(problem, contacts, memory, tolerance)) break;
     ++result.bound_updates;

@@ -14,6 +14,7 @@ struct OpenCloseResult {
   bool bond_broken = false;  ///< some contact lost its cohesion and tension on the way
   int iterations = 0;        ///< linear solves
   int factorizations = 0;
+  int multiplier_updates = 0;   ///< of an augmented Lagrangian
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
   double residual_ratio = 0.0;  ///< at the end
 };
@@ -25,7 +26,8 @@ struct OpenCloseResult {
 ///        is the root of a piecewise linear function of α;
 ///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
 ///        (a new contact has no friction otherwise, in its first step);
-///     4. bonds whose strength is exceeded break, and the iteration goes on. A broken bond stays broken.
+///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
+///     5. bonds whose strength is exceeded break, and the iteration goes on. A broken bond stays broken.
 class OpenClose {
  public:
   /// start: springs assumed in the first solve, one per row. d: the increment, overwritten. Bonds that break are cleared
@@ -49,11 +51,16 @@ class OpenClose {
   void evaluate(const StepProblem& problem, std::span<const double> d);
   bool update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
                      std::span<contact::Memory* const> memory, double tolerance);
+  bool augment(StepProblem& problem, std::span<const contact::Contact> contacts,
+               std::span<contact::Memory* const> memory, double tolerance);
   bool break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
                    std::span<contact::Memory* const> memory);
 
   std::vector<Active> assumed_, active_;
   std::vector<Vec2> r_, r_direction_;
+  std::vector<Vec2> shift_;  ///< m, of springs: normal, shear
+  double worst_ = 0.0;       ///< m, largest penetration or drift at the last update of multipliers
+  int stalls_ = 0;           ///< updates in a row that did not make it smaller
   std::vector<double> gradient_, direction_, h_direction_;
 };
 

@@ -4,6 +4,9 @@ namespace keyblock::dynamics {
 
 enum class LinearSolver { block, direct };
 
+/// How contacts keep blocks apart: by penetration of a spring, or by multipliers that leave none (augmented Lagrangian).
+enum class ContactMethod { penalty, augmented_lagrangian };
+
 /// Rules of time integration; integrator.h has the formulas.
 enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 
@@ -34,6 +37,10 @@ struct SolverOptions {
   double bound_tolerance = 1e-2;
   double bound_accuracy = 1e-4;
   int max_bound_updates = 8;
+  ContactMethod contact = ContactMethod::penalty;
+  /// Augmented Lagrangian: largest penetration, and drift of a contact that holds, over the block size.
+  double penetration_tolerance = 1e-10;
+  int max_multiplier_updates = 200;
   LinearSolver linear = LinearSolver::block;
 };
 

@@ -94,6 +94,7 @@ void Stepper::start(State& state) {
     memory.offset = -c.gap - normal / c.normal_stiffness;
     memory.shear = shear / c.shear_stiffness;
     memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
+    if (model_.solver.contact == ContactMethod::augmented_lagrangian) continue;
     memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
     contact_energy_ += memory.stored;
   }
@@ -292,13 +293,18 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   const SolverOptions& options = model_.solver;
   const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
   if (drive.is_static || options.restitution >= elastic) return false;
+  // Multipliers are stiffer than any spring: what is left of a velocity into a contact would ring for ever.
+  const bool rigid = options.contact == ContactMethod::augmented_lagrangian;
+  const double least =
+      rigid ? std::min(impact_speed_, 1e-4 * norm(model_.gravity) * drive.step) : impact_speed_;
   bool any = false;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
     if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
     const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;
-    if (-dot(row.normal, speed) <= impact_speed_) continue;
-    if (contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
+    if (-dot(row.normal, speed) <= least) continue;
+    if (!rigid &&
+        contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
       continue;
     for (const int b : {contacts_[c].block_a, contacts_[c].block_b}) {
       if (!model_.moves(at(b)) || in_impact_[at(b)] != 0) continue;
@@ -359,13 +365,17 @@ void Stepper::account(State& state, const Drive& drive) {
     // elastic_loss has taken ½ k moved² for a ground that stands still.
     ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
   }
-  ledger.numerical +=
-      contact_energy_;  // what is stored in contacts that have ended, a vertex that left its edge, is lost
+  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  // What is stored in contacts that have ended, a vertex that left its edge, is lost.
+  ledger.numerical += contact_energy_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     ledger.numerical -= memory_[c]->stored;
     const StepProblem::Row& row = problem_.rows()[c];
     const Vec2 r = open_close_.relative()[c];
-    const contact::Spring::Balance balance = row.spring.balance(row.depth(r), row.shear(r));
+    const contact::Spring::Balance balance =
+        augmented
+            ? row.spring.rigid_balance(row.depth(r), row.shear(r), dot(row.normal, r), dot(row.tangent, r))
+            : row.spring.balance(row.depth(r), row.shear(r));
     ledger.friction += balance.friction;
     const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
     ledger.input -= dot(normal * row.normal - shear * row.tangent, row.moved);
@@ -378,18 +388,20 @@ void Stepper::account(State& state, const Drive& drive) {
 void Stepper::remember(const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
   contact_energy_ = 0.0;
+  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
     const contact::Spring& s = row.spring;
     contact::Memory& memory = *memory_[c];
     const Vec2 r = open_close_.relative()[c];
     const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
-    memory.stored = s.balance(depth, shear).stored;
+    memory.stored = augmented ? 0.0 : s.balance(depth, shear).stored;
     contact_energy_ += memory.stored;
     const double change = std::max(0.0, normal_force) - memory.normal_force;
     memory.normal_force = std::max(0.0, normal_force);
     const bool slides = s.closed(depth) && !s.locked(shear) && s.bound() > 0.0;
-    memory.bounding_force = std::max(0.0, memory.normal_force + (slides && !drive.is_static ? change : 0.0));
+    memory.bounding_force =
+        std::max(0.0, memory.normal_force + (slides && !drive.is_static && !augmented ? change : 0.0));
     memory.shear = s.closed(depth) ? s.elastic_shear(shear) : 0.0;
     memory.slip += dot(row.tangent, r);
     memory.state = !s.closed(depth)  ? contact::State::open
@@ -397,7 +409,20 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
                                      : contact::State::sliding;
     forces_[c] = {normal_force, s.closed(depth) ? s.shear_force(shear) : 0.0};
     if (memory.state != contact::State::open) ++report.closed_contacts;
-    report.penetration = std::max(report.penetration, s.penetration(depth));
+    if (!augmented) {
+      report.penetration = std::max(report.penetration, s.penetration(depth));
+      continue;
+    }
+    const double penetration = -(contacts_[c].gap + dot(row.normal, r));
+    memory.offset = std::max(memory.offset, 0.0);
+    if (s.closed(depth)) {
+      report.penetration = std::max(report.penetration, penetration - memory.offset);
+      memory.multiplier = normal_force / contacts_[c].normal_stiffness;
+      memory.shear = s.shear_force(shear) / contacts_[c].shear_stiffness;
+    } else {
+      memory.multiplier = 0.0;
+    }
+    memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent, r) : 0.0;
   }
   report.contact_energy = contact_energy();
 }

@@ -142,6 +142,8 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     row.moved =
         drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
     const double mass = reduced_mass(c);
+    row.inertia =
+        mass * drive.rule[at(a.fixed ? c.block_b : c.block_a)].inertia() / (drive.step * drive.step);
     const auto dashpot = [&](double stiffness) {
       return drive.is_static
                  ? 0.0

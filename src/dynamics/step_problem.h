@@ -42,7 +42,8 @@ class StepProblem {
     const double* phi_a;
     std::size_t phi_b;  ///< into phi_b_
     Vec2 normal, tangent;
-    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b
+    double inertia = 0.0;  ///< N/m per thickness, of the two blocks against each other in this step
+    Vec2 moved;            ///< m, known part of r: prescribed displacement of a less that of b
     contact::Spring spring;
 
     [[nodiscard]] double depth(Vec2 r) const { return spring.depth() - dot(normal, r); }
@@ -84,6 +85,7 @@ class StepProblem {
   [[nodiscard]] std::span<const double> right() const { return b_; }
   /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
+  [[nodiscard]] double block_size() const { return model_->block_size; }
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by

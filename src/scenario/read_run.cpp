@@ -18,6 +18,9 @@ constexpr Word<dynamics::TimeIntegration> integrators[] = {
     {"shi", dynamics::TimeIntegration::shi},
     {"average-acceleration", dynamics::TimeIntegration::average_acceleration},
     {"generalized-alpha", dynamics::TimeIntegration::generalized_alpha}};
+constexpr Word<dynamics::ContactMethod> contact_methods[] = {
+    {"penalty", dynamics::ContactMethod::penalty},
+    {"augmented-lagrangian", dynamics::ContactMethod::augmented_lagrangian}};
 constexpr Word<LinearSolver> linear_solvers[] = {{"block", LinearSolver::block},
                                                  {"direct", LinearSolver::direct}};
 
@@ -189,6 +192,16 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
            {.meaning = "The error they are then brought below.", .above = 0.0});
   t.integer("max_bound_updates", solver.max_bound_updates,
             {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
+  t.word(
+      "contact", solver.contact, contact_methods,
+      {.meaning = "How contacts keep blocks apart: springs that are penetrated a little, or multipliers that "
+                  "leave no penetration and no drift of contacts that hold."});
+  t.number(
+      "penetration_tolerance", solver.penetration_tolerance,
+      {.meaning = "Augmented Lagrangian: largest penetration and drift, over the block size.", .above = 0.0});
+  t.integer("max_multiplier_updates", solver.max_multiplier_updates,
+            {.meaning = "Augmented Lagrangian: how often multipliers are updated in a step at most.",
+             .at_least = 1.0});
   t.word("linear", solver.linear, linear_solvers,
          {.meaning =
               "Solver of the linear systems: `block` is this program's own, `direct` that of a library."});

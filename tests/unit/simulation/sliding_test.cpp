@@ -77,6 +77,39 @@ TEST_P(Incline, Sticks) {
   }
 }
 
+// Multipliers in place of springs: the foot of the block neither sinks in nor creeps. (Set down at once, an elastic block spreads
+// and its corners slip by micrometres; that is over after 0.3 s.)
+TEST_P(Incline, SticksWithoutDriftWithAugmentedLagrangian) {
+  for (double phi : {31.0, 35.0}) {
+    Scene scene = incline(30.0, phi, 4.0);
+    scene.setup.solver.contact = dynamics::ContactMethod::augmented_lagrangian;
+    Simulator s(scene);
+    s.run(0.3, GetParam());
+    const std::vector<Vec2> start = s.model.surface.position;
+    s.run(0.5, GetParam());
+    double moved = 0.0;
+    for (const std::size_t corner : {0U, 1U}) {
+      const std::size_t v = static_cast<std::size_t>(s.model.surface.block_begin[1]) + corner;
+      moved = std::max(moved, norm(s.model.surface.position[v] - start[v]));
+    }
+    EXPECT_LT(moved, 1e-9) << phi;
+    for (const contact::Contact& c : s.stepper.contacts()) EXPECT_LT(-c.gap, 1e-9) << phi;
+    EXPECT_EQ(s.unconverged, 0);
+    EXPECT_EQ(s.retried, 0);
+  }
+}
+
+TEST_P(Incline, SlidesAsCoulombSaysWithAugmentedLagrangian) {
+  Scene scene = incline(30.0, 20.0);
+  scene.setup.solver.contact = dynamics::ContactMethod::augmented_lagrangian;
+  Simulator s(scene);
+  const Vec2 from = s.centroid(1);
+  s.run(1.0, GetParam());
+  EXPECT_NEAR(slid(s, from, 30.0) / 0.906407, 1.0, 1e-3);
+  EXPECT_EQ(s.unconverged, 0);
+  EXPECT_LT(std::abs(s.residual()), 0.01 * s.state.ledger.friction);
+}
+
 TEST_P(Incline, StackOfNineKeepsItsPlace) {
   Scene scene(1e9, 35.0);
   scene.rectangle({-1.0, -1.0}, 6.0, 1.0, 0.0, true);
