@@ -89,6 +89,9 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
     }
     weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
   }
+  // Without gravity, blocks that only other blocks load are measured by the largest load.
+  const double most = weight_.empty() ? 0.0 : *std::max_element(weight_.begin(), weight_.end());
+  for (double& weight : weight_) weight = weight > 0.0 ? weight : most;
 }
 
 void StepProblem::add_supports(const State& state, const Drive& drive) {

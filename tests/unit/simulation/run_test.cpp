@@ -192,5 +192,28 @@ TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
   EXPECT_NEAR(observer.last.points[0].uy, -0.3 * 512.0 / (3.0 * 1e5 * 0.2 * 0.2 * 0.2 / 12.0), 0.02);
 }
 
+// Without gravity, a block that only its neighbour loads is in balance when the neighbour is.
+TEST(Settling, EndsWithoutGravity) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
+  scene.rectangle({0.0, 2.0}, 1.0, 1.0);
+  RunSetup setup = scene.setup;
+  setup.gravity = {0.0, 0.0};
+  setup.time_step = 0.01;
+  loading::Load load;
+  load.block = "b2";
+  load.is_line = true;
+  load.from = {1.0, 3.0};
+  load.to = {0.0, 3.0};
+  load.value = load.value_end = {0.0, -1e4};
+  setup.loads.push_back(load);
+  setup.stages.push_back(stage("settle", StageKind::settle));
+  RunObserver nobody;
+  const RunRecord record = run(setup, {}, nobody);
+  EXPECT_TRUE(record.stages[0].equilibrium_reached);
+  EXPECT_LT(record.stages[0].steps, 200);
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
