@@ -98,20 +98,6 @@ std::size_t block_named(const RunSetup& setup, const std::string& name, const st
   refuse(key, fmt::format("'{}'", name), "the name of a block");
 }
 
-bool on_or_in(const Polygon& polygon, Vec2 p) {
-  if (contains(polygon, p)) return true;
-  const double tolerance = 1e-6 * std::sqrt(area(polygon));
-  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
-    const Ring& ring = polygon.ring(r);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], d = ring[(k + 1) % ring.size()] - a;
-      const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
-      if (norm(p - a - s * d) <= tolerance) return true;
-    }
-  }
-  return false;
-}
-
 void require_on_block(const Polygon& polygon, Vec2 p, const std::string& key, const std::string& block) {
   if (!on_or_in(polygon, p)) {
     refuse(key, fmt::format("the point ({}, {})", p.x, p.y), fmt::format("a point of block '{}'", block));
@@ -231,6 +217,20 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
       return 3 + sets + std::min<int>(label.index, maps - 1);
   }
   return 0;
+}
+
+bool on_or_in(const Polygon& polygon, Vec2 p) {
+  if (contains(polygon, p)) return true;
+  const double tolerance = 1e-6 * std::sqrt(area(polygon));
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], d = ring[(k + 1) % ring.size()] - a;
+      const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
+      if (norm(p - a - s * d) <= tolerance) return true;
+    }
+  }
+  return false;
 }
 
 int edge_pieces(double edge_length, double block_area, int order) {

@@ -421,6 +421,43 @@ TEST(Warnings, OfDistributionsThatAreCutOff) {
       UnorderedElementsAre(HasSubstr("joint_set.bedding.gap: cut off at zero")));
 }
 
+TEST(Blocks, AreTurnedBeforeTheRun) {
+  const auto top = [](const std::string& key) { return parse(two_blocks, {key}).blocks[1].polygon.outer; };
+  const Ring about_centroid = top("block.top.rotation=90.0");
+  const Ring expected{{2.5, 0.5}, {2.5, 2.5}, {1.5, 2.5}, {1.5, 0.5}};
+  ASSERT_EQ(about_centroid.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_LT(norm(about_centroid[k] - expected[k]), 1e-12);
+  const Ring about_corner = parse(two_blocks, {"block.top.rotation=90.0", "block.top.rotation_center=[1, 1]"})
+                                .blocks[1]
+                                .polygon.outer;
+  EXPECT_LT(norm(about_corner[0] - Vec2{1.0, 1.0}), 1e-12);
+  EXPECT_LT(norm(about_corner[1] - Vec2{1.0, 3.0}), 1e-12);
+}
+
+TEST(Blocks, FixedOnesFollowAPrescribedMotion) {
+  const auto setup = build_setup(parse(two_blocks, {"block.base.motion={x = [[0, 0], [1, 0.5]]}"}), 0);
+  EXPECT_EQ(setup.properties[0].motion_x(0.5), 0.25);
+  EXPECT_TRUE(setup.properties[0].motion_y.empty());
+  EXPECT_TRUE(setup.properties[1].motion_x.empty());
+}
+
+TEST(Loads, TractionIsAParabolaThroughThreeValues) {
+  const std::string loaded = two_blocks + R"(
+[[load]]
+block = "top"
+from = [1, 2]
+to = [3, 2]
+traction = [1, 0]
+traction_middle = [3, -2]
+traction_end = [2, 0]
+)";
+  const loading::Load load = parse(loaded).loads[0];
+  EXPECT_EQ(load.traction(0.0).x, 1.0);
+  EXPECT_EQ(load.traction(0.5).x, 3.0);
+  EXPECT_EQ(load.traction(1.0).x, 2.0);
+  EXPECT_DOUBLE_EQ(load.traction(0.25).y, -1.5);
+}
+
 TEST(Examples, AllCanBeBuilt) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(examples)) {
