@@ -23,9 +23,11 @@ std::string table_markdown(const std::vector<CaseResult>& results, const std::st
 
 /// The cells of one row as text, shared by all but JSON.
 struct RowText {
-  std::string quantity, order, parameters, computed, expected, error, published, tolerance, note;
+  std::string run, quantity, order, parameters, computed, expected, error, published, tolerance, note;
 };
 RowText row_text(const Row& row);
+/// Whether the rows are of several runs, so that these are named.
+bool has_several_runs(const CaseResult& result);
 /// "187 of 190 rows hold; 3 do not".
 std::string verdict_text(const std::vector<CaseResult>& results);
 

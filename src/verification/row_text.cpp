@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -27,6 +28,7 @@ std::string with_sign(const std::string& text) {
 
 RowText row_text(const Row& row) {
   RowText text;
+  text.run = row.run;
   text.quantity = row.unit.empty() ? row.quantity : fmt::format("{}, {}", row.quantity, row.unit);
   if (row.order) text.order = std::to_string(*row.order);
   text.parameters = row.label;
@@ -45,6 +47,11 @@ RowText row_text(const Row& row) {
   if (row.absolute_tolerance) text.tolerance = fmt::format("± {:.3g}", *row.absolute_tolerance);
   text.note = row.failure;
   return text;
+}
+
+bool has_several_runs(const CaseResult& result) {
+  return std::any_of(result.rows.begin(), result.rows.end(),
+                     [&](const Row& row) { return row.run != result.rows.front().run; });
 }
 
 std::string verdict_text(const std::vector<CaseResult>& results) {

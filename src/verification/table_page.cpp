@@ -16,13 +16,14 @@ p.about { margin: .2rem 0 .6rem; max-width: 55rem; white-space: pre-line; }
 div.wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .15rem .7rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
-th:first-child, td:first-child, th.left, td.left { text-align: left; }
+th.left, td.left { text-align: left; }
 td.ok { color: #1a7f37; } td.fail { color: #fff; background: #b42318; font-weight: bold; }
 td.note { white-space: normal; color: #b42318; text-align: left; }
 )";
 
-constexpr std::array<std::pair<const char*, std::string RowText::*>, 8> columns{
-    {{"quantity", &RowText::quantity},
+constexpr std::array<std::pair<const char*, std::string RowText::*>, 9> columns{
+    {{"run", &RowText::run},
+     {"quantity", &RowText::quantity},
      {"order", &RowText::order},
      {"parameters", &RowText::parameters},
      {"computed", &RowText::computed},
@@ -30,7 +31,10 @@ constexpr std::array<std::pair<const char*, std::string RowText::*>, 8> columns{
      {"error", &RowText::error},
      {"published DDA", &RowText::published},
      {"tolerance", &RowText::tolerance}}};
-constexpr std::size_t parameter_column = 2;
+constexpr std::size_t parameter_column = 3;
+bool is_left(std::size_t column) {
+  return column <= 1 || column == parameter_column;
+}
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -64,6 +68,7 @@ std::array<bool, columns.size()> used_columns(const CaseResult& result) {
     const RowText text = row_text(row);
     for (std::size_t c = 0; c < columns.size(); ++c) used[c] = used[c] || !(text.*columns[c].second).empty();
   }
+  used[0] = has_several_runs(result);
   return used;
 }
 
@@ -73,13 +78,13 @@ std::string html_row(const Row& row, const std::array<bool, columns.size()>& use
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (!used[c]) continue;
     const bool published = columns[c].second == &RowText::published && !row.source.empty() && row.published;
-    html += fmt::format("<td{}{}>{}</td>", c == parameter_column ? " class=\"left\"" : "",
+    html += fmt::format("<td{}{}>{}</td>", is_left(c) ? " class=\"left\"" : "",
                         published ? fmt::format(" title=\"{}\"", escaped(row.source)) : "",
                         escaped(text.*columns[c].second));
   }
   html += row.pass ? "<td class=\"ok\">holds</td></tr>\n" : "<td class=\"fail\">FAIL</td></tr>\n";
   if (!text.note.empty())
-    html += fmt::format("<tr><td class=\"note\" colspan=\"9\">{}</td></tr>\n", escaped(text.note));
+    html += fmt::format("<tr><td class=\"note\" colspan=\"10\">{}</td></tr>\n", escaped(text.note));
   return html;
 }
 
@@ -90,8 +95,7 @@ std::string html_case(const CaseResult& result) {
       "<h2 id=\"{0}\">{1}. {2}</h2>\n<p class=\"about\">{3}</p>\n<div class=\"wide\"><table>\n<tr>",
       escaped(file.name), file.number, escaped(file.title), escaped(file.about));
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (used[c])
-      html += fmt::format("<th{}>{}</th>", c == parameter_column ? " class=\"left\"" : "", columns[c].first);
+    if (used[c]) html += fmt::format("<th{}>{}</th>", is_left(c) ? " class=\"left\"" : "", columns[c].first);
   }
   html += "<th></th></tr>\n";
   for (const Row& row : result.rows) html += html_row(row, used);
@@ -116,7 +120,7 @@ std::string markdown_case(const CaseResult& result) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (!used[c]) continue;
     line += fmt::format(" {} |", columns[c].first);
-    rule += c == 0 || c == parameter_column ? "---|" : "--:|";
+    rule += is_left(c) ? "---|" : "--:|";
   }
   text += line + "  |\n" + rule + "---|\n";
   for (const Row& row : result.rows) {

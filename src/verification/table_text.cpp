@@ -8,12 +8,13 @@
 namespace keyblock::verification {
 namespace {
 
-constexpr std::size_t columns = 9;
+constexpr std::size_t columns = 10;
 using Line = std::array<std::string, columns>;
 
-const Line heading{"quantity", "order",     "parameters", "computed", "expected",
-                   "error",    "published", "tolerance",  ""};
-constexpr std::array<bool, columns> to_the_left{true, false, true, false, false, false, false, false, true};
+const Line heading{"run",      "quantity", "order",     "parameters", "computed",
+                   "expected", "error",    "published", "tolerance",  ""};
+constexpr std::array<bool, columns> to_the_left{true,  true,  false, true,  false,
+                                                false, false, false, false, true};
 
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
@@ -22,8 +23,8 @@ std::size_t width_of(const std::string& text) {
 
 Line line_of(const Row& row) {
   const RowText text = row_text(row);
-  return {text.quantity, text.order,     text.parameters, text.computed,           text.expected,
-          text.error,    text.published, text.tolerance,  row.pass ? "ok" : "FAIL"};
+  return {text.run,      text.quantity, text.order,     text.parameters, text.computed,
+          text.expected, text.error,    text.published, text.tolerance,  row.pass ? "ok" : "FAIL"};
 }
 
 std::string paint(const std::string& text, const char* code, const TextStyle& style) {
@@ -62,6 +63,7 @@ std::string case_text(const CaseResult& result, const TextStyle& style) {
   for (std::size_t k = 1; k < lines.size(); ++k) {
     for (std::size_t c = 0; c < columns; ++c) used[c] = used[c] || !lines[k][c].empty();
   }
+  used[0] = has_several_runs(result);
   std::string text = paint(
       spelled(fmt::format("{} {}: {}", result.file->number, result.file->name, result.file->title), style),
       "1", style);
