@@ -348,17 +348,98 @@ vary = {{ "time.step" = [0.001, 0.0005, 0.0002] }}
     case("rocking", text)
 
 
+# ── 24: the key block of two joints ──────────────────────────────────────────────────────────────────────────────────
+
+def key_block():
+    radius, left, right = 2.75, math.radians(53.092), math.radians(69.456)
+    gamma = math.pi - left - right
+    shares = (0.5, 0.7, 0.9, 0.99)
+    for share in shares:
+        d = share * radius
+        # Feet of the perpendiculars from the centre; the lines meet above, at the same distance from both.
+        feet = [(-d * math.sin(left), d * math.cos(left)), (d * math.sin(right), d * math.cos(right))]
+        along = [(math.cos(left), math.sin(left)), (-math.cos(right), math.sin(right))]
+        to_apex = d / math.tan(gamma / 2)
+        rows = "trace,x,y\n"
+        for k in range(2):
+            for t in (0.0, to_apex + 0.3):
+                rows += f"{k + 1},{number(feet[k][0] + t * along[k][0])},{number(feet[k][1] + t * along[k][1])}\n"
+        FILES[f"traces/key_block_{share}.csv"] = rows
+    FILES["scenarios/key_block.toml"] = NOTE + """title = "A block of two joints in the roof of a tunnel"
+
+[domain]
+x = [-10.0, 10.0]
+y = [-10.0, 14.0]
+
+[rock]
+density = 2270.0
+young = 3.0e9
+poisson = 0.21
+state = "plane-stress"
+
+[joints]
+friction = 39.0
+
+[[trace_map]]
+name = "joints"
+file = "../traces/key_block_0.9.csv"
+
+[[excavation]]
+name = "tunnel"
+shape = "circle"
+center = [0.0, 0.0]
+diameter = 5.5
+chords = 720
+
+[cutting]
+cluster = 0.001
+sliver_thickness = 0.001
+
+[time]
+step = 0.002
+
+[[stage]]
+name = "excavated"
+kind = "settle"
+excavate = ["tunnel"]
+
+[[stage]]
+name = "fall"
+kind = "rest"
+duration = 1.5
+"""
+    text = '''title = "Largest key block of two joints"
+case  = 24
+about = """Two joints in the roof of a circular tunnel of radius R, γ between them, both at distance d from its centre. The block between them has the area d (d cot(γ/2) − √(R² − d²)) − R² ((π − γ)/2 − acos(d/R)); the largest, of tangents, R² (cot(γ/2) − (π − γ)/2), is 5.71 m² with R = 2.75 m and the γ = 57.452° of the sets 79/270 and 81/230 in a section of azimuth 165°. The rock is cut by the joints and excavated; the block, and nothing else, falls."""
+
+[[run]]
+name = "roof"
+scenario = "scenarios/key_block.toml"
+[run.points]
+keys = ["trace_map.joints.file"]
+labels = [''' + ", ".join(f'"d = {share} R"' for share in shares) + "]\nvalues = [" + ", ".join(f'["../traces/key_block_{share}.csv"]' for share in shares) + "]\n"
+    areas = []
+    for share in shares:
+        d = share * radius
+        areas.append(d * (d / math.tan(gamma / 2) - math.sqrt(radius**2 - d**2)) - radius**2 * ((math.pi - gamma) / 2 - math.acos(share)))
+    text += quantity("fallen area", "summary('stages.1.damage.fallen_area_m2')", "m²", expected_by_point="[" + ", ".join(f"{a:.6f}" for a in areas) + "]", tolerance=2e-3)
+    text += quantity("fallen blocks", "summary('stages.1.damage.fallen_blocks')", expected=1, tolerance=0)
+    text += quantity("fallen area, of the largest possible", "summary('stages.1.damage.fallen_area_m2')/(2.75^2*(1/tan(rad(57.452/2)) - rad(180 - 57.452)/2))", at_most=1)
+    case("key_block", text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; say which files differ")
     check = parser.parse_args().check
-    for write in (column, direct_shear, bars, chart, arches, oscillating_base, rocking):
+    for write in (column, direct_shear, bars, chart, arches, oscillating_base, rocking, key_block):
         write()
     here = Path(__file__).resolve().parent
     stale = [name for name, text in FILES.items() if not (here / name).is_file() or (here / name).read_text() != text]
     for name in stale:
         print(f"{name} differs" if check else name)
         if not check:
+            (here / name).parent.mkdir(exist_ok=True)
             (here / name).write_text(FILES[name])
     return 1 if check and stale else 0
 
