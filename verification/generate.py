@@ -248,8 +248,8 @@ about = """A block on an incline of α, base over height tan δ, friction angle 
             ring = ", ".join(point(q) for q in box(0, 0, b, 1))
             text += f"  [{point((G * math.sin(r), -G * math.cos(r)))}, {float(p)}, [{ring}], {point((b, 0))}, {point((b, 1))}],\n"
         text += "]\n"
-        text += quantity(f"{what}: way of the toe", "abs(end('toe.ux'))", "m", **({"at_least": 3e-5} if slides else {"at_most": 1e-5}))
-        text += quantity(f"{what}: turn", "abs(end('top.ux') - end('toe.ux'))", "rad", **({"at_least": 3e-5} if topples else {"at_most": 1e-5}))
+        text += quantity("way of the toe", "abs(end('toe.ux'))", "m", **({"at_least": 3e-5} if slides else {"at_most": 1e-5}))
+        text += quantity("turn", "abs(end('top.ux') - end('toe.ux'))", "rad", **({"at_least": 3e-5} if topples else {"at_most": 1e-5}))
     case("toppling", text)
 
 

@@ -19,6 +19,7 @@ std::string table_text(const std::vector<CaseResult>& results, const TextStyle& 
 std::string table_json(const std::vector<CaseResult>& results, const std::string& version);
 /// A page of its own that needs nothing else.
 std::string table_html(const std::vector<CaseResult>& results, const std::string& version);
+/// A page of the documentation. It has no times of computing, which would differ from run to run.
 std::string table_markdown(const std::vector<CaseResult>& results, const std::string& version);
 
 /// The cells of one row as text, shared by all but JSON.
@@ -26,8 +27,6 @@ struct RowText {
   std::string run, quantity, order, parameters, computed, expected, error, published, tolerance, note;
 };
 RowText row_text(const Row& row);
-/// Whether the rows are of several runs, so that these are named.
-bool has_several_runs(const CaseResult& result);
 /// "187 of 190 rows hold; 3 do not".
 std::string verdict_text(const std::vector<CaseResult>& results);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "verification/report.h"
+#include "verification/table_columns.h"
 
 namespace keyblock::verification {
 namespace {
@@ -49,9 +49,17 @@ RowText row_text(const Row& row) {
   return text;
 }
 
-bool has_several_runs(const CaseResult& result) {
-  return std::any_of(result.rows.begin(), result.rows.end(),
-                     [&](const Row& row) { return row.run != result.rows.front().run; });
+std::array<bool, table_columns.size()> used_columns(const CaseResult& result) {
+  std::array<bool, table_columns.size()> used{};
+  for (const Row& row : result.rows) {
+    const RowText text = row_text(row);
+    for (std::size_t c = 0; c < table_columns.size(); ++c) {
+      used[c] = used[c] || !(text.*table_columns[c].cell).empty();
+    }
+  }
+  used[0] = std::any_of(result.rows.begin(), result.rows.end(),
+                        [&](const Row& row) { return row.run != result.rows.front().run; });
+  return used;
 }
 
 std::string verdict_text(const std::vector<CaseResult>& results) {

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "verification/report.h"
+#include "verification/table_columns.h"
 
 namespace keyblock::verification {
 namespace {
@@ -20,21 +20,6 @@ th.left, td.left { text-align: left; }
 td.ok { color: #1a7f37; } td.fail { color: #fff; background: #b42318; font-weight: bold; }
 td.note { white-space: normal; color: #b42318; text-align: left; }
 )";
-
-constexpr std::array<std::pair<const char*, std::string RowText::*>, 9> columns{
-    {{"run", &RowText::run},
-     {"quantity", &RowText::quantity},
-     {"order", &RowText::order},
-     {"parameters", &RowText::parameters},
-     {"computed", &RowText::computed},
-     {"expected", &RowText::expected},
-     {"error", &RowText::error},
-     {"published DDA", &RowText::published},
-     {"tolerance", &RowText::tolerance}}};
-constexpr std::size_t parameter_column = 3;
-bool is_left(std::size_t column) {
-  return column <= 1 || column == parameter_column;
-}
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -62,25 +47,16 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::array<bool, columns.size()> used_columns(const CaseResult& result) {
-  std::array<bool, columns.size()> used{};
-  for (const Row& row : result.rows) {
-    const RowText text = row_text(row);
-    for (std::size_t c = 0; c < columns.size(); ++c) used[c] = used[c] || !(text.*columns[c].second).empty();
-  }
-  used[0] = has_several_runs(result);
-  return used;
-}
-
-std::string html_row(const Row& row, const std::array<bool, columns.size()>& used) {
+std::string html_row(const Row& row, const std::array<bool, table_columns.size()>& used) {
   const RowText text = row_text(row);
   std::string html = "<tr>";
-  for (std::size_t c = 0; c < columns.size(); ++c) {
+  for (std::size_t c = 0; c < table_columns.size(); ++c) {
     if (!used[c]) continue;
-    const bool published = columns[c].second == &RowText::published && !row.source.empty() && row.published;
-    html += fmt::format("<td{}{}>{}</td>", is_left(c) ? " class=\"left\"" : "",
+    const bool published =
+        table_columns[c].cell == &RowText::published && !row.source.empty() && row.published;
+    html += fmt::format("<td{}{}>{}</td>", table_columns[c].left ? " class=\"left\"" : "",
                         published ? fmt::format(" title=\"{}\"", escaped(row.source)) : "",
-                        escaped(text.*columns[c].second));
+                        escaped(text.*table_columns[c].cell));
   }
   html += row.pass ? "<td class=\"ok\">holds</td></tr>\n" : "<td class=\"fail\">FAIL</td></tr>\n";
   if (!text.note.empty())
@@ -94,44 +70,14 @@ std::string html_case(const CaseResult& result) {
   std::string html = fmt::format(
       "<h2 id=\"{0}\">{1}. {2}</h2>\n<p class=\"about\">{3}</p>\n<div class=\"wide\"><table>\n<tr>",
       escaped(file.name), file.number, escaped(file.title), escaped(file.about));
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (used[c]) html += fmt::format("<th{}>{}</th>", is_left(c) ? " class=\"left\"" : "", columns[c].first);
+  for (std::size_t c = 0; c < table_columns.size(); ++c) {
+    if (used[c])
+      html += fmt::format("<th{}>{}</th>", table_columns[c].left ? " class=\"left\"" : "",
+                          table_columns[c].heading);
   }
   html += "<th></th></tr>\n";
   for (const Row& row : result.rows) html += html_row(row, used);
   return html + "</table></div>\n";
-}
-
-// Text within a cell of a Markdown table.
-std::string cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|' || c == '\\' || c == '<' || c == '*' || c == '_' || c == '`') out += '\\';
-    out += c == '\n' ? ' ' : c;
-  }
-  return out;
-}
-
-std::string markdown_case(const CaseResult& result) {
-  const CaseFile& file = *result.file;
-  const auto used = used_columns(result);
-  std::string text = fmt::format("\n## {}. {}\n\n`{}`\n\n", file.number, file.title, file.name), line = "|",
-              rule = "|";
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (!used[c]) continue;
-    line += fmt::format(" {} |", columns[c].first);
-    rule += is_left(c) ? "---|" : "--:|";
-  }
-  text += line + "  |\n" + rule + "---|\n";
-  for (const Row& row : result.rows) {
-    const RowText cells = row_text(row);
-    text += "|";
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (used[c]) text += fmt::format(" {} |", cell(cells.*columns[c].second));
-    }
-    text += row.pass ? " holds |\n" : fmt::format(" **FAIL** {} |\n", cell(cells.note));
-  }
-  return text;
 }
 
 }  // namespace
@@ -146,18 +92,6 @@ std::string table_html(const std::vector<CaseResult>& results, const std::string
     if (!result.rows.empty()) html += html_case(result);
   }
   return html + "</body></html>\n";
-}
-
-std::string table_markdown(const std::vector<CaseResult>& results, const std::string& version) {
-  std::string text = fmt::format(
-      "# Problems with known answers: the table\n\nWritten by `keyblock verify --all --format markdown`, "
-      "version {}: {}.\n"
-      "[verification.md](verification.md) says how to read it.\n",
-      version, verdict_text(results));
-  for (const CaseResult& result : results) {
-    if (!result.rows.empty()) text += markdown_case(result);
-  }
-  return text;
 }
 
 }  // namespace keyblock::verification

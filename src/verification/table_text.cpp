@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <array>
 
-#include "verification/report.h"
+#include "verification/table_columns.h"
 
 namespace keyblock::verification {
 namespace {
 
-constexpr std::size_t columns = 10;
+constexpr std::size_t columns = table_columns.size() + 1;  // the last: whether the row holds
 using Line = std::array<std::string, columns>;
 
-const Line heading{"run",      "quantity", "order",     "parameters", "computed",
-                   "expected", "error",    "published", "tolerance",  ""};
-constexpr std::array<bool, columns> to_the_left{true,  true,  false, true,  false,
-                                                false, false, false, false, true};
+Line heading() {
+  Line line;
+  for (std::size_t c = 0; c < table_columns.size(); ++c) line[c] = table_columns[c].heading;
+  return line;
+}
 
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
@@ -23,8 +24,10 @@ std::size_t width_of(const std::string& text) {
 
 Line line_of(const Row& row) {
   const RowText text = row_text(row);
-  return {text.run,      text.quantity, text.order,     text.parameters, text.computed,
-          text.expected, text.error,    text.published, text.tolerance,  row.pass ? "ok" : "FAIL"};
+  Line line;
+  for (std::size_t c = 0; c < table_columns.size(); ++c) line[c] = text.*table_columns[c].cell;
+  line.back() = row.pass ? "ok" : "FAIL";
+  return line;
 }
 
 std::string paint(const std::string& text, const char* code, const TextStyle& style) {
@@ -49,7 +52,7 @@ std::string spelled(std::string text, const TextStyle& style) {
 }
 
 std::string case_text(const CaseResult& result, const TextStyle& style) {
-  std::vector<Line> lines{heading};
+  std::vector<Line> lines{heading()};
   for (const Row& row : result.rows) lines.push_back(line_of(row));
   std::array<std::size_t, columns> width{};
   for (Line& line : lines) {
@@ -58,12 +61,7 @@ std::string case_text(const CaseResult& result, const TextStyle& style) {
       width[c] = std::max(width[c], width_of(line[c]));
     }
   }
-  // Columns with nothing in them, as that of published figures often is, are left out.
-  std::array<bool, columns> used{};
-  for (std::size_t k = 1; k < lines.size(); ++k) {
-    for (std::size_t c = 0; c < columns; ++c) used[c] = used[c] || !lines[k][c].empty();
-  }
-  used[0] = has_several_runs(result);
+  const auto used = used_columns(result);
   std::string text = paint(
       spelled(fmt::format("{} {}: {}", result.file->number, result.file->name, result.file->title), style),
       "1", style);
@@ -71,11 +69,12 @@ std::string case_text(const CaseResult& result, const TextStyle& style) {
   for (std::size_t k = 0; k < lines.size(); ++k) {
     std::string line = " ";
     for (std::size_t c = 0; c < columns; ++c) {
-      if (!used[c]) continue;
+      const bool verdict = c + 1 == columns;
+      if (!verdict && !used[c]) continue;
       const std::string padding(width[c] - width_of(lines[k][c]), ' ');
-      std::string cell = to_the_left[c] ? lines[k][c] + padding : padding + lines[k][c];
-      if (c + 1 == columns && k > 0) cell = paint(cell, result.rows[k - 1].pass ? "32" : "1;31", style);
-      line += " " + cell + (c + 1 < columns ? " " : "");
+      std::string cell = verdict || table_columns[c].left ? lines[k][c] + padding : padding + lines[k][c];
+      if (verdict && k > 0) cell = paint(cell, result.rows[k - 1].pass ? "32" : "1;31", style);
+      line += " " + cell + (verdict ? "" : " ");
     }
     while (line.ends_with(' ')) line.pop_back();
     text += line + "\n";
