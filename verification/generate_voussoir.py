@@ -2,8 +2,8 @@
 """Writes scenarios/voussoir.toml: a beam of blocks that only a thrust holds together."""
 import pathlib
 
-BLOCKS, LENGTH, HEIGHT, THRUST = 20, 0.5, 1.0, 1.0e6
-FINE = 3  # blocks of order 4 on each side of midspan
+BLOCKS, LENGTH, HEIGHT, THRUST = 30, 0.5, 1.0, 2.25e6
+FINE = 5  # blocks of order 4 on each side of midspan
 
 span = BLOCKS * LENGTH
 text = f"""# A beam of {BLOCKS} blocks, {span:g} m by {HEIGHT:g} m, under its own weight and a thrust of {THRUST:g} N/m on its ends, which rest on points at half
@@ -13,7 +13,7 @@ title = "Voussoir beam"
 
 [rock]
 density = 2500.0
-young = 2e10
+young = 8e10
 poisson = 0.2
 state = "plane-stress"
 order = 1
@@ -50,5 +50,10 @@ text += """[[stage]]
 name = "settled"
 kind = "settle"
 tolerance = 1e-6
+
+[[stage]]
+name = "at rest"
+kind = "rest"
+duration = 3.0
 """
 pathlib.Path(__file__).with_name("scenarios").joinpath("voussoir.toml").write_text(text)
