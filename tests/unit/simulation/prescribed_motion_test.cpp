@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "scene.h"
+#include "simulation/run.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -76,6 +80,39 @@ TEST(PrescribedMotion, AWallPushesABlock) {
   s.run(0.5, dt);
   EXPECT_NEAR(s.centroid(0).x, 1.5, 1e-12);
   EXPECT_EQ(s.velocity(0).x, 0.0);
+}
+
+struct Stopper final : RunObserver {
+  std::atomic<bool> stop = false;
+  void step(const StepRow& row) override { stop = row.step >= 2500; }
+};
+
+TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
+  Scene scene = on_base(30.0);
+  RunSetup setup = scene.setup;
+  setup.properties[0].motion_x =
+      table(3.0, [](double t) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * t)); });
+  setup.time_step = dt;
+  Stage stage;
+  stage.name = "moved";
+  stage.kind = StageKind::rest;
+  stage.duration = 3.0;
+  setup.stages.push_back(stage);
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_prescribed_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  Stopper stopper;
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  EXPECT_TRUE(run(setup, options, stopper).interrupted);
+  options.stop = nullptr;
+  options.resume = true;
+  EXPECT_EQ(run(setup, options, nobody).state_hash, whole.state_hash);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
