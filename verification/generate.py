@@ -112,7 +112,7 @@ def direct_shear():
                        ("_divided", [("base left", box(-1, -0.5, 1.4, 0.5), FIXED), ("base right", box(0.4, -0.5, 1.6, 0.5), FIXED)])):
         scenario(
             f"direct_shear{name}", title="Direct shear of a joint of 1 m", rock=STIFF_ROCK.replace("5.0e10", "1.0e12"),
-            joints=f"friction = 30.0\ncohesion = {cohesion}\nnormal_stiffness = 1.0e9\nshear_stiffness = 4.0e8", step=0.002,
+            joints=f"friction = 30.0\ncohesion = {cohesion}\nnormal_stiffness = 1.0e9\nshear_stiffness = 4.0e8", step=0.005,
             blocks=base + [("block", box(0, 0, 1, 0.25), "")],
             histories=[("block", "block", (0.5, 0.125))],
             extra=f'''[[load]]
