@@ -8,15 +8,21 @@
 namespace keyblock::verification {
 namespace {
 
+// Longer tables are folded unless something in them fails.
+constexpr std::size_t most_open_rows = 60;
+
 constexpr const char* style = R"(
 :root { color-scheme: light dark; }
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 75rem; padding: 0 1rem; }
+body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 90rem; padding: 0 1rem; }
 h2 { margin: 2.2rem 0 .3rem; font-size: 1.15rem; }
 p.about { margin: .2rem 0 .6rem; max-width: 55rem; white-space: pre-line; }
 div.wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .15rem .7rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; }
-th.left, td.left { text-align: left; }
+th, td { padding: .15rem .55rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; vertical-align: top; }
+th.left, td.left { text-align: left; white-space: normal; min-width: 7rem; }
+summary { cursor: pointer; }
+ul.contents { columns: 24rem; padding-left: 1.2rem; }
+li.fail { font-weight: bold; color: #b42318; }
 td.ok { color: #1a7f37; } td.fail { color: #fff; background: #b42318; font-weight: bold; }
 td.note { white-space: normal; color: #b42318; text-align: left; }
 )";
@@ -64,12 +70,31 @@ std::string html_row(const Row& row, const std::array<bool, table_columns.size()
   return html;
 }
 
+std::string verdict_of_case(const CaseResult& result) {
+  return result.failed() == 0 ? fmt::format("{} rows, all hold", result.rows.size())
+                              : fmt::format("{} of {} rows do not hold", result.failed(), result.rows.size());
+}
+
+std::string contents(const std::vector<CaseResult>& results) {
+  std::string html = "<ul class=\"contents\">\n";
+  for (const CaseResult& result : results) {
+    if (result.rows.empty()) continue;
+    html += fmt::format("<li{}><a href=\"#{}\">{}. {}</a>: {}</li>\n",
+                        result.failed() > 0 ? " class=\"fail\"" : "", escaped(result.file->name),
+                        result.file->number, escaped(result.file->title), verdict_of_case(result));
+  }
+  return html + "</ul>\n";
+}
+
 std::string html_case(const CaseResult& result) {
   const CaseFile& file = *result.file;
   const auto used = used_columns(result);
+  const bool open = result.rows.size() <= most_open_rows || result.failed() > 0;
   std::string html = fmt::format(
-      "<h2 id=\"{0}\">{1}. {2}</h2>\n<p class=\"about\">{3}</p>\n<div class=\"wide\"><table>\n<tr>",
-      escaped(file.name), file.number, escaped(file.title), escaped(file.about));
+      "<h2 id=\"{0}\">{1}. {2}</h2>\n<p class=\"about\">{3}</p>\n<details{4}><summary>{5}</summary><div "
+      "class=\"wide\"><table>\n<tr>",
+      escaped(file.name), file.number, escaped(file.title), escaped(file.about), open ? " open" : "",
+      verdict_of_case(result));
   for (std::size_t c = 0; c < table_columns.size(); ++c) {
     if (used[c])
       html += fmt::format("<th{}>{}</th>", table_columns[c].left ? " class=\"left\"" : "",
@@ -77,7 +102,7 @@ std::string html_case(const CaseResult& result) {
   }
   html += "<th></th></tr>\n";
   for (const Row& row : result.rows) html += html_row(row, used);
-  return html + "</table></div>\n";
+  return html + "</table></div></details>\n";
 }
 
 }  // namespace
@@ -88,6 +113,7 @@ std::string table_html(const std::vector<CaseResult>& results, const std::string
       "answers</title>\n<style>{}</style></head><body>\n<h1>Problems with known answers</h1>\n<p>keyblock "
       "{}: {}.</p>\n",
       style, escaped(version), verdict_text(results));
+  html += contents(results);
   for (const CaseResult& result : results) {
     if (!result.rows.empty()) html += html_case(result);
   }
