@@ -165,6 +165,20 @@ double Elasticity::material_work(const double* a, const double* d) const {
   return sum;
 }
 
+double Elasticity::squared_stress(const double* a, const double* b) const {
+  double sum = 0.0;
+  for (std::size_t q = 0; q < weight_.size(); ++q) {
+    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
+    Stress s = second_piola(deformation(a, g), initial_[q]);
+    if (b != nullptr) {
+      const Stress other = second_piola(deformation(b, g), initial_[q]);
+      s = {s.xx - other.xx, s.yy - other.yy, s.xy - other.xy};
+    }
+    sum += weight_[q] * (s.xx * s.xx + s.yy * s.yy + 2.0 * s.xy * s.xy);
+  }
+  return sum;
+}
+
 namespace {
 Stress push_forward(double fxx, double fxy, double fyx, double fyy, const Stress& s) {
   const double j = fxx * fyy - fxy * fyx;

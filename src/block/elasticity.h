@@ -40,6 +40,8 @@ class Elasticity {
   void add_tangent(const double* a, double viscous, double floor, double* tangent, int stride) const;
   /// ∫ δE : C : δE dA with δE the linear part of the strain that increment d adds at a: dᵀ (material part of K) d. J.
   [[nodiscard]] double material_work(const double* a, const double* d) const;
+  /// ∫ |S(a) − S(b)|² dA of the second Piola-Kirchhoff stress, Pa² m²; with a null b, of S(a) itself.
+  [[nodiscard]] double squared_stress(const double* a, const double* b) const;
   /// Cauchy stress σ = F S Fᵀ / det F at a point of the region.
   [[nodiscard]] Stress cauchy(const double* a, const Basis& basis, Vec2 point) const;
   /// Mean of the Cauchy stress over the region, weighted by reference area.

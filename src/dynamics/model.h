@@ -26,7 +26,8 @@ struct Block {
   std::size_t first =
       0;         ///< its coefficients start here in State::position: a_0x, a_0y, a_1x, …; fixed blocks last
   int size = 0;  ///< N, number of basis functions; 2N unknowns
-  int unknown = -1;  ///< number among the blocks that move; −1: fixed
+  int edge_order = 1;  ///< contact divides the edges as for a block of this order
+  int unknown = -1;    ///< number among the blocks that move; −1: fixed
   /// Force per unit acceleration on coefficient 0, ρ √A; the others feel no uniform body force.
   [[nodiscard]] double body_force() const { return material.density * std::sqrt(area); }
   [[nodiscard]] double mass() const { return material.density * area; }

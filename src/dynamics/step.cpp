@@ -107,6 +107,20 @@ double Stepper::stored_energy(const State& state) {
   return sum;
 }
 
+double Stepper::support_energy(const State& state) const {
+  double sum = 0.0;
+  for (const GroundSpring& spring : model_.springs) {
+    if (!model_.moves(at(spring.block))) continue;
+    const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
+    double coordinate = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k)
+      coordinate += spring.phi[k] * state.position[first + 2 * k];
+    const double stretch = coordinate - spring.target(state.time);
+    sum += 0.5 * spring.stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
 void Stepper::resume(State& state) {
   const std::vector<double> moved = state.moved;
   place(state);
@@ -114,6 +128,7 @@ void Stepper::resume(State& state) {
   candidates_.invalidate();
   analysed_ = false;
   contact_energy_ = stored_energy(state);
+  support_energy_ = support_energy(state);
 }
 
 std::vector<contact::Contact> Stepper::find_contacts(const State& state) {

@@ -81,6 +81,7 @@ class Stepper {
  private:
   void place(State& state);
   static double stored_energy(const State& state);
+  [[nodiscard]] double support_energy(const State& state) const;
   void prescribe(const State& state, Drive& drive);
   void move_prescribed(State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);

@@ -166,6 +166,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"equilibrium_reached", r.equilibrium_reached},
                           {"worst_residual_ratio", r.worst_residual_ratio},
                           {"moving", moving},
+                          {"blocks_by_order", r.blocks_by_order},
                           {"damage", damage},
                           {"wall_time", r.wall_time},
                           {"interrupted", r.interrupted},
@@ -198,6 +199,7 @@ StageLine read_stage_json(const std::string& text) {
     r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
     for (const auto& m : json.at("moving"))
       r.moving.push_back({m.at("block").get<int>(), number(m.at("carried"))});
+    json.at("blocks_by_order").get_to(r.blocks_by_order);
     visit_damage(r.damage, Read{json.at("damage")});
     r.wall_time = number(json.at("wall_time"));
     json.at("interrupted").get_to(r.interrupted);

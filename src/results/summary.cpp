@@ -85,6 +85,14 @@ ordered_json damage(const simulation::Damage& d) {
   return json;
 }
 
+ordered_json blocks_by_order(const simulation::StageRecord& r) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t n = 0; n < r.blocks_by_order.size(); ++n) {
+    if (r.blocks_by_order[n] > 0) json[std::to_string(n)] = r.blocks_by_order[n];
+  }
+  return json;
+}
+
 ordered_json stage(const simulation::StageRecord& r) {
   return {{"name", r.stage.name},
           {"kind", stage_kind_name(r.stage.kind)},
@@ -96,6 +104,7 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"wall_time_s", r.wall_time},
           {"interrupted", r.interrupted},
           {"equilibrium", equilibrium(r)},
+          {"blocks_by_order", blocks_by_order(r)},
           {"damage", damage(r.damage)}};
 }
 

@@ -58,7 +58,8 @@ std::vector<BlockProperties> properties_of(const Scenario& scenario, const cutti
       properties.spin = spec.spin;
     }
     properties.material = {*rock.density, *rock.young, *rock.poisson, *rock.state};
-    properties.order = *rock.order;
+    properties.automatic_order = *rock.order == automatic_order;
+    properties.order = properties.automatic_order ? 1 : *rock.order;
     all.push_back(std::move(properties));
   }
   return all;
@@ -145,7 +146,8 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
 void check_size(const Scenario& scenario, const std::vector<BlockProperties>& properties) {
   double unknowns = 0.0;
   for (const BlockProperties& block : properties) {
-    unknowns += (block.order + 1.0) * (block.order + 2.0);
+    const double order = block.automatic_order ? scenario.automatic.highest_order : block.order;
+    unknowns += (order + 1.0) * (order + 2.0);
   }
   if (unknowns > most_unknowns) {
     fail(scenario, "rock.order", fmt::format("{:.2g} unknowns in {} blocks", unknowns, properties.size()),
@@ -234,6 +236,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.stages = scenario.stages;
   setup.damage = scenario.damage;
   setup.output = scenario.output;
+  setup.automatic_order = scenario.automatic;
   setup.solver = scenario.solver;
   warn_of_empty_excavations(scenario, setup.system, notes);
   if (warnings != nullptr) warn_of_overlaps(scenario, setup.system, notes);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -244,10 +246,20 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
             .fallback = inherited});
   t.word("state", rock.state, plane_states,
          {.meaning = "No stress, or no strain, normal to the section.", .fallback = inherited});
-  t.integer("order", rock.order,
-            {.meaning = "Order of the displacement polynomial of a block: 1 has uniform strain, 2 bends, …",
-             .at_least = 1.0,
-             .fallback = inherited});
+  const Value* order =
+      t.any("order", "integer of at least 1, or \"auto\"",
+            {.meaning = "Order of the displacement polynomial of a block: 1 has uniform strain, 2 bends, …; "
+                        "\"auto\": chosen block by block while the rock settles, see [auto_order].",
+             .fallback = required ? "1" : inherited});
+  if (order == nullptr) return;
+  if (order->is(Value::Type::string) && order->text == "auto") {
+    rock.order = automatic_order;
+  } else if (order->is(Value::Type::integer) && order->integer >= 1 &&
+             order->integer <= std::numeric_limits<int>::max()) {
+    rock.order = static_cast<int>(order->integer);
+  } else {
+    t.fail("order", describe(*order), "an integer of at least 1, or \"auto\"");
+  }
 }
 
 void read_rock_mass(TableReader& root, Scenario& scenario) {

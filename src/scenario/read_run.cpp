@@ -149,6 +149,19 @@ void read_output(TableReader& t, simulation::OutputOptions& output) {
            {.meaning = "Between rows of histories; 0: every step.", .unit = "s", .at_least = 0.0});
 }
 
+void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic) {
+  t.number(
+      "stress_accuracy", automatic.stress_accuracy,
+      {.meaning =
+           "A block gets a higher order while the stress that its terms of highest degree carry is more than "
+           "this share of the RMS stress of the rock, and a lower one below a quarter of it.",
+       .above = 0.0,
+       .below = 1.0});
+  t.integer(
+      "highest_order", automatic.highest_order,
+      {.meaning = "Highest order; contact divides the edges of blocks as for this order.", .at_least = 1.0});
+}
+
 void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
   t.word("integrator", solver.integrator, integrators, {.meaning = "Rule of time integration."});
   t.number("spectral_radius", solver.spectral_radius,
@@ -251,6 +264,11 @@ void read_run(TableReader& root, Scenario& scenario) {
              [&](TableReader& t) { read_damage(t, scenario.damage); });
   root.table("output", {.meaning = "How often results are recorded."},
              [&](TableReader& t) { read_output(t, scenario.output); });
+  root.table("auto_order",
+             {.meaning = "How the order of blocks with `order = \"auto\"` is chosen, at every equilibrium of "
+                         "stages of kind "
+                         "\"settle\"."},
+             [&](TableReader& t) { read_automatic_order(t, scenario.automatic); });
   root.table("solver", {.meaning = "How steps are solved. The defaults suit rock at engineering scale."},
              [&](TableReader& t) { read_solver(t, scenario.solver); });
   root.table("study",

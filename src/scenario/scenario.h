@@ -25,8 +25,10 @@ namespace keyblock::scenario {
 struct RockKeys {
   std::optional<double> density, young, poisson;
   std::optional<PlaneState> state;
-  std::optional<int> order;
+  std::optional<int> order;  ///< automatic_order: left to the program
 };
+
+constexpr int automatic_order = 0;
 
 /// [joints], or those of its keys that a joint set or trace map has of its own.
 struct JointKeys {
@@ -151,6 +153,7 @@ struct Scenario {
   std::vector<simulation::Stage> stages;  ///< indices are those of `excavations` and `motions`
   simulation::DamageLimits damage;
   simulation::OutputOptions output;
+  simulation::AutomaticOrder automatic;
   dynamics::SolverOptions solver;
   std::optional<StudySpec> study;
 

@@ -45,9 +45,8 @@ Polygon frame_polygon(const Box& domain) {
           {{a, {a.x, b.y}, b, {b.x, a.y}}}};
 }
 
-Block make_block(const Polygon& polygon, const BlockProperties& properties,
+Block make_block(const Polygon& polygon, const BlockProperties& properties, int order, int edge_order,
                  const std::optional<InSituStress>& in_situ) {
-  const int order = properties.fixed ? 1 : properties.order;
   const block::Basis basis(polygon, order);
   Block block{polygon, basis, block::Elasticity(polygon, basis, properties.material, in_situ),
               block::Pose(polygon, basis), properties.material};
@@ -56,7 +55,25 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties,
   const Vec2 centre = centroid(polygon);
   for (const Vec2 p : polygon.outer) block.radius = std::max(block.radius, norm(p - centre));
   block.size = basis.size();
+  block.edge_order = edge_order;
   return block;
+}
+
+/// Basis functions at the vertices that contact has on the outline of a block, after those of the blocks before it.
+void evaluate_basis(contact::Surface& surface, const Block& block, int vertex) {
+  for (std::size_t r = 0; r < block.reference.ring_count(); ++r) {
+    const Ring& ring = block.reference.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 here = ring[k], after = ring[(k + 1) % ring.size()];
+      const int pieces = edge_pieces(norm(after - here), block.area, block.edge_order);
+      for (int piece = 0; piece < pieces; ++piece, ++vertex) {
+        surface.phi_begin[at(vertex)] = surface.phi.size();
+        surface.phi.resize(surface.phi.size() + at(block.size));
+        block.basis.evaluate(lerp(here, after, static_cast<double>(piece) / pieces),
+                             surface.phi.data() + surface.phi_begin[at(vertex)]);
+      }
+    }
+  }
 }
 
 void add_to_surface(Model& model, const Block& block, const std::vector<std::vector<int>>& joints) {
@@ -68,15 +85,12 @@ void add_to_surface(Model& model, const Block& block, const std::vector<std::vec
     for (std::size_t k = 0; k < ring.size(); ++k) {
       const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
                  after = ring[(k + 1) % ring.size()];
-      const int pieces = edge_pieces(norm(after - here), block.area, block.basis.order());
+      const int pieces = edge_pieces(norm(after - here), block.area, block.edge_order);
       for (int piece = 0; piece < pieces; ++piece) {
         surface.block.push_back(number);
         surface.joint.push_back(joints[r][k]);
         surface.position.push_back(lerp(here, after, static_cast<double>(piece) / pieces));
         surface.reflex.push_back(piece == 0 && cross(here - before, after - here) < 0.0);
-        surface.phi_begin.push_back(surface.phi.size());
-        surface.phi.resize(surface.phi.size() + at(block.size));
-        block.basis.evaluate(surface.position.back(), surface.phi.data() + surface.phi_begin.back());
       }
     }
     const int count = surface.vertices() - first;
@@ -85,6 +99,8 @@ void add_to_surface(Model& model, const Block& block, const std::vector<std::vec
       surface.previous.push_back(first + (k + count - 1) % count);
     }
   }
+  surface.phi_begin.resize(at(surface.vertices()));
+  evaluate_basis(surface, block, surface.block_begin.back());
   surface.block_begin.push_back(surface.vertices());
   surface.thickness.push_back(block.area / perimeter(block.reference));
   surface.present.push_back(1);
@@ -181,6 +197,7 @@ void add_prescribed_motions(const RunSetup& setup, Model& model) {
 
 /// Blocks that move first, so that their coefficients are the unknowns.
 void number_coefficients(Model& model) {
+  model.coefficients = 0;
   for (const bool fixed : {false, true}) {
     for (Block& block : model.blocks) {
       if (block.fixed != fixed) continue;
@@ -254,7 +271,11 @@ Model build_model(const RunSetup& setup) {
   model.surface.block_begin.push_back(0);
   for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
     const cutting::CutBlock& cut = setup.system.blocks[b];
-    model.blocks.push_back(make_block(cut.polygon, setup.properties[b], setup.in_situ));
+    const BlockProperties& properties = setup.properties[b];
+    const int order = properties.fixed ? 1 : properties.order;
+    model.blocks.push_back(
+        make_block(cut.polygon, properties, order,
+                   properties.automatic_order ? setup.automatic_order.highest_order : order, setup.in_situ));
     std::vector<std::vector<int>> joints;
     for (const auto& ring : cut.labels) {
       joints.emplace_back();
@@ -266,7 +287,7 @@ Model build_model(const RunSetup& setup) {
     BlockProperties properties;
     properties.fixed = true;
     properties.material = setup.properties.empty() ? Material{} : setup.properties.front().material;
-    model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, {}));
+    model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, 1, 1, {}));
     add_to_surface(model, model.blocks.back(), {std::vector<int>(4, 1), std::vector<int>(4, 1)});
   }
   number_coefficients(model);
@@ -274,6 +295,41 @@ Model build_model(const RunSetup& setup) {
   add_supports(setup, model);
   add_prescribed_motions(setup, model);
   return model;
+}
+
+void change_orders(const RunSetup& setup, Model& model, dynamics::State& state, std::span<const int> orders) {
+  std::vector<std::pair<std::size_t, int>> old;  // first coefficient and number of basis functions
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    Block& block = model.blocks[b];
+    old.emplace_back(block.first, block.size);
+    if (block.fixed || orders[b] == block.basis.order()) continue;
+    const int unknown = block.unknown;
+    block = make_block(block.reference, setup.properties[b], orders[b], block.edge_order, setup.in_situ);
+    block.unknown = unknown;
+  }
+  number_coefficients(model);
+  model.surface.phi.clear();
+  for (std::size_t b = 0; b < model.blocks.size(); ++b)
+    evaluate_basis(model.surface, model.blocks[b], model.surface.block_begin[b]);
+  model.loads.clear();
+  model.springs.clear();
+  add_loads(setup, model);
+  add_supports(setup, model);
+  // Basis functions are ordered by degree and those of lower degree are the same at every order.
+  const auto carry_over = [&](std::vector<double>& values) {
+    if (values.empty()) return;
+    std::vector<double> now(model.coefficients, 0.0);
+    for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+      const auto from = values.begin() + static_cast<std::ptrdiff_t>(old[b].first);
+      std::copy_n(from, 2 * std::min(old[b].second, model.blocks[b].size),
+                  now.begin() + static_cast<std::ptrdiff_t>(model.blocks[b].first));
+    }
+    values = std::move(now);
+  };
+  carry_over(state.position);
+  carry_over(state.velocity);
+  carry_over(state.acceleration);
+  carry_over(state.force);
 }
 
 dynamics::State initial_state(const RunSetup& setup, const Model& model) {

@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0002;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0003;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -40,6 +40,7 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.equilibrium_reached);
   archive(s.worst_residual_ratio);
   archive(s.moving);
+  archive(s.blocks_by_order);
   archive(s.damage);
   archive(s.wall_time);
   archive(s.interrupted);
@@ -61,6 +62,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.pattern);
   archive(s.mechanics.ledger);
   archive(s.present);
+  archive(s.orders.orders);
+  archive(s.orders.lowered);
   archive(s.damage.start);
   archive(s.damage.pieces);
   archive(s.damage.height);

@@ -3,6 +3,7 @@
 
 #include "dynamics/state.h"
 #include "simulation/damage.h"
+#include "simulation/order_control.h"
 #include "simulation/record.h"
 #include "simulation/settle.h"
 #include "simulation/setup.h"
@@ -14,6 +15,7 @@ struct RunState {
   dynamics::State mechanics;
   std::vector<std::uint8_t> present;  ///< per block
   DamageGauge::Reference damage;
+  OrderControl::Memory orders;
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   int stage = 0;
   long stage_step = 0;          ///< steps done in it

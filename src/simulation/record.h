@@ -143,6 +143,7 @@ struct StageRecord {
   bool equilibrium_reached = false;         ///< settle only
   double worst_residual_ratio = 0.0;        ///< settle only: over blocks that are not moving
   std::vector<MovingBlock> moving;
+  std::vector<int> blocks_by_order;  ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;
   double wall_time = 0.0;  ///< s
   bool interrupted = false;

@@ -27,7 +27,7 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
                                              ? setup.system.blocks[b].labels[r][k]
                                              : cutting::EdgeLabel{cutting::EdgeKind::domain, 0};
         const int pieces = edge_pieces(norm(ring[(k + 1) % ring.size()] - ring[k]), model.blocks[b].area,
-                                       model.blocks[b].basis.order());
+                                       model.blocks[b].edge_order);
         labels_.insert(labels_.end(), at(pieces), label);
       }
     }
@@ -46,8 +46,15 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
       diagnostic.expected = "a point in a block";
       throw InputError(std::move(diagnostic));
     }
-    points_.push_back({found, history.point, std::vector<double>(at(model.blocks[found].size))});
-    model.blocks[found].basis.evaluate(history.point, points_.back().phi.data());
+    points_.push_back({found, history.point, {}});
+  }
+  orders_changed();
+}
+
+void Recorder::orders_changed() {
+  for (Point& point : points_) {
+    point.phi.resize(at(model_.blocks[point.block].size));
+    model_.blocks[point.block].basis.evaluate(point.reference, point.phi.data());
   }
 }
 

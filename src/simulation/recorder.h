@@ -24,6 +24,9 @@ class Recorder {
   /// Largest relative change of area of a block.
   [[nodiscard]] double area_change(const dynamics::State& state) const;
 
+  /// Brings what depends on the orders of blocks up to date.
+  void orders_changed();
+
  private:
   struct Point {
     std::size_t block;

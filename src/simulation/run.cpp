@@ -12,6 +12,7 @@
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
 #include "simulation/damage.h"
+#include "simulation/order_control.h"
 #include "simulation/recorder.h"
 #include "simulation/settle.h"
 
@@ -56,13 +57,16 @@ class Runner {
         model_(build_model(setup)),
         gauge_(setup, model_),
         recorder_(setup, model_, gauge_, team_.size()),
-        stepper_(model_, team_) {}
+        orders_(setup) {
+    stepper_.emplace(model_, team_);
+  }
 
   RunRecord run();
 
  private:
   void begin();
   void resume();
+  void orders_changed();
   void excavate(const Stage& stage);
   void run_stage();
   void settle(StageRecord& record);
@@ -85,7 +89,8 @@ class Runner {
   dynamics::Model model_;
   DamageGauge gauge_;
   Recorder recorder_;
-  dynamics::Stepper stepper_;
+  OrderControl orders_;
+  std::optional<dynamics::Stepper> stepper_;
   RunState now_;
   std::optional<Settler> settler_;
   Clock::time_point run_start_ = Clock::now(), stage_start_, last_progress_;
@@ -94,21 +99,21 @@ class Runner {
 };
 
 double Runner::total_energy() const {
-  return stepper_.kinetic_energy(now_.mechanics) + stepper_.strain_energy(now_.mechanics) +
-         stepper_.gravity_energy(now_.mechanics) + stepper_.contact_energy();
+  return stepper_->kinetic_energy(now_.mechanics) + stepper_->strain_energy(now_.mechanics) +
+         stepper_->gravity_energy(now_.mechanics) + stepper_->contact_energy();
 }
 
 Energy Runner::energy() const {
   const dynamics::EnergyLedger& ledger = now_.mechanics.ledger;
   Energy e;
-  e.kinetic = stepper_.kinetic_energy(now_.mechanics);
-  e.strain = stepper_.strain_energy(now_.mechanics);
-  e.contact = stepper_.contact_energy();
+  e.kinetic = stepper_->kinetic_energy(now_.mechanics);
+  e.strain = stepper_->strain_energy(now_.mechanics);
+  e.contact = stepper_->contact_energy();
   e.friction = ledger.friction;
   e.damping = ledger.damping;
   e.numerical = ledger.numerical;
   e.input = ledger.input;
-  e.gravity = stepper_.gravity_energy(now_.mechanics) - now_.initial_energy;
+  e.gravity = stepper_->gravity_energy(now_.mechanics) - now_.initial_energy;
   const double residual =
       e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
   double largest = 0.0;
@@ -122,22 +127,30 @@ Energy Runner::energy() const {
 
 void Runner::begin() {
   now_.mechanics = initial_state(setup_, model_);
-  stepper_.start(now_.mechanics);
+  stepper_->start(now_.mechanics);
   now_.present = model_.surface.present;
   // All potentials count from the start, as gravity does.
   now_.initial_energy = total_energy();
   if (setup_.excavations.empty()) {
-    gauge_.start(now_.mechanics, stepper_.find_contacts(now_.mechanics));
+    gauge_.start(now_.mechanics, stepper_->find_contacts(now_.mechanics));
     now_.damage = gauge_.reference();
   }
 }
 
 void Runner::resume() {
   now_ = read_checkpoint(options_.directory, setup_);
+  orders_.memory() = now_.orders;
+  orders_.restore(model_);
   model_.surface.present = now_.present;
+  orders_changed();
   gauge_.restore(now_.damage);
-  stepper_.resume(now_.mechanics);
   wall_before_ = now_.wall_time;
+}
+
+void Runner::orders_changed() {
+  stepper_.emplace(model_, team_);
+  stepper_->resume(now_.mechanics);
+  recorder_.orders_changed();
 }
 
 void Runner::excavate(const Stage& stage) {
@@ -150,10 +163,10 @@ void Runner::excavate(const Stage& stage) {
     });
     if (removed) model_.surface.present[b] = 0;
   }
-  if (!gauge_.started()) gauge_.start(now_.mechanics, stepper_.find_contacts(now_.mechanics));
+  if (!gauge_.started()) gauge_.start(now_.mechanics, stepper_->find_contacts(now_.mechanics));
   now_.damage = gauge_.reference();
   now_.present = model_.surface.present;
-  stepper_.remove_absent(now_.mechanics);
+  stepper_->remove_absent(now_.mechanics);
   now_.mechanics.ledger.input += total_energy() - before;
 }
 
@@ -167,9 +180,10 @@ void Runner::check_overlap() {
 }
 
 void Runner::checkpoint() {
-  stepper_.forget_candidates();
+  stepper_->forget_candidates();
   if (options_.directory.empty()) return;
   if (settler_) now_.settler = settler_->memory();
+  now_.orders = orders_.memory();
   now_.wall_time = wall_before_ + seconds_since(run_start_);
   write_checkpoint(options_.directory, setup_, now_);
 }
@@ -197,7 +211,7 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
     if (is_static ? step % setup_.output.settle_frame_interval == 0 : due(setup_.output.frame_interval))
       record_frame();
     if (!is_static && due(setup_.output.contact_interval)) {
-      observer_.contacts(recorder_.contacts(now_.mechanics, stepper_, now_.stage));
+      observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
     }
     if (!is_static && due(overlap_interval)) check_overlap();
   }
@@ -234,10 +248,23 @@ void Runner::settle(StageRecord& record) {
   const int limit = record.stage.max_steps.value_or(default_settle_steps);
   settler_.emplace(model_, setup_.time_step, record.stage.tolerance);
   if (now_.stage_step > 0) settler_->memory() = now_.settler;
+  // What a change of orders takes out of the rock or puts into it is numerical.
+  const auto change_orders = [&](bool (OrderControl::*change)(dynamics::Model&, dynamics::State&)) {
+    const double before = total_energy();
+    if (!orders_.active() || !(orders_.*change)(model_, now_.mechanics)) return false;
+    orders_changed();
+    now_.mechanics.ledger.numerical += before - total_energy();
+    return true;
+  };
+  if (now_.stage_step == 0) change_orders(&OrderControl::begin);
   bool done = false;
   while (!done && now_.stage_step < limit && !stopped()) {
     dynamics::StepReport report;
-    done = settler_->step(stepper_, now_.mechanics, report);
+    done = settler_->step(*stepper_, now_.mechanics, report);
+    if (done && change_orders(&OrderControl::adapt)) {
+      settler_->memory().quiet_steps = 0;
+      done = false;
+    }
     after_step(report, done ? 0 : limit - now_.stage_step - 1, settler_->worst_ratio(), settler_->progress());
   }
   record.equilibrium_reached = done;
@@ -264,7 +291,7 @@ void Runner::shake(StageRecord& record) {
   const long steps = std::lround(duration / setup_.time_step);
   while (now_.stage_step < steps && !stopped()) {
     const dynamics::StepReport report =
-        stepper_.advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
+        stepper_->advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
     const long left = steps - now_.stage_step - 1;
     after_step(report, left, 0.0, static_cast<double>(now_.stage_step + 1) / static_cast<double>(steps));
   }
@@ -298,8 +325,9 @@ void Runner::run_stage() {
   record.wall_time = seconds_since(stage_start_);
   check_overlap();
   record_frame();
-  observer_.contacts(recorder_.contacts(now_.mechanics, stepper_, now_.stage));
+  observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
   record.damage = gauge_.measure(now_.mechanics);
+  record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
   if (record.interrupted) {
     now_.record.stages.push_back(

@@ -19,6 +19,7 @@ struct BlockProperties {
   std::string name;  ///< empty for cut blocks
   Material material;
   int order = 1;                          ///< of the displacement polynomial, ≥ 1
+  bool automatic_order = false;           ///< chosen by the program; `order` is that at the start
   bool fixed = false;                     ///< neither moves nor deforms, but by `motion`
   loading::TimeTable motion_x, motion_y;  ///< m, prescribed displacement of a fixed block; empty: none
   Vec2 velocity;                          ///< m/s at the start
@@ -51,6 +52,13 @@ struct DamageLimits {
   double loosened_distance = 0.01;      ///< m
   double slip = 0.001;                  ///< m; a joint counts as slipped beyond it
   double opening = 0.001;               ///< m; a joint counts as opened beyond it
+};
+
+/// How the program chooses the order of blocks that leave it open.
+struct AutomaticOrder {
+  double stress_accuracy =
+      0.05;  ///< of the RMS stress of the rock, that the terms of highest degree of a block may carry
+  int highest_order = 6;
 };
 
 /// How often results are recorded.
@@ -87,6 +95,7 @@ struct RunSetup {
   std::vector<History> histories;
   DamageLimits damage;
   OutputOptions output;
+  AutomaticOrder automatic_order;
   dynamics::SolverOptions solver;
 };
 

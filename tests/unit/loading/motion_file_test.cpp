@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -27,8 +28,9 @@ std::string content(const std::filesystem::path& path) {
 
 // Reads `text` as a file of its own.
 std::vector<MotionComponent> read_text(const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) /
-                    testing::UnitTest::GetInstance()->current_test_info()->name();
+  const auto path =
+      std::filesystem::path(testing::TempDir()) /
+      (std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
   std::ofstream(path, std::ios::binary) << text;
   return read_motion_file(path);
 }

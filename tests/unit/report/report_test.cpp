@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -84,7 +85,8 @@ TEST(Report, DisplacementsAreFinerThanAnyPixel) {
 }
 
 TEST(Report, IsWrittenBesideNothingElse) {
-  const auto directory = std::filesystem::temp_directory_path() / "keyblock_report_test";
+  const auto directory =
+      std::filesystem::temp_directory_path() / ("keyblock_report_" + std::to_string(::getpid()));
   std::filesystem::remove_all(directory);
   std::filesystem::create_directory(directory);
   const results::RunData run = testing::synthetic_run({.frames_per_stage = 2});

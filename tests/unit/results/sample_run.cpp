@@ -1,6 +1,7 @@
 #include "sample_run.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <bit>
 #include <cmath>
@@ -353,7 +354,8 @@ void expect_equal(const RunData& a, const RunData& b) {
 std::filesystem::path fresh_folder() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   const auto folder =
-      std::filesystem::path(testing::TempDir()) / (std::string(test->test_suite_name()) + "." + test->name());
+      std::filesystem::path(testing::TempDir()) /
+      (std::string(test->test_suite_name()) + "." + test->name() + "." + std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

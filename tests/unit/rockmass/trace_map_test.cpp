@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -14,7 +15,8 @@ class TraceMap : public testing::Test {
  protected:
   std::filesystem::path file(const std::string& content) {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("keyblock_") + info->name() + ".map");
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("keyblock_") + info->name() + std::to_string(::getpid()) + ".map");
     std::ofstream(path_) << content;
     return path_;
   }
