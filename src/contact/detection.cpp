@@ -149,8 +149,9 @@ void Detection::compete(std::span<const Member> members, std::vector<Candidate>&
       if (winner == nullptr || m.inside > winner->inside) winner = &m;
     }
     const double leave = -0.5 * tolerances_.end_zone;
-    if (holder != nullptr && (holder->inside > leave || winner->inside < 0.0)) winner = holder;
-    if (holder == nullptr && winner->inside < 0.0) {
+    if (holder != nullptr && (holder->inside > leave || winner->inside < -tolerances_.rounding))
+      winner = holder;
+    if (holder == nullptr && winner->inside < -tolerances_.rounding) {
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {

@@ -14,6 +14,7 @@ struct Tolerances {
         corner_tie(0.00075 * block_size),
         corner_depth(0.00015 * block_size),
         in_place(1e-4 * block_size),
+        rounding(1e-6 * block_size),
         turn(5e-5 * block_size) {}
 
   /// A gap below which a contact takes part in the step although it is open (1 mm), beside what motion adds. Too small:
@@ -36,6 +37,8 @@ struct Tolerances {
   double corner_depth;
   /// Largest gap of a joint in place at the start (0.07 mm): such a contact has the joint's cohesion and tension.
   double in_place;
+  /// Corners that miss each other by less still meet (0.7 µm): outlines may be given to few digits.
+  double rounding;
 
   /// A block in contact may turn in one step only so far that its vertices leave the straight way that the step is
   /// linear in by this much, ½ w² r (0.03 mm); beyond, the step is cut. Larger: small spinning blocks are pressed into

@@ -280,12 +280,6 @@ Expression::Expression(double value) {
   nodes_.push_back(std::move(node));
 }
 
-bool Expression::needs(std::string_view function) const {
-  return std::any_of(nodes_.begin(), nodes_.end(), [&](const Node& node) {
-    return node.kind == Node::Kind::call && node.text == function;
-  });
-}
-
 double Expression::evaluate(const Quantities& quantities) const {
   return value_of(root_, quantities);
 }

@@ -44,8 +44,6 @@ class Expression {
 
   /// Throws what `quantities` throws.
   [[nodiscard]] double evaluate(const Quantities& quantities) const;
-  /// Whether a function that takes something from outside occurs.
-  [[nodiscard]] bool needs(std::string_view function) const;
 
  private:
   friend class ExpressionParser;

@@ -56,6 +56,15 @@ TEST(Detection, EdgeToEdgeIsTwoContactsThatShareItsLengthOnce) {
   }
 }
 
+// Faces that are a hair apart and at a small angle: each corner then misses the end of the other face by rounding alone.
+TEST(Detection, CornersThatMeetUpToRoundingMeet) {
+  const double apart = 1e-6, slope = 0.0174, miss = 0.5 * apart * slope;
+  Surface surface;
+  add_block(surface, rectangle(0, 0, 1, 1));
+  add_block(surface, {{{-miss, 1.0 + apart}, {1.0, 1.0 + apart + slope}, {1.0, 2.0}, {0.0, 2.0}}, {}});
+  EXPECT_EQ(count(find(surface), 0, 1), 1);
+}
+
 TEST(Detection, CrossingJointsJoinFacesAndNotOppositeCorners) {
   Surface surface;
   add_block(surface, rectangle(0, 0, 1, 1));

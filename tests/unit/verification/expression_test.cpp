@@ -56,8 +56,6 @@ TEST(Expression, AsksForTheRest) {
   EXPECT_EQ(quantities.asked, "max 's.uy'");
   EXPECT_EQ(Expression("row('a run', 'a, quantity')").evaluate(quantities), 7.0);
   EXPECT_EQ(quantities.asked, "row 'a run' 'a, quantity'");
-  EXPECT_TRUE(Expression("1 + order()").needs("order"));
-  EXPECT_FALSE(Expression("1").needs("order"));
 }
 
 struct Wrong {
