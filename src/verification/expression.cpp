@@ -98,11 +98,11 @@ std::string usage(std::string_view name) {
 
 }  // namespace
 
-ExpressionError::ExpressionError(std::size_t column_, std::string found_, std::string expected_)
-    : std::runtime_error(fmt::format("{} at character {}; expected {}", found_, column_, expected_)),
-      column(column_),
-      found(std::move(found_)),
-      expected(std::move(expected_)) {}
+ExpressionError::ExpressionError(std::size_t at, std::string what, std::string wanted)
+    : std::runtime_error(fmt::format("{} at character {}; expected {}", what, at, wanted)),
+      column(at),
+      found(std::move(what)),
+      expected(std::move(wanted)) {}
 
 class ExpressionParser {
  public:

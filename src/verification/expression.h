@@ -22,7 +22,7 @@ class Quantities {
 
 /// A text is no expression: what stands at `column` (from 1), and what should.
 struct ExpressionError : std::runtime_error {
-  ExpressionError(std::size_t column_, std::string found_, std::string expected_);
+  ExpressionError(std::size_t at, std::string what, std::string wanted);
   std::size_t column;
   std::string found, expected;
 };

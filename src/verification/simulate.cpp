@@ -189,7 +189,8 @@ void append_product(std::vector<Simulation>& all, const std::string& key,
     for (const std::string& value : values) {
       product.push_back(simulation);
       product.back().parameters.emplace_back(key, value);
-      product.back().label += (simulation.label.empty() ? "" : ", ") + short_key(key) + " = " + value;
+      product.back().label +=
+          fmt::format("{}{} = {}", simulation.label.empty() ? "" : ", ", short_key(key), value);
     }
   }
   all = std::move(product);
@@ -216,7 +217,8 @@ std::vector<Simulation> simulations(const RunSpec& run) {
   for (Simulation& simulation : all) {
     simulation.overrides = run.set;
     if (simulation.order) simulation.overrides.push_back(fmt::format("rock.order={}", *simulation.order));
-    for (const auto& [key, value] : simulation.parameters) simulation.overrides.push_back(key + "=" + value);
+    for (const auto& [key, value] : simulation.parameters)
+      simulation.overrides.push_back(fmt::format("{}={}", key, value));
   }
   return all;
 }
