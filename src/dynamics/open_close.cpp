@@ -213,13 +213,13 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::
       result.bond_broken = true;
       continue;
     }
-    if (augmented &&
-        result.multiplier_updates < options.max_multiplier_updates &&
+    if (augmented && result.multiplier_updates < options.max_multiplier_updates &&
         augment(problem, contacts, memory, options.penetration_tolerance * problem.block_size())) {
       ++result.multiplier_updates;
       continue;
     }
-    const double tolerance = result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
+    const double tolerance =
+        result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
     if (result.bound_updates >= options.max_bound_updates) break;
     if (!update_bounds(problem, contacts, memory, tolerance)) break;
     ++result.bound_updates;

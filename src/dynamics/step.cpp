@@ -101,26 +101,6 @@ void Stepper::start(State& state) {
   ensure_pattern(state, true);
 }
 
-double Stepper::stored_energy(const State& state) {
-  double sum = 0.0;
-  for (const contact::Candidate& c : state.contacts) sum += c.memory.tracked ? c.memory.stored : 0.0;
-  return sum;
-}
-
-double Stepper::support_energy(const State& state) const {
-  double sum = 0.0;
-  for (const GroundSpring& spring : model_.springs) {
-    if (!model_.moves(at(spring.block))) continue;
-    const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
-    double coordinate = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k)
-      coordinate += spring.phi[k] * state.position[first + 2 * k];
-    const double stretch = coordinate - spring.target(state.time);
-    sum += 0.5 * spring.stiffness * stretch * stretch;
-  }
-  return sum;
-}
-
 void Stepper::resume(State& state) {
   const std::vector<double> moved = state.moved;
   place(state);
@@ -286,119 +266,6 @@ bool Stepper::moved_too_far() {
   return any;
 }
 
-/// The rule of the scenario; Shi's as long as it needs an acceleration that is not known: in the first step, after an impact.
-void Stepper::choose_rules(const State& state, const Drive& drive) {
-  const SolverOptions& options = model_.solver;
-  const Integrator shi = Integrator::shi(options.theta);
-  Integrator chosen = shi;
-  if (options.integrator == TimeIntegration::average_acceleration)
-    chosen = Integrator::average_acceleration();
-  if (options.integrator == TimeIntegration::generalized_alpha)
-    chosen = Integrator::generalized_alpha(options.spectral_radius);
-  const bool dynamic = !drive.is_static && !state.acceleration_known.empty();
-  for (std::size_t b = 0; b < rule_.size(); ++b)
-    rule_[b] = dynamic && state.acceleration_known[b] != 0 ? chosen : shi;
-  std::fill(in_impact_.begin(), in_impact_.end(), std::uint8_t{0});
-}
-
-/// Impacts that the step does not resolve: the blocks come to rest against each other within it, D ≈ 0, and the rule
-/// v ← (1+θ)D/Δt − θv would send them back with θ times the speed they came with. Lowers θ of blocks that are pressed upon
-/// while they approach faster than the speed of an impact; true when there is a new one.
-bool Stepper::meet_impacts(const State& state, const Drive& drive) {
-  const SolverOptions& options = model_.solver;
-  const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
-  if (drive.is_static || options.restitution >= elastic) return false;
-  // Multipliers are stiffer than any spring: what is left of a velocity into a contact would ring for ever.
-  const bool rigid = options.contact == ContactMethod::augmented_lagrangian;
-  const double least =
-      rigid ? std::min(impact_speed_, 1e-4 * norm(model_.gravity) * drive.step) : impact_speed_;
-  bool any = false;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const StepProblem::Row& row = problem_.rows()[c];
-    if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
-    const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;
-    if (-dot(row.normal, speed) <= least) continue;
-    if (!rigid &&
-        contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
-      continue;
-    for (const int b : {contacts_[c].block_a, contacts_[c].block_b}) {
-      if (!model_.moves(at(b)) || in_impact_[at(b)] != 0) continue;
-      in_impact_[at(b)] = 1;
-      rule_[at(b)] = Integrator::shi(options.restitution);
-      any = true;
-    }
-  }
-  return any;
-}
-
-Motion Stepper::motion(const State& state, std::size_t coefficient) {
-  if (state.acceleration.empty()) return {state.velocity[coefficient], 0.0, 0.0};
-  return {state.velocity[coefficient], state.acceleration[coefficient], state.force[coefficient]};
-}
-
-void Stepper::account(State& state, const Drive& drive) {
-  EnergyLedger& ledger = state.ledger;
-  const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_, spin_);
-  ledger.numerical += elastic.numerical;
-  ledger.damping += elastic.damping;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
-    const Block& block = model_.blocks[b];
-    const double* d = &increment_[block.first];
-    const double* v = &state.velocity[block.first];
-    if (drive.is_static) {
-      for (int k = 0; k < 2 * block.size; ++k) ledger.numerical += problem_.inertia(b) * d[k] * d[k];
-    } else {  // work of the forces at the end of the step, less what became kinetic energy
-      for (int k = 0; k < 2 * block.size; ++k) {
-        const Motion start = motion(state, block.first + at(k)), end = rule_[b].end(start, d[k], drive.step);
-        ledger.numerical +=
-            block.material.density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
-      }
-    }
-    ledger.input -= block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
-  }
-  for (const GeneralizedLoad& load : model_.loads) {
-    if (!model_.moves(at(load.block))) continue;
-    const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
-    for (std::size_t k = 0; k < load.force.size(); ++k)
-      ledger.input += f * load.force[k] * increment_[model_.blocks[at(load.block)].first + k];
-  }
-  support_energy_ = 0.0;
-  for (const GroundSpring& spring : model_.springs) {
-    if (!model_.moves(at(spring.block))) continue;
-    const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
-    double coordinate = 0.0, moved = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
-      coordinate += spring.phi[k] * state.position[first + 2 * k];
-      moved += spring.phi[k] * increment_[first + 2 * k];
-    }
-    const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step),
-                 end = spring.target(drive.end_time);
-    const double stretch = coordinate + moved - end, change = moved - (end - before);
-    support_energy_ += 0.5 * spring.stiffness * stretch * stretch;
-    ledger.input -= spring.stiffness * stretch * (end - before);
-    // elastic_loss has taken ½ k moved² for a ground that stands still.
-    ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
-  }
-  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
-  // What is stored in contacts that have ended, a vertex that left its edge, is lost.
-  ledger.numerical += contact_energy_;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    ledger.numerical -= memory_[c]->stored;
-    const StepProblem::Row& row = problem_.rows()[c];
-    const Vec2 r = open_close_.relative()[c];
-    const contact::Spring::Balance balance =
-        augmented
-            ? row.spring.rigid_balance(row.depth(r), row.shear(r), dot(row.normal, r), dot(row.tangent, r))
-            : row.spring.balance(row.depth(r), row.shear(r));
-    ledger.friction += balance.friction;
-    const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
-    ledger.input -= dot(normal * row.normal - shear * row.tangent, row.moved);
-    ledger.damping += balance.damping;
-    ledger.numerical += balance.numerical;
-  }
-}
-
 /// Contact memory for the next step.
 void Stepper::remember(const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
@@ -473,6 +340,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     block.pose.rotate(w, &state.force[block.first]);
     state.acceleration_known[b] = !drive.is_static && in_impact_[b] == 0;
   }
+  state.ledger.numerical -= strain_energy(state);
   move_prescribed(state, drive);
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
@@ -532,38 +400,6 @@ StepReport Stepper::relax(State& state, double dt, std::span<const double> inert
   accept(state, drive, report);
   ++state.step;
   return report;
-}
-
-double Stepper::kinetic_energy(const State& state) const {
-  double sum = 0.0;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
-    const Block& block = model_.blocks[b];
-    double squared = 0.0;
-    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
-      squared += state.velocity[k] * state.velocity[k];
-    sum += 0.5 * block.material.density * squared;
-  }
-  return sum;
-}
-
-double Stepper::strain_energy(const State& state) const {
-  double sum = 0.0;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (model_.moves(b)) sum += model_.blocks[b].elasticity.energy(&state.position[model_.blocks[b].first]);
-  }
-  return sum;
-}
-
-double Stepper::gravity_energy(const State& state) const {
-  double sum = 0.0;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
-    const Block& block = model_.blocks[b];
-    sum -= block.body_force() *
-           dot(model_.gravity, {state.position[block.first], state.position[block.first + 1]});
-  }
-  return sum;
 }
 
 }  // namespace keyblock::dynamics

@@ -88,16 +88,13 @@ class StepProblem {
   [[nodiscard]] double block_size() const { return model_->block_size; }
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
-  /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
-  /// `spin`.
-  struct ElasticLoss {
-    double numerical =
-        0.0;  ///< what the forces at the end of the step lose against the potential: ½ Dᵀ (K_t + K_support) D
-              ///< + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out
-    double damping = 0.0;  ///< by the viscosity of the rock
+  /// Work done against the elastic forces of all blocks in a step of increment D, J per thickness.
+  struct ElasticWork {
+    double forces = 0.0;   ///< Dᵀ (f_int + K_t D), with the part below
+    double damping = 0.0;  ///< of the viscosity of the rock
   };
-  [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d,
-                                         std::span<const double> spin) const;
+  [[nodiscard]] ElasticWork elastic_work(const State& state, std::span<const double> d) const;
+  /// Σ U of the blocks that move, at the start of the step.
   [[nodiscard]] double strain_energy() const { return strain_energy_; }
 
  private:
@@ -114,6 +111,7 @@ class StepProblem {
   std::vector<double> b_;
   std::vector<double> inertia_;  ///< per block, cρ/Δt²
   std::vector<double> viscous_;  ///< per block, β/Δt: viscosity of the rock over its stiffness
+  std::vector<double> force_;    ///< f_int of every coefficient
   std::vector<double> weight_;   ///< per block, N-like scale of its coefficients
   std::vector<double> block_energy_;
   double strain_energy_ = 0.0;

@@ -1,0 +1,129 @@
+// Where the energy of a step goes.
+#include <cmath>
+
+#include "dynamics/step.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+}  // namespace
+
+double Stepper::stored_energy(const State& state) {
+  double sum = 0.0;
+  for (const contact::Candidate& c : state.contacts) sum += c.memory.tracked ? c.memory.stored : 0.0;
+  return sum;
+}
+
+double Stepper::support_energy(const State& state) const {
+  double sum = 0.0;
+  for (const GroundSpring& spring : model_.springs) {
+    if (!model_.moves(at(spring.block))) continue;
+    const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
+    double coordinate = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k)
+      coordinate += spring.phi[k] * state.position[first + 2 * k];
+    const double stretch = coordinate - spring.target(state.time);
+    sum += 0.5 * spring.stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
+void Stepper::account(State& state, const Drive& drive) {
+  EnergyLedger& ledger = state.ledger;
+  const StepProblem::ElasticWork elastic = problem_.elastic_work(state, increment_);
+  ledger.damping += elastic.damping;
+  // What the blocks store is taken off when they are at their new place.
+  ledger.numerical += elastic.forces - elastic.damping + problem_.strain_energy();
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    const double* d = &increment_[block.first];
+    const double* v = &state.velocity[block.first];
+    if (drive.is_static) {
+      for (int k = 0; k < 2 * block.size; ++k) ledger.numerical += problem_.inertia(b) * d[k] * d[k];
+    } else {  // work of the forces at the end of the step, less what became kinetic energy
+      for (int k = 0; k < 2 * block.size; ++k) {
+        const Motion start = motion(state, block.first + at(k)), end = rule_[b].end(start, d[k], drive.step);
+        ledger.numerical +=
+            block.material.density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
+      }
+    }
+    ledger.input -= block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
+  }
+  for (const GeneralizedLoad& load : model_.loads) {
+    if (!model_.moves(at(load.block))) continue;
+    const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
+    for (std::size_t k = 0; k < load.force.size(); ++k)
+      ledger.input += f * load.force[k] * increment_[model_.blocks[at(load.block)].first + k];
+  }
+  support_energy_ = 0.0;
+  for (const GroundSpring& spring : model_.springs) {
+    if (!model_.moves(at(spring.block))) continue;
+    const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
+    double coordinate = 0.0, moved = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
+      coordinate += spring.phi[k] * state.position[first + 2 * k];
+      moved += spring.phi[k] * increment_[first + 2 * k];
+    }
+    const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step),
+                 end = spring.target(drive.end_time);
+    const double stretch = coordinate + moved - end, change = moved - (end - before);
+    support_energy_ += 0.5 * spring.stiffness * stretch * stretch;
+    ledger.input -= spring.stiffness * stretch * (end - before);
+    ledger.numerical += 0.5 * spring.stiffness * change * change;
+  }
+  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  // What is stored in contacts that have ended, a vertex that left its edge, is lost.
+  ledger.numerical += contact_energy_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    ledger.numerical -= memory_[c]->stored;
+    const StepProblem::Row& row = problem_.rows()[c];
+    const Vec2 r = open_close_.relative()[c];
+    const contact::Spring::Balance balance =
+        augmented
+            ? row.spring.rigid_balance(row.depth(r), row.shear(r), dot(row.normal, r), dot(row.tangent, r))
+            : row.spring.balance(row.depth(r), row.shear(r));
+    ledger.friction += balance.friction;
+    const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
+    ledger.input -= dot(normal * row.normal - shear * row.tangent, row.moved);
+    ledger.damping += balance.damping;
+    ledger.numerical += balance.numerical;
+  }
+}
+
+double Stepper::kinetic_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    double squared = 0.0;
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      squared += state.velocity[k] * state.velocity[k];
+    sum += 0.5 * block.material.density * squared;
+  }
+  return sum;
+}
+
+double Stepper::strain_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (model_.moves(b)) sum += model_.blocks[b].elasticity.energy(&state.position[model_.blocks[b].first]);
+  }
+  return sum;
+}
+
+double Stepper::gravity_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
+    sum -= block.body_force() *
+           dot(model_.gravity, {state.position[block.first], state.position[block.first + 1]});
+  }
+  return sum;
+}
+
+}  // namespace keyblock::dynamics

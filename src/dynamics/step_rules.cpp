@@ -1,0 +1,64 @@
+// Which rule of time integration each block takes in a step.
+#include <algorithm>
+
+#include "dynamics/step.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+}  // namespace
+
+/// The rule of the scenario; Shi's as long as it needs an acceleration that is not known: in the first step, after an impact.
+void Stepper::choose_rules(const State& state, const Drive& drive) {
+  const SolverOptions& options = model_.solver;
+  const Integrator shi = Integrator::shi(options.theta);
+  Integrator chosen = shi;
+  if (options.integrator == TimeIntegration::average_acceleration)
+    chosen = Integrator::average_acceleration();
+  if (options.integrator == TimeIntegration::generalized_alpha)
+    chosen = Integrator::generalized_alpha(options.spectral_radius);
+  const bool dynamic = !drive.is_static && !state.acceleration_known.empty();
+  for (std::size_t b = 0; b < rule_.size(); ++b)
+    rule_[b] = dynamic && state.acceleration_known[b] != 0 ? chosen : shi;
+  std::fill(in_impact_.begin(), in_impact_.end(), std::uint8_t{0});
+}
+
+/// Impacts that the step does not resolve: the blocks come to rest against each other within it, D ≈ 0, and the rule
+/// v ← (1+θ)D/Δt − θv would send them back with θ times the speed they came with. Lowers θ of blocks that are pressed upon
+/// while they approach faster than the speed of an impact; true when there is a new one.
+bool Stepper::meet_impacts(const State& state, const Drive& drive) {
+  const SolverOptions& options = model_.solver;
+  const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
+  if (drive.is_static || options.restitution >= elastic) return false;
+  // Multipliers are stiffer than any spring: what is left of a velocity into a contact would ring for ever.
+  const bool rigid = options.contact == ContactMethod::augmented_lagrangian;
+  const double least =
+      rigid ? std::min(impact_speed_, 1e-4 * norm(model_.gravity) * drive.step) : impact_speed_;
+  bool any = false;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const StepProblem::Row& row = problem_.rows()[c];
+    if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
+    const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;
+    if (-dot(row.normal, speed) <= least) continue;
+    if (!rigid &&
+        contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
+      continue;
+    for (const int b : {contacts_[c].block_a, contacts_[c].block_b}) {
+      if (!model_.moves(at(b)) || in_impact_[at(b)] != 0) continue;
+      in_impact_[at(b)] = 1;
+      rule_[at(b)] = Integrator::shi(options.restitution);
+      any = true;
+    }
+  }
+  return any;
+}
+
+Motion Stepper::motion(const State& state, std::size_t coefficient) {
+  if (state.acceleration.empty()) return {state.velocity[coefficient], 0.0, 0.0};
+  return {state.velocity[coefficient], state.acceleration[coefficient], state.force[coefficient]};
+}
+
+}  // namespace keyblock::dynamics
