@@ -74,11 +74,12 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .required = known && stage.kind == StageKind::rest,
                  .above = 0.0,
                  .fallback = "that of the motion; required to rest"}));
+  const std::string settle_steps = std::to_string(simulation::default_settle_steps);
   t.integer("max_steps", stage.max_steps,
             only(settle, "kind = \"settle\"",
                  {.meaning = "Most static steps; the stage ends without equilibrium when they are used up.",
                   .at_least = 1.0,
-                  .fallback = "chosen by the program"}));
+                  .fallback = settle_steps}));
   t.number("tolerance", stage.tolerance,
            only(settle, "kind = \"settle\"",
                 {.meaning = "Equilibrium: largest residual of a block over its weight.",

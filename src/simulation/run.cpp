@@ -22,7 +22,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int default_settle_steps = 3000;
 constexpr long checkpoint_steps = 2000;      // a checkpoint at least this often
 constexpr double step_row_interval = 0.02;   // s between rows of step statistics
 constexpr double overlap_interval = 1.0;     // s between measurements of the true overlap

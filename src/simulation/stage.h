@@ -11,6 +11,9 @@ enum class StageKind {
   rest,    ///< dynamic without one
 };
 
+/// Most steps of a settling stage that gives no `max_steps`.
+constexpr int default_settle_steps = 3000;
+
 struct Stage {
   std::string name;
   StageKind kind = StageKind::settle;
