@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -15,7 +16,7 @@ constexpr const char* style = R"(
 :root { color-scheme: light dark; }
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 90rem; padding: 0 1rem; }
 h2 { margin: 2.2rem 0 .3rem; font-size: 1.15rem; }
-p.about { margin: .2rem 0 .6rem; max-width: 55rem; white-space: pre-line; }
+p.about { margin: .2rem 0 .6rem; max-width: 55rem; }
 div.wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .15rem .55rem; text-align: right; border-bottom: 1px solid #8884; white-space: nowrap; vertical-align: top; }
@@ -86,14 +87,25 @@ std::string contents(const std::vector<CaseResult>& results) {
   return html + "</ul>\n";
 }
 
+/// Text with empty lines between its paragraphs.
+std::string paragraphs(const std::string& text) {
+  std::string html;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find("\n\n", begin), text.size());
+    html += fmt::format("<p class=\"about\">{}</p>\n", escaped(text.substr(begin, end - begin)));
+    begin = end + 2;
+  }
+  return html;
+}
+
 std::string html_case(const CaseResult& result) {
   const CaseFile& file = *result.file;
   const auto used = used_columns(result);
   const bool open = result.rows.size() <= most_open_rows || result.failed() > 0;
   std::string html = fmt::format(
-      "<h2 id=\"{0}\">{1}. {2}</h2>\n<p class=\"about\">{3}</p>\n<details{4}><summary>{5}</summary><div "
+      "<h2 id=\"{0}\">{1}. {2}</h2>\n{3}<details{4}><summary>{5}</summary><div "
       "class=\"wide\"><table>\n<tr>",
-      escaped(file.name), file.number, escaped(file.title), escaped(file.about), open ? " open" : "",
+      escaped(file.name), file.number, escaped(file.title), paragraphs(file.about), open ? " open" : "",
       verdict_of_case(result));
   for (std::size_t c = 0; c < table_columns.size(); ++c) {
     if (used[c])
