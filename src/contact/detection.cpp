@@ -201,8 +201,9 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 
 void Detection::complete(const Surface& surface, Memory& memory, Contact& contact) const {
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
-  const double young = std::min(young_[at(contact.block_a)], young_[at(contact.block_b)]);
-  const double per_length = law.normal_stiffness > 0.0 ? law.normal_stiffness : 20.0 * young;
+  const double per_length = law.normal_stiffness > 0.0
+                                ? law.normal_stiffness
+                                : std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
   contact.normal_stiffness = per_length * std::max(contact.length, tolerances_.least_length);
   contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
   contact.friction_coefficient = law.friction_coefficient;

@@ -38,9 +38,10 @@ struct Contact {
 ///   - otherwise corner to corner: the line of the largest gap is the shortest way out; none while that is a tie.
 class Detection {
  public:
-  /// young[b]: Pa, for the stiffness of joints that give none. laws[k]: by Surface::joint.
-  Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> young)
-      : tolerances_(tolerances), laws_(std::move(laws)), young_(std::move(young)) {}
+  /// penalty[b]: Pa/m, normal stiffness of joints of block b that give none; the softer of two blocks counts. laws[k]: by
+  /// Surface::joint.
+  Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
+      : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
 
   /// Contacts of the step in the order of the candidates, whose memory is brought up to date (tracked, offsets).
   /// reach[b]: m, bound on the motion of block b in the step.
@@ -63,7 +64,7 @@ class Detection {
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
-  std::vector<double> young_;
+  std::vector<double> penalty_;
   std::vector<Contact> found_;      ///< scratch: all that pass the geometry
   std::vector<Member> members_;     ///< scratch: those near corners
   std::vector<std::uint8_t> drop_;  ///< scratch, per found_

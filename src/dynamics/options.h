@@ -38,6 +38,7 @@ struct SolverOptions {
   double bound_accuracy = 1e-4;
   int max_bound_updates = 8;
   ContactMethod contact = ContactMethod::penalty;
+  double penalty = 20.0;  ///< normal stiffness of joints that give none: times Young's modulus, per metre
   /// Augmented Lagrangian: largest penetration, and drift of a contact that holds, over the block size.
   double penetration_tolerance = 1e-10;
   int max_multiplier_updates = 200;

@@ -17,10 +17,10 @@ Vec2 map_point(const double* phi, int size, const double* a) {
   return x;
 }
 
-std::vector<double> young_of(const Model& model) {
-  std::vector<double> young;
-  for (const Block& block : model.blocks) young.push_back(block.material.young);
-  return young;
+std::vector<double> penalties(const Model& model) {
+  std::vector<double> stiffness;
+  for (const Block& block : model.blocks) stiffness.push_back(model.solver.penalty * block.material.young);
+  return stiffness;
 }
 }  // namespace
 
@@ -29,7 +29,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team)
       team_(team),
       tolerances_(model.block_size),
       candidates_(tolerances_),
-      detection_(tolerances_, model.laws, young_of(model)),
+      detection_(tolerances_, model.laws, penalties(model)),
       solver_(model.solver.linear == LinearSolver::block ? linalg::make_block_cholesky()
                                                          : linalg::make_cholmod()),
       reach_(model.blocks.size(), 0.0),

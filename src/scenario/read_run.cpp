@@ -211,6 +211,12 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
       {.meaning = "How contacts keep blocks apart: springs that are penetrated a little, or multipliers that "
                   "leave no penetration and no drift of contacts that hold."});
   t.number(
+      "penalty", solver.penalty,
+      {.meaning = "Normal stiffness of joints that give none, as a multiple of Young's modulus of the softer "
+                  "block, per metre.",
+       .unit = "1/m",
+       .above = 0.0});
+  t.number(
       "penetration_tolerance", solver.penetration_tolerance,
       {.meaning = "Augmented Lagrangian: largest penetration and drift, over the block size.", .above = 0.0});
   t.integer("max_multiplier_updates", solver.max_multiplier_updates,
