@@ -69,13 +69,11 @@ double Elasticity::energy(const double* a) const {
   return sum;
 }
 
-double Elasticity::add_force(const double* a, double* force) const {
-  double sum = 0.0;
+void Elasticity::add_force(const double* a, double* force) const {
   for (std::size_t q = 0; q < weight_.size(); ++q) {
     const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
     const Gradient2 f = deformation(a, g);
     const Stress s = second_piola(f, initial_[q]);
-    sum += weight_[q] * density(f, initial_[q]);
     // P = F S
     const double pxx = weight_[q] * (f.xx * s.xx + f.xy * s.xy),
                  pxy = weight_[q] * (f.xx * s.xy + f.xy * s.yy);
@@ -86,7 +84,6 @@ double Elasticity::add_force(const double* a, double* force) const {
       force[2 * k + 1] += pyx * g[k].x + pyy * g[k].y;
     }
   }
-  return sum;
 }
 
 namespace {

@@ -31,8 +31,8 @@ class Elasticity {
 
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] double energy(const double* a) const;
-  /// force[2k + c] += f_k; returns U.
-  double add_force(const double* a, double* force) const;
+  /// force[2k + c] += f_k.
+  void add_force(const double* a, double* force) const;
   /// The material part is multiplied by 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt.
   /// tangent: 2N × 2N with leading dimension `stride`, lower triangle added to (symmetric). The geometric
   /// part is kept above −floor (1/s² · kg/m³, as inertia): a block under extreme pressure then keeps a

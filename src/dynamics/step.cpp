@@ -340,7 +340,6 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     block.pose.rotate(w, &state.force[block.first]);
     state.acceleration_known[b] = !drive.is_static && in_impact_[b] == 0;
   }
-  state.ledger.numerical -= strain_energy(state);
   move_prescribed(state, drive);
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {

@@ -33,10 +33,9 @@ double Stepper::support_energy(const State& state) const {
 
 void Stepper::account(State& state, const Drive& drive) {
   EnergyLedger& ledger = state.ledger;
-  const StepProblem::ElasticWork elastic = problem_.elastic_work(state, increment_);
+  const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_, spin_);
+  ledger.numerical += elastic.numerical;
   ledger.damping += elastic.damping;
-  // What the blocks store is taken off when they are at their new place.
-  ledger.numerical += elastic.forces - elastic.damping + problem_.strain_energy();
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     const Block& block = model_.blocks[b];
@@ -73,7 +72,8 @@ void Stepper::account(State& state, const Drive& drive) {
     const double stretch = coordinate + moved - end, change = moved - (end - before);
     support_energy_ += 0.5 * spring.stiffness * stretch * stretch;
     ledger.input -= spring.stiffness * stretch * (end - before);
-    ledger.numerical += 0.5 * spring.stiffness * change * change;
+    // elastic_loss has taken ½ k moved² for a ground that stands still.
+    ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
   }
   const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   // What is stored in contacts that have ended, a vertex that left its edge, is lost.

@@ -30,11 +30,9 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     }
     h_.assign(used, 0.0);
     b_.assign(model.coefficients, 0.0);
-    force_.assign(model.coefficients, 0.0);
     inertia_.assign(model.blocks.size(), 0.0);
     viscous_.assign(model.blocks.size(), 0.0);
     weight_.assign(model.blocks.size(), 0.0);
-    block_energy_.assign(model.blocks.size(), 0.0);
   }
   build_blocks(state, drive, team);
   add_supports(state, drive);
@@ -48,9 +46,7 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       const Block& block = model_->blocks[i];
       const int n = 2 * block.size, stride = linalg::padded_rows(n);
       double* b = &b_[block.first];
-      double* force = &force_[block.first];
       std::fill(b, b + n, 0.0);
-      std::fill(force, force + n, 0.0);
       if (!model_->moves(i)) continue;
       const double* a = &state.position[block.first];
       const double* v = &state.velocity[block.first];
@@ -58,9 +54,8 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       std::fill(h, h + stride * n, 0.0);
       inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                     (drive.is_static ? drive.inertia_scale[i] : 1.0);
-      block_energy_[i] = block.elasticity.add_force(a, force);
-      for (int k = 0; k < n; ++k)
-        b[k] = -force[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+      block.elasticity.add_force(a, b);
+      for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
       if (!drive.is_static && !state.acceleration.empty()) {
         const double c_a = drive.rule[i].acceleration() * block.material.density,
                      c_f = drive.rule[i].force() * block.material.density;
@@ -76,10 +71,6 @@ void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTea
       for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
     }
   });
-  strain_energy_ = 0.0;
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
-    if (model_->moves(i)) strain_energy_ += block_energy_[i];
-  }
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) weight_[i] = model_->blocks[i].body_force() * g;
   for (const GeneralizedLoad& load : model_->loads) {
@@ -311,26 +302,51 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
   return worst;
 }
 
-StepProblem::ElasticWork StepProblem::elastic_work(const State& state, std::span<const double> d) const {
-  std::vector<double> product(d.size());
-  multiply(d, product);
-  ElasticWork work;
+StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d,
+                                                   std::span<const double> spin) {
+  turn_.assign(d.size(), 0.0);
+  product_.resize(d.size());
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    const Block& block = model_->blocks[i];
+    for (std::size_t k = block.first + 2; k < block.first + 2 * at(block.size); k += 2) {
+      turn_[k] = -spin[i] * state.position[k + 1];
+      turn_[k + 1] = spin[i] * state.position[k];
+    }
+  }
+  ElasticLoss loss;
+  /// Σ x_k (H y)_k over the coefficients of a block, without inertia.
+  const auto stiffness = [&](std::size_t i, std::span<const double> x, std::span<const double> y) {
+    const Block& block = model_->blocks[i];
+    double sum = 0.0;
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      sum += x[k] * (product_[k] - inertia_[i] * y[k]);
+    return sum;
+  };
+  multiply(d, product_);
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) continue;
     const Block& block = model_->blocks[i];
-    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
-      work.forces += d[k] * (force_[k] + product[k] - inertia_[i] * d[k]);
-    work.damping +=
+    const double damping =
         viscous_[i] * block.elasticity.material_work(&state.position[block.first], &d[block.first]);
+    loss.damping += damping;
+    loss.numerical += 0.5 * (stiffness(i, d, d) - damping);
   }
-  for (const GroundSpring& spring : model_->springs) {
+  multiply(turn_, product_);
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+    if (model_->moves(i)) loss.numerical += stiffness(i, d, turn_) - 0.5 * stiffness(i, turn_, turn_);
+  }
+  for (const GroundSpring& spring :
+       model_->springs) {  // linear in D: no part of what the pose update takes out
     if (!model_->moves(at(spring.block))) continue;
     const std::size_t first = model_->blocks[at(spring.block)].first + at(spring.axis);
-    double moved = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k) moved += spring.phi[k] * d[first + 2 * k];
-    work.forces -= spring.stiffness * moved * moved;
+    double moved = 0.0, turned = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
+      moved += spring.phi[k] * d[first + 2 * k];
+      turned += spring.phi[k] * turn_[first + 2 * k];
+    }
+    loss.numerical -= spring.stiffness * (moved - 0.5 * turned) * turned;
   }
-  return work;
+  return loss;
 }
 
 }  // namespace keyblock::dynamics

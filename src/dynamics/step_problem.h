@@ -27,7 +27,7 @@ struct Drive {
 
 /// The minimization that a step is (formulation, equation 3), with the Coulomb bounds frozen:
 ///
-///     Π(D) = ½ Dᵀ H D − bᵀ D + Σ_contacts ψ_c(r_c(D)),      H = (c/Δt² M + K_t + K_support  (block diagonal)
+///     Π(D) = ½ Dᵀ H D − bᵀ D + Σ_contacts ψ_c(r_c(D)),      H = c/Δt² M + K_t + K_support  (block diagonal)
 ///     b = f_ext − f_int + f_support + M (c v/Δt + c_a a + c_F F)
 ///
 /// Π is convex and piecewise quadratic. This class holds its data and evaluates it; it does not know how to minimize.
@@ -88,14 +88,16 @@ class StepProblem {
   [[nodiscard]] double block_size() const { return model_->block_size; }
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
-  /// Work done against the elastic forces of all blocks in a step of increment D, J per thickness.
-  struct ElasticWork {
-    double forces = 0.0;   ///< Dᵀ (f_int + K_t D), with the part below
-    double damping = 0.0;  ///< of the viscosity of the rock
+  /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
+  /// `spin`: what the forces at the end of the step lose against the potential.
+  struct ElasticLoss {
+    double numerical =
+        0.0;  ///< ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose
+        ///< update takes out of D
+    double damping = 0.0;  ///< by the viscosity of the rock
   };
-  [[nodiscard]] ElasticWork elastic_work(const State& state, std::span<const double> d) const;
-  /// Σ U of the blocks that move, at the start of the step.
-  [[nodiscard]] double strain_energy() const { return strain_energy_; }
+  [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d,
+                                         std::span<const double> spin);
 
  private:
   void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
@@ -109,12 +111,10 @@ class StepProblem {
   std::vector<std::size_t> h_first_;  ///< per block, into h_
   std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;
-  std::vector<double> inertia_;  ///< per block, cρ/Δt²
-  std::vector<double> viscous_;  ///< per block, β/Δt: viscosity of the rock over its stiffness
-  std::vector<double> force_;    ///< f_int of every coefficient
-  std::vector<double> weight_;   ///< per block, N-like scale of its coefficients
-  std::vector<double> block_energy_;
-  double strain_energy_ = 0.0;
+  std::vector<double> inertia_;         ///< per block, cρ/Δt²
+  std::vector<double> viscous_;         ///< per block, β/Δt: viscosity of the rock over its stiffness
+  std::vector<double> weight_;          ///< per block, N-like scale of its coefficients
+  std::vector<double> turn_, product_;  ///< scratch
 };
 
 }  // namespace keyblock::dynamics

@@ -56,9 +56,8 @@ class Runner {
         model_(build_model(setup)),
         gauge_(setup, model_),
         recorder_(setup, model_, gauge_, team_.size()),
-        orders_(setup) {
-    stepper_.emplace(model_, team_);
-  }
+        orders_(setup),
+        stepper_(std::in_place, model_, team_) {}
 
   RunRecord run();
 

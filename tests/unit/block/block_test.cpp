@@ -75,7 +75,7 @@ TEST_P(ElasticityOrder, ForceAndTangentAreDerivatives) {
   const std::vector<double> a = disturbed(basis, 0.02, 1);
   const int n = 2 * basis.size();
   std::vector<double> force(a.size(), 0.0), tangent(a.size() * a.size(), 0.0);
-  EXPECT_NEAR(elasticity.add_force(a.data(), force.data()) / elasticity.energy(a.data()), 1.0, 1e-14);
+  elasticity.add_force(a.data(), force.data());
   elasticity.add_tangent(a.data(), 0.0, 1e30, tangent.data(), n);
   double force_scale = 0.0, tangent_scale = 0.0;
   for (const double f : force) force_scale = std::max(force_scale, std::abs(f));
@@ -85,9 +85,9 @@ TEST_P(ElasticityOrder, ForceAndTangentAreDerivatives) {
     std::vector<double> up = a, down = a, force_up(a.size(), 0.0), force_down(a.size(), 0.0);
     up[static_cast<std::size_t>(j)] += h;
     down[static_cast<std::size_t>(j)] -= h;
-    const double slope = (elasticity.add_force(up.data(), force_up.data()) -
-                          elasticity.add_force(down.data(), force_down.data())) /
-                         (2 * h);
+    elasticity.add_force(up.data(), force_up.data());
+    elasticity.add_force(down.data(), force_down.data());
+    const double slope = (elasticity.energy(up.data()) - elasticity.energy(down.data())) / (2 * h);
     EXPECT_NEAR(slope / force_scale, force[static_cast<std::size_t>(j)] / force_scale, 1e-6);
     for (int i = j; i < n; ++i) {
       const auto row = static_cast<std::size_t>(i);
