@@ -91,9 +91,8 @@ class StepProblem {
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
   /// `spin`: what the forces at the end of the step lose against the potential.
   struct ElasticLoss {
-    double numerical =
-        0.0;  ///< ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose
-        ///< update takes out of D
+    /// ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out of D.
+    double numerical = 0.0;
     double damping = 0.0;  ///< by the viscosity of the rock
   };
   [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d,

@@ -45,7 +45,7 @@ class SimulationQuantities final : public Quantities {
     }
     if (function == "result") return member(outcome().results, text(arguments[0]), "result");
     if (function == "set") return setting(text(arguments[0]));
-    if (function == "order") return simulation().order.value_or(outcome().order);
+    if (function == "order") return order();
     if (function == "row") return row(text(arguments[0]), text(arguments[1]));
     if (function == "normal_force") return forces(arguments).normal;
     if (function == "shear_force") return forces(arguments).shear;
@@ -61,6 +61,12 @@ class SimulationQuantities final : public Quantities {
     const auto found = numbers.find(name);
     if (found == numbers.end()) throw std::runtime_error(fmt::format("there is no {} '{}'", what, name));
     return found->second;
+  }
+
+  [[nodiscard]] double order() const {
+    const std::optional<int> order = simulation().order ? simulation().order : outcome().order;
+    if (!order) throw std::runtime_error("the order is chosen by the program");
+    return *order;
   }
 
   // 'gravity.0' is the first number of an array.

@@ -233,7 +233,8 @@ Outcome simulate(const RunSpec& run, const Simulation& simulation, const std::st
       outcome.results = run_builtin(run.builtin, run.data);
     } else {
       const scenario::Scenario scenario = scenario::parse_scenario(run.scenario, simulation.overrides);
-      outcome.order = scenario.rock.order.value_or(1);
+      outcome.order = scenario.rock.order;
+      if (outcome.order == scenario::automatic_order) outcome.order.reset();
       if (run.command == RunCommand::cut) {
         cut_realizations(run, scenario, version, outcome);
       } else {

@@ -33,7 +33,7 @@ struct PairForces {
 struct Outcome {
   std::string failure;                    ///< why it could not go on; empty: it ended well
   double wall_time = 0.0;                 ///< s
-  int order = 0;                          ///< rock.order
+  std::optional<int> order;               ///< rock.order; none where the program chooses it
   std::vector<std::string> columns;       ///< of the histories: time, NAME.ux, …
   std::vector<std::vector<double>> rows;  ///< of the histories
   std::map<std::string, std::size_t, std::less<>> stage_rows;  ///< rows there were at the end of a stage

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "scenario/build.h"
 #include "scenario/parse.h"
 
 namespace keyblock::scenario {
@@ -66,6 +67,33 @@ inline Scenario parse(const std::string& text, const std::vector<std::string>& o
 inline std::string mistakes(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
     parse_scenario_text(text, "test.toml", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// A stage, so that the domain can be run.
+inline const std::string runnable_domain = jointed_domain + R"(
+[time]
+step = 0.01
+
+[[excavation]]
+name = "tunnel"
+shape = "circle"
+center = [2.0, 1.5]
+diameter = 1.0
+
+[[stage]]
+name = "settled"
+kind = "settle"
+excavate = ["tunnel"]
+)";
+
+/// What build_setup() has against it; empty: nothing.
+inline std::string refusal(const Scenario& scenario) {
+  try {
+    build_setup(scenario, 0);
   } catch (const InputError& error) {
     return error.what();
   }

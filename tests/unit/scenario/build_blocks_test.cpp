@@ -1,0 +1,117 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "scenario/build.h"
+#include "scenario_text.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using cutting::EdgeKind;
+using cutting::EdgeLabel;
+using testing::HasSubstr;
+
+const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
+
+double total_area(const cutting::BlockSystem& system) {
+  double sum = 0.0;
+  for (const auto& block : system.blocks) sum += area(block.polygon);
+  return sum;
+}
+
+TEST(BuildBlocks, FillTheDomainAndKnowTheirEdges) {
+  const BlockModel model = build_blocks(parse(runnable_domain), 0);
+  EXPECT_GT(model.system.blocks.size(), 3U);
+  EXPECT_NEAR(total_area(model.system), 12.0, 1e-9);
+  bool joint = false, outline = false, domain = false;
+  double excavated = 0.0;
+  for (const auto& block : model.system.blocks) {
+    if (!block.excavations.empty()) excavated += area(block.polygon);
+    for (const auto& ring : block.labels) {
+      for (const EdgeLabel label : ring) {
+        joint = joint || label == EdgeLabel{EdgeKind::joint_set, 0};
+        outline = outline || label == EdgeLabel{EdgeKind::excavation, 0};
+        domain = domain || label.kind == EdgeKind::domain;
+      }
+    }
+  }
+  EXPECT_TRUE(joint && outline && domain);
+  EXPECT_NEAR(excavated, std::abs(signed_area(model.outlines[0])), 1e-3);
+}
+
+TEST(BuildBlocks, RealizationsDifferAndAreRepeated) {
+  const Scenario s = parse(runnable_domain);
+  const BlockModel first = build_blocks(s, 0), again = build_blocks(s, 0), other = build_blocks(s, 1);
+  ASSERT_EQ(first.traces.size(), again.traces.size());
+  EXPECT_EQ(first.traces[0].a, again.traces[0].a);
+  EXPECT_FALSE(first.traces.size() == other.traces.size() && first.traces[0].a == other.traces[0].a);
+}
+
+TEST(BuildBlocks, NeedNoStages) {
+  const Scenario s = parse(jointed_domain);
+  EXPECT_GT(build_blocks(s, 0).system.blocks.size(), 1U);
+  EXPECT_THAT(refusal(s), HasSubstr("stage: found nothing; expected at least one [[stage]]"));
+}
+
+TEST(BuildBlocks, ExplicitBlocksComeLastWithFreeEdges) {
+  const Scenario s =
+      parse(runnable_domain +
+            "[[block]]\nname = \"plug\"\nouter = [[1.8, 1.3], [1.8, 1.6], [2.1, 1.6], [2.1, 1.3]]\n");
+  const BlockModel model = build_blocks(s, 0);
+  const cutting::CutBlock& plug = model.system.blocks.back();
+  EXPECT_NEAR(area(plug.polygon), 0.09, 1e-12);
+  EXPECT_EQ(plug.excavations, std::vector{0});
+  EXPECT_EQ(plug.labels, (std::vector<std::vector<EdgeLabel>>{std::vector<EdgeLabel>(4)}));
+  EXPECT_EQ(build_setup(s, 0).properties.back().name, "plug");
+}
+
+TEST(BuildBlocks, TracesOfAMapThatIsFarAway) {
+  const Scenario s = parse_scenario(examples / "05-trace-map.toml");
+  const auto setup = build_setup(s, 0);
+  EXPECT_GT(norm(setup.system.origin), 6e6);
+  EXPECT_NEAR(total_area(setup.system), 12.0 * 22.0, 1e-6);
+  EXPECT_NEAR((setup.domain.min + setup.system.origin).x, 466002.0, 1e-9);
+  EXPECT_LT(norm(setup.excavations[0].outline[0]), 100.0);
+  EXPECT_NEAR((setup.excavations[0].outline[0] + setup.system.origin).y, 6691588.5, 1e-6);
+  EXPECT_EQ(setup.trace_map_names, std::vector<std::string>{"KB11"});
+  EXPECT_EQ(setup.joints.trace_maps[0].friction, 30.0);
+  EXPECT_NEAR(setup.in_situ->reference_y + setup.system.origin.y, 6691600.0, 1e-6);
+}
+
+TEST(BuildBlocks, ExplicitBlocksThatAreFarAwayTakeAllThatActsAlong) {
+  const std::string far = R"([rock]
+density = 2600.0
+young = 1e9
+poisson = 0.2
+[time]
+step = 0.01
+[[block]]
+name = "b"
+outer = [[500000, 6000000], [500001, 6000000], [500001, 6000001], [500000, 6000001]]
+[[load]]
+block = "b"
+from = [500000, 6000001]
+to = [500001, 6000001]
+traction = [0, -1]
+[[support]]
+block = "b"
+points = [[500000, 6000000], [500001, 6000000]]
+[[history]]
+name = "h"
+point = [500000.5, 6000000.5]
+[[stage]]
+name = "s"
+kind = "settle"
+)";
+  const auto setup = build_setup(parse(far), 0);
+  EXPECT_EQ(setup.system.origin, (Vec2{500000.0, 6000000.0}));
+  EXPECT_EQ(setup.system.blocks[0].polygon.outer[2], (Vec2{1.0, 1.0}));
+  EXPECT_EQ(setup.loads[0].to, (Vec2{1.0, 1.0}));
+  EXPECT_EQ(setup.supports[0].points[1], (Vec2{1.0, 0.0}));
+  EXPECT_EQ(setup.histories[0].point, (Vec2{0.5, 0.5}));
+}
+
+}  // namespace
+}  // namespace keyblock::scenario

@@ -1,0 +1,157 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenario/build.h"
+#include "scenario_text.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
+
+TEST(BuildSetup, RockOfBlockBeforeRegionBeforeRock) {
+  const auto setup = build_setup(parse(two_blocks + R"(
+[[region]]
+outer = [[0, 1], [4, 1], [4, 3], [0, 3]]
+young = 2e9
+order = 2
+density = 2000.0
+
+[[region]]
+outer = [[0, 1], [4, 1], [4, 3], [0, 3]]
+order = 3
+)",
+                                       {"block.top.density=1000"}),
+                                 0);
+  EXPECT_EQ(setup.properties[0].material, (Material{2600.0, 1e9, 0.2, PlaneState::plane_stress}));
+  EXPECT_EQ(setup.properties[0].order, 1);
+  EXPECT_TRUE(setup.properties[0].fixed);
+  EXPECT_EQ(setup.properties[1].material, (Material{1000.0, 2e9, 0.2, PlaneState::plane_stress}));
+  EXPECT_EQ(setup.properties[1].order, 3);
+}
+
+TEST(BuildSetup, RegionsActOnCutBlocks) {
+  const auto setup = build_setup(
+      parse(runnable_domain + "[[region]]\nouter = [[0, 0], [4, 0], [4, 1.5], [0, 1.5]]\norder = 2\n"), 0);
+  int soft = 0;
+  for (std::size_t b = 0; b < setup.properties.size(); ++b) {
+    const bool below = centroid(setup.system.blocks[b].polygon).y < 1.5;
+    EXPECT_EQ(setup.properties[b].order, below ? 2 : 1);
+    soft += below;
+  }
+  EXPECT_GT(soft, 0);
+}
+
+TEST(BuildSetup, JointsTakeWhatTheirSetDoesNotSay) {
+  const auto setup = build_setup(
+      parse(runnable_domain, {"joints.cohesion=1e5", "joints.normal_stiffness=2e10",
+                              "joints.shear_stiffness=1e10", "joint_set.bedding.friction=20",
+                              "joint_set.bedding.normal_stiffness=4e10", "domain.frame_friction=5"}),
+      0);
+  EXPECT_EQ(setup.joints.standard.friction, 30.0);
+  EXPECT_EQ(setup.joints.standard.normal_stiffness, 2e10);
+  EXPECT_EQ(setup.joints.standard.stiffness_ratio, 0.5);
+  EXPECT_EQ(setup.joints.joint_sets[0].friction, 20.0);
+  EXPECT_EQ(setup.joints.joint_sets[0].cohesion, 1e5);
+  EXPECT_EQ(setup.joints.joint_sets[0].normal_stiffness, 4e10);
+  EXPECT_EQ(setup.joints.joint_sets[0].stiffness_ratio, 0.25);
+  EXPECT_EQ(setup.joints.frame.friction, 5.0);
+  EXPECT_EQ(setup.joints.frame.cohesion, 0.0);
+}
+
+TEST(BuildSetup, StiffnessIsLeftToTheModelUnlessGiven) {
+  const auto setup = build_setup(parse(runnable_domain), 0);
+  EXPECT_FALSE(setup.joints.standard.normal_stiffness);
+  EXPECT_FALSE(setup.joints.joint_sets[0].normal_stiffness);
+  EXPECT_EQ(setup.joints.standard.stiffness_ratio, JointProperties{}.stiffness_ratio);
+  EXPECT_EQ(setup.joints.frame.friction, 0.0);
+}
+
+TEST(BuildSetup, InSituStressFromDepth) {
+  const auto setup = build_setup(parse(runnable_domain, {"in_situ.depth=30", "in_situ.k0=0.5"}), 0);
+  ASSERT_TRUE(setup.in_situ);
+  const double weight = 2600.0 * 9.81;
+  EXPECT_EQ(setup.in_situ->reference_y, 3.0);
+  EXPECT_NEAR(setup.in_situ->syy, -weight * 30.0, 1e-6);
+  EXPECT_NEAR(setup.in_situ->sxx, -0.5 * weight * 30.0, 1e-6);
+  EXPECT_NEAR(setup.in_situ->syy_gradient, weight, 1e-9);
+  EXPECT_NEAR(setup.in_situ->sxx_gradient, 0.5 * weight, 1e-9);
+  // At the bottom of the domain: 33 m of rock above.
+  EXPECT_NEAR(setup.in_situ->syy + setup.in_situ->syy_gradient * (0.0 - 3.0), -weight * 33.0, 1e-6);
+}
+
+TEST(BuildSetup, ConstantInSituStress) {
+  const auto setup = build_setup(parse(two_blocks, {"in_situ.sxx=-1e6", "in_situ.sxy=2e5"}), 0);
+  EXPECT_EQ(setup.in_situ->sxx, -1e6);
+  EXPECT_EQ(setup.in_situ->syy, 0.0);
+  EXPECT_EQ(setup.in_situ->sxy, 2e5);
+  EXPECT_EQ(setup.in_situ->syy_gradient, 0.0);
+}
+
+TEST(BuildSetup, TopOfAModelWithoutDomain) {
+  EXPECT_EQ(build_setup(parse(two_blocks, {"in_situ.depth=1", "in_situ.k0=1"}), 0).in_situ->reference_y, 2.0);
+}
+
+TEST(BuildSetup, WhatTheFileSaysIsPassedOn) {
+  const auto setup = build_setup(parse(two_blocks, {"title=t", "seed=7", "gravity=[0, -1]", "damage.slip=0.5",
+                                                    "output.contact_interval=2", "solver.linear=direct",
+                                                    "block.top.velocity=[1, 2]", "block.top.spin=3"}),
+                                 4);
+  EXPECT_EQ(setup.title, "t");
+  EXPECT_EQ(setup.seed, 7U);
+  EXPECT_EQ(setup.realization, 4);
+  EXPECT_EQ(setup.gravity, (Vec2{0.0, -1.0}));
+  EXPECT_EQ(setup.time_step, 0.01);
+  EXPECT_EQ(setup.damage.slip, 0.5);
+  EXPECT_EQ(setup.output.contact_interval, 2.0);
+  EXPECT_EQ(setup.solver.linear, dynamics::LinearSolver::direct);
+  EXPECT_EQ(setup.properties[1].velocity, (Vec2{1.0, 2.0}));
+  EXPECT_EQ(setup.properties[1].spin, 3.0);
+  EXPECT_FALSE(setup.frame);
+  EXPECT_THAT(setup.scenario, HasSubstr("# --set seed=7\n"));
+  ASSERT_EQ(setup.stages.size(), 1U);
+  EXPECT_EQ(setup.stages[0].duration, 1.0);
+}
+
+TEST(BuildSetup, AHistoryNeedsABlock) {
+  const std::string history = "[[history]]\nname = \"h\"\npoint = [5.0, 1.0]\n";
+  EXPECT_THAT(refusal(parse(runnable_domain + history)), HasSubstr("history.h.point: found [5, 1], outside"));
+  EXPECT_EQ(refusal(parse(runnable_domain + history, {"history.h.point=[0.1, 0.1]"})), "");
+}
+
+TEST(BuildSetup, AbsurdOrdersAreRefused) {
+  EXPECT_THAT(refusal(parse(runnable_domain, {"rock.order=5000"})),
+              HasSubstr("expected at most 2e+07 unknowns"));
+}
+
+TEST(Loads, TractionIsAParabolaThroughThreeValues) {
+  const std::string loaded = two_blocks + R"(
+[[load]]
+block = "top"
+from = [1, 2]
+to = [3, 2]
+traction = [1, 0]
+traction_middle = [3, -2]
+traction_end = [2, 0]
+)";
+  const loading::Load load = parse(loaded).loads[0];
+  EXPECT_EQ(load.traction(0.0).x, 1.0);
+  EXPECT_EQ(load.traction(0.5).x, 3.0);
+  EXPECT_EQ(load.traction(1.0).x, 2.0);
+  EXPECT_DOUBLE_EQ(load.traction(0.25).y, -1.5);
+}
+
+TEST(Examples, AllCanBeBuilt) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(examples)) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    EXPECT_EQ(refusal(parse_scenario(entry.path())), "") << entry.path();
+  }
+  EXPECT_GE(count, 5);
+}
+
+}  // namespace
+}  // namespace keyblock::scenario
