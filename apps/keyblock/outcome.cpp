@@ -15,8 +15,8 @@ using simulation::RunRecord;
 using simulation::StageKind;
 using simulation::StageRecord;
 
-constexpr std::size_t columns = 9;
-using Row = std::array<std::string, columns>;
+constexpr std::size_t table_columns = 9;
+using Row = std::array<std::string, table_columns>;
 
 const Row heading{"stage",     "steps",       "time s",   "PGA m/s2", "fallen",
                   "fallen m2", "loosened m2", "filled %", "slip mm"};
@@ -37,13 +37,13 @@ Row row(const StageRecord& stage) {
 
 /// First column to the left, numbers to the right.
 std::string aligned(const std::vector<Row>& rows) {
-  std::array<int, columns> width{};
+  std::array<int, table_columns> width{};
   for (const Row& r : rows) {
-    for (std::size_t c = 0; c < columns; ++c) width[c] = std::max(width[c], column_count(r[c]));
+    for (std::size_t c = 0; c < table_columns; ++c) width[c] = std::max(width[c], column_count(r[c]));
   }
   std::string text;
   for (const Row& r : rows) {
-    for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t c = 0; c < table_columns; ++c) {
       const std::string padding(static_cast<std::size_t>(width[c] - column_count(r[c])), ' ');
       text += c == 0 ? r[c] + padding : "  " + padding + r[c];
     }

@@ -25,7 +25,7 @@ bool locale_is_utf8() {
   return false;
 }
 
-int columns(int file_descriptor) {
+int width_of(int file_descriptor) {
   const int wanted = std::atoi(std::string(variable("COLUMNS")).c_str());
   if (wanted > 0) return wanted;
   winsize size{};
@@ -45,7 +45,7 @@ Terminal Terminal::detect(int file_descriptor) {
   terminal.interactive = ::isatty(file_descriptor) == 1 && !type.empty() && type != "dumb";
   terminal.unicode = locale_is_utf8();
   terminal.color = terminal.interactive && variable("NO_COLOR").empty();
-  terminal.width = columns(file_descriptor);
+  terminal.width = width_of(file_descriptor);
   return terminal;
 }
 

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/index.h"
+
 namespace keyblock::contact {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Whether the edge from v to `other` lies outside the line, up to the angle tolerance.
 bool outside(const Surface& surface, Vec2 v, int other, Vec2 normal) {

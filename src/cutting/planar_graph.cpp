@@ -4,15 +4,9 @@
 #include <map>
 #include <optional>
 
+#include "core/index.h"
+
 namespace keyblock::cutting {
-
-namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 Rotation::Rotation(const PlanarGraph& graph)
     : first_(graph.points.size() + 1, 0),

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace keyblock::dynamics {
 
 namespace {
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// x(X) at a vertex from the coefficients of its block.
 Vec2 map_point(const double* phi, int size, const double* a) {

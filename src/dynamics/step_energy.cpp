@@ -1,15 +1,10 @@
 // Where the energy of a step goes.
 #include <cmath>
 
+#include "core/index.h"
 #include "dynamics/step.h"
 
 namespace keyblock::dynamics {
-
-namespace {
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-}  // namespace
 
 double Stepper::stored_energy(const State& state) {
   double sum = 0.0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/index.h"
+
 namespace keyblock::dynamics {
 
 namespace {
@@ -11,10 +13,6 @@ namespace {
 /// positive definite step; and a turn w, that the step takes for a stretch of ½ w², cannot draw more energy than
 /// twice this share of the rotation from a stress of impact.
 constexpr double geometric_floor = 0.05;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 }  // namespace
 
 void StepProblem::build(const Model& model, const State& state, const Drive& drive,

@@ -1,15 +1,10 @@
 // Which rule of time integration each block takes in a step.
 #include <algorithm>
 
+#include "core/index.h"
 #include "dynamics/step.h"
 
 namespace keyblock::dynamics {
-
-namespace {
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-}  // namespace
 
 /// The rule of the scenario; Shi's as long as it needs an acceleration that is not known: in the first step, after an impact.
 void Stepper::choose_rules(const State& state, const Drive& drive) {

@@ -13,7 +13,7 @@ namespace keyblock::loading {
 namespace {
 
 constexpr const char* block_title = "points of accel data equally spaced at";
-constexpr std::size_t station_line =
+constexpr std::size_t header_station_line =
     6;  // of a channel's text, as the event in the two lines before the channel
 
 // The word after "units:" or "in" up to the closing parenthesis.
@@ -78,7 +78,7 @@ std::vector<MotionComponent> read_csmip(const MotionText& text) {
     if (!dt || !(*dt > 0.0)) text.fail(line, "the time step after `EQUALLY SPACED AT`");
     component.dt = *dt;
     component.event = squeeze(text.line(first + 2));
-    component.station = squeeze(text.line(first + station_line));
+    component.station = squeeze(text.line(first + header_station_line));
     const MotionDirection direction = find_direction(text, first, line, component.label);
     std::size_t next = 0;
     set_samples(component, text.numbers(line + 1, static_cast<std::size_t>(*points), 0, "samples", &next),

@@ -43,37 +43,37 @@ hdf5::Handle create_file(const std::filesystem::path& path, const simulation::Mo
   return file;
 }
 
-// The tables of one file. Members close in reverse order, the file last.
-struct OpenFile {
-  OpenFile(const std::filesystem::path& path, const simulation::ModelRecord& model)
-      : file(create_file(path, model)),
-        frames(file, model),
-        contacts(file),
-        histories(file, model),
-        steps(file),
-        stages(file, "stages"),
-        run(file, "run"),
-        summary(file, "summary") {}
-  void flush() {
-    stages.flush();
-    contacts.flush();
-    histories.flush();
-    steps.flush();
-    frames.flush();
-    run.flush();
-    summary.flush();
-  }
-  hdf5::Handle file;
-  FrameTable frames;
-  ContactTable contacts;
-  HistoryTable histories;
-  StepTable steps;
-  TextColumn stages, run, summary;
-};
-
 }  // namespace
 
 struct ResultWriter::State {
+  // The tables of one file. Members close in reverse order, the file last.
+  struct OpenFile {
+    OpenFile(const std::filesystem::path& path, const simulation::ModelRecord& model)
+        : file(create_file(path, model)),
+          frames(file, model),
+          contacts(file),
+          histories(file, model),
+          steps(file),
+          stages(file, "stages"),
+          run(file, "run"),
+          summary(file, "summary") {}
+    void flush() {
+      stages.flush();
+      contacts.flush();
+      histories.flush();
+      steps.flush();
+      frames.flush();
+      run.flush();
+      summary.flush();
+    }
+    hdf5::Handle file;
+    FrameTable frames;
+    ContactTable contacts;
+    HistoryTable histories;
+    StepTable steps;
+    TextColumn stages, run, summary;
+  };
+
   hdf5::QuietErrors quiet;
   std::filesystem::path directory;
   bool resume = false;

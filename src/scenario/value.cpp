@@ -7,7 +7,7 @@
 namespace keyblock::scenario {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     const auto code = static_cast<unsigned char>(c);
@@ -51,7 +51,7 @@ const std::string* Value::name() const {
 std::string describe(const Value& value) {
   switch (value.type) {
     case Value::Type::string:
-      return "the string " + quoted(value.text);
+      return "the string " + in_quotes(value.text);
     case Value::Type::integer:
       return fmt::format("the integer {}", value.integer);
     case Value::Type::number:
@@ -72,7 +72,7 @@ std::string to_toml(const Value& value) {
   std::string text;
   switch (value.type) {
     case Value::Type::string:
-      return quoted(value.text);
+      return in_quotes(value.text);
     case Value::Type::integer:
       return fmt::format("{}", value.integer);
     case Value::Type::number:

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "geometry/quadrature.h"
 
 namespace keyblock::simulation {
@@ -15,10 +16,6 @@ using dynamics::Block;
 using dynamics::Model;
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 [[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& expected) {
   Diagnostic diagnostic;

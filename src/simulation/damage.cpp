@@ -5,15 +5,12 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/index.h"
 #include "overlap/overlap.h"
 
 namespace keyblock::simulation {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
   return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);

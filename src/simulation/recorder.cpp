@@ -6,16 +6,11 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "overlap/overlap.h"
 #include "simulation/build_model.h"
 
 namespace keyblock::simulation {
-
-namespace {
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-}  // namespace
 
 Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
     : setup_(setup), model_(model), gauge_(gauge), threads_(threads), start_(model.surface.position) {

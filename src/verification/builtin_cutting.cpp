@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "cutting/cut.h"
 #include "verification/builtin.h"
+#include "verification/chords.h"
 
 namespace keyblock::verification {
 namespace {
@@ -22,60 +23,6 @@ constexpr std::uint64_t seed = 2727;
 constexpr std::uint32_t windows = 200;
 constexpr std::uint32_t cluttered_windows = 50;
 constexpr double off_frame_snapping = 1e-3;
-
-/// A convex window and chords of it. Chord ends keep away from one another and from the corners, so that moving them by a hair
-/// changes no crossing.
-struct Chords {
-  Ring window;
-  std::vector<Trace> chords;
-  int crossings = 0;
-
-  explicit Chords(std::uint32_t number) : random_(seed, number, 0, 0) {
-    const int corners = 3 + static_cast<int>(8.0 * next());
-    for (int k = 0; k < corners; ++k) {
-      const double angle = 2.0 * std::numbers::pi * (k + 0.6 * next()) / corners;
-      window.push_back({3.0 + 7.0 * std::cos(angle), 4.0 * std::sin(angle) - 1.0});
-    }
-    draw_chords(1 + static_cast<int>(24.0 * next()));
-    for (std::size_t m = 0; m < chords.size(); ++m) {
-      for (std::size_t n = 0; n < m; ++n) crossings += cross_inside(chords[m], chords[n]);
-    }
-  }
-
-  /// Euler's formula.
-  [[nodiscard]] std::size_t faces() const { return 1 + chords.size() + static_cast<std::size_t>(crossings); }
-
- private:
-  double next() { return random_.uniform(draw_++); }
-
-  void draw_chords(int wanted) {
-    constexpr double apart = 0.02;
-    constexpr std::uint32_t most_draws = 4000;
-    std::vector<Vec2> ends;
-    while (static_cast<int>(chords.size()) < wanted && draw_ < most_draws) {
-      const auto [i, a] = point_on_edge();
-      const auto [j, b] = point_on_edge();
-      const auto taken = [&](Vec2 p) {
-        return std::any_of(ends.begin(), ends.end(), [p](Vec2 q) { return norm(p - q) < apart; });
-      };
-      if (i == j || taken(a) || taken(b)) continue;
-      ends.push_back(a);
-      ends.push_back(b);
-      chords.push_back({a, b, {}});
-    }
-  }
-  std::pair<std::size_t, Vec2> point_on_edge() {
-    const auto edge = static_cast<std::size_t>(next() * static_cast<double>(window.size()));
-    return {edge, lerp(window[edge], window[(edge + 1) % window.size()], 0.02 + 0.96 * next())};
-  }
-  static bool cross_inside(const Trace& s, const Trace& t) {
-    const auto side = [](const Trace& line, Vec2 p) { return cross(line.b - line.a, p - line.a) > 0.0; };
-    return side(s, t.a) != side(s, t.b) && side(t, s.a) != side(t, s.b);
-  }
-
-  RandomStream random_;
-  std::uint32_t draw_ = 0;
-};
 
 // Whether every edge inside the domain belongs to exactly two different blocks, once in each sense, and every edge of the
 // domain to one.
@@ -123,17 +70,9 @@ struct Tally {
   }
 };
 
-CutInput input_of(const Chords& c) {
-  CutInput input;
-  input.domain = c.window;
-  input.traces = c.chords;
-  input.tolerances = CutTolerances{};
-  return input;
-}
-
 void add_off_frame(const Chords& c, Tally& tally) {
   for (const double off : {-1e-4, -1e-7, -1e-12, -1e-17, 1e-17, 1e-12, 1e-7, 1e-4}) {
-    CutInput input = input_of(c);
+    CutInput input = c.input();
     input.tolerances->snapping = off_frame_snapping;
     for (Trace& t : input.traces) {
       const Vec2 d = off * normalized(t.b - t.a);
@@ -157,7 +96,7 @@ Vec2 lonely_point(const Chords& c, const Trace& chord) {
 }
 
 void add_cluttered(const Chords& c, Tally& tally) {
-  CutInput input = input_of(c);
+  CutInput input = c.input();
   for (const Trace& t : c.chords) {
     input.traces.push_back({t.b, t.a, t.source});
     input.traces.push_back({lerp(t.a, t.b, 0.25), lerp(t.a, t.b, 0.75), t.source});
@@ -203,8 +142,8 @@ void add_island(BuiltinResults& results) {
 BuiltinResults cutting_of_chords(const std::vector<std::filesystem::path>&) {
   Tally plain, off_frame, cluttered, star;
   for (std::uint32_t k = 0; k < windows; ++k) {
-    const Chords chords(k);
-    plain.add(input_of(chords), chords.faces());
+    const Chords chords(seed, k);
+    plain.add(chords.input(), chords.faces());
     if (k >= cluttered_windows) continue;
     add_off_frame(chords, off_frame);
     add_cluttered(chords, cluttered);

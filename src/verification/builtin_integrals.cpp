@@ -4,6 +4,7 @@
 #include "geometry/polygon.h"
 #include "geometry/quadrature.h"
 #include "verification/builtin.h"
+#include "verification/reference_integral.h"
 
 namespace keyblock::verification {
 namespace {
@@ -28,22 +29,6 @@ std::vector<Polygon> polygons() {
   return all;
 }
 
-// Tensor products of Gauss rules on the triangles of an ear clipping.
-double triangulated(const std::vector<std::array<Vec2, 3>>& triangles, int i, int j) {
-  const LineRule& rule = gauss_legendre(degree / 2 + 3);
-  double sum = 0.0;
-  for (const auto& [a, b, c] : triangles) {
-    for (std::size_t p = 0; p < rule.points.size(); ++p) {
-      for (std::size_t q = 0; q < rule.points.size(); ++q) {
-        const Vec2 x = lerp(a, lerp(b, c, rule.points[q]), rule.points[p]);
-        sum += cross(b - a, c - a) * rule.points[p] * rule.weights[p] * rule.weights[q] * std::pow(x.x, i) *
-               std::pow(x.y, j);
-      }
-    }
-  }
-  return sum;
-}
-
 }  // namespace
 
 BuiltinResults polygon_integrals(const std::vector<std::filesystem::path>&) {
@@ -55,7 +40,7 @@ BuiltinResults polygon_integrals(const std::vector<std::filesystem::path>&) {
     const auto triangles = triangulate(polygon);
     for (int i = 0; i <= degree; ++i) {
       for (int j = 0; i + j <= degree; ++j) {
-        const double expected = triangulated(triangles, i, j);
+        const double expected = integral_over(triangles, i, j);
         double sum = 0.0;
         for (const WeightedPoint& w : rule) sum += w.weight * std::pow(w.point.x, i) * std::pow(w.point.y, j);
         by_edges = std::max(by_edges, std::abs(moments(i, j) / expected - 1.0));

@@ -12,6 +12,7 @@
 #include "rockmass/trace_generator.h"
 #include "rockmass/trace_map.h"
 #include "verification/builtin.h"
+#include "verification/reference_distribution.h"
 
 namespace keyblock::verification {
 namespace {
@@ -23,46 +24,9 @@ using enum rockmass::DistributionKind;
 
 constexpr double azimuth = 165.0;
 constexpr int realizations = 60;
-constexpr std::uint64_t seed = 2001;
+constexpr std::uint64_t drawn_seed = 2001;
 constexpr double snapping = 0.001;  // m, as in the published counts
 const Box window{{-10.0, -10.0}, {10.0, 10.0}};
-
-/// Distribution function of a length cut off at zero, written apart from rockmass::quantile.
-double reference_cdf(const Distribution& d, double x) {
-  const auto phi = [](double z) { return 0.5 * (1.0 + std::erf(z / std::sqrt(2.0))); };
-  if (x <= 0.0) return 0.0;
-  switch (d.kind) {
-    case constant:
-      return x < d.mean ? 0.0 : 1.0;
-    case uniform: {
-      const double half = std::sqrt(3.0) * d.std, low = std::max(0.0, d.mean - half);
-      return std::clamp((x - low) / (d.mean + half - low), 0.0, 1.0);
-    }
-    case normal: {
-      const double below = phi(-d.mean / d.std);
-      return (phi((x - d.mean) / d.std) - below) / (1.0 - below);
-    }
-    case lognormal: {
-      const double sigma = std::sqrt(std::log(1.0 + d.std * d.std / (d.mean * d.mean)));
-      return phi((std::log(x / d.mean) + 0.5 * sigma * sigma) / sigma);
-    }
-    case exponential:
-      return 1.0 - std::exp(-x / d.mean);
-  }
-  return 0.0;
-}
-
-/// Largest distance between the empirical and the reference distribution, times √n (Kolmogorov & Smirnov).
-double kolmogorov_smirnov(std::vector<double> sample, const Distribution& d) {
-  std::sort(sample.begin(), sample.end());
-  const auto n = static_cast<double>(sample.size());
-  double largest = 0.0;
-  for (std::size_t k = 0; k < sample.size(); ++k) {
-    const double p = reference_cdf(d, sample[k]);
-    largest = std::max({largest, p - static_cast<double>(k) / n, static_cast<double>(k + 1) / n - p});
-  }
-  return largest * std::sqrt(n);
-}
 
 struct NamedSet {
   const char* name;
@@ -148,7 +112,7 @@ BuiltinResults trace_statistics(const std::vector<std::filesystem::path>&) {
   for (const auto& [name, set] : joint_sets()) {
     Samples samples;
     for (int realization = 0; realization < realizations; ++realization) {
-      add_samples(set, rockmass::generate_traces(set, 0, azimuth, window, seed, realization), samples);
+      add_samples(set, rockmass::generate_traces(set, 0, azimuth, window, drawn_seed, realization), samples);
     }
     smallest = std::min({smallest, samples.spacings.size(), samples.lengths.size(), samples.gaps.size()});
     results[std::string(name) + "_spacing"] = kolmogorov_smirnov(samples.spacings, set.spacing);

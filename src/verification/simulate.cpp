@@ -20,14 +20,13 @@
 namespace keyblock::verification {
 namespace {
 
-using nlohmann::json;
 using Numbers = std::map<std::string, double, std::less<>>;
 
 // Digits of a hash that a double holds.
 constexpr std::size_t hash_digits = 13;
 
 // Numbers of a JSON value by path: `stages.0.damage.fallen_blocks`.
-void flatten(const json& value, const std::string& path, Numbers& numbers) {
+void flatten(const nlohmann::json& value, const std::string& path, Numbers& numbers) {
   const auto below = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
   if (value.is_object()) {
     for (const auto& [key, member] : value.items()) flatten(member, below(key), numbers);
@@ -67,7 +66,7 @@ class Memory final : public simulation::RunObserver {
   }
   void end(const simulation::RunRecord& run) override {
     outcome_.summary.clear();
-    flatten(json::parse(results::summary_json(model_, run)), "", outcome_.summary);
+    flatten(nlohmann::json::parse(results::summary_json(model_, run)), "", outcome_.summary);
     sum_forces();
   }
 
@@ -153,7 +152,7 @@ void cut_realizations(const RunSpec& run, const scenario::Scenario& scenario, co
   for (int realization = 0; realization < count; ++realization) {
     Numbers numbers;
     const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
-    flatten(json::parse(scenario::cut_summary(scenario, realization, model, version)), "", numbers);
+    flatten(nlohmann::json::parse(scenario::cut_summary(scenario, realization, model, version)), "", numbers);
     for (const auto& [path, number] : numbers) samples[path].push_back(number);
   }
   for (const auto& [path, sample] : samples) {

@@ -12,7 +12,7 @@ namespace {
 // Longer tables are folded unless something in them fails.
 constexpr std::size_t most_open_rows = 60;
 
-constexpr const char* style = R"(
+constexpr const char* style_sheet = R"(
 :root { color-scheme: light dark; }
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 90rem; padding: 0 1rem; }
 h2 { margin: 2.2rem 0 .3rem; font-size: 1.15rem; }
@@ -124,7 +124,7 @@ std::string table_html(const std::vector<CaseResult>& results, const std::string
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>keyblock: problems with known "
       "answers</title>\n<style>{}</style></head><body>\n<h1>Problems with known answers</h1>\n<p>keyblock "
       "{}: {}.</p>\n",
-      style, escaped(version), verdict_text(results));
+      style_sheet, escaped(version), verdict_text(results));
   html += contents(results);
   for (const CaseResult& result : results) {
     if (!result.rows.empty()) html += html_case(result);

@@ -10,6 +10,8 @@
 
 namespace keyblock::cutting {
 
+inline const Ring square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+
 inline double total_area(const BlockSystem& system) {
   double sum = 0.0;
   for (const CutBlock& block : system.blocks) sum += area(block.polygon);

@@ -1,9 +1,10 @@
+#include "verification/chords.h"
+
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "check_blocks.h"
-#include "core/random.h"
 #include "cutting/cut.h"
 #include "geos_oracle.h"
 #include "tunnel.h"
@@ -12,70 +13,18 @@ namespace keyblock::cutting {
 namespace {
 
 using rockmass::Trace;
-using rockmass::TraceSource;
-
-/// A convex window and chords of it. Chord ends keep away from one another and from the corners, so that moving
-/// them by a hair changes no crossing.
-struct Chords {
-  Ring window;
-  std::vector<Trace> chords;
-  int crossings = 0;
-
-  explicit Chords(std::uint32_t number) {
-    const RandomStream random(27, number, 0, 0);
-    std::uint32_t draw = 0;
-    const auto next = [&] { return random.uniform(draw++); };
-    const int corners = 3 + static_cast<int>(8.0 * next());
-    for (int k = 0; k < corners; ++k) {
-      const double angle = 2.0 * std::numbers::pi * (k + 0.6 * next()) / corners;
-      window.push_back({3.0 + 7.0 * std::cos(angle), 4.0 * std::sin(angle) - 1.0});
-    }
-    const int wanted = 1 + static_cast<int>(24.0 * next());
-    std::vector<Vec2> ends;
-    while (static_cast<int>(chords.size()) < wanted && draw < 4000) {
-      const auto [i, a] = point_on_edge(next(), next());
-      const auto [j, b] = point_on_edge(next(), next());
-      const auto near = [](Vec2 p) { return [p](Vec2 q) { return norm(p - q) < 0.02; }; };
-      if (i == j || std::any_of(ends.begin(), ends.end(), near(a)) ||
-          std::any_of(ends.begin(), ends.end(), near(b))) {
-        continue;
-      }
-      ends.push_back(a);
-      ends.push_back(b);
-      chords.push_back({a, b, {TraceSource::Kind::joint_set, 0}});
-    }
-    for (std::size_t m = 0; m < chords.size(); ++m) {
-      for (std::size_t n = 0; n < m; ++n) crossings += cross_inside(chords[m], chords[n]);
-    }
-  }
-
-  [[nodiscard]] std::size_t faces() const { return 1 + chords.size() + static_cast<std::size_t>(crossings); }
-
- private:
-  [[nodiscard]] std::pair<std::size_t, Vec2> point_on_edge(double u, double s) const {
-    const auto edge = static_cast<std::size_t>(u * static_cast<double>(window.size()));
-    return {edge, lerp(window[edge], window[(edge + 1) % window.size()], 0.02 + 0.96 * s)};
-  }
-  static bool cross_inside(const Trace& s, const Trace& t) {
-    const auto side = [](const Trace& line, Vec2 p) { return cross(line.b - line.a, p - line.a) > 0.0; };
-    return side(s, t.a) != side(s, t.b) && side(t, s.a) != side(t, s.b);
-  }
-};
+using verification::Chords;
 
 class EveryWindow : public testing::TestWithParam<int> {};
 
-CutInput input_of(const Chords& c) {
-  CutInput input;
-  input.domain = c.window;
-  input.traces = c.chords;
-  input.tolerances = CutTolerances{};
-  return input;
+Chords problem(int number) {
+  return {27, static_cast<std::uint32_t>(number)};
 }
 
 TEST_P(EveryWindow, FacesByEuler) {
   for (int k = 0; k < 50; ++k) {
-    const Chords c(static_cast<std::uint32_t>(50 * GetParam() + k));
-    const BlockSystem system = cut(input_of(c));
+    const Chords c = problem(50 * GetParam() + k);
+    const BlockSystem system = cut(c.input());
     EXPECT_EQ(system.blocks.size(), c.faces());
     EXPECT_NEAR(total_area(system), signed_area(c.window), 1e-12 * signed_area(c.window));
     EXPECT_EQ(system.statistics.removed_length, 0.0);
@@ -87,9 +36,9 @@ TEST_P(EveryWindow, FacesByEuler) {
 
 TEST_P(EveryWindow, EndsAHairOffTheFrame) {
   for (int k = 0; k < 10; ++k) {
-    const Chords c(static_cast<std::uint32_t>(50 * GetParam() + k));
+    const Chords c = problem(50 * GetParam() + k);
     for (const double off : {-1e-4, -1e-7, -1e-12, -1e-17, 1e-17, 1e-12, 1e-7, 1e-4}) {
-      CutInput input = input_of(c);
+      CutInput input = c.input();
       input.tolerances->snapping = 1e-3;
       for (Trace& t : input.traces) {
         const Vec2 d = off * normalized(t.b - t.a);
@@ -106,8 +55,8 @@ TEST_P(EveryWindow, EndsAHairOffTheFrame) {
 
 TEST_P(EveryWindow, DuplicatesOverlapsAndDeadEndsAddNothing) {
   for (int k = 0; k < 10; ++k) {
-    const Chords c(static_cast<std::uint32_t>(50 * GetParam() + k));
-    CutInput input = input_of(c);
+    const Chords c = problem(50 * GetParam() + k);
+    CutInput input = c.input();
     for (const Trace& t : c.chords) {
       input.traces.push_back({t.b, t.a, t.source});
       input.traces.push_back({lerp(t.a, t.b, 0.25), lerp(t.a, t.b, 0.75), t.source});

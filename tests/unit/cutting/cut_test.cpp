@@ -17,7 +17,6 @@ using rockmass::TraceSource;
 
 constexpr TraceSource set_0{TraceSource::Kind::joint_set, 0}, set_1{TraceSource::Kind::joint_set, 1},
     map_2{TraceSource::Kind::trace_map, 2};
-const Ring square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 
 void add_ring(std::vector<Trace>& traces, const Ring& ring, TraceSource source) {
   for (std::size_t k = 0; k < ring.size(); ++k)

@@ -5,12 +5,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "check_blocks.h"
 #include "rockmass/trace_map.h"
 
 namespace keyblock::cutting {
 namespace {
-
-const Ring square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 
 TEST(Topology, PublishedCountsOfKb11) {
   const std::string folder = KEYBLOCK_SOURCE_DIR "/examples/traces/";

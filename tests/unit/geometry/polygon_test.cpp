@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "geometry/moments.h"
-#include "geometry/quadrature.h"
 
 namespace keyblock {
 namespace {
@@ -68,39 +67,6 @@ TEST(Triangulate, TwoHolesSeeTheSameVertex) {
     double sum = 0.0;
     for (const auto& t : triangulate(polygon)) sum += signed_area(t);
     EXPECT_NEAR(sum, area(polygon), 1e-14) << y;
-  }
-}
-
-// Oracle for the exact integrals: tensor Gauss on each triangle of an ear clipping.
-double triangulated_integral(const Polygon& polygon, int i, int j) {
-  const LineRule& rule = gauss_legendre(14);
-  double sum = 0.0;
-  for (const auto& [a, b, c] : triangulate(polygon)) {
-    for (std::size_t p = 0; p < rule.points.size(); ++p) {
-      for (std::size_t q = 0; q < rule.points.size(); ++q) {
-        const Vec2 x = lerp(a, lerp(b, c, rule.points[q]), rule.points[p]);
-        sum += cross(b - a, c - a) * rule.points[p] * rule.weights[p] * rule.weights[q] * std::pow(x.x, i) *
-               std::pow(x.y, j);
-      }
-    }
-  }
-  return sum;
-}
-
-TEST(Moments, AgreeWithTriangulatedGaussUpToDegree22) {
-  for (const Polygon& polygon : {frame, l_shape}) {
-    const Moments moments(polygon, {0, 0}, 1.0, 22);
-    const auto rule = polygon_rule(polygon, 22);
-    for (int i = 0; i <= 22; ++i) {
-      for (int j = 0; i + j <= 22; ++j) {
-        const double expected = triangulated_integral(polygon, i, j);
-        EXPECT_NEAR(moments(i, j) / expected, 1.0, 1e-12) << i << ' ' << j;
-        double by_rule = 0.0;
-        for (const WeightedPoint& w : rule)
-          by_rule += w.weight * std::pow(w.point.x, i) * std::pow(w.point.y, j);
-        EXPECT_NEAR(by_rule / expected, 1.0, 1e-12) << i << ' ' << j;
-      }
-    }
   }
 }
 

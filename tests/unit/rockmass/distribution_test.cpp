@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "statistics.h"
+#include "verification/reference_distribution.h"
 
 namespace keyblock::rockmass {
 namespace {
@@ -13,7 +13,7 @@ class EveryDistribution : public testing::TestWithParam<Distribution> {};
 
 TEST_P(EveryDistribution, QuantileInvertsTheDistributionFunction) {
   for (double u = 0.001; u < 1.0; u += 0.001) {
-    EXPECT_NEAR(reference_cdf(GetParam(), quantile(GetParam(), u)), u, 1e-12) << u;
+    EXPECT_NEAR(verification::reference_cdf(GetParam(), quantile(GetParam(), u)), u, 1e-12) << u;
   }
 }
 

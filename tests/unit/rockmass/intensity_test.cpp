@@ -5,21 +5,21 @@
 namespace keyblock::rockmass {
 namespace {
 
-const Box window{{0.0, 0.0}, {10.0, 5.0}};
+const Box rectangle{{0.0, 0.0}, {10.0, 5.0}};
 
 TEST(Intensity, LengthInsideTheWindow) {
-  EXPECT_DOUBLE_EQ(length_inside({{1, 1}, {4, 5}, {}}, window), 5.0);
-  EXPECT_DOUBLE_EQ(length_inside({{-3, 2}, {3, 2}, {}}, window), 3.0);
-  EXPECT_DOUBLE_EQ(length_inside({{5, -5}, {5, 15}, {}}, window), 5.0);
-  EXPECT_DOUBLE_EQ(length_inside({{-1, 4}, {1, 6}, {}}, window), 0.0);  // past the corner
-  EXPECT_DOUBLE_EQ(length_inside({{2, 6}, {8, 6}, {}}, window), 0.0);
+  EXPECT_DOUBLE_EQ(length_inside({{1, 1}, {4, 5}, {}}, rectangle), 5.0);
+  EXPECT_DOUBLE_EQ(length_inside({{-3, 2}, {3, 2}, {}}, rectangle), 3.0);
+  EXPECT_DOUBLE_EQ(length_inside({{5, -5}, {5, 15}, {}}, rectangle), 5.0);
+  EXPECT_DOUBLE_EQ(length_inside({{-1, 4}, {1, 6}, {}}, rectangle), 0.0);  // past the corner
+  EXPECT_DOUBLE_EQ(length_inside({{2, 6}, {8, 6}, {}}, rectangle), 0.0);
 }
 
 TEST(Intensity, OfFourTraces) {
-  // Two vertical lines through the window, a horizontal one whose centre is outside, one beyond.
+  // Two vertical lines through the rectangle, a horizontal one whose centre is outside, one beyond.
   const Intensity i = measure_intensity(
       {{{2, -1}, {2, 6}, {}}, {{7, -1}, {7, 6}, {}}, {{-8, 2.2}, {4, 2.2}, {}}, {{0, 7}, {10, 7}, {}}},
-      window);
+      rectangle);
   EXPECT_EQ(i.traces, 3);
   EXPECT_DOUBLE_EQ(i.length, 14.0);
   EXPECT_DOUBLE_EQ(i.p21, 14.0 / 50.0);

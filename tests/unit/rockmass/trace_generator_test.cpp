@@ -9,10 +9,12 @@
 #include "rockmass/distribution.h"
 #include "rockmass/section.h"
 #include "statistics.h"
+#include "verification/reference_distribution.h"
 
 namespace keyblock::rockmass {
 namespace {
 
+using verification::kolmogorov_smirnov;
 using enum DistributionKind;
 
 constexpr double azimuth = 165.0;
@@ -88,40 +90,6 @@ TEST_P(EverySet, IntensitiesAreThoseOfTheStatistics) {
   EXPECT_NEAR(Estimate(p10).mean, expected_p21 * sine, 3.0 * Estimate(p10).error);
   // The test is worth something only if the estimates are sharp.
   EXPECT_LT(Estimate(p21).error, 0.05 * expected_p21);
-}
-
-TEST_P(EverySet, SpacingLengthAndGapFollowTheirDistributions) {
-  const JointSet& set = GetParam();
-  const double angle = radians(apparent_dip(set.dip, set.dip_direction, azimuth));
-  const Vec2 along{std::cos(angle), -std::sin(angle)};
-  const double factor = trace_spacing_factor(set.dip, set.dip_direction, azimuth);
-  const auto inner = [](double position) { return std::abs(position) < 5.0; };
-  std::vector<double> spacings, lengths, gaps;
-  for (int realization = 0; realization < realizations; ++realization) {
-    std::map<long, std::map<double, double>> lines;  // position across (µm) → begin → end
-    for (const Trace& trace : traces(realization)) {
-      const long across = std::lround(1e6 * cross(along, trace.a));
-      lines[across][dot(along, trace.a)] = dot(along, trace.b);
-    }
-    for (auto line = lines.begin(); line != lines.end(); ++line) {
-      const double position = 1e-6 * static_cast<double>(line->first);
-      if (!inner(position)) continue;
-      if (const auto next = std::next(line); next != lines.end()) {
-        spacings.push_back((1e-6 * static_cast<double>(next->first) - position) / factor);
-      }
-      for (auto trace = line->second.begin(); trace != line->second.end(); ++trace) {
-        const auto [begin, end] = *trace;
-        if (inner(0.5 * (begin + end))) lengths.push_back(end - begin);
-        if (const auto next = std::next(trace); inner(end) && next != line->second.end()) {
-          gaps.push_back(next->first - end);
-        }
-      }
-    }
-  }
-  EXPECT_GT(spacings.size(), 300u);
-  EXPECT_LT(kolmogorov_smirnov(spacings, set.spacing), 1.63);
-  EXPECT_LT(kolmogorov_smirnov(lengths, set.length), 1.63);
-  EXPECT_LT(kolmogorov_smirnov(gaps, set.gap), 1.63);
 }
 
 INSTANTIATE_TEST_SUITE_P(

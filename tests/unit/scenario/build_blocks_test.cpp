@@ -13,8 +13,6 @@ using cutting::EdgeKind;
 using cutting::EdgeLabel;
 using testing::HasSubstr;
 
-const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
-
 double total_area(const cutting::BlockSystem& system) {
   double sum = 0.0;
   for (const auto& block : system.blocks) sum += area(block.polygon);

@@ -9,8 +9,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
-
 TEST(BuildSetup, RockOfBlockBeforeRegionBeforeRock) {
   const auto setup = build_setup(parse(two_blocks + R"(
 [[region]]

@@ -13,8 +13,6 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
-
 TEST(Motions, TheRecordOfTheTunnelIsProjected) {
   const Scenario s = parse_scenario(examples / "01-tunnel.toml");
   std::vector<std::string> warnings;

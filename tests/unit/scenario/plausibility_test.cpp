@@ -12,8 +12,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
-
 std::vector<std::string> warnings_of(const std::string& text,
                                      const std::vector<std::string>& overrides = {}) {
   std::vector<std::string> warnings;

@@ -6,7 +6,6 @@
 namespace keyblock::scenario {
 namespace {
 
-const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
 const std::filesystem::path data = std::filesystem::path(KEYBLOCK_TEST_DATA) / "scenario";
 
 TEST(Tunnel, SectionDomainAndRock) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -6,6 +7,8 @@
 #include "scenario/parse.h"
 
 namespace keyblock::scenario {
+
+inline const std::filesystem::path examples = std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "examples";
 
 /// A scenario that is right: two blocks, one of them fixed, and one stage.
 inline const std::string two_blocks = R"([rock]

@@ -11,9 +11,6 @@
 namespace keyblock::simulation {
 namespace {
 
-constexpr double g = 9.81;
-constexpr double degree = std::numbers::pi / 180.0;
-
 /// Horizontal ground acceleration A sin ωt, integrated exactly over a step.
 class Sine final : public dynamics::GroundAcceleration {
  public:

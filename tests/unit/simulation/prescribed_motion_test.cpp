@@ -12,12 +12,12 @@
 namespace keyblock::simulation {
 namespace {
 
-constexpr double dt = 0.001;
+constexpr double time_step = 0.001;
 
 loading::TimeTable table(double duration, const auto& displacement) {
   std::vector<std::pair<double, double>> rows;
-  for (long k = 0; k <= std::lround(duration / dt); ++k) {
-    const double t = static_cast<double>(k) * dt;
+  for (long k = 0; k <= std::lround(duration / time_step); ++k) {
+    const double t = static_cast<double>(k) * time_step;
     rows.emplace_back(t, displacement(t));
   }
   return loading::TimeTable(std::move(rows));
@@ -41,7 +41,7 @@ TEST(PrescribedMotion, DragsABlockByFriction) {
   const double start = s.centroid(1).x;
   double before = 0.0;
   for (const auto& [time, expected] : {std::pair{1.0, 0.52769}, {2.0, 0.81151}, {5.0, 1.09120}}) {
-    s.run(time - before, dt);
+    s.run(time - before, time_step);
     before = time;
     EXPECT_NEAR(s.centroid(1).x - start, expected, 0.005 * expected) << time;
   }
@@ -57,7 +57,7 @@ TEST(PrescribedMotion, WorkIsInput) {
       2.0, [](double t) { return 0.1 * (t < 1.0 ? 0.5 * (1.0 - std::cos(std::numbers::pi * t)) : 1.0); });
   Simulator s(scene);
   const double start = s.centroid(1).y;
-  s.run(2.0, dt);
+  s.run(2.0, time_step);
   const double weight = 2600.0 * 0.5 * 9.81;
   EXPECT_NEAR(s.centroid(1).y - start, 0.1, 1e-4);
   EXPECT_NEAR(s.state.ledger.input, 0.1 * weight, 1e-2 * 0.1 * weight);
@@ -74,25 +74,20 @@ TEST(PrescribedMotion, AWallPushesABlock) {
   scene.setup.solver.restitution = 0.0;
   Simulator s(scene);
   const double start = s.centroid(1).x;
-  s.run(1.0, dt);
+  s.run(1.0, time_step);
   EXPECT_GE(s.centroid(1).x - start, 2.0 - 1e-3);
   EXPECT_GE(s.velocity(1).x, 4.0 - 0.05);
-  s.run(0.5, dt);
+  s.run(0.5, time_step);
   EXPECT_NEAR(s.centroid(0).x, 1.5, 1e-12);
   EXPECT_EQ(s.velocity(0).x, 0.0);
 }
-
-struct Stopper final : RunObserver {
-  std::atomic<bool> stop = false;
-  void step(const StepRow& row) override { stop = row.step >= 2500; }
-};
 
 TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
   Scene scene = on_base(30.0);
   RunSetup setup = scene.setup;
   setup.properties[0].motion_x =
       table(3.0, [](double t) { return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * t)); });
-  setup.time_step = dt;
+  setup.time_step = time_step;
   Stage stage;
   stage.name = "moved";
   stage.kind = StageKind::rest;
@@ -104,7 +99,7 @@ TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("keyblock_prescribed_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  Stopper stopper;
+  Stopper stopper(2500);
   RunOptions options;
   options.directory = folder;
   options.stop = &stopper.stop;

@@ -74,12 +74,6 @@ TEST(Run, RepeatedShakingGivesRepeatedSlip) {
 }
 
 /// Stops the run after some steps.
-struct Stopper final : RunObserver {
-  std::atomic<bool> stop = false;
-  long after = 0;
-  void step(const StepRow& row) override { stop = row.step >= after; }
-};
-
 TEST(Run, ResumedFromItsCheckpointEndsInTheSameBits) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("keyblock_resume_" + std::to_string(::getpid()));
@@ -88,8 +82,7 @@ TEST(Run, ResumedFromItsCheckpointEndsInTheSameBits) {
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
 
-  Stopper stopper;
-  stopper.after = 3500;
+  Stopper stopper(3500);
   RunOptions options;
   options.directory = folder;
   options.stop = &stopper.stop;

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -6,8 +7,12 @@
 #include "core/parallel.h"
 #include "dynamics/step.h"
 #include "simulation/build_model.h"
+#include "simulation/run.h"
 
 namespace keyblock::simulation {
+
+constexpr double g = 9.81;                           // m/s²
+constexpr double degree = std::numbers::pi / 180.0;  // rad
 
 /// A small model of explicit blocks, for tests of mechanics and contact.
 struct Scene {
@@ -34,14 +39,22 @@ struct Scene {
 
   /// A rectangle of width w and height h whose lower left corner is at p, turned by `angle` degrees about p.
   int rectangle(Vec2 p, double w, double h, double angle = 0.0, bool fixed = false, int order = 1) {
-    const double c = std::cos(angle * std::numbers::pi / 180.0),
-                 s = std::sin(angle * std::numbers::pi / 180.0);
+    const double c = std::cos(angle * degree), s = std::sin(angle * degree);
     const Vec2 x{c, s}, y{-s, c};
     return add({p, p + w * x, p + w * x + h * y, p + h * y}, fixed, order);
   }
 
  private:
   double young_, density_;
+};
+
+/// Stops a run after a step.
+struct Stopper final : RunObserver {
+  explicit Stopper(long after_step) : after(after_step) {}
+  void step(const StepRow& row) override { stop = row.step >= after; }
+
+  std::atomic<bool> stop = false;
+  long after;
 };
 
 /// A scene set in motion.

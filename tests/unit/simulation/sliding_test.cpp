@@ -8,8 +8,6 @@
 namespace keyblock::simulation {
 namespace {
 
-constexpr double g = 9.81;
-constexpr double degree = std::numbers::pi / 180.0;
 const std::vector<double> all_steps{0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0001};
 
 /// A block of 1 m on a long incline of angle α, that runs down to the left. The formulas are for rigid blocks: set down on

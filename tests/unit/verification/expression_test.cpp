@@ -62,6 +62,8 @@ struct Wrong {
   const char* text;
   std::size_t column;
   const char* message;
+
+  friend std::ostream& operator<<(std::ostream& out, const Wrong& wrong) { return out << wrong.text; }
 };
 
 class Mistake : public ::testing::TestWithParam<Wrong> {};
