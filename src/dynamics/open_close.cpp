@@ -5,11 +5,83 @@
 
 namespace keyblock::dynamics {
 
-void OpenClose::evaluate(const StepProblem& problem, std::span<const double> d) {
+/// Springs unstretched by the step, and those assumed in the first solve: what acted in the last step.
+void OpenClose::start(StepProblem& problem, std::span<contact::Memory* const> memory) {
+  const auto& rows = problem.rows();
+  springs_.resize(rows.size());
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    const StepProblem::Row& row = rows[c];
+    const contact::Spring& s = row.spring;
+    springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
+    Shear assumed = Shear::none;
+    if (s.bound() > 0.0) {
+      if (memory[c]->state == contact::State::locked) {
+        assumed = Shear::held;
+      } else if (s.shear() != 0.0) {
+        assumed = s.shear() > 0.0 ? Shear::forward : Shear::backward;
+      }
+    }
+    springs_.piece[c] = {memory[c]->state != contact::State::open || s.tensile(), assumed};
+  }
+  assembled_ = false;
+}
+
+/// out += scale · ∂ψ/∂D for a contact whose springs push with `force`.
+void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
+                          std::span<double> out) {
+  if (force.is_zero()) return;
+  const StepProblem::Row& row = problem.rows()[c];
+  problem.add_contact_force(row, scale * (force.shear * row.tangent - force.normal * row.normal), out);
+}
+
+/// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
+SpringArray::Force OpenClose::bend(std::size_t c, double alpha) const {
+  const double y = springs_.y[c] + alpha * springs_.dy[c], w = springs_.w[c] + alpha * springs_.dw[c];
+  return springs_.force_at(c, y, w) - springs_.force_on(c, springs_.piece[c], y, w);
+}
+
+/// Of ∇²Π on the pieces that the contacts are on. Within a step only what changed is assembled and factored anew.
+bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result) {
+  const auto& rows = problem.rows();
+  {
+    const Profile::Scope scope(*profile_, Phase::assembly);
+    if (!assembled_) {
+      problem.assemble(solver);
+      factored_.assign(rows.size(), Piece{});
+    }
+    bool any = !assembled_;
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      const Piece from = factored_[c], to = springs_.piece[c];
+      const double kn = springs_.normal_stiffness(c, to) - springs_.normal_stiffness(c, from),
+                   ks = springs_.shear_stiffness(c, to) - springs_.shear_stiffness(c, from);
+      factored_[c] = to;
+      if (kn == 0.0 && ks == 0.0) continue;
+      problem.add_springs(rows[c], kn, ks, solver);
+      any = true;
+      if (!assembled_) continue;
+      if (rows[c].unknown_a >= 0) solver.touch(rows[c].unknown_a);
+      if (rows[c].unknown_b >= 0) solver.touch(rows[c].unknown_b);
+    }
+    assembled_ = true;
+    if (!any) return true;
+  }
+  ++result.factorizations;
+  const Profile::Scope scope(*profile_, Phase::factorization);
+  return solver.factor();
+}
+
+void OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> x) {
+  const Profile::Scope scope(*profile_, Phase::solution);
+  solver.solve(x.first(problem.unknowns()));
+}
+
+/// What the direction of search does to every spring.
+void OpenClose::find_direction(const StepProblem& problem) {
   const auto& rows = problem.rows();
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    r_[c] = problem.relative(rows[c], d) + rows[c].moved;
-    active_[c] = StepProblem::active(rows[c], r_[c]);
+    const Vec2 r = problem.relative(rows[c], direction_);
+    springs_.dy[c] = -dot(rows[c].normal, r);
+    springs_.dw[c] = dot(rows[c].tangent, r);
   }
 }
 
@@ -17,48 +89,59 @@ void OpenClose::evaluate(const StepProblem& problem, std::span<const double> d) 
 bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> d,
                             OpenCloseResult& result) {
   const auto& rows = problem.rows();
-  problem.assemble(assumed_, solver);
   ++result.iterations;
-  ++result.factorizations;
-  if (!solver.factor()) return false;
-  std::copy(problem.right().begin(), problem.right().end(), d.begin());
+  if (!factor(problem, solver, result)) return false;
+  std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    const contact::Spring& s = rows[c].spring;
-    const double normal = assumed_[c].normal ? s.normal_stiffness() * rows[c].depth(rows[c].moved) : 0.0;
-    const double shear =
-        assumed_[c].shear ? s.shear_stiffness() * rows[c].shear(rows[c].moved) : s.sliding_force();
-    problem.add_contact_force(rows[c], normal * rows[c].normal - shear * rows[c].tangent, d);
+    add_force(problem, c, springs_.force_on(c, springs_.piece[c], springs_.y[c], springs_.w[c]), -1.0,
+              direction_);
   }
-  solver.solve(d.first(problem.unknowns()));
+  solve_linear(problem, solver, direction_);
+  std::copy(direction_.begin(), direction_.end(), d.begin());
+  find_direction(problem);
+  // The gradient there is what the springs assumed get wrong.
+  std::fill(gradient_.begin(), gradient_.end(), 0.0);
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    const double y = springs_.y[c] += springs_.dy[c], w = springs_.w[c] += springs_.dw[c];
+    const Piece assumed = springs_.piece[c], p = springs_.piece[c] = springs_.piece_at(c, y, w);
+    if (p != assumed)
+      add_force(problem, c, springs_.force(c) - springs_.force_on(c, assumed, y, w), 1.0, gradient_);
+  }
   return true;
 }
 
-double OpenClose::line_search(const StepProblem& problem, std::span<const double> d) {
-  const auto& rows = problem.rows();
-  for (std::size_t c = 0; c < rows.size(); ++c) r_direction_[c] = problem.relative(rows[c], direction_);
-  problem.multiply(direction_, h_direction_);
-  double slope_at_zero = 0.0, curvature = 0.0;  // of the quadratic part
-  for (std::size_t k = 0; k < direction_.size(); ++k) {
-    slope_at_zero += h_direction_[k] * d[k] - problem.right()[k] * direction_[k];
-    curvature += h_direction_[k] * direction_[k];
+/// Contacts that change piece between where they are and α along the direction.
+void OpenClose::find_bends(double alpha) {
+  bends_.clear();
+  for (std::size_t c = 0; c < springs_.size(); ++c) {
+    const Piece p =
+        springs_.piece_at(c, springs_.y[c] + alpha * springs_.dy[c], springs_.w[c] + alpha * springs_.dw[c]);
+    if (p != springs_.piece[c]) bends_.push_back(c);
   }
-  const auto slope = [&](double alpha) {
-    double sum = slope_at_zero + alpha * curvature;
-    for (std::size_t c = 0; c < rows.size(); ++c) {
-      const StepProblem::Row& row = rows[c];
-      const Vec2 r = r_[c] + alpha * r_direction_[c];
-      sum -= row.spring.normal_force(row.depth(r)) * dot(row.normal, r_direction_[c]);
-      sum += row.spring.shear_force(row.shear(r)) * dot(row.tangent, r_direction_[c]);
-    }
-    return sum;
-  };
-  const double start = slope(0.0), target = 0.01 * std::abs(start);
+}
+
+/// dΠ(D + αp)/dα for a Newton direction p, given the bends up to α.
+double OpenClose::slope(double alpha) const {
+  double sum = (1.0 - alpha) * slope_at_zero_;
+  for (const std::size_t c : bends_) {
+    const Force extra = bend(c, alpha);
+    sum += extra.normal * springs_.dy[c] + extra.shear * springs_.dw[c];
+  }
+  return sum;
+}
+
+double OpenClose::line_search() {
+  slope_at_zero_ = 0.0;
+  for (std::size_t k = 0; k < direction_.size(); ++k) slope_at_zero_ += gradient_[k] * direction_[k];
+  find_bends(1.0);
+  const double start = slope_at_zero_, target = 0.01 * std::abs(start);
   if (!(start < 0.0)) return 1.0;  // the minimum, to the last digit
   double low = 0.0, low_slope = start, high = 1.0, high_slope = slope(1.0);
   while (high_slope < -target && high < 64.0) {
     low = high;
     low_slope = high_slope;
     high *= 2.0;
+    find_bends(high);
     high_slope = slope(high);
   }
   if (std::abs(high_slope) <= target) return high;
@@ -80,38 +163,53 @@ double OpenClose::line_search(const StepProblem& problem, std::span<const double
   return alpha;
 }
 
+/// D ← D + αp, and the gradient and springs with it.
+void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d) {
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    d[k] += alpha * direction_[k];
+    gradient_[k] *= 1.0 - alpha;
+  }
+  for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
+  for (std::size_t c = 0; c < springs_.size(); ++c) {
+    springs_.y[c] += alpha * springs_.dy[c];
+    springs_.w[c] += alpha * springs_.dw[c];
+  }
+  for (const std::size_t c : bends_) springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
+}
+
 bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver,
                          const SolverOptions& options, bool warm, std::span<double> d,
                          OpenCloseResult& result) {
   const int limit = result.iterations + options.max_iterations;
+  const auto same_springs = [&] {
+    return std::equal(springs_.piece.begin(), springs_.piece.end(), factored_.begin(),
+                      [](Piece p, Piece q) { return p.same_springs(q); });
+  };
   if (!warm) {
     if (!first_solve(problem, solver, d, result)) return false;
-    evaluate(problem, d);
-    problem.gradient(d, r_, gradient_);
     // The same springs act; what may still differ is the direction in which a contact slides.
-    if (active_ == assumed_ && problem.residual_ratio(gradient_) < options.tolerance) return true;
-  } else {
-    evaluate(problem, d);
-    problem.gradient(d, r_, gradient_);
+    if (same_springs() && problem.residual_ratio(gradient_) < options.tolerance) return true;
   }
   while (result.iterations < limit) {
     ++result.iterations;
-    if (active_ != assumed_) {  // else the factorization at hand is that of ∇²Π here
-      assumed_ = active_;
-      problem.assemble(assumed_, solver);
-      ++result.factorizations;
-      if (!solver.factor()) return false;
-    }
+    if (!factor(problem, solver, result)) return false;
     for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
-    solver.solve(std::span(direction_).first(problem.unknowns()));
-    const double alpha = line_search(problem, d);
-    for (std::size_t k = 0; k < d.size(); ++k) d[k] += alpha * direction_[k];
-    evaluate(problem, d);
-    problem.gradient(d, r_, gradient_);
-    if (alpha == 1.0 && active_ == assumed_) return true;
+    solve_linear(problem, solver, direction_);
+    find_direction(problem);
+    const double alpha = line_search();
+    go(problem, alpha, d);
+    if (alpha == 1.0 && same_springs()) return true;
     if (problem.residual_ratio(gradient_) < options.tolerance) return true;
   }
   return false;
+}
+
+/// Takes over the bound or bond of a spring that changed, and what that does to the gradient.
+void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
+  const Force before = springs_.force(c);
+  springs_.set_law(c, problem.rows()[c].spring);
+  springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
+  add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
@@ -119,22 +217,23 @@ bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Con
   auto& rows = problem.rows();
   double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
-    const double normal = std::max(0.0, rows[c].spring.normal_force(rows[c].depth(r_[c])));
+    const double normal = std::max(0.0, springs_.force(c).normal);
     return contacts[c].friction_coefficient * normal + (memory[c]->bonded ? contacts[c].cohesion : 0.0);
   };
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (contacts[c].fused) continue;
     // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-    const double wanted = bound(c), elastic = rows[c].spring.shear_stiffness() * rows[c].shear(r_[c]);
-    const double change =
-        std::clamp(elastic, -wanted, wanted) - rows[c].spring.shear_force(rows[c].shear(r_[c]));
+    const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
+    const double change = std::clamp(elastic, -wanted, wanted) - springs_.force(c).shear;
     error += change * change;
     scale += wanted * wanted;
   }
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    if (!contacts[c].fused) rows[c].spring.set_bound(bound(c));
+    if (contacts[c].fused) continue;
+    rows[c].spring.set_bound(bound(c));
+    set_law(problem, c);
   }
   return true;
 }
@@ -149,10 +248,11 @@ bool OpenClose::augment(StepProblem& problem, std::span<const contact::Contact> 
   shift_.assign(rows.size(), {});
   for (std::size_t c = 0; c < rows.size(); ++c) {
     const StepProblem::Row& row = rows[c];
-    if (!row.spring.closed(row.depth(r_[c]))) continue;
-    const double penetration = -(contacts[c].gap + dot(row.normal, r_[c])) - std::max(0.0, memory[c]->offset);
-    const bool holds = row.spring.bound() > 0.0 && row.spring.locked(row.shear(r_[c]));
-    const double drift = holds ? memory[c]->drift + dot(row.tangent, r_[c]) : 0.0;
+    if (!springs_.piece[c].closed) continue;
+    // n·r and t·r, but for what multipliers have added.
+    const double normal = row.spring.depth() - springs_.y[c], slip = springs_.w[c] - row.spring.shear();
+    const double penetration = -(contacts[c].gap + normal) - std::max(0.0, memory[c]->offset);
+    const double drift = springs_.piece[c].shear == Shear::held ? memory[c]->drift + slip : 0.0;
     worst = std::max({worst, std::abs(penetration), std::abs(drift)});
     // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
     shift_[c] = {penetration * (1.0 + 0.25 * row.inertia / row.spring.normal_stiffness()),
@@ -163,7 +263,15 @@ bool OpenClose::augment(StepProblem& problem, std::span<const contact::Contact> 
   stalls_ = worst > 0.9 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;
   if (stalls_ == 3) return false;
-  for (std::size_t c = 0; c < rows.size(); ++c) rows[c].spring.shift(shift_[c].x, shift_[c].y);
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    if (shift_[c] == Vec2{}) continue;
+    rows[c].spring.shift(shift_[c].x, shift_[c].y);
+    const Force before = springs_.force(c);
+    springs_.y[c] += shift_[c].x;
+    springs_.w[c] += shift_[c].y;
+    springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
+    add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
+  }
   return true;
 }
 
@@ -174,11 +282,12 @@ bool OpenClose::break_bonds(StepProblem& problem, std::span<const contact::Conta
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (!memory[c]->bonded || contacts[c].fused) continue;
     contact::Spring& s = rows[c].spring;
-    const double normal = s.normal_force(rows[c].depth(r_[c]));
-    if (-normal <= contacts[c].tension && s.locked(rows[c].shear(r_[c]))) continue;
+    const double normal = springs_.force(c).normal;
+    if (-normal <= contacts[c].tension && s.locked(springs_.w[c])) continue;
     memory[c]->bonded = false;
     s.break_bond();
     s.set_bound(contacts[c].friction_coefficient * std::max(0.0, normal));
+    set_law(problem, c);
     any = true;
   }
   return any;
@@ -186,20 +295,14 @@ bool OpenClose::break_bonds(StepProblem& problem, std::span<const contact::Conta
 
 OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::Contact> contacts,
                                  std::span<contact::Memory* const> memory, linalg::BlockSolver& solver,
-                                 const SolverOptions& options, std::span<double> d) {
+                                 const SolverOptions& options, Profile& profile, std::span<double> d) {
+  profile_ = &profile;
+  const Profile::Scope scope(profile, Phase::search);
   const std::size_t rows = problem.rows().size();
-  assumed_.resize(rows);
-  active_.resize(rows);
   r_.resize(rows);
-  r_direction_.resize(rows);
   gradient_.resize(d.size());
   direction_.resize(d.size());
-  h_direction_.resize(d.size());
-  for (std::size_t c = 0; c < rows; ++c) {
-    const contact::Spring& s = problem.rows()[c].spring;
-    assumed_[c] = {memory[c]->state != contact::State::open || s.tensile(),
-                   memory[c]->state == contact::State::locked && s.bound() > 0.0};
-  }
+  start(problem, memory);
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
   worst_ = HUGE_VAL;
@@ -224,6 +327,8 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::
     if (!update_bounds(problem, contacts, memory, tolerance)) break;
     ++result.bound_updates;
   }
+  for (std::size_t c = 0; c < rows; ++c)
+    r_[c] = problem.relative(problem.rows()[c], d) + problem.rows()[c].moved;
   result.residual_ratio = problem.residual_ratio(gradient_);
   return result;
 }

@@ -2,7 +2,9 @@
 #include <span>
 #include <vector>
 
+#include "core/profile.h"
 #include "dynamics/options.h"
+#include "dynamics/spring_array.h"
 #include "dynamics/step_problem.h"
 #include "linalg/block_solver.h"
 
@@ -28,27 +30,42 @@ struct OpenCloseResult {
 ///        (a new contact has no friction otherwise, in its first step);
 ///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
 ///     5. bonds whose strength is exceeded break, and the iteration goes on. A broken bond stays broken.
+///
+/// Along a Newton direction p the gradient is known without the matrix: ∇Π(D + αp) = (1 − α) ∇Π(D) but for contacts that
+/// pass to another piece of their law on the way, which are few. So is the slope that the line search needs.
 class OpenClose {
  public:
-  /// start: springs assumed in the first solve, one per row. d: the increment, overwritten. Bonds that break are cleared
+  /// d: the increment, overwritten. Bonds that break are cleared
   /// in `memory` (one per row) and in the rows of the problem.
   OpenCloseResult solve(StepProblem& problem, std::span<const contact::Contact> contacts,
                         std::span<contact::Memory* const> memory, linalg::BlockSolver& solver,
-                        const SolverOptions& options, std::span<double> d);
+                        const SolverOptions& options, Profile& profile, std::span<double> d);
 
   /// r of every row at the solution.
   [[nodiscard]] std::span<const Vec2> relative() const { return r_; }
   [[nodiscard]] std::span<const double> gradient() const { return gradient_; }
 
  private:
-  using Active = StepProblem::Active;
+  using Piece = SpringArray::Piece;
+  using Shear = SpringArray::Shear;
+  using Force = SpringArray::Force;
 
+  void start(StepProblem& problem, std::span<contact::Memory* const> memory);
+  bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
+  void solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> x);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, std::span<double> d, OpenCloseResult& result);
   bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> d,
                    OpenCloseResult& result);
-  double line_search(const StepProblem& problem, std::span<const double> d);
-  void evaluate(const StepProblem& problem, std::span<const double> d);
+  void find_direction(const StepProblem& problem);
+  [[nodiscard]] double line_search();
+  void find_bends(double alpha);
+  [[nodiscard]] double slope(double alpha) const;
+  void go(const StepProblem& problem, double alpha, std::span<double> d);
+  void set_law(const StepProblem& problem, std::size_t c);
+  static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
+                        std::span<double> out);
+  [[nodiscard]] Force bend(std::size_t c, double alpha) const;
   bool update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
                      std::span<contact::Memory* const> memory, double tolerance);
   bool augment(StepProblem& problem, std::span<const contact::Contact> contacts,
@@ -56,12 +73,17 @@ class OpenClose {
   bool break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
                    std::span<contact::Memory* const> memory);
 
-  std::vector<Active> assumed_, active_;
-  std::vector<Vec2> r_, r_direction_;
+  Profile* profile_ = nullptr;
+  SpringArray springs_;
+  std::vector<Piece> factored_;     ///< per contact: what the matrix at hand was made with
+  bool assembled_ = false;          ///< in this step
+  std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
+  std::vector<Vec2> r_;
   std::vector<Vec2> shift_;  ///< m, of springs: normal, shear
   double worst_ = 0.0;       ///< m, largest penetration or drift at the last update of multipliers
   int stalls_ = 0;           ///< updates in a row that did not make it smaller
-  std::vector<double> gradient_, direction_, h_direction_;
+  std::vector<double> gradient_, direction_;
+  double slope_at_zero_ = 0.0;
 };
 
 }  // namespace keyblock::dynamics

@@ -23,9 +23,10 @@ std::vector<double> penalties(const Model& model) {
 }
 }  // namespace
 
-Stepper::Stepper(Model& model, ThreadTeam& team)
+Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
     : model_(model),
       team_(team),
+      profile_(profile),
       tolerances_(model.block_size),
       candidates_(tolerances_),
       detection_(tolerances_, model.laws, penalties(model)),
@@ -151,6 +152,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
 }
 
 void Stepper::detect(State& state) {
+  const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
   detection_.find(model_.surface, reach_, state.contacts, contacts_);
   ensure_pattern(state, changed);
@@ -193,6 +195,11 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
   }
 }
 
+void Stepper::build_problem(const State& state, const Drive& drive) {
+  const Profile::Scope scope(profile_, Phase::terms);
+  problem_.build(model_, state, drive, model_.surface, contacts_, team_);
+}
+
 bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   choose_rules(state, drive);
   drive.rule = rule_;
@@ -201,14 +208,14 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   constexpr int looks = 4;
   for (int look = 1; look <= looks; ++look) {
     detect(state);
-    problem_.build(model_, state, drive, model_.surface, contacts_, team_);
+    build_problem(state, drive);
     memory_.clear();
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       memory_.push_back(&state.contacts[at(contacts_[c].candidate)].memory);
       problem_.rows()[c].pair = pair_of_candidate_[at(contacts_[c].candidate)];
     }
     const OpenCloseResult result =
-        open_close_.solve(problem_, contacts_, memory_, *solver_, model_.solver, increment_);
+        open_close_.solve(problem_, contacts_, memory_, *solver_, model_.solver, profile_, increment_);
     report.iterations += result.iterations;
     measure_spin(state);
     if (!result.converged) return false;
@@ -310,6 +317,7 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   account(state, drive);
+  const Profile::Scope scope(profile_, Phase::update);
   remember(drive, report);
   const double g = norm(model_.gravity);
   const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};

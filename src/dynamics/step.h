@@ -5,6 +5,7 @@
 
 #include "contact/detection.h"
 #include "core/parallel.h"
+#include "core/profile.h"
 #include "dynamics/model.h"
 #include "dynamics/open_close.h"
 #include "dynamics/state.h"
@@ -38,7 +39,7 @@ struct StepReport {
 /// the step is cut in two from where it started.
 class Stepper {
  public:
-  Stepper(Model& model, ThreadTeam& team);
+  Stepper(Model& model, ThreadTeam& team, Profile& profile);
 
   /// Brings the surface to the state and finds the contacts of joints in place; once, before the first step.
   void start(State& state);
@@ -84,6 +85,7 @@ class Stepper {
   [[nodiscard]] double support_energy(const State& state) const;
   void prescribe(const State& state, Drive& drive);
   void move_prescribed(State& state, const Drive& drive);
+  void build_problem(const State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
   void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
@@ -102,6 +104,7 @@ class Stepper {
 
   Model& model_;
   ThreadTeam& team_;
+  Profile& profile_;
   contact::Tolerances tolerances_;
   contact::Candidates candidates_;
   contact::Detection detection_;

@@ -27,6 +27,7 @@ double Stepper::support_energy(const State& state) const {
 }
 
 void Stepper::account(State& state, const Drive& drive) {
+  const Profile::Scope scope(profile_, Phase::energy);
   EnergyLedger& ledger = state.ledger;
   const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_, spin_);
   ledger.numerical += elastic.numerical;

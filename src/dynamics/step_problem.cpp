@@ -112,8 +112,9 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
                              std::span<const contact::Candidate> candidates) {
   rows_.resize(contacts.size());
   std::size_t used = 0;
-  for (const contact::Contact& c : contacts) used += at(model_->blocks[at(c.block_b)].size);
-  phi_b_.resize(used);
+  for (const contact::Contact& c : contacts)
+    used += at(model_->blocks[at(c.block_a)].size + model_->blocks[at(c.block_b)].size);
+  phi_.resize(used);
   used = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const contact::Contact& c = contacts[k];
@@ -121,18 +122,20 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     const Block& b = model_->blocks[at(c.block_b)];
     const contact::Memory& memory = candidates[at(c.candidate)].memory;
     Row& row = rows_[k];
-    row.first_a = a.fixed ? -1 : static_cast<std::ptrdiff_t>(a.first);
-    row.first_b = b.fixed ? -1 : static_cast<std::ptrdiff_t>(b.first);
-    row.size_a = a.size;
-    row.size_b = b.size;
+    row.first_a = a.first;
+    row.first_b = b.first;
+    row.size_a = a.fixed ? 0 : a.size;
+    row.size_b = b.fixed ? 0 : b.size;
     row.unknown_a = a.unknown;
     row.unknown_b = b.unknown;
-    row.phi_a = &surface.phi[surface.phi_begin[at(c.vertex)]];
-    row.phi_b = used;
+    row.phi = used;
+    std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[used]);
+    used += at(row.size_a);
     const double* from = &surface.phi[surface.phi_begin[at(c.edge)]];
     const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(c.edge)])]];
-    for (int i = 0; i < b.size; ++i) phi_b_[used + at(i)] = (1.0 - c.position) * from[i] + c.position * to[i];
-    used += at(b.size);
+    for (int i = 0; i < row.size_b; ++i)
+      phi_[used + at(i)] = (1.0 - c.position) * from[i] + c.position * to[i];
+    used += at(row.size_b);
     row.normal = c.normal;
     row.tangent = c.tangent;
     row.moved =
@@ -158,36 +161,37 @@ double StepProblem::reduced_mass(const contact::Contact& c) const {
   return a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
 }
 
+namespace {
+
+/// Σ φ_k d_k of a block; N = 3 is order 1.
+Vec2 displacement(const double* phi, int size, const double* d) {
+  if (size == 3) {
+    return {phi[0] * d[0] + phi[1] * d[2] + phi[2] * d[4], phi[0] * d[1] + phi[1] * d[3] + phi[2] * d[5]};
+  }
+  Vec2 u;
+  for (int k = 0; k < size; ++k) u += phi[k] * Vec2{d[2 * k], d[2 * k + 1]};
+  return u;
+}
+
+void add_scaled(const double* phi, int size, Vec2 force, double* out) {
+  for (int k = 0; k < size; ++k) {
+    out[2 * k] += phi[k] * force.x;
+    out[2 * k + 1] += phi[k] * force.y;
+  }
+}
+
+}  // namespace
+
 Vec2 StepProblem::relative(const Row& row, std::span<const double> d) const {
-  Vec2 r;
-  if (row.first_a >= 0) {
-    const double* da = &d[static_cast<std::size_t>(row.first_a)];
-    for (int k = 0; k < row.size_a; ++k) r += row.phi_a[k] * Vec2{da[2 * k], da[2 * k + 1]};
-  }
-  if (row.first_b >= 0) {
-    const double* db = &d[static_cast<std::size_t>(row.first_b)];
-    const double* phi = &phi_b_[row.phi_b];
-    for (int k = 0; k < row.size_b; ++k) r -= phi[k] * Vec2{db[2 * k], db[2 * k + 1]};
-  }
-  return r;
+  const double* phi = &phi_[row.phi];
+  return displacement(phi, row.size_a, &d[row.first_a]) -
+         displacement(phi + row.size_a, row.size_b, &d[row.first_b]);
 }
 
 void StepProblem::add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
-  if (row.first_a >= 0) {
-    double* oa = &out[static_cast<std::size_t>(row.first_a)];
-    for (int k = 0; k < row.size_a; ++k) {
-      oa[2 * k] += row.phi_a[k] * force.x;
-      oa[2 * k + 1] += row.phi_a[k] * force.y;
-    }
-  }
-  if (row.first_b >= 0) {
-    double* ob = &out[static_cast<std::size_t>(row.first_b)];
-    const double* phi = &phi_b_[row.phi_b];
-    for (int k = 0; k < row.size_b; ++k) {
-      ob[2 * k] -= phi[k] * force.x;
-      ob[2 * k + 1] -= phi[k] * force.y;
-    }
-  }
+  const double* phi = &phi_[row.phi];
+  add_scaled(phi, row.size_a, force, &out[row.first_a]);
+  add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
 }
 
 void StepProblem::multiply(std::span<const double> x, std::span<double> y) const {
@@ -244,7 +248,7 @@ void add_outer(const double* phi_r, int size_r, const double* phi_c, int size_c,
 
 }  // namespace
 
-void StepProblem::assemble(std::span<const Active> active, linalg::BlockSolver& solver) const {
+void StepProblem::assemble(linalg::BlockSolver& solver) const {
   solver.clear();
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) {
@@ -258,32 +262,27 @@ void StepProblem::assemble(std::span<const Active> active, linalg::BlockSolver& 
     const int n = 2 * block.size;
     std::copy_n(&h_[h_first_[i]], linalg::padded_rows(n) * n, solver.diagonal(block.unknown));
   }
-  for (std::size_t c = 0; c < rows_.size(); ++c) {
-    const Row& row = rows_[c];
-    if (!active[c].normal && !active[c].shear) continue;
-    const double kn = active[c].normal ? row.spring.normal_stiffness() : 0.0;
-    const double ks = active[c].shear ? row.spring.shear_stiffness() : 0.0;
-    const Vec2 n = row.normal, t = row.tangent;
-    const double cxx = kn * n.x * n.x + ks * t.x * t.x, cxy = kn * n.x * n.y + ks * t.x * t.y,
-                 cyy = kn * n.y * n.y + ks * t.y * t.y;
-    const double* phi_b = &phi_b_[row.phi_b];
-    if (row.unknown_a >= 0) {
-      add_outer(row.phi_a, row.size_a, row.phi_a, row.size_a, cxx, cxy, cyy, 1.0, true,
-                solver.diagonal(row.unknown_a), linalg::padded_rows(2 * row.size_a));
-    }
-    if (row.unknown_b >= 0) {
-      add_outer(phi_b, row.size_b, phi_b, row.size_b, cxx, cxy, cyy, 1.0, true,
-                solver.diagonal(row.unknown_b), linalg::padded_rows(2 * row.size_b));
-    }
-    if (row.pair < 0) continue;
-    const linalg::BlockSlot slot = solver.slot(row.pair);
-    if (slot.row == row.unknown_a) {
-      add_outer(row.phi_a, row.size_a, phi_b, row.size_b, cxx, cxy, cyy, -1.0, false, slot.values,
-                slot.stride);
-    } else {
-      add_outer(phi_b, row.size_b, row.phi_a, row.size_a, cxx, cxy, cyy, -1.0, false, slot.values,
-                slot.stride);
-    }
+}
+
+void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const {
+  const Vec2 n = row.normal, t = row.tangent;
+  const double cxx = kn * n.x * n.x + ks * t.x * t.x, cxy = kn * n.x * n.y + ks * t.x * t.y,
+               cyy = kn * n.y * n.y + ks * t.y * t.y;
+  const double *phi_a = &phi_[row.phi], *phi_b = phi_a + row.size_a;
+  if (row.size_a > 0) {
+    add_outer(phi_a, row.size_a, phi_a, row.size_a, cxx, cxy, cyy, 1.0, true, solver.diagonal(row.unknown_a),
+              linalg::padded_rows(2 * row.size_a));
+  }
+  if (row.size_b > 0) {
+    add_outer(phi_b, row.size_b, phi_b, row.size_b, cxx, cxy, cyy, 1.0, true, solver.diagonal(row.unknown_b),
+              linalg::padded_rows(2 * row.size_b));
+  }
+  if (row.pair < 0) return;
+  const linalg::BlockSlot slot = solver.slot(row.pair);
+  if (slot.row == row.unknown_a) {
+    add_outer(phi_a, row.size_a, phi_b, row.size_b, cxx, cxy, cyy, -1.0, false, slot.values, slot.stride);
+  } else {
+    add_outer(phi_b, row.size_b, phi_a, row.size_a, cxx, cxy, cyy, -1.0, false, slot.values, slot.stride);
   }
 }
 

@@ -35,12 +35,11 @@ class StepProblem {
  public:
   /// r_c = φ_V · D_a − φ_P · D_b + moved; a fixed block contributes what it is moved by, nothing else.
   struct Row {
-    std::ptrdiff_t first_a, first_b;  ///< of the block's coefficients; −1: fixed
-    int size_a, size_b;
+    std::size_t first_a, first_b;  ///< of the block's coefficients
+    int size_a, size_b;            ///< N; 0: fixed
     int unknown_a, unknown_b;
-    int pair = -1;  ///< of the solver's pattern; −1: one block is fixed
-    const double* phi_a;
-    std::size_t phi_b;  ///< into phi_b_
+    int pair = -1;    ///< of the solver's pattern; −1: one block is fixed
+    std::size_t phi;  ///< into phi_: N values of a at its vertex, N of b at the point of its edge
     Vec2 normal, tangent;
     double inertia = 0.0;  ///< N/m per thickness, of the two blocks against each other in this step
     Vec2 moved;            ///< m, known part of r: prescribed displacement of a less that of b
@@ -48,13 +47,6 @@ class StepProblem {
 
     [[nodiscard]] double depth(Vec2 r) const { return spring.depth() - dot(normal, r); }
     [[nodiscard]] double shear(Vec2 r) const { return spring.shear() + dot(tangent, r); }
-  };
-
-  /// The springs of a contact that resist further displacement.
-  struct Active {
-    bool normal = false;
-    bool shear = false;
-    friend bool operator==(Active, Active) = default;
   };
 
   void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,
@@ -69,17 +61,15 @@ class StepProblem {
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
   /// r of a contact for increment D, but for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const;
-  /// g = ∇Π(D), given r of every contact.
+  /// g = ∇Π(D), given r of every contact; the open-close iteration updates g instead.
   void gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const;
   /// y = H x.
   void multiply(std::span<const double> x, std::span<double> y) const;
-  /// Adds H and the springs that act to the solver's matrix: ∇²Π where `active` is what active(r) gives.
-  void assemble(std::span<const Active> active, linalg::BlockSolver& solver) const;
-  /// Which springs act at relative displacement r.
-  [[nodiscard]] static Active active(const Row& row, Vec2 r) {
-    return {row.spring.closed(row.depth(r)), row.spring.locked(row.shear(r)) && row.spring.bound() > 0.0};
-  }
-  /// out += scale · (∂r/∂D)ᵀ force.
+  /// Sets the solver's matrix to H. With add_springs for all that act at r it becomes ∇²Π there.
+  void assemble(linalg::BlockSolver& solver) const;
+  /// Adds springs of stiffness kn and ks (N/m per thickness; negative: takes away) at a contact.
+  void add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const;
+  /// out += (∂r/∂D)ᵀ force.
   void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const;
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
@@ -106,7 +96,7 @@ class StepProblem {
 
   const Model* model_ = nullptr;
   std::vector<Row> rows_;
-  std::vector<double> phi_b_;
+  std::vector<double> phi_;
   std::vector<std::size_t> h_first_;  ///< per block, into h_
   std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;

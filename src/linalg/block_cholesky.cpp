@@ -35,9 +35,13 @@ std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int
 class BlockCholesky final : public BlockSolver {
  public:
   void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
-  void clear() override { std::fill(values_.begin(), values_.end(), 0.0); }
-  double* diagonal(int block) override { return &values_[column_value_[position_[index(block)]]]; }
+  void clear() override {
+    std::fill(matrix_.begin(), matrix_.end(), 0.0);
+    std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
+  }
+  double* diagonal(int block) override { return &matrix_[diagonal_[index(block)]]; }
   BlockSlot slot(int pair) override { return slots_[index(pair)]; }
+  void touch(int block) override { stale_[position_[index(block)]] = 1; }
   bool factor() override;
   void solve(std::span<double> x) override;
 
@@ -45,6 +49,8 @@ class BlockCholesky final : public BlockSolver {
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   void find_structure(std::span<const std::pair<int, int>> pairs);
   void place_values();
+  void place_matrix(std::span<const std::pair<int, int>> pairs);
+  void load_column(std::size_t j);
   void update_column(std::size_t j);
 
   // Column j of the factor has its diagonal block first, then rows_[row_start_[j] … row_start_[j+1]),
@@ -67,7 +73,17 @@ class BlockCholesky final : public BlockSolver {
   std::vector<std::size_t> work_start_;  ///< per column: start in work_, padded
   std::vector<double> work_;
   std::vector<double*> target_;  ///< scratch of update_column: row → block of the column at hand
+  // The matrix itself: diagonal blocks, and below them the blocks of the pattern, column by column.
+  struct Source {
+    std::size_t from, to;  ///< into matrix_ and values_
+    std::size_t count;
+  };
+  std::vector<double> matrix_;
+  std::vector<std::size_t> diagonal_;      ///< per block, into matrix_
+  std::vector<Source> sources_;            ///< by column
+  std::vector<std::size_t> source_start_;  ///< per column, into sources_
   std::vector<BlockSlot> slots_;
+  std::vector<std::uint8_t> stale_;  ///< per column: to be factored anew
 };
 
 void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
@@ -88,14 +104,46 @@ void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pai
   }
   find_structure(pairs);
   place_values();
+  place_matrix(pairs);
+}
+
+void BlockCholesky::place_matrix(std::span<const std::pair<int, int>> pairs) {
+  const std::size_t n = size_.size();
+  std::vector<std::vector<std::size_t>> pairs_of(n);  // by column
+  const auto column_of = [&](std::size_t k) {
+    return std::min(position_[index(pairs[k].first)], position_[index(pairs[k].second)]);
+  };
+  for (std::size_t k = 0; k < pairs.size(); ++k) pairs_of[column_of(k)].push_back(k);
+  std::vector<std::size_t> place(pairs.size()), by_column(n);
+  std::size_t used = 0;
+  sources_.clear();
+  source_start_.assign(1, 0);
+  const auto add = [&](std::size_t to, int count) {
+    sources_.push_back({used, to, index(count)});
+    used += index(count);
+    return sources_.back().from;
+  };
+  for (std::size_t j = 0; j < n; ++j) {
+    by_column[j] = add(column_value_[j], stride_[j] * size_[j]);
+    for (const std::size_t k : pairs_of[j]) {
+      const std::size_t row = std::max(position_[index(pairs[k].first)], position_[index(pairs[k].second)]);
+      const auto first = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[j]);
+      const auto last = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[j + 1]);
+      const auto entry = static_cast<std::size_t>(std::lower_bound(first, last, row) - rows_.begin());
+      place[k] = add(row_value_[entry], stride_[row] * size_[j]);
+    }
+    source_start_.push_back(sources_.size());
+  }
+  matrix_.assign(used, 0.0);
+  stale_.assign(n, 1);
+  diagonal_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) diagonal_[i] = by_column[position_[i]];
   slots_.clear();
-  for (const auto& [i, j] : pairs) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [i, j] = pairs[k];
     const bool i_below = position_[index(i)] > position_[index(j)];
-    const std::size_t row = position_[index(i_below ? i : j)], column = position_[index(i_below ? j : i)];
-    const auto first = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[column]);
-    const auto last = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[column + 1]);
-    const auto entry = static_cast<std::size_t>(std::lower_bound(first, last, row) - rows_.begin());
-    slots_.push_back({&values_[row_value_[entry]], stride_[row], i_below ? i : j, i_below ? j : i});
+    const std::size_t row = position_[index(i_below ? i : j)];
+    slots_.push_back({&matrix_[place[k]], stride_[row], i_below ? i : j, i_below ? j : i});
   }
 }
 
@@ -163,6 +211,14 @@ void BlockCholesky::place_values() {
   target_.assign(n, nullptr);
 }
 
+void BlockCholesky::load_column(std::size_t j) {
+  const std::size_t end = j + 1 < size_.size() ? column_value_[j + 1] : values_.size();
+  std::fill(values_.begin() + static_cast<std::ptrdiff_t>(column_value_[j]),
+            values_.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+  for (std::size_t k = source_start_[j]; k < source_start_[j + 1]; ++k)
+    std::copy_n(&matrix_[sources_[k].from], sources_[k].count, &values_[sources_[k].to]);
+}
+
 /// A_ij −= Σ_k L_ik L_jkᵀ for all rows i of column j.
 void BlockCholesky::update_column(std::size_t j) {
   target_[j] = &values_[column_value_[j]];
@@ -184,6 +240,10 @@ void BlockCholesky::update_column(std::size_t j) {
 
 bool BlockCholesky::factor() {
   for (std::size_t j = 0; j < size_.size(); ++j) {
+    if (stale_[j] == 0) continue;
+    // What is eliminated later depends on this column through its parent in the elimination tree.
+    if (row_start_[j] < row_start_[j + 1]) stale_[rows_[row_start_[j]]] = 1;
+    load_column(j);
     update_column(j);
     double* diagonal = &values_[column_value_[j]];
     double* inverse = &inverse_[inverse_start_[j]];
@@ -191,6 +251,7 @@ bool BlockCholesky::factor() {
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       solve_right(stride_[rows_[e]] / row_padding, size_[j], diagonal, inverse, &values_[row_value_[e]]);
     }
+    stale_[j] = 0;
   }
   return true;
 }

@@ -25,8 +25,9 @@ struct BlockSlot {
 ///
 ///     analyse(sizes, pairs)   once per pattern
 ///     clear(); add to diagonal(i) (lower triangle) and slot(k); factor(); solve(x)   as often as wanted
+///     add to diagonal(i) and slot(k); touch(i); factor(); solve(x)                   when little has changed
 ///
-/// factor() destroys what was added. solve() may be called any number of times after it.
+/// solve() may be called any number of times after factor().
 class BlockSolver {
  public:
   virtual ~BlockSolver() = default;
@@ -38,6 +39,8 @@ class BlockSolver {
   /// Values of the diagonal block, column by column with stride padded_rows(size).
   [[nodiscard]] virtual double* diagonal(int block) = 0;
   [[nodiscard]] virtual BlockSlot slot(int pair) = 0;
+  /// Says that diagonal(block), or a slot between it and another block that is touched too, changed since factor().
+  virtual void touch(int block) = 0;
   /// False when the matrix is not positive definite.
   [[nodiscard]] virtual bool factor() = 0;
   /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j].

@@ -29,6 +29,7 @@ class Cholmod final : public BlockSolver {
   void clear() override { std::fill(values_.begin(), values_.end(), 0.0); }
   double* diagonal(int block) override { return &values_[diagonal_[static_cast<std::size_t>(block)]]; }
   BlockSlot slot(int pair) override { return slots_[static_cast<std::size_t>(pair)]; }
+  void touch(int) override {}
   bool factor() override;
   void solve(std::span<double> x) override;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 
@@ -63,7 +64,8 @@ class Finder {
   // Pairs whose hulls overlap by more than `least`, widest bound first.
   [[nodiscard]] std::vector<Pair> candidates(double least) const;
   // Connected regions that a pair shares.
-  std::vector<Overlap> regions(const Pair& pair);
+  // Depths up to `least` need not be exact, as long as they are not more.
+  std::vector<Overlap> regions(const Pair& pair, double least);
   [[nodiscard]] double resolution() const { return unit() * resolution_ulps; }
 
  private:
@@ -75,10 +77,11 @@ class Finder {
   [[nodiscard]] GEOSGeometry* geos_ring(const Ring& ring) const;
   const GEOSGeometry* geometry(int block);
   Ring read_ring(const GEOSGeometry* ring) const;
-  void add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur,
+  void add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur, double least,
                    std::vector<Overlap>& found) const;
   [[nodiscard]] double inscribed_width(const GEOSGeometry* polygon) const;
-  [[nodiscard]] Overlap region(const GEOSGeometry* polygon, const Pair& pair, double blur) const;
+  [[nodiscard]] Overlap region(const GEOSGeometry* polygon, const Pair& pair, double blur,
+                               double least) const;
 
   std::span<const Polygon> blocks_;
   Context context_;
@@ -174,7 +177,7 @@ double Finder::inscribed_width(const GEOSGeometry* polygon) const {
   return 2.0 * (length + tolerance);
 }
 
-Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blur) const {
+Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blur, double least) const {
   Polygon piece{read_ring(GEOSGetExteriorRing_r(context_.get(), polygon)), {}};
   const int holes = GEOSGetNumInteriorRings_r(context_.get(), polygon);
   for (int k = 0; k < holes; ++k) {
@@ -192,7 +195,9 @@ Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blu
     // Too thin to be cut up.
   }
   if (std::abs(covered - found.area) > 0.01 * found.area) {
-    found.depth = std::min(found.depth, inscribed_width(polygon));
+    // No disc is larger than the region.
+    found.depth = std::min(found.depth, 2.0 * std::sqrt(found.area / std::numbers::pi));
+    if (found.depth > least) found.depth = std::min(found.depth, inscribed_width(polygon));
   } else if (parts.size() > 1) {
     double widest = 0.0;
     for (const Ring& part : parts) {
@@ -207,20 +212,20 @@ Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blu
   return found;
 }
 
-void Finder::add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur,
+void Finder::add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur, double least,
                          std::vector<Overlap>& found) const {
   const int type = GEOSGeomTypeId_r(context_.get(), geometry);
   if (type == GEOS_POLYGON && GEOSisEmpty_r(context_.get(), geometry) == 0) {
-    found.push_back(region(geometry, pair, blur));
+    found.push_back(region(geometry, pair, blur, least));
   } else if (type == GEOS_MULTIPOLYGON || type == GEOS_GEOMETRYCOLLECTION) {
     const int count = GEOSGetNumGeometries_r(context_.get(), geometry);
     for (int k = 0; k < count; ++k) {
-      add_regions(GEOSGetGeometryN_r(context_.get(), geometry, k), pair, blur, found);
+      add_regions(GEOSGetGeometryN_r(context_.get(), geometry, k), pair, blur, least, found);
     }
   }
 }
 
-std::vector<Overlap> Finder::regions(const Pair& pair) {
+std::vector<Overlap> Finder::regions(const Pair& pair, double least) {
   const GEOSGeometry* a = geometry(pair.a);
   const GEOSGeometry* b = geometry(pair.b);
   double blur = 0.0;
@@ -234,7 +239,7 @@ std::vector<Overlap> Finder::regions(const Pair& pair) {
   }
   std::vector<Overlap> found;
   if (shared) {
-    add_regions(shared.get(), pair, blur, found);
+    add_regions(shared.get(), pair, blur, least, found);
     if (!found.empty() || blur == 0.0) return found;
   }
   Box both = boxes_[static_cast<std::size_t>(pair.a)];
@@ -248,16 +253,18 @@ std::vector<Overlap> Finder::regions(const Pair& pair) {
 
 }  // namespace
 
-Overlap largest_overlap(std::span<const Polygon> blocks) {
+Overlap largest_overlap(std::span<const Polygon> blocks, double least_depth) {
   Finder finder(blocks);
+  const double least = std::max(least_depth, finder.resolution());
   Overlap largest;
-  for (const Pair& pair : finder.candidates(finder.resolution())) {
-    if (pair.bound <= largest.depth) break;
-    for (const Overlap& found : finder.regions(pair)) {
-      if (found.depth > largest.depth) largest = found;
+  for (const Pair& pair : finder.candidates(least)) {
+    const double exceeded = std::max(least, largest.depth);
+    if (pair.bound <= exceeded) break;
+    for (const Overlap& found : finder.regions(pair, exceeded)) {
+      if (found.depth > std::max(least, largest.depth)) largest = found;
     }
   }
-  return largest.depth > finder.resolution() ? largest : Overlap{};
+  return largest;
 }
 
 std::vector<Overlap> all_overlaps(std::span<const Polygon> blocks, double least_depth) {
@@ -265,7 +272,7 @@ std::vector<Overlap> all_overlaps(std::span<const Polygon> blocks, double least_
   const double least = std::max(least_depth, finder.resolution());
   std::vector<Overlap> all;
   for (const Pair& pair : finder.candidates(least)) {
-    for (const Overlap& found : finder.regions(pair)) {
+    for (const Overlap& found : finder.regions(pair, least)) {
       if (found.depth > least) all.push_back(found);
     }
   }

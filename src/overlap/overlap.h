@@ -17,7 +17,7 @@ struct Overlap {
   double area = 0.0;  ///< m² of the region
 };
 
-/// The deepest overlap of any two of `blocks`.
+/// The deepest overlap of any two of `blocks`, if it is deeper than `least_depth` (m, ≥ 0).
 ///
 /// The depth of a region is its smallest width: the shortest way to push the two polygons apart there, if nothing
 /// else is near. A region that is not convex, such as the L along both faces of a corner or the ring around an island
@@ -30,7 +30,7 @@ struct Overlap {
 /// Polygons that cross themselves are read by the even-odd rule. Where no exact intersection can be had, the
 /// upper bound is returned as the depth: an overlap may be overstated then, but never lost.
 /// The same input gives the same bits.
-Overlap largest_overlap(std::span<const Polygon> blocks);
+Overlap largest_overlap(std::span<const Polygon> blocks, double least_depth = 0.0);
 
 /// All overlaps deeper than `least_depth` (m, ≥ 0), deepest first.
 std::vector<Overlap> all_overlaps(std::span<const Polygon> blocks, double least_depth);

@@ -160,12 +160,12 @@ HistoryRow Recorder::history(const dynamics::State& state) const {
   return row;
 }
 
-double Recorder::overlap() const {
+double Recorder::overlap(double least_depth) const {
   std::vector<Polygon> polygons;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (model_.surface.present[b]) polygons.push_back(deformed_polygon(model_, b));
   }
-  return overlap::largest_overlap(polygons).depth;
+  return overlap::largest_overlap(polygons, least_depth).depth;
 }
 
 double Recorder::area_change(const dynamics::State& state) const {

@@ -19,8 +19,8 @@ class Recorder {
   [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
                                       int stage) const;
   [[nodiscard]] HistoryRow history(const dynamics::State& state) const;
-  /// Largest true overlap of any two blocks, m.
-  [[nodiscard]] double overlap() const;
+  /// Largest true overlap of any two blocks that exceeds `least_depth`, m; else 0.
+  [[nodiscard]] double overlap(double least_depth) const;
   /// Largest relative change of area of a block.
   [[nodiscard]] double area_change(const dynamics::State& state) const;
 

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/profile.h"
 #include "dynamics/step.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
@@ -57,7 +58,7 @@ class Runner {
         gauge_(setup, model_),
         recorder_(setup, model_, gauge_, team_.size()),
         orders_(setup),
-        stepper_(std::in_place, model_, team_) {}
+        stepper_(std::in_place, model_, team_, profile_) {}
 
   RunRecord run();
 
@@ -84,6 +85,7 @@ class Runner {
   const RunOptions& options_;
   RunObserver& observer_;
   ThreadTeam team_;
+  Profile profile_;
   dynamics::Model model_;
   DamageGauge gauge_;
   Recorder recorder_;
@@ -146,7 +148,7 @@ void Runner::resume() {
 }
 
 void Runner::orders_changed() {
-  stepper_.emplace(model_, team_);
+  stepper_.emplace(model_, team_, profile_);
   stepper_->resume(now_.mechanics);
   recorder_.orders_changed();
 }
@@ -173,7 +175,8 @@ void Runner::record_frame() {
 }
 
 void Runner::check_overlap() {
-  now_.record.max_overlap = std::max(now_.record.max_overlap, recorder_.overlap());
+  now_.record.max_overlap =
+      std::max(now_.record.max_overlap, recorder_.overlap(now_.record.max_overlap));
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 
@@ -189,6 +192,7 @@ void Runner::checkpoint() {
 /// What follows every step, static or dynamic: statistics, records that are due, progress.
 void Runner::after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio,
                         double fraction) {
+  const Profile::Scope scope(profile_, Phase::output);
   ++now_.stage_step;
   now_.iterations += report.iterations;
   stage_iterations_ += report.iterations;
@@ -361,6 +365,7 @@ RunRecord Runner::run() {
     throw;
   }
   finish();
+  for (std::size_t k = 0; k < phase_count; ++k) { const auto& e = profile_[static_cast<Phase>(k)]; fmt::print(stderr, "{:14} {:8.3f} s {:8} {:8.4f} ms/step\n", phase_names[k], e.seconds, e.count, 1e3*e.seconds/double(now_.record.steps)); }
   return now_.record;
 }
 

@@ -63,7 +63,7 @@ struct Simulator {
       : model(build_model(scene.setup)),
         state(initial_state(scene.setup, model)),
         team(threads),
-        stepper(model, team) {
+        stepper(model, team, profile) {
     stepper.start(state);
     initial_energy = energy();
   }
@@ -98,6 +98,7 @@ struct Simulator {
   dynamics::Model model;
   dynamics::State state;
   ThreadTeam team;
+  Profile profile;
   dynamics::Stepper stepper;
   double initial_energy = 0.0;
   long unconverged = 0, retried = 0, iterations = 0;

@@ -48,26 +48,30 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
     d[k] = 1e-7 * uniform(random);
     direction[k] = uniform(random);
   }
-  const auto gradient = [&](double step, std::vector<StepProblem::Active>* active) {
+  std::vector<Vec2> r;
+  const auto gradient = [&](double step) {
     std::vector<double> x = d, g(d.size());
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += step * direction[k];
-    std::vector<Vec2> r;
-    for (const StepProblem::Row& row : problem.rows()) {
-      r.push_back(problem.relative(row, x));
-      if (active != nullptr) active->push_back(StepProblem::active(row, r.back()));
-    }
+    r.clear();
+    for (const StepProblem::Row& row : problem.rows()) r.push_back(problem.relative(row, x));
     problem.gradient(x, r, g);
     return g;
   };
-  std::vector<StepProblem::Active> active;
-  gradient(0.0, &active);
   const double h = 1e-11;
-  const std::vector<double> up = gradient(h, nullptr), down = gradient(-h, nullptr);
+  const std::vector<double> up = gradient(h), down = gradient(-h);
+  gradient(0.0);
 
   // K direction, by solving: K⁻¹ (∂g · direction) must give the direction back.
   const auto solver = linalg::make_block_cholesky();
   solver->analyse(sizes, pairs);
-  problem.assemble(active, *solver);
+  problem.assemble(*solver);
+  for (std::size_t c = 0; c < problem.rows().size(); ++c) {
+    const StepProblem::Row& row = problem.rows()[c];
+    const bool closed = row.spring.closed(row.depth(r[c])),
+               held = row.spring.locked(row.shear(r[c])) && row.spring.bound() > 0.0;
+    problem.add_springs(row, closed ? row.spring.normal_stiffness() : 0.0,
+                        held ? row.spring.shear_stiffness() : 0.0, *solver);
+  }
   ASSERT_TRUE(solver->factor());
   std::vector<double> x(s.model.unknowns);
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = (up[k] - down[k]) / (2 * h);

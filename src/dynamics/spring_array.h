@@ -1,0 +1,89 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "contact/law.h"
+
+namespace keyblock::dynamics {
+
+/// The springs of all contacts of a step, by component: what an open-close iteration reads of them and how far they are
+/// stretched. Normal and shear spring of contact c give
+///
+///     N = k_n y  where y > floor, else 0          T = clamp(k_s w, ±bound)
+///
+/// with penetration y and shear displacement w, and floor −∞ for a bond, which also pulls.
+class SpringArray {
+ public:
+  enum class Shear : std::int8_t { backward = -1, held = 0, forward = 1, none = 2 };
+  /// The piece of the two piecewise linear laws that a contact is on.
+  struct Piece {
+    bool closed = false;        ///< the normal spring acts
+    Shear shear = Shear::none;  ///< held: the shear spring acts; forward, backward: at the bound; none: T = 0
+    /// Whether the same springs act.
+    [[nodiscard]] bool same_springs(Piece other) const {
+      return closed == other.closed && (shear == Shear::held) == (other.shear == Shear::held);
+    }
+    friend bool operator==(Piece, Piece) = default;
+  };
+  /// N and T.
+  struct Force {
+    double normal = 0.0, shear = 0.0;
+    [[nodiscard]] bool is_zero() const { return normal == 0.0 && shear == 0.0; }
+    friend Force operator-(Force a, Force b) { return {a.normal - b.normal, a.shear - b.shear}; }
+  };
+
+  void resize(std::size_t n) {
+    for (std::vector<double>* v : {&kn, &ks, &bound, &floor, &y, &w, &dy, &dw}) v->resize(n);
+    piece.resize(n);
+  }
+  [[nodiscard]] std::size_t size() const { return kn.size(); }
+
+  /// Takes over a spring at penetration y and shear displacement w.
+  void set(std::size_t c, const contact::Spring& spring, double penetration, double shear) {
+    kn[c] = spring.normal_stiffness();
+    ks[c] = spring.shear_stiffness();
+    y[c] = penetration;
+    w[c] = shear;
+    set_law(c, spring);
+  }
+  /// What changes in the course of a step: bound and bond.
+  void set_law(std::size_t c, const contact::Spring& spring) {
+    bound[c] = spring.bound();
+    floor[c] = spring.tensile() ? -HUGE_VAL : 0.0;
+  }
+
+  [[nodiscard]] Piece piece_at(std::size_t c, double penetration, double displacement) const {
+    const double elastic = ks[c] * displacement;
+    return {penetration > floor[c], bound[c] <= 0.0       ? Shear::none
+                                    : elastic > bound[c]  ? Shear::forward
+                                    : elastic < -bound[c] ? Shear::backward
+                                                          : Shear::held};
+  }
+  [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
+    return {penetration > floor[c] ? kn[c] * penetration : 0.0,
+            std::clamp(ks[c] * displacement, -bound[c], bound[c])};
+  }
+  [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
+  /// On the straight line that goes on from a piece.
+  [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {
+    return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
+                                                  : p.shear == Shear::none
+                                                      ? 0.0
+                                                      : static_cast<int>(p.shear) * bound[c]};
+  }
+  /// Stiffness of a piece.
+  [[nodiscard]] double normal_stiffness(std::size_t c, Piece p) const { return p.closed ? kn[c] : 0.0; }
+  [[nodiscard]] double shear_stiffness(std::size_t c, Piece p) const {
+    return p.shear == Shear::held ? ks[c] : 0.0;
+  }
+
+  std::vector<double> kn, ks;        ///< N/m per thickness
+  std::vector<double> bound, floor;  ///< N per thickness; m
+  std::vector<double> y, w;          ///< m, now
+  std::vector<double> dy, dw;        ///< m, of the direction of search
+  std::vector<Piece> piece;          ///< of (y, w)
+};
+
+}  // namespace keyblock::dynamics
