@@ -52,6 +52,10 @@ class BlockCholesky final : public BlockSolver {
   void place_matrix(std::span<const std::pair<int, int>> pairs);
   void load_column(std::size_t j);
   void update_column(std::size_t j);
+  template <int columns>
+  int gather(std::size_t j, int c);
+  template <int columns>
+  int finish(std::size_t j, int c);
 
   // Column j of the factor has its diagonal block first, then rows_[row_start_[j] … row_start_[j+1]),
   // ascending.
@@ -59,19 +63,18 @@ class BlockCholesky final : public BlockSolver {
   std::vector<int> size_, stride_;      ///< per column
   std::vector<std::size_t> row_start_;  ///< per column, into rows_ and row_value_
   std::vector<std::size_t> rows_;
-  std::vector<std::size_t> row_value_;      ///< per row entry, into values_
-  std::vector<std::size_t> column_value_;   ///< per column: the diagonal block, into values_
-  std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_
+  std::vector<std::size_t> row_value_;     ///< per row entry, into values_
+  std::vector<std::size_t> column_value_;  ///< per column: the diagonal block, into values_
   struct Update {
     std::size_t column;  ///< k < j with a block in row j
     std::size_t entry;   ///< that block, into rows_
   };
   std::vector<std::size_t> update_start_;  ///< per column, into updates_
   std::vector<Update> updates_;
-  std::vector<double> values_, inverse_;
+  std::vector<double> values_;       ///< diagonal blocks are L_jj⁻¹
   std::vector<std::size_t> offset_;  ///< per column: start of its unknowns in x, as the caller orders them
-  std::vector<std::size_t> work_start_;  ///< per column: start in work_, padded
-  std::vector<double> work_;
+  std::vector<std::size_t> work_start_;        ///< per column: start in work_, padded
+  std::vector<double> work_, solved_, scale_;  ///< scratch; the last two of one block
   std::vector<double*> target_;  ///< scratch of update_column: row → block of the column at hand
   // The matrix itself: diagonal blocks, and below them the blocks of the pattern, column by column.
   struct Source {
@@ -188,17 +191,14 @@ void BlockCholesky::find_structure(std::span<const std::pair<int, int>> pairs) {
 
 void BlockCholesky::place_values() {
   const std::size_t n = size_.size();
-  std::size_t value = 0, inverse = 0, work = 0;
+  std::size_t value = 0, work = 0;
   column_value_.resize(n);
-  inverse_start_.resize(n);
   work_start_.resize(n);
   row_value_.resize(rows_.size());
   for (std::size_t j = 0; j < n; ++j) {
     column_value_[j] = value;
-    inverse_start_[j] = inverse;
     work_start_[j] = work;
     value += index(stride_[j] * size_[j]);
-    inverse += index(size_[j]);
     work += index(stride_[j]);
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       row_value_[e] = value;
@@ -206,7 +206,9 @@ void BlockCholesky::place_values() {
     }
   }
   values_.assign(value, 0.0);
-  inverse_.assign(inverse, 0.0);
+  const std::size_t largest = n == 0 ? 0 : index(*std::max_element(stride_.begin(), stride_.end()));
+  solved_.assign(largest, 0.0);
+  scale_.assign(largest, 0.0);
   work_.assign(work, 0.0);
   target_.assign(n, nullptr);
 }
@@ -230,9 +232,10 @@ void BlockCholesky::update_column(std::size_t j) {
       const std::size_t i = rows_[e];
       const double* l_ik = &values_[row_value_[e]];
       if (size_[j] == 6 && size_[k] == 6 && size_[i] == 6) {
-        subtract_product_6(l_ik, l_jk, target_[i]);
+        subtract_block_product_6(l_ik, l_jk, target_[i]);
       } else {
-        subtract_product(stride_[i] / row_padding, size_[j], size_[k], l_ik, l_jk, stride_[j], target_[i]);
+        subtract_block_product(stride_[i] / row_padding, size_[j], size_[k], l_ik, l_jk, stride_[j],
+                               target_[i]);
       }
     }
   }
@@ -245,15 +248,41 @@ bool BlockCholesky::factor() {
     if (row_start_[j] < row_start_[j + 1]) stale_[rows_[row_start_[j]]] = 1;
     load_column(j);
     update_column(j);
-    double* diagonal = &values_[column_value_[j]];
-    double* inverse = &inverse_[inverse_start_[j]];
-    if (!factor_dense(size_[j], diagonal, inverse)) return false;
+    double* inverse = &values_[column_value_[j]];
+    if (!invert_factor(size_[j], inverse, scale_.data())) return false;
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-      solve_right(stride_[rows_[e]] / row_padding, size_[j], diagonal, inverse, &values_[row_value_[e]]);
+      if (size_[j] == 6 && size_[rows_[e]] == 6) {
+        multiply_right_6(inverse, &values_[row_value_[e]]);
+      } else {
+        multiply_right(stride_[rows_[e]] / row_padding, size_[j], inverse, &values_[row_value_[e]]);
+      }
     }
     stale_[j] = 0;
   }
   return true;
+}
+
+/// y − Σ_i L_ijᵀ x_i for some unknowns of column j, from c on. Returns their number.
+template <int columns>
+int BlockCholesky::gather(std::size_t j, int c) {
+  Lanes t[columns]{};
+  for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+    const std::size_t i = rows_[e];
+    add_lane_products(stride_[i] / row_padding, &values_[row_value_[e] + index(c * stride_[i])],
+                      &work_[work_start_[i]], t);
+  }
+  for (int k = 0; k < columns; ++k) solved_[index(c + k)] = work_[work_start_[j] + index(c + k)] - sum(t[k]);
+  return columns;
+}
+
+/// L_jj⁻ᵀ y likewise.
+template <int columns>
+int BlockCholesky::finish(std::size_t j, int c) {
+  Lanes t[columns]{};
+  add_lane_products(stride_[j] / row_padding, &values_[column_value_[j] + index(c * stride_[j])],
+                    &work_[work_start_[j]], t);
+  for (int k = 0; k < columns; ++k) solved_[index(c + k)] = sum(t[k]);
+  return columns;
 }
 
 void BlockCholesky::solve(std::span<double> x) {
@@ -263,12 +292,15 @@ void BlockCholesky::solve(std::span<double> x) {
   }
   for (std::size_t j = 0; j < n; ++j) {
     double* y = &work_[work_start_[j]];
-    const double* l = &values_[column_value_[j]];
-    const double* inverse = &inverse_[inverse_start_[j]];
-    for (int c = 0; c < size_[j]; ++c) {
-      y[c] *= inverse[c];
-      for (int r = c + 1; r < size_[j]; ++r) y[r] -= l[c * stride_[j] + r] * y[c];
+    const double* inverse = &values_[column_value_[j]];
+    const int lanes = stride_[j] / row_padding;
+    for (int l = 0; l < lanes; ++l) {
+      Lanes t{};
+      for (int c = 0; c < size_[j]; ++c)
+        t = add_product(load(inverse + c * stride_[j] + l * row_padding), broadcast(y[c]), t);
+      store(&solved_[index(l * row_padding)], t);
     }
+    std::copy_n(solved_.data(), stride_[j], y);
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       const std::size_t i = rows_[e];
       subtract_times(stride_[i] / row_padding, size_[j], &values_[row_value_[e]], y, &work_[work_start_[i]]);
@@ -276,17 +308,10 @@ void BlockCholesky::solve(std::span<double> x) {
   }
   for (std::size_t j = n; j-- > 0;) {
     double* y = &work_[work_start_[j]];
-    const double* l = &values_[column_value_[j]];
-    const double* inverse = &inverse_[inverse_start_[j]];
-    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-      const std::size_t i = rows_[e];
-      subtract_transposed_times(stride_[i] / row_padding, size_[j], &values_[row_value_[e]],
-                                &work_[work_start_[i]], y);
-    }
-    for (int c = size_[j] - 1; c >= 0; --c) {
-      for (int r = c + 1; r < size_[j]; ++r) y[c] -= l[c * stride_[j] + r] * y[r];
-      y[c] *= inverse[c];
-    }
+    for (int c = 0; c < size_[j];) c += size_[j] - c >= 6 ? gather<6>(j, c) : gather<1>(j, c);
+    std::copy_n(solved_.data(), size_[j], y);
+    for (int c = 0; c < size_[j];) c += size_[j] - c >= 6 ? finish<6>(j, c) : finish<1>(j, c);
+    std::copy_n(solved_.data(), size_[j], y);
   }
   for (std::size_t j = 0; j < n; ++j) {
     std::copy_n(&work_[work_start_[j]], size_[j], x.begin() + static_cast<std::ptrdiff_t>(offset_[j]));

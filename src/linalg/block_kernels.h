@@ -1,10 +1,15 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
+
+#if defined(__AVX512F__) || defined(__FMA__)
+#include <immintrin.h>
+#endif
 
 #include "linalg/block_solver.h"
 
-/// Dense kernels on blocks stored by columns with padded rows. Every lane is computed on its own and sums run
-/// in a fixed order, so that any instruction set gives the same bits.
+/// Dense kernels on blocks stored by columns with padded rows, the padding zero. Every lane is computed on its own, sums run in
+/// a fixed order and products are fused with sums by name, so that any instruction set gives the same bits.
 namespace keyblock::linalg {
 
 using Lanes = double __attribute__((vector_size(row_padding * sizeof(double)), aligned(8)));
@@ -15,86 +20,177 @@ inline Lanes load(const double* p) {
 inline void store(double* p, Lanes v) {
   *reinterpret_cast<Lanes*>(p) = v;
 }
+inline Lanes broadcast(double x) {
+  return Lanes{x, x, x, x, x, x, x, x};
+}
 
-/// C −= A Bᵀ; A: rows × k, B: columns × k, C: rows × columns; `lanes` registers per column of A and C.
-inline void subtract_product(int lanes, int columns, int k, const double* a, const double* b, int b_stride,
-                             double* c) {
-  const int stride = lanes * row_padding;
-  for (int l = 0; l < lanes; ++l) {
-    const double* a_lane = a + l * row_padding;
-    double* c_lane = c + l * row_padding;
+/// c + a b, rounded once.
+inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
+#if defined(__AVX512F__)
+  return _mm512_fmadd_pd(a, b, c);
+#elif defined(__FMA__)
+  using Half = double __attribute__((vector_size(row_padding / 2 * sizeof(double))));
+  const auto low = [](Lanes v) { return Half{v[0], v[1], v[2], v[3]}; };
+  const auto high = [](Lanes v) { return Half{v[4], v[5], v[6], v[7]}; };
+  const Half x = _mm256_fmadd_pd(low(a), low(b), low(c)), y = _mm256_fmadd_pd(high(a), high(b), high(c));
+  return Lanes{x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3]};
+#else
+  for (int k = 0; k < row_padding; ++k) c[k] = std::fma(a[k], b[k], c[k]);
+  return c;
+#endif
+}
+/// c − a b, rounded once.
+inline Lanes subtract_product(Lanes a, Lanes b, Lanes c) {
+  return add_product(-a, b, c);
+}
+
+inline double sum(Lanes v) {
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+
+/// C −= A Bᵀ for `lanes` registers of rows and `columns` columns of C, all held in registers; A: rows × k, B: columns × k.
+template <int lanes, int columns>
+void subtract_tile(int k, const double* a, int a_stride, const double* b, int b_stride, double* c,
+                   int c_stride) {
+  Lanes t[columns][lanes];
+#pragma GCC unroll 8
+  for (int j = 0; j < columns; ++j) {
+#pragma GCC unroll 4
+    for (int l = 0; l < lanes; ++l) t[j][l] = load(c + j * c_stride + l * row_padding);
+  }
+  for (int q = 0; q < k; ++q) {
+    Lanes x[lanes];
+#pragma GCC unroll 4
+    for (int l = 0; l < lanes; ++l) x[l] = -load(a + q * a_stride + l * row_padding);
+#pragma GCC unroll 8
     for (int j = 0; j < columns; ++j) {
-      Lanes sum = load(c_lane + j * stride);
-      for (int q = 0; q < k; ++q) sum -= load(a_lane + q * stride) * b[q * b_stride + j];
-      store(c_lane + j * stride, sum);
+      const Lanes y = broadcast(b[q * b_stride + j]);
+#pragma GCC unroll 4
+      for (int l = 0; l < lanes; ++l) t[j][l] = add_product(x[l], y, t[j][l]);
     }
   }
-}
-
-/// The same for blocks of order 1 (6 × 6 unknowns), all dimensions known.
-inline void subtract_product_6(const double* a, const double* b, double* c) {
-  const Lanes a0 = load(a), a1 = load(a + 8), a2 = load(a + 16), a3 = load(a + 24), a4 = load(a + 32),
-              a5 = load(a + 40);
-  for (int j = 0; j < 6; ++j) {
-    Lanes sum = load(c + 8 * j);
-    sum -= a0 * b[j];
-    sum -= a1 * b[8 + j];
-    sum -= a2 * b[16 + j];
-    sum -= a3 * b[24 + j];
-    sum -= a4 * b[32 + j];
-    sum -= a5 * b[40 + j];
-    store(c + 8 * j, sum);
+#pragma GCC unroll 8
+  for (int j = 0; j < columns; ++j) {
+#pragma GCC unroll 4
+    for (int l = 0; l < lanes; ++l) store(c + j * c_stride + l * row_padding, t[j][l]);
   }
 }
 
-/// A = L Lᵀ in place (lower triangle), with 1/L_jj in `inverse`. False when a pivot is not positive.
-inline bool factor_dense(int n, double* a, double* inverse) {
+/// C −= A Bᵀ of blocks: A: rows × k, B: columns × k, C: rows × columns; `lanes` registers per column of A and C.
+inline void subtract_block_product(int lanes, int columns, int k, const double* a, const double* b,
+                                   int b_stride, double* c) {
+  const int stride = lanes * row_padding;
+  const auto rows = [&]<int width>(int j) {
+    const double* b_j = b + j;
+    double* c_j = c + j * stride;
+    int l = 0;
+    for (; l + 4 <= lanes; l += 4)
+      subtract_tile<4, width>(k, a + l * row_padding, stride, b_j, b_stride, c_j + l * row_padding, stride);
+    const double* a_l = a + l * row_padding;
+    double* c_l = c_j + l * row_padding;
+    if (lanes - l == 1) subtract_tile<1, width>(k, a_l, stride, b_j, b_stride, c_l, stride);
+    if (lanes - l == 2) subtract_tile<2, width>(k, a_l, stride, b_j, b_stride, c_l, stride);
+    if (lanes - l == 3) subtract_tile<3, width>(k, a_l, stride, b_j, b_stride, c_l, stride);
+  };
+  int j = 0;
+  for (; j + 6 <= columns; j += 6) rows.template operator()<6>(j);
+  for (; j + 2 <= columns; j += 2) rows.template operator()<2>(j);
+  if (j < columns) rows.template operator()<1>(j);
+}
+
+/// The same for blocks of order 1 (6 × 6 unknowns).
+inline void subtract_block_product_6(const double* a, const double* b, double* c) {
+  subtract_tile<1, 6>(6, a, row_padding, b, row_padding, c, row_padding);
+}
+
+/// Replaces a symmetric positive definite block A = L Lᵀ (lower triangle) by L⁻¹ (its upper triangle zero). False when a pivot is
+/// not positive. By A = U D Uᵀ, U with a diagonal of ones: then no root is waited for.
+inline bool invert_factor(int n, double* a, double* scale) {
   const int stride = padded_rows(n);
   for (int j = 0; j < n; ++j) {
-    double* column = a + j * stride;
+    const double* column = a + j * stride;
     if (!(column[j] > 0.0)) return false;
-    const double pivot = std::sqrt(column[j]);
-    inverse[j] = 1.0 / pivot;
-    column[j] = pivot;
-    for (int i = j + 1; i < n; ++i) column[i] *= inverse[j];
+    const double inverse = 1.0 / column[j];
+    scale[j] = inverse;
     for (int q = j + 1; q < n; ++q) {
+      const Lanes factor = broadcast(column[q] * inverse);
       double* target = a + q * stride;
-      for (int i = q; i < n; ++i) target[i] -= column[i] * column[q];
+      for (int l = q / row_padding * row_padding; l < stride; l += row_padding)
+        store(target + l, subtract_product(load(column + l), factor, load(target + l)));
     }
+  }
+  // Columns of U below the diagonal; then U⁻¹ in place, column by column from the right.
+  for (int j = 0; j < n; ++j) {
+    double* column = a + j * stride;
+    for (int i = 0; i < j; ++i) column[i] = 0.0;
+    for (int i = j + 1; i < n; ++i) column[i] *= scale[j];
+    column[j] = 1.0;
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    double* column = a + j * stride;
+    for (int q = n - 1; q > j; --q) {
+      const double u = column[q];
+      const Lanes factor = broadcast(u);
+      // Column q of U⁻¹ begins with a one in row q.
+      column[q] = 0.0;
+      for (int l = q / row_padding * row_padding; l < stride; l += row_padding)
+        store(column + l, subtract_product(load(a + q * stride + l), factor, load(column + l)));
+    }
+  }
+  for (int i = 0; i < n; ++i) scale[i] = std::sqrt(scale[i]);
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i < n; ++i) a[j * stride + i] *= scale[i];
   }
   return true;
 }
 
-/// X ← X L⁻ᵀ for a block X of `lanes` registers per column.
-inline void solve_right(int lanes, int n, const double* l, const double* inverse, double* x) {
+/// X ← X L⁻ᵀ for a block X of `lanes` registers per column; inverse: L⁻¹ by columns.
+inline void multiply_right(int lanes, int n, const double* inverse, double* x) {
   const int stride = lanes * row_padding, l_stride = padded_rows(n);
   for (int lane = 0; lane < lanes; ++lane) {
     double* x_lane = x + lane * row_padding;
-    for (int j = 0; j < n; ++j) {
-      Lanes sum = load(x_lane + j * stride);
-      for (int q = 0; q < j; ++q) sum -= load(x_lane + q * stride) * l[q * l_stride + j];
-      store(x_lane + j * stride, sum * inverse[j]);
+    for (int j = n - 1; j >= 0; --j) {
+      Lanes t = load(x_lane + j * stride) * inverse[j * l_stride + j];
+      for (int q = 0; q < j; ++q)
+        t = add_product(load(x_lane + q * stride), broadcast(inverse[q * l_stride + j]), t);
+      store(x_lane + j * stride, t);
     }
   }
+}
+inline void multiply_right_6(const double* inverse, double* x) {
+  Lanes column[6];
+#pragma GCC unroll 6
+  for (int q = 0; q < 6; ++q) column[q] = load(x + q * row_padding);
+#pragma GCC unroll 6
+  for (int j = 5; j >= 0; --j) {
+    column[j] = column[j] * inverse[j * row_padding + j];
+#pragma GCC unroll 6
+    for (int q = 0; q < j; ++q)
+      column[j] = add_product(column[q], broadcast(inverse[q * row_padding + j]), column[j]);
+  }
+#pragma GCC unroll 6
+  for (int q = 0; q < 6; ++q) store(x + q * row_padding, column[q]);
 }
 
 /// y −= A x.
 inline void subtract_times(int lanes, int columns, const double* a, const double* x, double* y) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
-    Lanes sum = load(y + l * row_padding);
-    for (int j = 0; j < columns; ++j) sum -= load(a + j * stride + l * row_padding) * x[j];
-    store(y + l * row_padding, sum);
+    Lanes t = load(y + l * row_padding);
+    for (int j = 0; j < columns; ++j)
+      t = subtract_product(load(a + j * stride + l * row_padding), broadcast(x[j]), t);
+    store(y + l * row_padding, t);
   }
 }
 
-/// y −= Aᵀ x.
-inline void subtract_transposed_times(int lanes, int columns, const double* a, const double* x, double* y) {
+/// t_j += A_j ∘ x, the products of column j of A with x lane by lane; their sum is (Aᵀ x)_j. As many columns as t has.
+template <int columns>
+void add_lane_products(int lanes, const double* a, const double* x, Lanes (&t)[columns]) {
   const int stride = lanes * row_padding;
-  for (int j = 0; j < columns; ++j) {
-    Lanes sum = load(a + j * stride) * load(x);
-    for (int l = 1; l < lanes; ++l) sum += load(a + j * stride + l * row_padding) * load(x + l * row_padding);
-    y[j] -= ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+  for (int l = 0; l < lanes; ++l) {
+    const Lanes v = load(x + l * row_padding);
+#pragma GCC unroll 8
+    for (int j = 0; j < columns; ++j) t[j] = add_product(load(a + j * stride + l * row_padding), v, t[j]);
   }
 }
 
