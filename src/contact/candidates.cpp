@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace keyblock::contact {
 
@@ -47,11 +48,12 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, s
     }
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
-  if (any) look_at(surface, dirty, list);
-  return any;
+  return any && look_at(surface, dirty, list);
 }
 
 namespace {
+
+constexpr std::size_t few = 32;
 
 /// Cells of equal size over all boxes; finds the boxes that overlap a given one.
 class Grid {
@@ -135,20 +137,29 @@ class Grid {
 
 }  // namespace
 
-void Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
+bool Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
                          std::vector<Candidate>& list) const {
-  const auto is_dirty = [&](int vertex) {
-    return dirty[static_cast<std::size_t>(surface.block[static_cast<std::size_t>(vertex)])] != 0;
-  };
-  std::vector<Candidate> kept, old, found;
-  for (const Candidate& c : list) (is_dirty(c.vertex) || is_dirty(c.edge) ? old : kept).push_back(c);
-
-  const Grid grid(box_, surface.present);
+  std::vector<int> looking;
+  for (int b = 0; b < surface.blocks(); ++b) {
+    if (dirty[static_cast<std::size_t>(b)] && surface.present[static_cast<std::size_t>(b)])
+      looking.push_back(b);
+  }
+  std::vector<Candidate> found;
   std::vector<int> neighbours;
-  for (int a = 0; a < surface.blocks(); ++a) {
+  // A grid over all boxes is worth building for many; a few blocks are compared with all others sooner.
+  std::optional<Grid> grid;
+  if (looking.size() > few) grid.emplace(box_, surface.present);
+  for (const int a : looking) {
     const auto ia = static_cast<std::size_t>(a);
-    if (!dirty[ia] || !surface.present[ia]) continue;
-    grid.query(a, neighbours);
+    if (grid) {
+      grid->query(a, neighbours);
+    } else {
+      neighbours.clear();
+      for (std::size_t b = 0; b < box_.size(); ++b) {
+        if (b != ia && surface.present[b] && box_[b].overlaps(box_[ia]))
+          neighbours.push_back(static_cast<int>(b));
+      }
+    }
     for (const int b : neighbours) {
       const auto ib = static_cast<std::size_t>(b);
       if (dirty[ib] && b < a) continue;  // done from the other side
@@ -161,6 +172,25 @@ void Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> d
     return key(surface, x) < key(surface, y);
   };
   std::sort(found.begin(), found.end(), before);
+  const auto is_old = [&](const Candidate& c) {
+    const auto is_dirty = [&](int vertex) {
+      return dirty[static_cast<std::size_t>(surface.block[static_cast<std::size_t>(vertex)])] != 0;
+    };
+    return is_dirty(c.vertex) || is_dirty(c.edge);
+  };
+  // A block that moves through the air, or shifts a little among its neighbours, leaves the list as it is.
+  std::size_t same = 0;
+  bool changed = false;
+  for (std::size_t k = 0; k < list.size() && !changed; ++k) {
+    if (!is_old(list[k])) continue;
+    changed =
+        same == found.size() || found[same].vertex != list[k].vertex || found[same].edge != list[k].edge;
+    ++same;
+  }
+  if (!changed && same == found.size()) return false;
+
+  std::vector<Candidate> kept, old;
+  for (const Candidate& c : list) (is_old(c) ? old : kept).push_back(c);
   auto memory = old.begin();
   for (Candidate& c : found) {
     while (memory != old.end() && before(*memory, c)) ++memory;
@@ -168,6 +198,7 @@ void Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> d
   }
   list.resize(kept.size() + found.size());
   std::merge(kept.begin(), kept.end(), found.begin(), found.end(), list.begin(), before);
+  return true;
 }
 
 /// Vertices of a near edges of b.

@@ -10,8 +10,11 @@ namespace keyblock::contact {
 
 enum class State : std::uint8_t { open = 0, sliding = 1, locked = 2 };
 
-/// What a contact remembers from step to step.
+/// What a contact remembers from step to step; of one that took no part in the last step, the slip alone.
 struct Memory {
+  State state = State::open;
+  bool tracked = false;  ///< took part in the last step
+  bool bonded = false;   ///< in place, with cohesion and tension not yet broken
   double offset =
       0.0;  ///< m, subtracted from the penetration: a contact born penetrated does not push that out;
             ///< negative: the closure of a joint that carries in-situ stress
@@ -25,9 +28,6 @@ struct Memory {
   double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
   double stored = 0.0;      ///< J per thickness, elastic energy of the springs
   double slip = 0.0;        ///< m, shear displacement since the slip was last set to zero
-  State state = State::open;
-  bool tracked = false;  ///< took part in the last step
-  bool bonded = false;   ///< in place, with cohesion and tension not yet broken
 };
 
 /// A vertex near an edge of another block.
@@ -47,7 +47,7 @@ class Candidates {
   explicit Candidates(const Tolerances& tolerances) : tolerances_(tolerances) {}
 
   /// Brings `list` up to date; memory of candidates that stay is kept. reach[b]: m, bound on the motion of block b in the
-  /// coming step. Returns true when the list may have changed.
+  /// coming step. Returns true when the list has changed.
   bool update(const Surface& surface, std::span<const double> reach, std::vector<Candidate>& list);
   /// Forgets the positions at which blocks were looked at: all are looked at anew in the next update.
   void invalidate() { looked_at_.clear(); }
@@ -58,7 +58,7 @@ class Candidates {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
   static Key key(const Surface& surface, const Candidate& c);
-  void look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
+  bool look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
                std::vector<Candidate>& list) const;
   void collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const;
 

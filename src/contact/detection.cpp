@@ -30,20 +30,28 @@ double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 nor
 
 }  // namespace
 
-bool Detection::evaluate(const Surface& surface, std::span<const double> reach, int candidate,
-                         const Candidate& c, Contact& contact, Member& member) const {
-  const int end = surface.next[at(c.edge)];
-  const Vec2 a = surface.position[at(c.edge)], b = surface.position[at(end)],
-             v = surface.position[at(c.vertex)];
-  const double length = norm(b - a);
-  const Vec2 tangent = (b - a) / length, normal{tangent.y, -tangent.x};
-  const double gap = dot(normal, v - a), along = dot(tangent, v - a);
+void Detection::measure_edges(const Surface& surface) {
+  lines_.resize(surface.position.size());
+  for (std::size_t e = 0; e < lines_.size(); ++e) {
+    const Vec2 along = surface.position[at(surface.next[e])] - surface.position[e];
+    const double length = norm(along);
+    lines_[e] = {along / length, length};
+  }
+}
+
+bool Detection::passes(const Surface& surface, std::span<const double> reach, const Candidate& c,
+                       Found& found) const {
+  const Vec2 a = surface.position[at(c.edge)], v = surface.position[at(c.vertex)];
+  const Line& line = lines_[at(c.edge)];
+  const Vec2 normal = line.normal();
+  const double gap = dot(normal, v - a), along = dot(line.tangent, v - a), length = line.length;
   const int block_a = surface.block[at(c.vertex)], block_b = surface.block[at(c.edge)];
   const double motion = reach[at(block_a)] + reach[at(block_b)];
   if (!c.memory.bonded && gap > tolerances_.activation + motion) return false;
   const double deepest =
       std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
   if (gap < -deepest) return false;
+  const int end = surface.next[at(c.edge)];
   const double zone = std::min(tolerances_.end_zone + motion, 0.5 * length);
   const double before = surface.reflex[at(c.edge)] ? std::max(deepest, zone) : zone;
   const double after = surface.reflex[at(end)] ? std::max(deepest, zone) : zone;
@@ -52,129 +60,110 @@ bool Detection::evaluate(const Surface& surface, std::span<const double> reach, 
       !outside(surface, v, surface.next[at(c.vertex)], normal))
     return false;
 
-  contact = {};
-  contact.candidate = candidate;
-  contact.block_a = block_a;
-  contact.block_b = block_b;
-  contact.vertex = c.vertex;
-  contact.edge = c.edge;
-  contact.normal = normal;
-  contact.tangent = tangent;
-  contact.position = along / length;
-  contact.gap = gap;
-  contact.length =
-      0.5 * (shared_length(surface, v, surface.previous[at(c.vertex)], a, normal, tangent, length) +
-             shared_length(surface, v, surface.next[at(c.vertex)], a, normal, tangent, length));
-
+  found.vertex = c.vertex;
+  found.edge = c.edge;
+  found.gap = gap;
+  found.along = along;
+  found.inside = std::min(along, length - along);
+  found.low = found.high = -1;
   const int corner = along < 0.5 * length ? c.edge : end;
-  const double inside = std::min(along, length - along);
-  member = {-1, -1, 0, inside};
-  if (inside < zone && !surface.reflex[at(corner)]) {
-    member.low = std::min(c.vertex, corner);
-    member.high = std::max(c.vertex, corner);
-  }
+  if (found.inside < zone && !surface.reflex[at(corner)])
+    std::tie(found.low, found.high) = std::minmax(c.vertex, corner);
   return true;
 }
 
-void Detection::find(const Surface& surface, std::span<const double> reach,
-                     std::vector<Candidate>& candidates, std::vector<Contact>& contacts) {
-  found_.clear();
-  members_.clear();
-  Contact contact;
-  Member member{};
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (!evaluate(surface, reach, static_cast<int>(k), candidates[k], contact, member)) {
-      candidates[k].memory.tracked = false;
-      candidates[k].memory.state = State::open;
-      candidates[k].memory.bonded = false;
-      continue;
-    }
-    if (member.low >= 0) {
-      member.index = static_cast<int>(found_.size());
-      members_.push_back(member);
-    }
-    found_.push_back(contact);
+/// Orders those near corners by their two corners.
+void Detection::sort_corners(const Surface& surface) {
+  corner_begin_.assign(surface.position.size() + 1, 0);
+  for (const Found& f : found_) {
+    if (f.low >= 0) ++corner_begin_[at(f.low) + 1];
   }
-  std::sort(members_.begin(), members_.end(), [](const Member& x, const Member& y) {
-    return std::tie(x.low, x.high, x.index) < std::tie(y.low, y.high, y.index);
-  });
-  drop_.assign(found_.size(), 0);
+  for (std::size_t v = 1; v < corner_begin_.size(); ++v) corner_begin_[v] += corner_begin_[v - 1];
+  members_.resize(at(corner_begin_.back()));
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    if (found_[k].low >= 0) members_[at(corner_begin_[at(found_[k].low)]++)] = static_cast<int>(k);
+  }
+  // corner_begin_ has moved on by one. A corner has few others near it: insertion keeps their order.
+  int begin = 0;
+  for (std::size_t v = 0; v + 1 < corner_begin_.size(); ++v) {
+    const int end = corner_begin_[v];
+    for (int k = begin + 1; k < end; ++k) {
+      const int member = members_[at(k)], high = found_[at(member)].high;
+      int place = k;
+      for (; place > begin && found_[at(members_[at(place - 1)])].high > high; --place)
+        members_[at(place)] = members_[at(place - 1)];
+      members_[at(place)] = member;
+    }
+    begin = end;
+  }
+}
+
+void Detection::find(const Surface& surface, std::span<const double> reach,
+                     std::span<const Candidate> candidates, std::vector<Contact>& contacts) {
+  measure_edges(surface);
+  found_.clear();
+  Found found{};
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    if (!passes(surface, reach, candidates[k], found)) continue;
+    found.candidate = static_cast<int>(k);
+    found_.push_back(found);
+  }
+  sort_corners(surface);
   for (std::size_t first = 0; first < members_.size();) {
+    const Found& f = found_[at(members_[first])];
     std::size_t last = first + 1;
-    while (last < members_.size() && members_[last].low == members_[first].low &&
-           members_[last].high == members_[first].high)
+    while (last < members_.size() && found_[at(members_[last])].low == f.low &&
+           found_[at(members_[last])].high == f.high)
       ++last;
     compete(std::span(members_).subspan(first, last - first), candidates);
     first = last;
   }
   contacts.clear();
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    Memory& memory = candidates[at(found_[k].candidate)].memory;
-    if (drop_[k]) {
-      const double slip = memory.slip;
-      memory = {};
-      memory.slip = slip;
-      continue;
-    }
-    if (!memory.tracked) {
-      memory.tracked = true;
-      memory.offset = std::max(0.0, -found_[k].gap);
-      memory.shear = memory.stiffness = memory.stored = memory.multiplier = memory.drift = 0.0;
-      memory.normal_force = memory.bounding_force = 0.0;
-      memory.state = State::open;
-    } else if (memory.offset > 0.0) {
-      memory.offset = std::min(memory.offset, std::max(0.0, -found_[k].gap));
-    }
-    complete(surface, memory, found_[k]);
-    contacts.push_back(found_[k]);
+  for (const Found& f : found_) {
+    if (!f.dropped) add(surface, f, candidates, contacts);
   }
 }
 
-void Detection::compete(std::span<const Member> members, std::vector<Candidate>& candidates) {
-  const auto contact = [&](const Member& m) -> Contact& { return found_[at(m.index)]; };
-  const auto memory = [&](const Member& m) -> Memory& { return candidates[at(contact(m).candidate)].memory; };
-  const bool parallel = std::all_of(members.begin(), members.end(), [&](const Member& m) {
-    return std::abs(cross(contact(m).tangent, contact(members[0]).tangent)) < Tolerances::sine_parallel;
-  });
-  const Member* holder = nullptr;  // the one that was in contact; the strongest, should there be several
-  for (const Member& m : members) {
-    if (memory(m).tracked && (holder == nullptr || memory(m).normal_force > memory(*holder).normal_force))
-      holder = &m;
+/// Which of the candidates for one pair of corners is the contact.
+void Detection::compete(std::span<const int> members, std::span<const Candidate> candidates) {
+  const auto memory = [&](const Found& f) -> const Memory& { return candidates[at(f.candidate)].memory; };
+  const auto turned = [&](const Found& f, const Found& g) {
+    return std::abs(cross(lines_[at(f.edge)].tangent, lines_[at(g.edge)].tangent)) >=
+           Tolerances::sine_parallel;
+  };
+  bool parallel = true;
+  const Found* holder = nullptr;  // the one that was in contact; the strongest, should there be several
+  for (const int m : members) {
+    const Found& f = found_[at(m)];
+    parallel = parallel && !turned(f, found_[at(members[0])]);
+    if (memory(f).tracked && (holder == nullptr || memory(f).normal_force > memory(*holder).normal_force))
+      holder = &f;
   }
-  const Member* winner = nullptr;
+  Found* winner = nullptr;
   if (parallel) {
-    for (const Member& m : members) {
-      if (winner == nullptr || m.inside > winner->inside) winner = &m;
+    for (const int m : members) {
+      if (winner == nullptr || found_[at(m)].inside > winner->inside) winner = &found_[at(m)];
     }
     const double leave = -0.5 * tolerances_.end_zone;
-    if (holder != nullptr && (holder->inside > leave || winner->inside < -tolerances_.rounding))
-      winner = holder;
-    if (holder == nullptr && winner->inside < -tolerances_.rounding) {
+    if (holder != nullptr && (holder->inside > leave || winner->inside < -tolerances_.rounding)) {
+      winner = &found_[at(static_cast<int>(holder - found_.data()))];
+    } else if (holder == nullptr && winner->inside < -tolerances_.rounding) {
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {
-    for (const Member& m : members) {
-      if (winner == nullptr || contact(m).gap > contact(*winner).gap) winner = &m;
+    for (const int m : members) {
+      if (winner == nullptr || found_[at(m)].gap > winner->gap) winner = &found_[at(m)];
     }
     double second = -HUGE_VAL;
-    for (const Member& m : members) {
-      if (std::abs(cross(contact(m).tangent, contact(*winner).tangent)) >= Tolerances::sine_parallel) {
-        second = std::max(second, contact(m).gap);
-      }
+    for (const int m : members) {
+      if (turned(found_[at(m)], *winner)) second = std::max(second, found_[at(m)].gap);
     }
-    const double best = contact(*winner).gap;
+    const double best = winner->gap;
     if (best > -tolerances_.corner_depth && best - second < tolerances_.corner_tie) winner = nullptr;
   }
-  if (winner != nullptr && holder != nullptr && winner != holder && parallel) {
-    const double slip = memory(*winner).slip;
-    memory(*winner) = memory(*holder);
-    memory(*winner).slip += slip;
-    // The tangents of the two lines run against each other when the vertex and the edge change sides; slip of the one
-    // block against the other has the same sign on both sides, as normal and tangent turn together.
-  }
-  for (const Member& m : members) {
-    if (&m != winner) drop_[at(m.index)] = 1;
-  }
+  for (const int m : members) found_[at(m)].dropped = &found_[at(m)] != winner;
+  if (winner != nullptr && holder != nullptr && winner != holder && parallel)
+    winner->holder = holder->candidate;
 }
 
 namespace {
@@ -197,7 +186,41 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 
 }  // namespace
 
-void Detection::complete(const Surface& surface, Memory& memory, Contact& contact) const {
+void Detection::add(const Surface& surface, const Found& found, std::span<const Candidate> candidates,
+                    std::vector<Contact>& contacts) const {
+  const Line& line = lines_[at(found.edge)];
+  const Vec2 a = surface.position[at(found.edge)], v = surface.position[at(found.vertex)],
+             normal = line.normal();
+  Contact& contact = contacts.emplace_back();
+  contact.candidate = found.candidate;
+  contact.block_a = surface.block[at(found.vertex)];
+  contact.block_b = surface.block[at(found.edge)];
+  contact.vertex = found.vertex;
+  contact.edge = found.edge;
+  contact.normal = normal;
+  contact.tangent = line.tangent;
+  contact.position = found.along / line.length;
+  contact.gap = found.gap;
+  contact.length =
+      0.5 *
+      (shared_length(surface, v, surface.previous[at(found.vertex)], a, normal, line.tangent, line.length) +
+       shared_length(surface, v, surface.next[at(found.vertex)], a, normal, line.tangent, line.length));
+
+  Memory& memory = contact.memory = candidates[at(found.candidate)].memory;
+  if (found.holder >= 0) {
+    // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides,
+    // the tangents of the two lines run against each other, and normal and tangent turn together.
+    const double slip = memory.slip;
+    memory = candidates[at(found.holder)].memory;
+    memory.slip += slip;
+  }
+  if (!memory.tracked) {
+    memory.tracked = true;
+    memory.offset = std::max(0.0, -found.gap);
+  } else if (memory.offset > 0.0) {
+    memory.offset = std::min(memory.offset, std::max(0.0, -found.gap));
+  }
+
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
   const double per_length = law.normal_stiffness > 0.0
                                 ? law.normal_stiffness
@@ -212,6 +235,16 @@ void Detection::complete(const Surface& surface, Memory& memory, Contact& contac
   }
   keep_energy(memory, contact.gap, contact.normal_stiffness);
   contact.depth = -contact.gap - memory.offset + memory.multiplier;
+}
+
+void keep_memory(std::span<const Contact> contacts, std::span<Candidate> candidates) {
+  for (Candidate& c : candidates) {
+    if (!c.memory.tracked) continue;
+    const double slip = c.memory.slip;
+    c.memory = {};
+    c.memory.slip = slip;
+  }
+  for (const Contact& c : contacts) candidates[at(c.candidate)].memory = c.memory;
 }
 
 }  // namespace keyblock::contact

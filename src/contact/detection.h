@@ -26,7 +26,11 @@ struct Contact {
   double friction_coefficient = 0.0;
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
   bool fused = false;
+  Memory memory;  ///< of the last step, to be brought up to date at the end of this one
 };
+
+/// Takes the memory of the contacts of a step over into the candidates; the others forget all but their slip.
+void keep_memory(std::span<const Contact> contacts, std::span<Candidate> candidates);
 
 /// Geometry of candidates turned into the contacts of a step.
 ///
@@ -43,31 +47,44 @@ class Detection {
   Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
 
-  /// Contacts of the step in the order of the candidates, whose memory is brought up to date (tracked, offsets).
-  /// reach[b]: m, bound on the motion of block b in the step.
-  void find(const Surface& surface, std::span<const double> reach, std::vector<Candidate>& candidates,
+  /// Contacts of the step in the order of the candidates. reach[b]: m, bound on the motion of block b in the step.
+  void find(const Surface& surface, std::span<const double> reach, std::span<const Candidate> candidates,
             std::vector<Contact>& contacts);
 
   [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
   [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
 
  private:
-  struct Member {
-    int low, high;  ///< the two corners
-    int index;      ///< into contacts
-    double inside;  ///< m by which the vertex lies over the edge; negative: beyond the end
+  /// Direction and length of an edge.
+  struct Line {
+    Vec2 tangent;
+    double length = 0.0;
+    [[nodiscard]] Vec2 normal() const { return {tangent.y, -tangent.x}; }
   };
-  bool evaluate(const Surface& surface, std::span<const double> reach, int candidate, const Candidate& c,
-                Contact& contact, Member& member) const;
-  void compete(std::span<const Member> members, std::vector<Candidate>& candidates);
-  void complete(const Surface& surface, Memory& memory, Contact& contact) const;
+  /// A candidate that passes the geometry.
+  struct Found {
+    int candidate, vertex, edge;
+    int low = -1, high = -1;  ///< the two corners that meet; −1: the vertex is not near an end of the edge
+    double gap, along;        ///< m
+    double inside;            ///< m by which the vertex lies over the edge; negative: beyond the end
+    bool dropped = false;
+    int holder = -1;  ///< candidate whose memory it takes over
+  };
+  void measure_edges(const Surface& surface);
+  bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, Found& found) const;
+  void sort_corners(const Surface& surface);
+  void compete(std::span<const int> members, std::span<const Candidate> candidates);
+  void add(const Surface& surface, const Found& found, std::span<const Candidate> candidates,
+           std::vector<Contact>& contacts) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
-  std::vector<Contact> found_;      ///< scratch: all that pass the geometry
-  std::vector<Member> members_;     ///< scratch: those near corners
-  std::vector<std::uint8_t> drop_;  ///< scratch, per found_
+  // Scratch.
+  std::vector<Line> lines_;        ///< per edge
+  std::vector<Found> found_;       ///< in the order of the candidates
+  std::vector<int> corner_begin_;  ///< per vertex: those of which it is the lower corner, into members_
+  std::vector<int> members_;       ///< into found_, by (low, high, place)
 };
 
 }  // namespace keyblock::contact

@@ -6,7 +6,7 @@
 namespace keyblock::dynamics {
 
 /// Springs unstretched by the step, and those assumed in the first solve: what acted in the last step.
-void OpenClose::start(StepProblem& problem, std::span<contact::Memory* const> memory) {
+void OpenClose::start(const StepProblem& problem, std::span<const contact::Contact> contacts) {
   const auto& rows = problem.rows();
   springs_.resize(rows.size());
   for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -15,13 +15,13 @@ void OpenClose::start(StepProblem& problem, std::span<contact::Memory* const> me
     springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
     Shear assumed = Shear::none;
     if (s.bound() > 0.0) {
-      if (memory[c]->state == contact::State::locked) {
+      if (contacts[c].memory.state == contact::State::locked) {
         assumed = Shear::held;
       } else if (s.shear() != 0.0) {
         assumed = s.shear() > 0.0 ? Shear::forward : Shear::backward;
       }
     }
-    springs_.piece[c] = {memory[c]->state != contact::State::open || s.tensile(), assumed};
+    springs_.piece[c] = {contacts[c].memory.state != contact::State::open || s.tensile(), assumed};
   }
   assembled_ = false;
 }
@@ -212,13 +212,13 @@ void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
   add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
 }
 
-bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
-                              std::span<contact::Memory* const> memory, double tolerance) {
+bool OpenClose::update_bounds(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
   auto& rows = problem.rows();
   double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
     const double normal = std::max(0.0, springs_.force(c).normal);
-    return contacts[c].friction_coefficient * normal + (memory[c]->bonded ? contacts[c].cohesion : 0.0);
+    return contacts[c].friction_coefficient * normal +
+           (contacts[c].memory.bonded ? contacts[c].cohesion : 0.0);
   };
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (contacts[c].fused) continue;
@@ -241,8 +241,7 @@ bool OpenClose::update_bounds(StepProblem& problem, std::span<const contact::Con
 /// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when
 /// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
 /// left alone.
-bool OpenClose::augment(StepProblem& problem, std::span<const contact::Contact> contacts,
-                        std::span<contact::Memory* const> memory, double tolerance) {
+bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
   auto& rows = problem.rows();
   double worst = 0.0;
   shift_.assign(rows.size(), {});
@@ -251,8 +250,8 @@ bool OpenClose::augment(StepProblem& problem, std::span<const contact::Contact> 
     if (!springs_.piece[c].closed) continue;
     // n·r and t·r, but for what multipliers have added.
     const double normal = row.spring.depth() - springs_.y[c], slip = springs_.w[c] - row.spring.shear();
-    const double penetration = -(contacts[c].gap + normal) - std::max(0.0, memory[c]->offset);
-    const double drift = springs_.piece[c].shear == Shear::held ? memory[c]->drift + slip : 0.0;
+    const double penetration = -(contacts[c].gap + normal) - std::max(0.0, contacts[c].memory.offset);
+    const double drift = springs_.piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
     worst = std::max({worst, std::abs(penetration), std::abs(drift)});
     // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
     shift_[c] = {penetration * (1.0 + 0.25 * row.inertia / row.spring.normal_stiffness()),
@@ -275,16 +274,15 @@ bool OpenClose::augment(StepProblem& problem, std::span<const contact::Contact> 
   return true;
 }
 
-bool OpenClose::break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
-                            std::span<contact::Memory* const> memory) {
+bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> contacts) {
   bool any = false;
   auto& rows = problem.rows();
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    if (!memory[c]->bonded || contacts[c].fused) continue;
+    if (!contacts[c].memory.bonded || contacts[c].fused) continue;
     contact::Spring& s = rows[c].spring;
     const double normal = springs_.force(c).normal;
     if (-normal <= contacts[c].tension && s.locked(springs_.w[c])) continue;
-    memory[c]->bonded = false;
+    contacts[c].memory.bonded = false;
     s.break_bond();
     s.set_bound(contacts[c].friction_coefficient * std::max(0.0, normal));
     set_law(problem, c);
@@ -293,16 +291,16 @@ bool OpenClose::break_bonds(StepProblem& problem, std::span<const contact::Conta
   return any;
 }
 
-OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::Contact> contacts,
-                                 std::span<contact::Memory* const> memory, linalg::BlockSolver& solver,
-                                 const SolverOptions& options, Profile& profile, std::span<double> d) {
+OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contact> contacts,
+                                 linalg::BlockSolver& solver, const SolverOptions& options, Profile& profile,
+                                 std::span<double> d) {
   profile_ = &profile;
   const Profile::Scope scope(profile, Phase::search);
   const std::size_t rows = problem.rows().size();
   r_.resize(rows);
   gradient_.resize(d.size());
   direction_.resize(d.size());
-  start(problem, memory);
+  start(problem, contacts);
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
   worst_ = HUGE_VAL;
@@ -312,19 +310,19 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<const contact::
     result.converged = minimize(problem, solver, options, warm, d, result);
     if (!result.converged) break;
     warm = true;
-    if (break_bonds(problem, contacts, memory)) {
+    if (break_bonds(problem, contacts)) {
       result.bond_broken = true;
       continue;
     }
     if (augmented && result.multiplier_updates < options.max_multiplier_updates &&
-        augment(problem, contacts, memory, options.penetration_tolerance * problem.block_size())) {
+        augment(problem, contacts, options.penetration_tolerance * problem.block_size())) {
       ++result.multiplier_updates;
       continue;
     }
     const double tolerance =
         result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
     if (result.bound_updates >= options.max_bound_updates) break;
-    if (!update_bounds(problem, contacts, memory, tolerance)) break;
+    if (!update_bounds(problem, contacts, tolerance)) break;
     ++result.bound_updates;
   }
   for (std::size_t c = 0; c < rows; ++c)

@@ -36,10 +36,10 @@ struct OpenCloseResult {
 class OpenClose {
  public:
   /// d: the increment, overwritten. Bonds that break are cleared
-  /// in `memory` (one per row) and in the rows of the problem.
-  OpenCloseResult solve(StepProblem& problem, std::span<const contact::Contact> contacts,
-                        std::span<contact::Memory* const> memory, linalg::BlockSolver& solver,
-                        const SolverOptions& options, Profile& profile, std::span<double> d);
+  /// in the memory of the contacts (one per row) and in the rows of the problem.
+  OpenCloseResult solve(StepProblem& problem, std::span<contact::Contact> contacts,
+                        linalg::BlockSolver& solver, const SolverOptions& options, Profile& profile,
+                        std::span<double> d);
 
   /// r of every row at the solution.
   [[nodiscard]] std::span<const Vec2> relative() const { return r_; }
@@ -50,7 +50,7 @@ class OpenClose {
   using Shear = SpringArray::Shear;
   using Force = SpringArray::Force;
 
-  void start(StepProblem& problem, std::span<contact::Memory* const> memory);
+  void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   void solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> x);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
@@ -66,12 +66,9 @@ class OpenClose {
   static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                         std::span<double> out);
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
-  bool update_bounds(StepProblem& problem, std::span<const contact::Contact> contacts,
-                     std::span<contact::Memory* const> memory, double tolerance);
-  bool augment(StepProblem& problem, std::span<const contact::Contact> contacts,
-               std::span<contact::Memory* const> memory, double tolerance);
-  bool break_bonds(StepProblem& problem, std::span<const contact::Contact> contacts,
-                   std::span<contact::Memory* const> memory);
+  bool update_bounds(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
+  bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
+  bool break_bonds(StepProblem& problem, std::span<contact::Contact> contacts);
 
   Profile* profile_ = nullptr;
   SpringArray springs_;

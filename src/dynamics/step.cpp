@@ -75,8 +75,8 @@ void Stepper::start(State& state) {
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
   detection_.find(model_.surface, reach_, state.contacts, contacts_);
-  for (const contact::Contact& c : contacts_) {
-    contact::Memory& memory = state.contacts[at(c.candidate)].memory;
+  for (contact::Contact& c : contacts_) {
+    contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
     const contact::JointLaw& law = model_.laws[at(model_.surface.joint[at(c.edge)])];
     memory.bonded = law.fused || law.cohesion > 0.0 || law.tension > 0.0;
@@ -98,6 +98,7 @@ void Stepper::start(State& state) {
     memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
     contact_energy_ += memory.stored;
   }
+  contact::keep_memory(contacts_, state.contacts);
   ensure_pattern(state, true);
 }
 
@@ -209,13 +210,10 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   for (int look = 1; look <= looks; ++look) {
     detect(state);
     build_problem(state, drive);
-    memory_.clear();
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      memory_.push_back(&state.contacts[at(contacts_[c].candidate)].memory);
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
       problem_.rows()[c].pair = pair_of_candidate_[at(contacts_[c].candidate)];
-    }
     const OpenCloseResult result =
-        open_close_.solve(problem_, contacts_, memory_, *solver_, model_.solver, profile_, increment_);
+        open_close_.solve(problem_, contacts_, *solver_, model_.solver, profile_, increment_);
     report.iterations += result.iterations;
     measure_spin(state);
     if (!result.converged) return false;
@@ -273,14 +271,14 @@ bool Stepper::moved_too_far() {
 }
 
 /// Contact memory for the next step.
-void Stepper::remember(const Drive& drive, StepReport& report) {
+void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
   contact_energy_ = 0.0;
   const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const StepProblem::Row& row = problem_.rows()[c];
     const contact::Spring& s = row.spring;
-    contact::Memory& memory = *memory_[c];
+    contact::Memory& memory = contacts_[c].memory;
     const Vec2 r = open_close_.relative()[c];
     const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
     memory.stored = augmented ? 0.0 : s.balance(depth, shear).stored;
@@ -312,13 +310,14 @@ void Stepper::remember(const Drive& drive, StepReport& report) {
     }
     memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent, r) : 0.0;
   }
+  contact::keep_memory(contacts_, state.contacts);
   report.contact_energy = contact_energy();
 }
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   account(state, drive);
   const Profile::Scope scope(profile_, Phase::update);
-  remember(drive, report);
+  remember(state, drive, report);
   const double g = norm(model_.gravity);
   const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
@@ -361,15 +360,12 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.end_time = t1;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
-  const std::vector<contact::Candidate> before = state.contacts;
   const bool converged = attempt(state, drive, report);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
     accept(state, drive, report);
     return;
   }
-  state.contacts = before;
-  candidates_.invalidate();
   report.substeps += 1;
   const double middle = 0.5 * (t0 + t1);
   substep(state, t0, middle, ground, halvings + 1, report);
@@ -391,15 +387,12 @@ StepReport Stepper::relax(State& state, double dt, std::span<const double> inert
   drive.is_static = true;
   drive.inertia_scale = inertia_scale;
   drive.step = dt;
-  const std::vector<contact::Candidate> before = state.contacts;
   for (int halvings = 0;; ++halvings) {
     const bool converged = attempt(state, drive, report);
     if (converged || halvings >= model_.solver.max_halvings) {
       report.converged = converged;
       break;
     }
-    state.contacts = before;
-    candidates_.invalidate();
     report.substeps += 1;
     drive.step *= 0.5;
   }

@@ -98,7 +98,7 @@ class Stepper {
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
-  void remember(const Drive& drive, StepReport& report);
+  void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
 
@@ -112,7 +112,6 @@ class Stepper {
   OpenClose open_close_;
   std::unique_ptr<linalg::BlockSolver> solver_;
   std::vector<contact::Contact> contacts_;
-  std::vector<contact::Memory*> memory_;
   std::vector<int> unknown_sizes_;
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
   bool analysed_ = false;

@@ -75,7 +75,7 @@ void Stepper::account(State& state, const Drive& drive) {
   // What is stored in contacts that have ended, a vertex that left its edge, is lost.
   ledger.numerical += contact_energy_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    ledger.numerical -= memory_[c]->stored;
+    ledger.numerical -= contacts_[c].memory.stored;
     const StepProblem::Row& row = problem_.rows()[c];
     const Vec2 r = open_close_.relative()[c];
     const contact::Spring::Balance balance =

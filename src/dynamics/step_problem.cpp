@@ -34,7 +34,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   }
   build_blocks(state, drive, team);
   add_supports(state, drive);
-  build_rows(drive, surface, contacts, state.contacts);
+  build_rows(drive, surface, contacts);
 }
 
 void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
@@ -108,8 +108,7 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 }
 
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
-                             std::span<const contact::Contact> contacts,
-                             std::span<const contact::Candidate> candidates) {
+                             std::span<const contact::Contact> contacts) {
   rows_.resize(contacts.size());
   std::size_t used = 0;
   for (const contact::Contact& c : contacts)
@@ -120,7 +119,7 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     const contact::Contact& c = contacts[k];
     const Block& a = model_->blocks[at(c.block_a)];
     const Block& b = model_->blocks[at(c.block_b)];
-    const contact::Memory& memory = candidates[at(c.candidate)].memory;
+    const contact::Memory& memory = c.memory;
     Row& row = rows_[k];
     row.first_a = a.first;
     row.first_b = b.first;

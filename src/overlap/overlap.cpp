@@ -79,7 +79,7 @@ class Finder {
   Ring read_ring(const GEOSGeometry* ring) const;
   void add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur, double least,
                    std::vector<Overlap>& found) const;
-  [[nodiscard]] double inscribed_width(const GEOSGeometry* polygon) const;
+  [[nodiscard]] double inscribed_width(const GEOSGeometry* polygon, double least) const;
   [[nodiscard]] Overlap region(const GEOSGeometry* polygon, const Pair& pair, double blur,
                                double least) const;
 
@@ -163,8 +163,11 @@ Ring Finder::read_ring(const GEOSGeometry* ring) const {
 }
 
 /// Diameter of the largest disc in a region that cannot be cut into convex parts (a ring of a few ulps around an island),
-/// from above: to within 4e-5 of its extent.
-double Finder::inscribed_width(const GEOSGeometry* polygon) const {
+/// from above: to within 4e-5 of its extent, or `least` where it is not more.
+double Finder::inscribed_width(const GEOSGeometry* polygon, double least) const {
+  constexpr int quadrant_segments = 8;
+  const Geometry eroded = own(GEOSBuffer_r(context_.get(), polygon, -0.5 * least, quadrant_segments));
+  if (eroded && GEOSisEmpty_r(context_.get(), eroded.get()) == 1) return least;
   double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
   GEOSGeom_getXMin_r(context_.get(), polygon, &x0);
   GEOSGeom_getYMin_r(context_.get(), polygon, &y0);
@@ -197,7 +200,7 @@ Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blu
   if (std::abs(covered - found.area) > 0.01 * found.area) {
     // No disc is larger than the region.
     found.depth = std::min(found.depth, 2.0 * std::sqrt(found.area / std::numbers::pi));
-    if (found.depth > least) found.depth = std::min(found.depth, inscribed_width(polygon));
+    if (found.depth > least) found.depth = std::min(found.depth, inscribed_width(polygon, least));
   } else if (parts.size() > 1) {
     double widest = 0.0;
     for (const Ring& part : parts) {

@@ -59,7 +59,7 @@ TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
   for (std::size_t k = 0; k < list.size(); ++k) list[k].memory.slip = static_cast<double>(k + 1);
   const std::vector<Candidate> before = list;
   candidates.invalidate();
-  EXPECT_TRUE(candidates.update(surface, reach, list));
+  EXPECT_FALSE(candidates.update(surface, reach, list));  // the same
   ASSERT_EQ(list.size(), before.size());
   for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(list[k].memory.slip, before[k].memory.slip);
 }

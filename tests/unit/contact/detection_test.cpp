@@ -20,6 +20,7 @@ std::vector<Contact> find(const Surface& surface, std::vector<Candidate>& list) 
                       std::vector<double>(static_cast<std::size_t>(surface.blocks()), 1e9));
   std::vector<Contact> contacts;
   detection.find(surface, still, list, contacts);
+  keep_memory(contacts, list);
   return contacts;
 }
 
