@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/index.h"
 
@@ -159,41 +160,57 @@ void Stepper::detect(State& state) {
   ensure_pattern(state, changed);
 }
 
-/// Room in the matrix for every pair of blocks that has candidates; analysed anew only when a pair is missing.
+/// Room in the matrix for every pair of blocks that has contacts. A pair without room has the matrix analysed anew; pairs that
+/// have contacts no more keep theirs until they are many.
 void Stepper::ensure_pattern(State& state, bool candidates_changed) {
-  if (!candidates_changed && analysed_) return;
-  const std::vector<contact::Candidate>& list = state.contacts;
-  const auto pair_of = [&](const contact::Candidate& c) {
-    const int a = model_.blocks[at(model_.surface.block[at(c.vertex)])].unknown;
-    const int b = model_.blocks[at(model_.surface.block[at(c.edge)])].unknown;
-    return std::minmax({a, b});
+  using Pair = std::pair<int, int>;
+  constexpr int fixed = -1, missing = -2;
+  constexpr double most_idle = 0.15;
+  const auto pair_of = [&](int vertex, int edge) {
+    const int a = model_.blocks[at(model_.surface.block[at(vertex)])].unknown;
+    const int b = model_.blocks[at(model_.surface.block[at(edge)])].unknown;
+    return Pair(std::minmax(a, b));
   };
-  const auto has_room = [&](std::pair<int, int> pair) {
-    return std::binary_search(state.pattern.begin(), state.pattern.end(), pair);
+  const auto find_places = [&] {
+    const std::vector<contact::Candidate>& list = state.contacts;
+    pair_of_candidate_.resize(list.size());
+    Pair last{fixed, fixed};
+    int place = fixed;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (const Pair pair = pair_of(list[k].vertex, list[k].edge); pair != last) {
+        const auto found = std::lower_bound(state.pattern.begin(), state.pattern.end(), pair);
+        last = pair;
+        place = pair.first < 0 ? fixed
+                : found != state.pattern.end() && *found == pair
+                    ? static_cast<int>(found - state.pattern.begin())
+                    : missing;
+      }
+      pair_of_candidate_[k] = place;
+    }
   };
-  std::vector<std::pair<int, int>> wanted;
-  for (const contact::Candidate& c : list) {
-    const std::pair<int, int> pair = pair_of(c);
-    if (pair.first >= 0 && (wanted.empty() || wanted.back() != pair)) wanted.push_back(pair);
+  if (candidates_changed || !analysed_) find_places();
+  const bool has_room = std::none_of(contacts_.begin(), contacts_.end(), [&](const contact::Contact& c) {
+    return pair_of_candidate_[at(c.candidate)] == missing;
+  });
+  if (has_room && analysed_) return;
+  if (!has_room) {
+    std::vector<Pair> used;
+    for (const contact::Contact& c : contacts_) {
+      const Pair pair = pair_of(c.vertex, c.edge);
+      if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    std::vector<Pair> all;
+    std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
+                   std::back_inserter(all));
+    const bool idle =
+        static_cast<double>(all.size() - used.size()) > most_idle * static_cast<double>(used.size());
+    state.pattern = idle ? std::move(used) : std::move(all);
+    find_places();
   }
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  if (!std::all_of(wanted.begin(), wanted.end(), has_room)) {
-    state.pattern = std::move(wanted);
-    analysed_ = false;
-  }
-  if (!analysed_) {
-    solver_->analyse(unknown_sizes_, state.pattern);
-    analysed_ = true;
-  }
-  pair_of_candidate_.resize(list.size());
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::pair<int, int> pair = pair_of(list[k]);
-    pair_of_candidate_[k] =
-        pair.first < 0 ? -1
-                       : static_cast<int>(std::lower_bound(state.pattern.begin(), state.pattern.end(), pair) -
-                                          state.pattern.begin());
-  }
+  solver_->analyse(unknown_sizes_, state.pattern);
+  analysed_ = true;
 }
 
 void Stepper::build_problem(const State& state, const Drive& drive) {

@@ -162,16 +162,6 @@ double StepProblem::reduced_mass(const contact::Contact& c) const {
 
 namespace {
 
-/// Σ φ_k d_k of a block; N = 3 is order 1.
-Vec2 displacement(const double* phi, int size, const double* d) {
-  if (size == 3) {
-    return {phi[0] * d[0] + phi[1] * d[2] + phi[2] * d[4], phi[0] * d[1] + phi[1] * d[3] + phi[2] * d[5]};
-  }
-  Vec2 u;
-  for (int k = 0; k < size; ++k) u += phi[k] * Vec2{d[2 * k], d[2 * k + 1]};
-  return u;
-}
-
 void add_scaled(const double* phi, int size, Vec2 force, double* out) {
   for (int k = 0; k < size; ++k) {
     out[2 * k] += phi[k] * force.x;
@@ -180,12 +170,6 @@ void add_scaled(const double* phi, int size, Vec2 force, double* out) {
 }
 
 }  // namespace
-
-Vec2 StepProblem::relative(const Row& row, std::span<const double> d) const {
-  const double* phi = &phi_[row.phi];
-  return displacement(phi, row.size_a, &d[row.first_a]) -
-         displacement(phi + row.size_a, row.size_b, &d[row.first_b]);
-}
 
 void StepProblem::add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
   const double* phi = &phi_[row.phi];

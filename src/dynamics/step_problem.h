@@ -60,7 +60,11 @@ class StepProblem {
   /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
   /// r of a contact for increment D, but for the known part.
-  [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const;
+  [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
+    const double* phi = &phi_[row.phi];
+    return displacement(phi, row.size_a, &d[row.first_a]) -
+           displacement(phi + row.size_a, row.size_b, &d[row.first_b]);
+  }
   /// g = ∇Π(D), given r of every contact; the open-close iteration updates g instead.
   void gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const;
   /// y = H x.
@@ -89,6 +93,15 @@ class StepProblem {
                                          std::span<const double> spin);
 
  private:
+  /// Σ φ_k d_k of a block; N = 3 is order 1.
+  static Vec2 displacement(const double* phi, int size, const double* d) {
+    if (size == 3) {
+      return {phi[0] * d[0] + phi[1] * d[2] + phi[2] * d[4], phi[0] * d[1] + phi[1] * d[3] + phi[2] * d[5]};
+    }
+    Vec2 u;
+    for (int k = 0; k < size; ++k) u += phi[k] * Vec2{d[2 * k], d[2 * k + 1]};
+    return u;
+  }
   void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,

@@ -51,15 +51,30 @@ class BlockCholesky final : public BlockSolver {
   void place_values();
   void place_matrix(std::span<const std::pair<int, int>> pairs);
   void load_column(std::size_t j);
+  // `equal`: unknowns of every block where all have as many, so that loops have a known length; 0 where not.
+  template <int equal>
+  [[nodiscard]] int size(std::size_t column) const {
+    return equal > 0 ? equal : size_[column];
+  }
+  template <int equal>
+  [[nodiscard]] int stride(std::size_t column) const {
+    return equal > 0 ? padded_rows(equal) : stride_[column];
+  }
+  template <int equal>
   void update_column(std::size_t j);
-  template <int columns>
+  template <int equal>
+  bool factor_columns();
+  template <int equal, int columns>
   int gather(std::size_t j, int c);
-  template <int columns>
+  template <int equal, int columns>
   int finish(std::size_t j, int c);
+  template <int equal>
+  void solve_columns(std::span<double> x);
 
   // Column j of the factor has its diagonal block first, then rows_[row_start_[j] … row_start_[j+1]),
   // ascending.
   std::vector<std::size_t> position_;   ///< block → column
+  int equal_size_ = 0;                  ///< of all columns; 0: they differ
   std::vector<int> size_, stride_;      ///< per column
   std::vector<std::size_t> row_start_;  ///< per column, into rows_ and row_value_
   std::vector<std::size_t> rows_;
@@ -105,6 +120,9 @@ void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pai
     stride_[k] = padded_rows(sizes[block]);
     offset_[k] = start[block];
   }
+  equal_size_ = n > 0 && std::all_of(sizes.begin(), sizes.end(), [&](int size) { return size == sizes[0]; })
+                    ? sizes[0]
+                    : 0;
   find_structure(pairs);
   place_values();
   place_matrix(pairs);
@@ -113,10 +131,11 @@ void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pai
 void BlockCholesky::place_matrix(std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = size_.size();
   std::vector<std::vector<std::size_t>> pairs_of(n);  // by column
-  const auto column_of = [&](std::size_t k) {
-    return std::min(position_[index(pairs[k].first)], position_[index(pairs[k].second)]);
+  const auto column_and_row = [&](std::size_t k) {
+    return std::pair<std::size_t, std::size_t>(
+        std::minmax(position_[index(pairs[k].first)], position_[index(pairs[k].second)]));
   };
-  for (std::size_t k = 0; k < pairs.size(); ++k) pairs_of[column_of(k)].push_back(k);
+  for (std::size_t k = 0; k < pairs.size(); ++k) pairs_of[column_and_row(k).first].push_back(k);
   std::vector<std::size_t> place(pairs.size()), by_column(n);
   std::size_t used = 0;
   sources_.clear();
@@ -128,8 +147,11 @@ void BlockCholesky::place_matrix(std::span<const std::pair<int, int>> pairs) {
   };
   for (std::size_t j = 0; j < n; ++j) {
     by_column[j] = add(column_value_[j], stride_[j] * size_[j]);
+    std::sort(pairs_of[j].begin(), pairs_of[j].end(), [&](std::size_t k, std::size_t l) {
+      return column_and_row(k).second < column_and_row(l).second;
+    });
     for (const std::size_t k : pairs_of[j]) {
-      const std::size_t row = std::max(position_[index(pairs[k].first)], position_[index(pairs[k].second)]);
+      const std::size_t row = column_and_row(k).second;
       const auto first = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[j]);
       const auto last = rows_.begin() + static_cast<std::ptrdiff_t>(row_start_[j + 1]);
       const auto entry = static_cast<std::size_t>(std::lower_bound(first, last, row) - rows_.begin());
@@ -215,13 +237,22 @@ void BlockCholesky::place_values() {
 
 void BlockCholesky::load_column(std::size_t j) {
   const std::size_t end = j + 1 < size_.size() ? column_value_[j + 1] : values_.size();
-  std::fill(values_.begin() + static_cast<std::ptrdiff_t>(column_value_[j]),
-            values_.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-  for (std::size_t k = source_start_[j]; k < source_start_[j + 1]; ++k)
-    std::copy_n(&matrix_[sources_[k].from], sources_[k].count, &values_[sources_[k].to]);
+  std::size_t filled = column_value_[j];
+  const auto clear_up_to = [&](std::size_t place) {
+    for (; filled < place; filled += row_padding) store(&values_[filled], Lanes{});
+  };
+  for (std::size_t k = source_start_[j]; k < source_start_[j + 1]; ++k) {
+    const Source& source = sources_[k];
+    clear_up_to(source.to);
+    for (std::size_t v = 0; v < source.count; v += row_padding)
+      store(&values_[source.to + v], load(&matrix_[source.from + v]));
+    filled += source.count;
+  }
+  clear_up_to(end);
 }
 
 /// A_ij −= Σ_k L_ik L_jkᵀ for all rows i of column j.
+template <int equal>
 void BlockCholesky::update_column(std::size_t j) {
   target_[j] = &values_[column_value_[j]];
   for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) target_[rows_[e]] = &values_[row_value_[e]];
@@ -230,31 +261,28 @@ void BlockCholesky::update_column(std::size_t j) {
     const double* l_jk = &values_[row_value_[first]];
     for (std::size_t e = first; e < row_start_[k + 1]; ++e) {
       const std::size_t i = rows_[e];
-      const double* l_ik = &values_[row_value_[e]];
-      if (size_[j] == 6 && size_[k] == 6 && size_[i] == 6) {
-        subtract_block_product_6(l_ik, l_jk, target_[i]);
-      } else {
-        subtract_block_product(stride_[i] / row_padding, size_[j], size_[k], l_ik, l_jk, stride_[j],
-                               target_[i]);
-      }
+      subtract_block_product(stride<equal>(i) / row_padding, size<equal>(j), size<equal>(k),
+                             &values_[row_value_[e]], l_jk, stride<equal>(j), target_[i]);
     }
   }
 }
 
-bool BlockCholesky::factor() {
+template <int equal>
+bool BlockCholesky::factor_columns() {
   for (std::size_t j = 0; j < size_.size(); ++j) {
     if (stale_[j] == 0) continue;
     // What is eliminated later depends on this column through its parent in the elimination tree.
     if (row_start_[j] < row_start_[j + 1]) stale_[rows_[row_start_[j]]] = 1;
     load_column(j);
-    update_column(j);
+    update_column<equal>(j);
     double* inverse = &values_[column_value_[j]];
-    if (!invert_factor(size_[j], inverse, scale_.data())) return false;
+    if (!invert_factor(size<equal>(j), inverse, scale_.data())) return false;
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-      if (size_[j] == 6 && size_[rows_[e]] == 6) {
-        multiply_right_6(inverse, &values_[row_value_[e]]);
+      double* x = &values_[row_value_[e]];
+      if constexpr (equal == 6) {
+        multiply_right_6(inverse, x);
       } else {
-        multiply_right(stride_[rows_[e]] / row_padding, size_[j], inverse, &values_[row_value_[e]]);
+        multiply_right(stride<equal>(rows_[e]) / row_padding, size<equal>(j), inverse, x);
       }
     }
     stale_[j] = 0;
@@ -262,59 +290,79 @@ bool BlockCholesky::factor() {
   return true;
 }
 
-/// y − Σ_i L_ijᵀ x_i for some unknowns of column j, from c on. Returns their number.
-template <int columns>
+bool BlockCholesky::factor() {
+  return equal_size_ == 6    ? factor_columns<6>()
+         : equal_size_ == 12 ? factor_columns<12>()
+                             : factor_columns<0>();
+}
+
+/// y − Σ_i L_ijᵀ x_i for some unknowns of column j, from c on, into solved_. Returns their number.
+template <int equal, int columns>
 int BlockCholesky::gather(std::size_t j, int c) {
   Lanes t[columns]{};
   for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
     const std::size_t i = rows_[e];
-    add_lane_products(stride_[i] / row_padding, &values_[row_value_[e] + index(c * stride_[i])],
-                      &work_[work_start_[i]], t);
+    const int rows = stride<equal>(i);
+    add_lane_products(rows / row_padding, &values_[row_value_[e] + index(c * rows)], &work_[work_start_[i]],
+                      t);
   }
-  for (int k = 0; k < columns; ++k) solved_[index(c + k)] = work_[work_start_[j] + index(c + k)] - sum(t[k]);
+  const double* y = &work_[work_start_[j] + index(c)];
+  double* out = &solved_[index(c)];
+  for (int k = 0; k < columns; ++k) out[k] = y[k] - sum(t[k]);
   return columns;
 }
 
 /// L_jj⁻ᵀ y likewise.
-template <int columns>
+template <int equal, int columns>
 int BlockCholesky::finish(std::size_t j, int c) {
   Lanes t[columns]{};
-  add_lane_products(stride_[j] / row_padding, &values_[column_value_[j] + index(c * stride_[j])],
-                    &work_[work_start_[j]], t);
-  for (int k = 0; k < columns; ++k) solved_[index(c + k)] = sum(t[k]);
+  const int rows = stride<equal>(j);
+  add_lane_products(rows / row_padding, &values_[column_value_[j] + index(c * rows)], solved_.data(), t);
+  double* out = &work_[work_start_[j] + index(c)];
+  for (int k = 0; k < columns; ++k) out[k] = sum(t[k]);
   return columns;
 }
 
-void BlockCholesky::solve(std::span<double> x) {
+template <int equal>
+void BlockCholesky::solve_columns(std::span<double> x) {
   const std::size_t n = size_.size();
   for (std::size_t j = 0; j < n; ++j) {
-    std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(offset_[j]), size_[j], &work_[work_start_[j]]);
+    for (int k = 0; k < size<equal>(j); ++k) work_[work_start_[j] + index(k)] = x[offset_[j] + index(k)];
   }
   for (std::size_t j = 0; j < n; ++j) {
+    const int size_j = size<equal>(j), rows = stride<equal>(j);
     double* y = &work_[work_start_[j]];
     const double* inverse = &values_[column_value_[j]];
-    const int lanes = stride_[j] / row_padding;
-    for (int l = 0; l < lanes; ++l) {
+    for (int l = 0; l < rows; l += row_padding) {
       Lanes t{};
-      for (int c = 0; c < size_[j]; ++c)
-        t = add_product(load(inverse + c * stride_[j] + l * row_padding), broadcast(y[c]), t);
-      store(&solved_[index(l * row_padding)], t);
+      for (int c = 0; c < size_j; ++c) t = add_product(load(inverse + c * rows + l), broadcast(y[c]), t);
+      store(&solved_[index(l)], t);
     }
-    std::copy_n(solved_.data(), stride_[j], y);
+    for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[index(l)]));
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       const std::size_t i = rows_[e];
-      subtract_times(stride_[i] / row_padding, size_[j], &values_[row_value_[e]], y, &work_[work_start_[i]]);
+      subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y,
+                     &work_[work_start_[i]]);
     }
   }
+  std::fill(solved_.begin(), solved_.end(), 0.0);
   for (std::size_t j = n; j-- > 0;) {
-    double* y = &work_[work_start_[j]];
-    for (int c = 0; c < size_[j];) c += size_[j] - c >= 6 ? gather<6>(j, c) : gather<1>(j, c);
-    std::copy_n(solved_.data(), size_[j], y);
-    for (int c = 0; c < size_[j];) c += size_[j] - c >= 6 ? finish<6>(j, c) : finish<1>(j, c);
-    std::copy_n(solved_.data(), size_[j], y);
+    const int size_j = size<equal>(j);
+    for (int c = 0; c < size_j;) c += size_j - c >= 6 ? gather<equal, 6>(j, c) : gather<equal, 1>(j, c);
+    for (int c = 0; c < size_j;) c += size_j - c >= 6 ? finish<equal, 6>(j, c) : finish<equal, 1>(j, c);
   }
   for (std::size_t j = 0; j < n; ++j) {
-    std::copy_n(&work_[work_start_[j]], size_[j], x.begin() + static_cast<std::ptrdiff_t>(offset_[j]));
+    for (int k = 0; k < size<equal>(j); ++k) x[offset_[j] + index(k)] = work_[work_start_[j] + index(k)];
+  }
+}
+
+void BlockCholesky::solve(std::span<double> x) {
+  if (equal_size_ == 6) {
+    solve_columns<6>(x);
+  } else if (equal_size_ == 12) {
+    solve_columns<12>(x);
+  } else {
+    solve_columns<0>(x);
   }
 }
 

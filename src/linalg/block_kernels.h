@@ -98,11 +98,6 @@ inline void subtract_block_product(int lanes, int columns, int k, const double* 
   if (j < columns) rows.template operator()<1>(j);
 }
 
-/// The same for blocks of order 1 (6 × 6 unknowns).
-inline void subtract_block_product_6(const double* a, const double* b, double* c) {
-  subtract_tile<1, 6>(6, a, row_padding, b, row_padding, c, row_padding);
-}
-
 /// Replaces a symmetric positive definite block A = L Lᵀ (lower triangle) by L⁻¹ (its upper triangle zero). False when a pivot is
 /// not positive. By A = U D Uᵀ, U with a diagonal of ones: then no root is waited for.
 inline bool invert_factor(int n, double* a, double* scale) {
