@@ -88,40 +88,56 @@ void Elasticity::add_force(const double* a, double* force) const {
 
 namespace {
 
-/// Raises the eigenvalues of a symmetric matrix to at least −floor; does nothing when a bound shows that none
-/// is below.
-void floor_eigenvalues(Eigen::MatrixXd& g, double floor) {
+/// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor; does nothing when a
+/// bound shows that none is below.
+void floor_eigenvalues(double* g, int n, double floor) {
+  const auto entry = [&](int r, int c) -> double& { return g[r >= c ? c * n + r : r * n + c]; };
   double bound = 0.0;
-  for (Eigen::Index i = 0; i < g.rows(); ++i) {
-    bound = std::max(bound, g.row(i).cwiseAbs().sum() - std::abs(g(i, i)) - g(i, i));
+  for (int i = 0; i < n; ++i) {
+    double others = 0.0;
+    for (int k = 0; k < n; ++k) others += k == i ? 0.0 : std::abs(entry(i, k));
+    bound = std::max(bound, others - entry(i, i));
   }
   if (bound <= floor) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(g);
+  Eigen::MatrixXd whole(n, n);
+  for (int c = 0; c < n; ++c) {
+    for (int r = 0; r < n; ++r) whole(r, c) = entry(r, c);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(whole);
   if (solver.eigenvalues().minCoeff() >= -floor) return;
   const Eigen::VectorXd raised = solver.eigenvalues().cwiseMax(-floor);
-  g = solver.eigenvectors() * raised.asDiagonal() * solver.eigenvectors().transpose();
+  whole = solver.eigenvectors() * raised.asDiagonal() * solver.eigenvectors().transpose();
+  for (int c = 0; c < n; ++c) {
+    for (int r = c; r < n; ++r) entry(r, c) = whole(r, c);
+  }
 }
 
 }  // namespace
 
 void Elasticity::add_tangent(const double* a, double viscous, double floor, double* tangent,
                              int stride) const {
-  Eigen::MatrixXd geometric = Eigen::MatrixXd::Zero(size_ - 1, size_ - 1);
-  std::vector<std::array<double, 6>> b(
-      static_cast<std::size_t>(size_));  // B_k, columns x and y of three rows
+  // Order 1 has room here; higher orders are worth an allocation.
+  constexpr std::size_t few = 3;
+  const auto size = static_cast<std::size_t>(size_), m = size - 1;
+  std::array<std::array<double, 6>, few> few_b;
+  std::array<double, (few - 1) * (few - 1)> few_geometric{};
+  std::vector<std::array<double, 6>> many_b(size > few ? size : 0);
+  std::vector<double> many_geometric(size > few ? m * m : 0, 0.0);
+  std::array<double, 6>* b = size > few ? many_b.data() : few_b.data();  // B_k, columns x and y of three rows
+  double* geometric = size > few ? many_geometric.data() : few_geometric.data();  // (N − 1)², lower triangle
   for (std::size_t q = 0; q < weight_.size(); ++q) {
     const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
     const Gradient2 f = deformation(a, g);
     const Stress s = second_piola(f, initial_[q]);
     const double weight = (1.0 + viscous) * weight_[q];
     for (int k = 1; k < size_; ++k) {
-      b[static_cast<std::size_t>(k)] = {f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x,
-                                        f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x};
+      b[k] = {f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x,
+              f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x};
     }
     for (int l = 1; l < size_; ++l) {
       const Vec2 sg{weight_[q] * (s.xx * g[l].x + s.xy * g[l].y),
                     weight_[q] * (s.xy * g[l].x + s.yy * g[l].y)};
-      const auto& bl = b[static_cast<std::size_t>(l)];
+      const auto& bl = b[l];
       std::array<double, 6> cb;
       for (std::size_t c = 0; c < 6; c += 3) {
         cb[c] = weight * (c11_ * bl[c] + c12_ * bl[c + 1]);
@@ -131,8 +147,8 @@ void Elasticity::add_tangent(const double* a, double viscous, double floor, doub
       double* column_x = tangent + static_cast<std::ptrdiff_t>(2 * l) * stride;
       double* column_y = column_x + stride;
       for (int k = l; k < size_; ++k) {
-        const auto& bk = b[static_cast<std::size_t>(k)];
-        geometric(k - 1, l - 1) += dot(g[k], sg);
+        const auto& bk = b[k];
+        geometric[static_cast<std::size_t>(l - 1) * m + static_cast<std::size_t>(k - 1)] += dot(g[k], sg);
         column_x[2 * k] += bk[0] * cb[0] + bk[1] * cb[1] + bk[2] * cb[2];
         column_x[2 * k + 1] += bk[3] * cb[0] + bk[4] * cb[1] + bk[5] * cb[2];
         column_y[2 * k + 1] += bk[3] * cb[3] + bk[4] * cb[4] + bk[5] * cb[5];
@@ -140,12 +156,12 @@ void Elasticity::add_tangent(const double* a, double viscous, double floor, doub
       }
     }
   }
-  geometric.triangularView<Eigen::StrictlyUpper>() = geometric.transpose();
-  floor_eigenvalues(geometric, floor);
+  floor_eigenvalues(geometric, size_ - 1, floor);
   for (int l = 1; l < size_; ++l) {
     for (int k = l; k < size_; ++k) {
-      tangent[static_cast<std::ptrdiff_t>(2 * l) * stride + 2 * k] += geometric(k - 1, l - 1);
-      tangent[static_cast<std::ptrdiff_t>(2 * l + 1) * stride + 2 * k + 1] += geometric(k - 1, l - 1);
+      const double value = geometric[static_cast<std::size_t>(l - 1) * m + static_cast<std::size_t>(k - 1)];
+      tangent[static_cast<std::ptrdiff_t>(2 * l) * stride + 2 * k] += value;
+      tangent[static_cast<std::ptrdiff_t>(2 * l + 1) * stride + 2 * k + 1] += value;
     }
   }
 }

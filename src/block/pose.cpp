@@ -52,6 +52,10 @@ double Pose::area(const double* a) const {
 }
 
 double Pose::mean_spin(const double* increment, const double* a) const {
+  if (size_ == 3) {
+    const double curl = increment[2] * a[4] + increment[3] * a[5] - increment[4] * a[2] - increment[5] * a[3];
+    return 0.5 * w_[5] * curl / area(a);
+  }
   const auto n = static_cast<std::size_t>(size_);
   double sum = 0.0;
   for (std::size_t k = 1; k < n; ++k) {

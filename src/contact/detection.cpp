@@ -65,7 +65,8 @@ bool Detection::passes(const Surface& surface, std::span<const double> reach, co
   found.gap = gap;
   found.along = along;
   found.inside = std::min(along, length - along);
-  found.low = found.high = -1;
+  found.low = found.high = found.holder = -1;
+  found.dropped = false;
   const int corner = along < 0.5 * length ? c.edge : end;
   if (found.inside < zone && !surface.reflex[at(corner)])
     std::tie(found.low, found.high) = std::minmax(c.vertex, corner);
@@ -101,13 +102,15 @@ void Detection::sort_corners(const Surface& surface) {
 void Detection::find(const Surface& surface, std::span<const double> reach,
                      std::span<const Candidate> candidates, std::vector<Contact>& contacts) {
   measure_edges(surface);
-  found_.clear();
-  Found found{};
+  found_.resize(candidates.size());
+  std::size_t count = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
+    Found& found = found_[count];
     if (!passes(surface, reach, candidates[k], found)) continue;
     found.candidate = static_cast<int>(k);
-    found_.push_back(found);
+    ++count;
   }
+  found_.resize(count);
   sort_corners(surface);
   for (std::size_t first = 0; first < members_.size();) {
     const Found& f = found_[at(members_[first])];

@@ -64,11 +64,11 @@ class Detection {
   /// A candidate that passes the geometry.
   struct Found {
     int candidate, vertex, edge;
-    int low = -1, high = -1;  ///< the two corners that meet; −1: the vertex is not near an end of the edge
-    double gap, along;        ///< m
-    double inside;            ///< m by which the vertex lies over the edge; negative: beyond the end
-    bool dropped = false;
-    int holder = -1;  ///< candidate whose memory it takes over
+    int low, high;      ///< the two corners that meet; −1: the vertex is not near an end of the edge
+    double gap, along;  ///< m
+    double inside;      ///< m by which the vertex lies over the edge; negative: beyond the end
+    bool dropped;
+    int holder;  ///< candidate whose memory it takes over; −1: its own
   };
   void measure_edges(const Surface& surface);
   bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, Found& found) const;

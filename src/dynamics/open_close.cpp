@@ -52,6 +52,7 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
     bool any = !assembled_;
     for (std::size_t c = 0; c < rows.size(); ++c) {
       const Piece from = factored_[c], to = springs_.piece[c];
+      if (from.same_springs(to)) continue;
       const double kn = springs_.normal_stiffness(c, to) - springs_.normal_stiffness(c, from),
                    ks = springs_.shear_stiffness(c, to) - springs_.shear_stiffness(c, from);
       factored_[c] = to;

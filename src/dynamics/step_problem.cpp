@@ -212,20 +212,38 @@ void StepProblem::gradient(std::span<const double> d, std::span<const Vec2> r, s
 
 namespace {
 
-/// target += scale · (φ_r φ_cᵀ) ⊗ C, C symmetric; the lower triangle alone when rows and columns are the same block.
-void add_outer(const double* phi_r, int size_r, const double* phi_c, int size_c, double cxx, double cxy,
-               double cyy, double scale, bool lower, double* target, int stride) {
-  for (int c = 0; c < size_c; ++c) {
-    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
-    double* y = x + stride;
-    const double f = scale * phi_c[c];
-    for (int r = lower ? c : 0; r < size_r; ++r) {
-      const double w = f * phi_r[r];
-      x[2 * r] += w * cxx;
-      x[2 * r + 1] += w * cxy;
-      y[2 * r] += w * cxy;
-      y[2 * r + 1] += w * cyy;
+/// C of a contact: normal and shear spring in coordinates.
+struct Stiffness {
+  double xx, xy, yy;
+};
+
+/// target += scale · (φ_r φ_cᵀ) ⊗ C; the lower triangle alone when rows and columns are the same block. `known`: N of both,
+/// or 0 where it is known at run time only.
+template <int known, bool lower>
+void add_outer(const double* phi_r, int size_r, const double* phi_c, int size_c, Stiffness k, double scale,
+               double* target, int stride) {
+  const int rows = known > 0 ? known : size_r, columns = known > 0 ? known : size_c;
+  const int step = known > 0 ? linalg::padded_rows(2 * known) : stride;
+#pragma GCC unroll 4
+  for (int c = 0; c < columns; ++c) {
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * step;
+    double* y = x + step;
+    const double f = scale * phi_c[c], fxx = f * k.xx, fxy = f * k.xy, fyy = f * k.yy;
+#pragma GCC unroll 4
+    for (int r = lower ? c : 0; r < rows; ++r) {
+      x[2 * r] += phi_r[r] * fxx;
+      x[2 * r + 1] += phi_r[r] * fxy;
+      y[2 * r] += phi_r[r] * fxy;
+      y[2 * r + 1] += phi_r[r] * fyy;
     }
+  }
+}
+
+void add_to_diagonal(const double* phi, int size, Stiffness k, double* target) {
+  if (size == 3) {
+    add_outer<3, true>(phi, 3, phi, 3, k, 1.0, target, 0);
+  } else {
+    add_outer<0, true>(phi, size, phi, size, k, 1.0, target, linalg::padded_rows(2 * size));
   }
 }
 
@@ -249,23 +267,20 @@ void StepProblem::assemble(linalg::BlockSolver& solver) const {
 
 void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const {
   const Vec2 n = row.normal, t = row.tangent;
-  const double cxx = kn * n.x * n.x + ks * t.x * t.x, cxy = kn * n.x * n.y + ks * t.x * t.y,
-               cyy = kn * n.y * n.y + ks * t.y * t.y;
+  const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
+                    kn * n.y * n.y + ks * t.y * t.y};
   const double *phi_a = &phi_[row.phi], *phi_b = phi_a + row.size_a;
-  if (row.size_a > 0) {
-    add_outer(phi_a, row.size_a, phi_a, row.size_a, cxx, cxy, cyy, 1.0, true, solver.diagonal(row.unknown_a),
-              linalg::padded_rows(2 * row.size_a));
-  }
-  if (row.size_b > 0) {
-    add_outer(phi_b, row.size_b, phi_b, row.size_b, cxx, cxy, cyy, 1.0, true, solver.diagonal(row.unknown_b),
-              linalg::padded_rows(2 * row.size_b));
-  }
+  if (row.size_a > 0) add_to_diagonal(phi_a, row.size_a, k, solver.diagonal(row.unknown_a));
+  if (row.size_b > 0) add_to_diagonal(phi_b, row.size_b, k, solver.diagonal(row.unknown_b));
   if (row.pair < 0) return;
   const linalg::BlockSlot slot = solver.slot(row.pair);
-  if (slot.row == row.unknown_a) {
-    add_outer(phi_a, row.size_a, phi_b, row.size_b, cxx, cxy, cyy, -1.0, false, slot.values, slot.stride);
+  const bool a_along_rows = slot.row == row.unknown_a;
+  const double *phi_r = a_along_rows ? phi_a : phi_b, *phi_c = a_along_rows ? phi_b : phi_a;
+  const int size_r = a_along_rows ? row.size_a : row.size_b, size_c = a_along_rows ? row.size_b : row.size_a;
+  if (size_r == 3 && size_c == 3) {
+    add_outer<3, false>(phi_r, 3, phi_c, 3, k, -1.0, slot.values, 0);
   } else {
-    add_outer(phi_b, row.size_b, phi_a, row.size_a, cxx, cxy, cyy, -1.0, false, slot.values, slot.stride);
+    add_outer<0, false>(phi_r, size_r, phi_c, size_c, k, -1.0, slot.values, slot.stride);
   }
 }
 
