@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 #include "terminal.h"
@@ -96,6 +97,26 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
       1000.0 * run.max_overlap, 100.0 * run.energy.residual_ratio, run.state_hash);
   text += aligned(rows);
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
+  return text;
+}
+
+std::string profile_text(const RunRecord& run) {
+  std::vector<std::size_t> order(phase_count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto entry = [&](std::size_t k) { return run.profile[static_cast<Phase>(k)]; };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return entry(a).seconds > entry(b).seconds; });
+  double total = 0.0;
+  for (const std::size_t k : order) total += entry(k).seconds;
+  const double steps = static_cast<double>(std::max(1L, run.steps));
+  std::string text =
+      fmt::format("{:<13}  {:>8}  {:>5}  {:>7}  {:>10}\n", "where", "s", "%", "ms/step", "times/step");
+  for (const std::size_t k : order) {
+    text += fmt::format("{:<13}  {:>8.2f}  {:>5.1f}  {:>7.3f}  {:>10.2f}  {}\n", phase_names[k].key,
+                        entry(k).seconds, 100.0 * entry(k).seconds / std::max(total, 1e-12),
+                        1000.0 * entry(k).seconds / steps, static_cast<double>(entry(k).count) / steps,
+                        phase_names[k].meaning);
+  }
   return text;
 }
 

@@ -29,8 +29,10 @@ struct RunArguments {
   ScenarioArguments scenario;
   std::string folder;
   int threads = 1;
+  std::string solver;
   bool resume = false;
   bool force = false;
+  bool profile = false;
 };
 
 /// Everything but what the run says at its end: the page from what the result file holds.
@@ -58,7 +60,8 @@ simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const Ru
   return simulation::run(setup, options, observers);
 }
 
-void run_scenario(const RunArguments& arguments) {
+void run_scenario(RunArguments arguments) {
+  if (!arguments.solver.empty()) arguments.scenario.overrides.push_back("solver.linear=" + arguments.solver);
   std::vector<std::string> warnings;
   simulation::RunSetup setup =
       scenario::build_setup(arguments.scenario.read(), arguments.scenario.realization, &warnings);
@@ -77,6 +80,7 @@ void run_scenario(const RunArguments& arguments) {
   }
   write_report(arguments.folder);
   std::cout << "\n" << outcome_text(record, setup.system.blocks.size());
+  if (arguments.profile) std::cout << "\n" << profile_text(record) << "\n";
   std::cout << "report: " << arguments.folder << "/report.html" << std::endl;
   if (record.interrupted) {
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
@@ -104,6 +108,10 @@ void add_run(CLI::App& app) {
       ->add_flag("--resume", arguments->resume,
                  "Go on where an interrupted run stopped; the end is the same, bit for bit")
       ->excludes(force);
+  command->add_flag("--profile", arguments->profile, "Say at the end what the time was spent on");
+  command->add_option("--solver", arguments->solver, "block; or direct, a library's solver to check it by")
+      ->check(CLI::IsMember({"block", "direct"}).description(""))
+      ->type_name("NAME");
   command->footer(
       "Ctrl-C ends the run after the step at hand, with everything so far readable.\n\n"
       "Examples:\n"

@@ -6,10 +6,36 @@
 namespace keyblock {
 
 /// What a run spends its time on.
-enum class Phase { other, detection, terms, assembly, factorization, solution, search, update, energy, output };
-inline constexpr std::size_t phase_count = 10;
-inline constexpr std::array<const char*, phase_count> phase_names{
-    "other", "detection", "terms", "assembly", "factorization", "solution", "search", "update", "energy", "output"};
+enum class Phase {
+  other,
+  detection,
+  terms,
+  assembly,
+  factorization,
+  solution,
+  search,
+  update,
+  energy,
+  output
+};
+
+struct PhaseName {
+  const char* key;
+  const char* meaning;
+};
+inline constexpr std::array<PhaseName, 10> phase_names{{
+    {"other", "everything else: prediction, checks after a step, progress"},
+    {"detection", "contacts: candidates and their geometry"},
+    {"terms", "inertia, stress and stiffness of blocks; springs of contacts"},
+    {"assembly", "of the matrix"},
+    {"factorization", "of the matrix, whole or in part"},
+    {"solution", "with the factors"},
+    {"search", "open-close iteration: states of contacts, line search, friction bounds"},
+    {"update", "of positions, velocities and contact memory"},
+    {"energy", "where the energy of the step went"},
+    {"output", "frames, statistics, overlaps, checkpoints"},
+}};
+inline constexpr std::size_t phase_count = phase_names.size();
 
 /// Wall time and number of entries by phase. At any moment one phase is being timed.
 class Profile {
@@ -35,7 +61,9 @@ class Profile {
     Phase outer_;
   };
 
-  [[nodiscard]] const Entry& operator[](Phase phase) const { return entries_[static_cast<std::size_t>(phase)]; }
+  [[nodiscard]] const Entry& operator[](Phase phase) const {
+    return entries_[static_cast<std::size_t>(phase)];
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

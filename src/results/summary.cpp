@@ -108,6 +108,15 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"damage", damage(r.damage)}};
 }
 
+ordered_json profile(const simulation::RunRecord& run) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t k = 0; k < phase_count; ++k) {
+    const Profile::Entry& entry = run.profile[static_cast<Phase>(k)];
+    json[phase_names[k].key] = {{"seconds", entry.seconds}, {"count", entry.count}};
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
@@ -132,6 +141,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"wall_time_s", run.wall_time},
       {"ms_per_step", run.steps > 0 ? 1e3 * run.wall_time / static_cast<double>(run.steps) : 0.0},
       {"threads", model.threads},
+      {"profile", profile(run)},
       {"state_hash", run.state_hash},
       {"open_close",
        {{"mean_iterations", run.open_close.mean_iterations},

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/profile.h"
 #include "cutting/block_system.h"
 #include "geometry/vec2.h"
 #include "simulation/stage.h"
@@ -170,6 +171,7 @@ struct RunRecord {
   Energy energy;
   std::vector<StageRecord> stages;
   bool interrupted = false;
+  Profile profile;  ///< of this run; of the part after resuming, if it was resumed
 };
 
 /// What a terminal needs to draw a progress bar.

@@ -357,6 +357,7 @@ RunRecord Runner::run() {
         record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
     record.energy = energy();
     record.interrupted = stopped();
+    record.profile = profile_;
     observer_.end(record);
   };
   try {
@@ -367,7 +368,6 @@ RunRecord Runner::run() {
     throw;
   }
   finish();
-  for (std::size_t k = 0; k < phase_count; ++k) { const auto& e = profile_[static_cast<Phase>(k)]; fmt::print(stderr, "{:14} {:8.3f} s {:8} {:8.4f} ms/step\n", phase_names[k], e.seconds, e.count, 1e3*e.seconds/double(now_.record.steps)); }
   return now_.record;
 }
 
