@@ -109,8 +109,10 @@ void add_run(CLI::App& app) {
                  "Go on where an interrupted run stopped; the end is the same, bit for bit")
       ->excludes(force);
   command->add_flag("--profile", arguments->profile, "Say at the end what the time was spent on");
-  command->add_option("--solver", arguments->solver, "block; or direct, a library's solver to check it by")
-      ->check(CLI::IsMember({"block", "direct"}).description(""))
+  command
+      ->add_option("--solver", arguments->solver,
+                   "automatic, block, iterative; or direct, a library's, to check them by")
+      ->check(CLI::IsMember({"automatic", "block", "iterative", "direct"}).description(""))
       ->type_name("NAME");
   command->footer(
       "Ctrl-C ends the run after the step at hand, with everything so far readable.\n\n"

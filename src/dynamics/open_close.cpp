@@ -5,6 +5,13 @@
 
 namespace keyblock::dynamics {
 
+namespace {
+
+// Of the tolerance of a step, what the solution of its linear systems may take up.
+constexpr double linear_share = 0.3;
+
+}  // namespace
+
 /// Springs unstretched by the step, and those assumed in the first solve: what acted in the last step.
 void OpenClose::start(const StepProblem& problem, std::span<const contact::Contact> contacts) {
   const auto& rows = problem.rows();
@@ -71,9 +78,15 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
   return solver.factor();
 }
 
-void OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> x) {
+/// direction_ ← A⁻¹ direction_, but for what is left in residual_. False when it cannot be had.
+bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance) {
   const Profile::Scope scope(*profile_, Phase::solution);
-  solver.solve(x.first(problem.unknowns()));
+  const std::size_t n = problem.unknowns();
+  solver.solve(std::span(direction_).first(n), std::span(residual_).first(n),
+               [&](std::span<const double> residual) {
+                 return problem.residual_ratio(residual) / (linear_share * tolerance);
+               });
+  return solver.solved();
 }
 
 /// What the direction of search does to every spring.
@@ -87,8 +100,8 @@ void OpenClose::find_direction(const StepProblem& problem) {
 }
 
 /// Solves with the springs of the last step, as if they could pull and hold without limit.
-bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> d,
-                            OpenCloseResult& result) {
+bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                            std::span<double> d, OpenCloseResult& result) {
   const auto& rows = problem.rows();
   ++result.iterations;
   if (!factor(problem, solver, result)) return false;
@@ -97,11 +110,11 @@ bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& sol
     add_force(problem, c, springs_.force_on(c, springs_.piece[c], springs_.y[c], springs_.w[c]), -1.0,
               direction_);
   }
-  solve_linear(problem, solver, direction_);
+  if (!solve_linear(problem, solver, tolerance)) return false;
   std::copy(direction_.begin(), direction_.end(), d.begin());
   find_direction(problem);
-  // The gradient there is what the springs assumed get wrong.
-  std::fill(gradient_.begin(), gradient_.end(), 0.0);
+  // The gradient there is what the solution lacks and what the springs assumed get wrong.
+  for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] = -residual_[k];
   for (std::size_t c = 0; c < rows.size(); ++c) {
     const double y = springs_.y[c] += springs_.dy[c], w = springs_.w[c] += springs_.dw[c];
     const Piece assumed = springs_.piece[c], p = springs_.piece[c] = springs_.piece_at(c, y, w);
@@ -121,9 +134,9 @@ void OpenClose::find_bends(double alpha) {
   }
 }
 
-/// dΠ(D + αp)/dα for a Newton direction p, given the bends up to α.
+/// dΠ(D + αp)/dα given the bends up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) but for the bends.
 double OpenClose::slope(double alpha) const {
-  double sum = (1.0 - alpha) * slope_at_zero_;
+  double sum = slope_at_zero_ + alpha * curvature_;
   for (const std::size_t c : bends_) {
     const Force extra = bend(c, alpha);
     sum += extra.normal * springs_.dy[c] + extra.shear * springs_.dw[c];
@@ -132,8 +145,12 @@ double OpenClose::slope(double alpha) const {
 }
 
 double OpenClose::line_search() {
-  slope_at_zero_ = 0.0;
-  for (std::size_t k = 0; k < direction_.size(); ++k) slope_at_zero_ += gradient_[k] * direction_[k];
+  slope_at_zero_ = curvature_ = 0.0;
+  for (std::size_t k = 0; k < direction_.size(); ++k) {
+    slope_at_zero_ += gradient_[k] * direction_[k];
+    curvature_ -= residual_[k] * direction_[k];
+  }
+  curvature_ -= slope_at_zero_;
   find_bends(1.0);
   const double start = slope_at_zero_, target = 0.01 * std::abs(start);
   if (!(start < 0.0)) return 1.0;  // the minimum, to the last digit
@@ -168,7 +185,7 @@ double OpenClose::line_search() {
 void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d) {
   for (std::size_t k = 0; k < d.size(); ++k) {
     d[k] += alpha * direction_[k];
-    gradient_[k] *= 1.0 - alpha;
+    gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
   }
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
   for (std::size_t c = 0; c < springs_.size(); ++c) {
@@ -187,7 +204,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
                       [](Piece p, Piece q) { return p.same_springs(q); });
   };
   if (!warm) {
-    if (!first_solve(problem, solver, d, result)) return false;
+    if (!first_solve(problem, solver, options.tolerance, d, result)) return false;
     // The same springs act; what may still differ is the direction in which a contact slides.
     if (same_springs() && problem.residual_ratio(gradient_) < options.tolerance) return true;
   }
@@ -195,11 +212,10 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
     ++result.iterations;
     if (!factor(problem, solver, result)) return false;
     for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
-    solve_linear(problem, solver, direction_);
+    if (!solve_linear(problem, solver, options.tolerance)) return false;
     find_direction(problem);
     const double alpha = line_search();
     go(problem, alpha, d);
-    if (alpha == 1.0 && same_springs()) return true;
     if (problem.residual_ratio(gradient_) < options.tolerance) return true;
   }
   return false;
@@ -301,6 +317,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   r_.resize(rows);
   gradient_.resize(d.size());
   direction_.resize(d.size());
+  residual_.assign(d.size(), 0.0);
   start(problem, contacts);
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
@@ -309,7 +326,10 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   bool warm = false;
   for (;;) {
     result.converged = minimize(problem, solver, options, warm, d, result);
-    if (!result.converged) break;
+    if (!result.converged) {
+      result.linear_failed = !solver.solved();
+      break;
+    }
     warm = true;
     if (break_bonds(problem, contacts)) {
       result.bond_broken = true;

@@ -13,8 +13,9 @@ namespace keyblock::dynamics {
 /// What an open-close iteration did.
 struct OpenCloseResult {
   bool converged = false;
-  bool bond_broken = false;  ///< some contact lost its cohesion and tension on the way
-  int iterations = 0;        ///< linear solves
+  bool linear_failed = false;  ///< the linear solver gave up
+  bool bond_broken = false;    ///< some contact lost its cohesion and tension on the way
+  int iterations = 0;          ///< linear solves
   int factorizations = 0;
   int multiplier_updates = 0;   ///< of an augmented Lagrangian
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
@@ -31,8 +32,8 @@ struct OpenCloseResult {
 ///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
 ///     5. bonds whose strength is exceeded break, and the iteration goes on. A broken bond stays broken.
 ///
-/// Along a Newton direction p the gradient is known without the matrix: ∇Π(D + αp) = (1 − α) ∇Π(D) but for contacts that
-/// pass to another piece of their law on the way, which are few. So is the slope that the line search needs.
+/// Along a Newton direction p the gradient is known without the matrix: ∇Π(D + αp) = (1 − α) ∇Π(D) − α ρ, with ρ what an
+/// iterative solver left over, but for contacts that pass to another piece of their law on the way, which are few. So is the slope that the line search needs.
 class OpenClose {
  public:
   /// d: the increment, overwritten. Bonds that break are cleared
@@ -52,11 +53,11 @@ class OpenClose {
 
   void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
-  void solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> x);
+  bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, std::span<double> d, OpenCloseResult& result);
-  bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, std::span<double> d,
-                   OpenCloseResult& result);
+  bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                   std::span<double> d, OpenCloseResult& result);
   void find_direction(const StepProblem& problem);
   [[nodiscard]] double line_search();
   void find_bends(double alpha);
@@ -80,7 +81,8 @@ class OpenClose {
   double worst_ = 0.0;       ///< m, largest penetration or drift at the last update of multipliers
   int stalls_ = 0;           ///< updates in a row that did not make it smaller
   std::vector<double> gradient_, direction_;
-  double slope_at_zero_ = 0.0;
+  std::vector<double> residual_;  ///< ρ of the last linear solution: A p = −g − ρ
+  double slope_at_zero_ = 0.0, curvature_ = 0.0;
 };
 
 }  // namespace keyblock::dynamics

@@ -2,7 +2,8 @@
 
 namespace keyblock::dynamics {
 
-enum class LinearSolver { block, direct };
+/// automatic: block factors, or conjugate gradients where they take less; direct: a library, to check the others by.
+enum class LinearSolver { automatic, block, iterative, direct };
 
 /// How contacts keep blocks apart: by penetration of a spring, or by multipliers that leave none (augmented Lagrangian).
 enum class ContactMethod { penalty, augmented_lagrangian };
@@ -42,7 +43,7 @@ struct SolverOptions {
   /// Augmented Lagrangian: largest penetration, and drift of a contact that holds, over the block size.
   double penetration_tolerance = 1e-10;
   int max_multiplier_updates = 200;
-  LinearSolver linear = LinearSolver::block;
+  LinearSolver linear = LinearSolver::automatic;
 };
 
 }  // namespace keyblock::dynamics

@@ -31,8 +31,9 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       tolerances_(model.block_size),
       candidates_(tolerances_),
       detection_(tolerances_, model.laws, penalties(model)),
-      solver_(model.solver.linear == LinearSolver::block ? linalg::make_block_cholesky()
-                                                         : linalg::make_cholmod()),
+      direct_{model.solver.linear == LinearSolver::direct ? linalg::make_cholmod()
+                                                          : linalg::make_block_cholesky()},
+      iterative_{linalg::make_block_conjugate_gradient()},
       reach_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       spin_(model.blocks.size(), 0.0),
@@ -108,7 +109,7 @@ void Stepper::resume(State& state) {
   place(state);
   state.moved = moved;
   candidates_.invalidate();
-  analysed_ = false;
+  forget_pattern();
   contact_energy_ = stored_energy(state);
   support_energy_ = support_energy(state);
 }
@@ -128,7 +129,7 @@ void Stepper::remove_absent(State& state) {
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
   contact_energy_ = stored_energy(state);
-  analysed_ = false;
+  forget_pattern();
   state.pattern.clear();
 }
 
@@ -188,29 +189,53 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
       pair_of_candidate_[k] = place;
     }
   };
-  if (candidates_changed || !analysed_) find_places();
+  if (candidates_changed || !has_places_) find_places();
+  has_places_ = true;
   const bool has_room = std::none_of(contacts_.begin(), contacts_.end(), [&](const contact::Contact& c) {
     return pair_of_candidate_[at(c.candidate)] == missing;
   });
-  if (has_room && analysed_) return;
-  if (!has_room) {
-    std::vector<Pair> used;
-    for (const contact::Contact& c : contacts_) {
-      const Pair pair = pair_of(c.vertex, c.edge);
-      if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
-    }
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    std::vector<Pair> all;
-    std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
-                   std::back_inserter(all));
-    const bool idle =
-        static_cast<double>(all.size() - used.size()) > most_idle * static_cast<double>(used.size());
-    state.pattern = idle ? std::move(used) : std::move(all);
-    find_places();
+  if (has_room) return;
+  std::vector<Pair> used;
+  for (const contact::Contact& c : contacts_) {
+    const Pair pair = pair_of(c.vertex, c.edge);
+    if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
   }
-  solver_->analyse(unknown_sizes_, state.pattern);
-  analysed_ = true;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Pair> all;
+  std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
+                 std::back_inserter(all));
+  const bool idle =
+      static_cast<double>(all.size() - used.size()) > most_idle * static_cast<double>(used.size());
+  state.pattern = idle ? std::move(used) : std::move(all);
+  find_places();
+  direct_.analysed = iterative_.analysed = false;
+  products_.reset();
+}
+
+/// The solver that takes least, knowing the pattern. The choice depends on the state alone, so that a run that is resumed takes
+/// the same.
+linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool must_be_direct) {
+  // Block products that a solution by conjugate gradients is worth, for each pair of blocks (docs/performance.md). Static steps
+  // have little inertia, and need many more iterations.
+  constexpr double dynamic_worth = 8.0, static_worth = 500.0;
+  constexpr std::size_t never_factored = 30'000;  // blocks; not even the order of elimination is looked for
+  const LinearSolver wanted = model_.solver.linear;
+  bool iterative = wanted == LinearSolver::iterative;
+  if (wanted == LinearSolver::automatic && !must_be_direct &&
+      model_.solver.contact == ContactMethod::penalty) {
+    if (!products_) {
+      products_ = unknown_sizes_.size() > never_factored
+                      ? HUGE_VAL
+                      : linalg::cholesky_products(static_cast<int>(unknown_sizes_.size()), state.pattern);
+    }
+    iterative =
+        *products_ > (is_static ? static_worth : dynamic_worth) * static_cast<double>(state.pattern.size());
+  }
+  Linear& linear = iterative ? iterative_ : direct_;
+  if (!linear.analysed) linear.solver->analyse(unknown_sizes_, state.pattern);
+  linear.analysed = true;
+  return *linear.solver;
 }
 
 void Stepper::build_problem(const State& state, const Drive& drive) {
@@ -229,9 +254,16 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     build_problem(state, drive);
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       problem_.rows()[c].pair = pair_of_candidate_[at(contacts_[c].candidate)];
-    const OpenCloseResult result =
-        open_close_.solve(problem_, contacts_, *solver_, model_.solver, profile_, increment_);
-    report.iterations += result.iterations;
+    OpenCloseResult result;
+    for (const bool must_be_direct : {false, true}) {
+      linalg::BlockSolver& chosen = [&]() -> linalg::BlockSolver& {
+        const Profile::Scope scope(profile_, Phase::assembly);
+        return solver(state, drive.is_static, must_be_direct);
+      }();
+      result = open_close_.solve(problem_, contacts_, chosen, model_.solver, profile_, increment_);
+      report.iterations += result.iterations;
+      if (!result.linear_failed) break;
+    }
     measure_spin(state);
     if (!result.converged) return false;
     if (turned_too_far()) return false;

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -89,7 +90,12 @@ class Stepper {
   void predict_reach(const State& state, const Drive& drive);
   void detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
+  linalg::BlockSolver& solver(const State& state, bool is_static, bool must_be_direct);
   bool attempt(State& state, Drive& drive, StepReport& report);
+  void forget_pattern() {
+    has_places_ = direct_.analysed = iterative_.analysed = false;
+    products_.reset();
+  }
   void measure_spin(const State& state);
   [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();
@@ -110,11 +116,17 @@ class Stepper {
   contact::Detection detection_;
   StepProblem problem_;
   OpenClose open_close_;
-  std::unique_ptr<linalg::BlockSolver> solver_;
+  /// A solver, and whether it knows the pattern.
+  struct Linear {
+    std::unique_ptr<linalg::BlockSolver> solver;
+    bool analysed = false;
+  };
+  Linear direct_, iterative_;
+  std::optional<double> products_;  ///< block products of a factorization with the pattern
   std::vector<contact::Contact> contacts_;
   std::vector<int> unknown_sizes_;
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
-  bool analysed_ = false;
+  bool has_places_ = false;             ///< pair_of_candidate_ is that of the pattern
   std::vector<double> reach_, increment_;
   std::vector<double> spin_;             ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;         ///< per block, of the last attempt

@@ -10,8 +10,10 @@ namespace keyblock::linalg {
 
 namespace {
 
-/// Order of elimination of the graph of blocks: order[k] is the block eliminated as k-th.
-std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int, int>> pairs) {
+/// Order of elimination of the graph of blocks: order[k] is the block eliminated as k-th. `products`: block products of the
+/// factorization.
+std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int, int>> pairs,
+                                            double* products = nullptr) {
   std::vector<int> start(static_cast<std::size_t>(n) + 1, 0), neighbour(2 * pairs.size() + 1);
   for (const auto& [i, j] : pairs) {
     ++start[static_cast<std::size_t>(i) + 1];
@@ -24,11 +26,12 @@ std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int
     neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(j)]++)] = i;
   }
   std::vector<int> order(static_cast<std::size_t>(n));
-  double control[AMD_CONTROL];
+  double control[AMD_CONTROL], info[AMD_INFO];
   amd_defaults(control);
-  if (n > 0 && amd_order(n, start.data(), neighbour.data(), order.data(), control, nullptr) < 0) {
+  if (n > 0 && amd_order(n, start.data(), neighbour.data(), order.data(), control, info) < 0) {
     throw std::logic_error("amd_order refused the pattern");
   }
+  if (products != nullptr) *products = n > 0 ? info[AMD_NMULTSUBS_LDL] : 0.0;
   return order;
 }
 
@@ -43,7 +46,7 @@ class BlockCholesky final : public BlockSolver {
   BlockSlot slot(int pair) override { return slots_[index(pair)]; }
   void touch(int block) override { stale_[position_[index(block)]] = 1; }
   bool factor() override;
-  void solve(std::span<double> x) override;
+  void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
 
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -356,7 +359,8 @@ void BlockCholesky::solve_columns(std::span<double> x) {
   }
 }
 
-void BlockCholesky::solve(std::span<double> x) {
+void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/) {
+  std::fill(residual.begin(), residual.end(), 0.0);
   if (equal_size_ == 6) {
     solve_columns<6>(x);
   } else if (equal_size_ == 12) {
@@ -367,6 +371,12 @@ void BlockCholesky::solve(std::span<double> x) {
 }
 
 }  // namespace
+
+double cholesky_products(int blocks, std::span<const std::pair<int, int>> pairs) {
+  double products = 0.0;
+  approximate_minimum_degree(blocks, pairs, &products);
+  return products;
+}
 
 std::unique_ptr<BlockSolver> make_block_cholesky() {
   return std::make_unique<BlockCholesky>();

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -43,13 +44,24 @@ class BlockSolver {
   virtual void touch(int block) = 0;
   /// False when the matrix is not positive definite.
   [[nodiscard]] virtual bool factor() = 0;
-  /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j].
-  virtual void solve(std::span<double> x) = 0;
+  /// How many times too large a residual (as long as x) is; up to 1 it is small enough.
+  using Excess = std::function<double(std::span<const double>)>;
+  /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j]. An iterative solver stops when `excess` is at most 1, and leaves
+  /// what is missing in `residual`: the x given less A times the x returned. A direct one leaves zeros there.
+  virtual void solve(std::span<double> x, std::span<double> residual, const Excess& excess) = 0;
+  /// False when the last solve() gave up before its residual was small enough.
+  [[nodiscard]] virtual bool solved() const { return true; }
 };
 
 /// The block Cholesky factorization of this project: left-looking by block columns, ordered by AMD on the
 /// graph of blocks.
 std::unique_ptr<BlockSolver> make_block_cholesky();
+/// What it would cost for blocks of equal size with these pairs.
+double cholesky_products(int blocks, std::span<const std::pair<int, int>> pairs);
+
+/// Conjugate gradients with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat
+/// 1981). In a dynamic step inertia bounds the condition of the matrix, so that the iterations do not grow with the model.
+std::unique_ptr<BlockSolver> make_block_conjugate_gradient();
 
 /// CHOLMOD on the scalar matrix: slower at the sizes of a block system, kept as the oracle.
 std::unique_ptr<BlockSolver> make_cholmod();

@@ -21,7 +21,9 @@ constexpr Word<dynamics::TimeIntegration> integrators[] = {
 constexpr Word<dynamics::ContactMethod> contact_methods[] = {
     {"penalty", dynamics::ContactMethod::penalty},
     {"augmented-lagrangian", dynamics::ContactMethod::augmented_lagrangian}};
-constexpr Word<LinearSolver> linear_solvers[] = {{"block", LinearSolver::block},
+constexpr Word<LinearSolver> linear_solvers[] = {{"automatic", LinearSolver::automatic},
+                                                 {"block", LinearSolver::block},
+                                                 {"iterative", LinearSolver::iterative},
                                                  {"direct", LinearSolver::direct}};
 
 // More steps than this are a slip of the pen.
@@ -223,8 +225,10 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
             {.meaning = "Augmented Lagrangian: how often multipliers are updated in a step at most.",
              .at_least = 1.0});
   t.word("linear", solver.linear, linear_solvers,
-         {.meaning =
-              "Solver of the linear systems: `block` is this program's own, `direct` that of a library."});
+         {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "
+                     "conjugate gradients, "
+                     "`automatic` the cheaper of the two, and `direct` the factorization of a library, to "
+                     "check them by."});
 }
 
 void read_vary(TableReader& t, VarySpec& vary) {

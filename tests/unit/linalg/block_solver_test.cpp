@@ -49,6 +49,14 @@ Problem random_problem(unsigned seed, int n, const std::vector<int>& choice) {
   return p;
 }
 
+BlockSolver::Excess strict() {
+  return [](std::span<const double> residual) {
+    double largest = 0.0;
+    for (const double r : residual) largest = std::max(largest, std::abs(r));
+    return largest / 1e-13;
+  };
+}
+
 Eigen::VectorXd solve(BlockSolver& solver, const Problem& p) {
   std::vector<int> start{0};
   for (const int size : p.sizes) start.push_back(start.back() + size);
@@ -71,8 +79,31 @@ Eigen::VectorXd solve(BlockSolver& solver, const Problem& p) {
   }
   EXPECT_TRUE(solver.factor());
   std::vector<double> x(p.right.data(), p.right.data() + p.right.size());
-  solver.solve(x);
+  std::vector<double> residual(x.size());
+  solver.solve(x, residual, strict());
   return Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+// What an iterative solver leaves is what it says.
+TEST(BlockSolver, ResidualIsWhatIsMissing) {
+  const Problem p = random_problem(5, 30, {6, 12});
+  const auto solver = make_block_conjugate_gradient();
+  solver->analyse(p.sizes, p.pairs);
+  solve(*solver, p);
+  std::vector<double> x(p.right.data(), p.right.data() + p.right.size()), residual(x.size());
+  const auto norm = [](std::span<const double> r) {
+    double sum = 0.0;
+    for (const double v : r) sum += v * v;
+    return std::sqrt(sum);
+  };
+  solver->solve(x, residual, [&](std::span<const double> r) { return norm(r) / 0.01; });
+  EXPECT_TRUE(solver->solved());
+  EXPECT_LE(norm(residual), 0.01);
+  EXPECT_GT(norm(residual), 1e-9);
+  const Eigen::VectorXd missing =
+      p.right - p.dense * Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  for (std::size_t k = 0; k < x.size(); ++k)
+    EXPECT_NEAR(residual[k], missing[static_cast<Eigen::Index>(k)], 1e-12);
 }
 
 // What is factored in part is, bit for bit, what is factored as a whole.
@@ -96,7 +127,8 @@ TEST(BlockSolver, FactorsWhatWasTouchedOnly) {
       solver->touch(slot.column);
       ASSERT_TRUE(solver->factor());
       std::vector<double> x(p.right.data(), p.right.data() + p.right.size());
-      solver->solve(x);
+      std::vector<double> residual(x.size());
+      solver->solve(x, residual, strict());
       const Eigen::VectorXd expected = solve(*whole, p);
       for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], expected[static_cast<Eigen::Index>(i)]);
     }
@@ -110,7 +142,7 @@ TEST(BlockSolver, AgreesWithDenseSolutionForEqualAndMixedBlocks) {
       if (choice[0] == 132 && n > 7) continue;
       const Problem p = random_problem(++seed, n, choice);
       const Eigen::VectorXd expected = p.dense.ldlt().solve(p.right);
-      for (const auto& make : {make_block_cholesky, make_cholmod}) {
+      for (const auto& make : {make_block_cholesky, make_cholmod, make_block_conjugate_gradient}) {
         const auto solver = make();
         solver->analyse(p.sizes, p.pairs);
         for (int repeat = 0; repeat < 2; ++repeat) {
@@ -136,7 +168,8 @@ TEST(BlockSolver, AnEmptySystemIsSolved) {
   solver->analyse(std::vector<int>{}, std::vector<std::pair<int, int>>{});
   EXPECT_TRUE(solver->factor());
   std::vector<double> x;
-  solver->solve(x);
+  std::vector<double> residual(x.size());
+  solver->solve(x, residual, [](std::span<const double>) { return 0.0; });
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   ASSERT_TRUE(solver->factor());
   std::vector<double> x(s.model.unknowns);
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = (up[k] - down[k]) / (2 * h);
-  solver->solve(x);
+  std::vector<double> residual(x.size());
+  solver->solve(x, residual, [](std::span<const double>) { return 0.0; });
   for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], direction[k], 1e-4) << k;
 }
 
