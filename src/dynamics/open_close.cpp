@@ -9,6 +9,7 @@ namespace {
 
 // Of the tolerance of a step, what the solution of its linear systems may take up.
 constexpr double linear_share = 0.3;
+constexpr double forcing = 0.003;
 
 }  // namespace
 
@@ -82,10 +83,11 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
 bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance) {
   const Profile::Scope scope(*profile_, Phase::solution);
   const std::size_t n = problem.unknowns();
-  solver.solve(std::span(direction_).first(n), std::span(residual_).first(n),
-               [&](std::span<const double> residual) {
-                 return problem.residual_ratio(residual) / (linear_share * tolerance);
-               });
+  const std::span<double> x = std::span(direction_).first(n);
+  // The springs that act are not known better than to a share of what is out of balance.
+  const double enough = std::max(linear_share * tolerance, forcing * problem.residual_ratio(x));
+  solver.solve(x, std::span(residual_).first(n),
+               [&](std::span<const double> residual) { return problem.residual_ratio(residual) / enough; });
   return solver.solved();
 }
 
