@@ -16,6 +16,7 @@ constexpr int most_iterations = 400;
 ///
 ///     Â y = t + (1 + L)⁻¹ (y − t),     t = (1 + Lᵀ)⁻¹ y
 ///
+/// L has single precision: it takes half the memory to read in every iteration, and the residual is that of the matrix itself.
 /// Vectors are padded as the blocks are.
 class BlockConjugateGradient final : public BlockSolver {
  public:
@@ -44,17 +45,20 @@ class BlockConjugateGradient final : public BlockSolver {
 
   struct Entry {
     std::size_t row;     ///< > column
-    std::size_t values;  ///< into matrix_, and into scaled_
+    std::size_t values;  ///< into matrix_
+    std::size_t lower;   ///< into lower_
   };
   std::vector<int> size_, stride_;        ///< per block
   std::vector<std::size_t> offset_;       ///< per block: its unknowns in x
   std::vector<std::size_t> start_;        ///< per block, into padded vectors
   std::vector<std::size_t> entry_start_;  ///< per column, into entries_
   std::vector<Entry> entries_;
-  std::vector<std::size_t> diagonal_;  ///< per block, into matrix_ and scaled_
+  std::vector<std::size_t> diagonal_;       ///< per block, into matrix_
+  std::vector<std::size_t> inverse_start_;  ///< per block, into inverse_
   std::vector<BlockSlot> slots_;
-  Vector matrix_;  ///< A
-  Vector scaled_;  ///< C_j⁻¹ on the diagonal, L below it
+  Vector matrix_;             ///< A
+  Vector inverse_;            ///< C_j⁻¹
+  std::vector<float> lower_;  ///< L
   std::vector<std::uint8_t> stale_;
   Vector scratch_;                   ///< of one block
   Vector t_, z_, r_, p_, q_, wide_;  ///< padded
@@ -67,7 +71,7 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
   stride_.clear();
   offset_.clear();
   start_.clear();
-  std::size_t unknowns = 0, padded = 0, used = 0;
+  std::size_t unknowns = 0, padded = 0, used = 0, lower = 0, inverse = 0;
   int largest = 0;
   for (const int size : sizes) {
     stride_.push_back(padded_rows(size));
@@ -83,24 +87,29 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
     below[at(low)].emplace_back(at(high), k);
   }
   diagonal_.clear();
+  inverse_start_.clear();
   entries_.clear();
   entry_start_.assign(1, 0);
   std::vector<std::size_t> place(pairs.size());
   for (std::size_t j = 0; j < n; ++j) {
     diagonal_.push_back(used);
+    inverse_start_.push_back(inverse);
     used += at(stride_[j] * size_[j]);
+    inverse += at(stride_[j] * size_[j]);
     std::sort(below[j].begin(), below[j].end());
     for (const auto& [row, k] : below[j]) {
-      entries_.push_back({row, used});
+      entries_.push_back({row, used, lower});
       place[k] = used;
       used += at(stride_[row] * size_[j]);
+      lower += at(stride_[row] * size_[j]);
     }
     entry_start_.push_back(entries_.size());
   }
   matrix_.assign(used, 0.0);
-  scaled_.assign(used, 0.0);
+  inverse_.assign(inverse, 0.0);
+  lower_.assign(lower, 0.0F);
   stale_.assign(n, 1);
-  scratch_.assign(at(largest), 0.0);
+  scratch_.assign(at(largest * largest), 0.0);
   for (Vector* v : {&t_, &z_, &r_, &p_, &q_, &wide_}) v->assign(padded, 0.0);
   slots_.clear();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -113,26 +122,28 @@ bool BlockConjugateGradient::factor() {
   const std::size_t n = size_.size();
   for (std::size_t j = 0; j < n; ++j) {
     if (stale_[j] == 0) continue;
-    double* inverse = &scaled_[diagonal_[j]];
+    double* inverse = &inverse_[inverse_start_[j]];
     std::copy_n(&matrix_[diagonal_[j]], stride_[j] * size_[j], inverse);
     if (!invert_factor(size_[j], inverse, scratch_.data())) return false;
   }
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const auto [i, values] = entries_[e];
+      const auto [i, values, lower] = entries_[e];
       if (stale_[i] == 0 && stale_[j] == 0) continue;
       // C_i⁻¹ A_ij, column by column, then from the right.
+      const int rows = stride_[i];
       for (int c = 0; c < size_[j]; ++c) {
-        const double* from = &matrix_[values + at(c * stride_[i])];
-        double* to = &scaled_[values + at(c * stride_[i])];
-        for (int l = 0; l < stride_[i]; l += row_padding) {
+        const double* from = &matrix_[values + at(c * rows)];
+        for (int l = 0; l < rows; l += row_padding) {
           Lanes t{};
           for (int k = 0; k < size_[i]; ++k)
-            t = add_product(load(&scaled_[diagonal_[i] + at(k * stride_[i] + l)]), broadcast(from[k]), t);
-          store(to + l, t);
+            t = add_product(load(&inverse_[inverse_start_[i] + at(k * rows + l)]), broadcast(from[k]), t);
+          store(&scratch_[at(c * rows + l)], t);
         }
       }
-      multiply_right(stride_[i] / row_padding, size_[j], &scaled_[diagonal_[j]], &scaled_[values]);
+      multiply_right(rows / row_padding, size_[j], &inverse_[inverse_start_[j]], scratch_.data());
+      for (std::size_t k = 0; k < at(rows * size_[j]); ++k)
+        lower_[lower + k] = static_cast<float>(scratch_[k]);
     }
   }
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
@@ -144,11 +155,13 @@ void BlockConjugateGradient::divide_forward(Vector& v) const {
   for (std::size_t j = 0; j < size_.size(); ++j) {
     const double* x = &v[start_[j]];
     for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const auto [i, values] = entries_[e];
-      if (size_[j] == 6) {
-        subtract_times(stride_[i] / row_padding, 6, &scaled_[values], x, &v[start_[i]]);
+      const Entry& entry = entries_[e];
+      const int lanes = stride_[entry.row] / row_padding;
+      double* y = &v[start_[entry.row]];
+      if (size_[j] == 6 && lanes == 1) {
+        subtract_times(1, 6, &lower_[entry.lower], x, y);
       } else {
-        subtract_times(stride_[i] / row_padding, size_[j], &scaled_[values], x, &v[start_[i]]);
+        subtract_times(lanes, size_[j], &lower_[entry.lower], x, y);
       }
     }
   }
@@ -159,8 +172,9 @@ void BlockConjugateGradient::divide_backward(Vector& v) const {
   const auto columns = [&]<int width>(std::size_t j, int c) {
     Lanes t[width]{};
     for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const auto [i, values] = entries_[e];
-      add_lane_products(stride_[i] / row_padding, &scaled_[values + at(c * stride_[i])], &v[start_[i]], t);
+      const Entry& entry = entries_[e];
+      const int rows = stride_[entry.row];
+      add_lane_products(rows / row_padding, &lower_[entry.lower + at(c * rows)], &v[start_[entry.row]], t);
     }
     double* y = &v[start_[j] + at(c)];
     for (int k = 0; k < width; ++k) y[k] -= sum(t[k]);
@@ -184,7 +198,7 @@ void BlockConjugateGradient::apply(const Vector& y, Vector& out) {
 /// out ← C⁻¹ x.
 void BlockConjugateGradient::scale(std::span<const double> x, Vector& out) const {
   for (std::size_t j = 0; j < size_.size(); ++j) {
-    const double* inverse = &scaled_[diagonal_[j]];
+    const double* inverse = &inverse_[inverse_start_[j]];
     for (int l = 0; l < stride_[j]; l += row_padding) {
       Lanes t{};
       for (int c = 0; c < size_[j]; ++c)
@@ -199,8 +213,8 @@ void BlockConjugateGradient::unscale(const Vector& v, std::span<double> x) {
   for (std::size_t j = 0; j < size_.size(); ++j) {
     for (int c = 0; c < size_[j]; ++c) {
       Lanes t[1]{};
-      add_lane_products(stride_[j] / row_padding, &scaled_[diagonal_[j] + at(c * stride_[j])], &v[start_[j]],
-                        t);
+      add_lane_products(stride_[j] / row_padding, &inverse_[inverse_start_[j] + at(c * stride_[j])],
+                        &v[start_[j]], t);
       x[offset_[j] + at(c)] = sum(t[0]);
     }
   }
@@ -227,7 +241,7 @@ void BlockConjugateGradient::subtract_product(std::span<const double> x, std::sp
       y_j[c] -= own;
     }
     for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const auto [i, values] = entries_[e];
+      const auto [i, values, lower] = entries_[e];
       subtract_times(stride_[i] / row_padding, size_[j], &matrix_[values], x_j, &q_[start_[i]]);
       for (int c = 0; c < size_[j]; ++c) {
         Lanes t[1]{};

@@ -17,6 +17,10 @@ using Lanes = double __attribute__((vector_size(row_padding * sizeof(double)), a
 inline Lanes load(const double* p) {
   return *reinterpret_cast<const Lanes*>(p);
 }
+inline Lanes load(const float* p) {
+  using Narrow = float __attribute__((vector_size(row_padding * sizeof(float)), aligned(4)));
+  return __builtin_convertvector(*reinterpret_cast<const Narrow*>(p), Lanes);
+}
 inline void store(double* p, Lanes v) {
   *reinterpret_cast<Lanes*>(p) = v;
 }
@@ -168,7 +172,8 @@ inline void multiply_right_6(const double* inverse, double* x) {
 }
 
 /// y −= A x.
-inline void subtract_times(int lanes, int columns, const double* a, const double* x, double* y) {
+template <typename Number>
+void subtract_times(int lanes, int columns, const Number* a, const double* x, double* y) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
     Lanes t = load(y + l * row_padding);
@@ -179,8 +184,8 @@ inline void subtract_times(int lanes, int columns, const double* a, const double
 }
 
 /// t_j += A_j ∘ x, the products of column j of A with x lane by lane; their sum is (Aᵀ x)_j. As many columns as t has.
-template <int columns>
-void add_lane_products(int lanes, const double* a, const double* x, Lanes (&t)[columns]) {
+template <typename Number, int columns>
+void add_lane_products(int lanes, const Number* a, const double* x, Lanes (&t)[columns]) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
     const Lanes v = load(x + l * row_padding);
