@@ -81,4 +81,4 @@ spacing = {{ mean = 1.0, distribution = "constant" }}
 length = {{ mean = {10 * side + 10}, distribution = "constant" }}
 gap = {{ mean = 0.0, distribution = "constant" }}
 '''
-    return text + STAGES.format(settle=30, duration=duration)
+    return text + STAGES.format(settle=10, duration=duration)

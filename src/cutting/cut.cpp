@@ -14,11 +14,13 @@
 
 namespace keyblock::cutting {
 
-CutTolerances CutTolerances::for_domain(double domain_area) {
-  const double size = std::sqrt(domain_area);
+CutTolerances CutTolerances::for_domain(double domain_area, double trace_length) {
+  constexpr double most_spacings = 80.0;
+  double size = std::sqrt(domain_area);
+  if (trace_length > 0.0) size = std::min(size, most_spacings * domain_area / trace_length);
   CutTolerances t;
   t.snapping = 5e-5 * size;
-  t.sliver_area = 2.5e-6 * domain_area;
+  t.sliver_area = 2.5e-6 * size * size;
   t.sliver_thickness = 2.5e-4 * size;
   t.cluster = 2.5e-4 * size;
   t.collinear = 5e-8 * size;

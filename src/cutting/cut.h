@@ -29,7 +29,9 @@ struct CutTolerances {
   /// deformation of a contact.
   double collinear = 0.0;
 
-  static CutTolerances for_domain(double domain_area);
+  /// L is the square root of the area of the domain (m²), at most 80 times the area over the length of all traces in it (m):
+  /// the size of blocks, not only that of the model, says what is small.
+  static CutTolerances for_domain(double domain_area, double trace_length = 0.0);
 };
 
 /// What is cut. Real coordinates; rings in either sense.

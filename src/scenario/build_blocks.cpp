@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cutting/cut.h"
+#include "rockmass/intensity.h"
 #include "rockmass/trace_generator.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
@@ -18,8 +19,12 @@ Ring shifted(Ring ring, Vec2 by) {
   return ring;
 }
 
-cutting::CutTolerances tolerances_of(const CuttingKeys& keys, double domain_area) {
-  cutting::CutTolerances tolerances = cutting::CutTolerances::for_domain(domain_area);
+cutting::CutTolerances tolerances_of(const CuttingKeys& keys, const Box& window,
+                                     const std::vector<rockmass::Trace>& traces) {
+  double trace_length = 0.0;
+  for (const rockmass::Trace& trace : traces) trace_length += rockmass::length_inside(trace, window);
+  cutting::CutTolerances tolerances =
+      cutting::CutTolerances::for_domain(window.size().x * window.size().y, trace_length);
   tolerances.snapping = keys.snapping.value_or(tolerances.snapping);
   tolerances.sliver_area = keys.sliver_area.value_or(tolerances.sliver_area);
   tolerances.sliver_thickness = keys.sliver_thickness.value_or(tolerances.sliver_thickness);
@@ -43,7 +48,7 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   input.domain = {window.min, {window.max.x, window.min.y}, window.max, {window.min.x, window.max.y}};
   input.traces = model.traces;
   input.excavations = model.outlines;
-  input.tolerances = tolerances_of(scenario.cutting, window.size().x * window.size().y);
+  input.tolerances = tolerances_of(scenario.cutting, window, model.traces);
   model.system = cutting::cut(input);
 }
 

@@ -291,11 +291,11 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
   root.tables("trace_map", scenario.trace_maps,
               {.meaning = "Joints mapped one by one, straight or as polylines."},
               [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
-  root.table(
-      "cutting",
-      {.meaning = "Tolerances of cutting; 0 switches a step off. L is the square root of the area of the "
-                  "domain."},
-      [&](TableReader& t) { read_cutting(t, scenario.cutting); });
+  root.table("cutting",
+             {.meaning = "Tolerances of cutting; 0 switches a step off. L is the square root of the area of "
+                         "the domain, at most "
+                         "80 times that area over the length of all traces in it."},
+             [&](TableReader& t) { read_cutting(t, scenario.cutting); });
   root.tables(
       "region", scenario.regions,
       {.meaning =

@@ -196,5 +196,16 @@ TEST(Cleaning, TheDomainKeepsItsCorners) {
   EXPECT_NEAR(total_area(system), signed_area(input.domain), 1e-9 * 100.0);
 }
 
+// A million blocks of 1 m² between joints a metre apart are no slivers, however large the model is.
+TEST(Tolerances, FollowTheSizeOfBlocksInLargeModels) {
+  const CutTolerances large = CutTolerances::for_domain(1e6, 2e6);
+  EXPECT_LT(large.sliver_area, 0.01);
+  EXPECT_LT(large.sliver_thickness, 0.02);
+  EXPECT_LT(large.cluster, 0.02);
+  const CutTolerances few_joints = CutTolerances::for_domain(400.0, 1400.0);
+  EXPECT_DOUBLE_EQ(few_joints.sliver_area, 1e-3);
+  EXPECT_DOUBLE_EQ(few_joints.snapping, CutTolerances::for_domain(400.0).snapping);
+}
+
 }  // namespace
 }  // namespace keyblock::cutting
