@@ -30,12 +30,12 @@ QUAKE = "stage.'first earthquake'"
 
 
 def tunnel(order, duration):
-    return TUNNEL, [f"rock.order={order}", "stage.quiet.duration=0.4", f"{QUAKE}.duration={duration}", "stage.after.duration=0.002"]
+    return TUNNEL, [f"rock.order={order}", f"{QUAKE}.duration={duration}", "stage.after.duration=0.002"]
 
 
 # name: (scenario and overrides, stage, goal in ms a step or None, arguments)
 STEPS = {
-    "tunnel, order 1": (lambda: tunnel(1, 4.0), "first earthquake", 0.6, []),
+    "tunnel, order 1": (lambda: tunnel(1, 8.0), "first earthquake", 0.6, []),
     "tunnel, order 2": (lambda: tunnel(2, 0.4), "first earthquake", None, []),
     "wall of 512 bricks": (lambda: (scenes.wall(20, 25, 1.0), []), "shake", 0.4, []),
     "wall of 2,025 bricks": (lambda: (scenes.wall(40, 50, 0.4), []), "shake", 1.8, []),

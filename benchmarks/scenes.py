@@ -71,6 +71,7 @@ def grid(blocks, duration, order=1):
     side = 0.5 * round(math.sqrt(blocks))
     text = head(f"Grid of {blocks} blocks", order, duration)
     text += f'\n[domain]\nx = [{-side}, {side}]\ny = [{-side}, {side}]\nboundary = "frame"\n'
+    text += "\n[in_situ]\ndepth = 30.0\nk0 = 0.5\n"  # in equilibrium from the start
     for name, dip in (("vertical", 90.0), ("horizontal", 0.0)):
         text += f'''
 [[joint_set]]

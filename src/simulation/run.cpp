@@ -177,8 +177,7 @@ void Runner::record_frame() {
 
 void Runner::check_overlap() {
   const Profile::Scope scope(profile_, Phase::output);
-  now_.record.max_overlap =
-      std::max(now_.record.max_overlap, recorder_.overlap(now_.record.max_overlap));
+  now_.record.max_overlap = std::max(now_.record.max_overlap, recorder_.overlap(now_.record.max_overlap));
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 
