@@ -101,24 +101,34 @@ void OpenClose::find_direction(const StepProblem& problem) {
   }
 }
 
-/// Solves with the springs of the last step, as if they could pull and hold without limit.
+/// Solves with the springs of the last step, as if they could pull and hold without limit. An iterative solver goes on from d.
 bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                             std::span<double> d, OpenCloseResult& result) {
   const auto& rows = problem.rows();
   ++result.iterations;
   if (!factor(problem, solver, result)) return false;
-  std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
+  if (solver.is_iterative()) {
+    std::copy(d.begin(), d.end(), direction_.begin());
+    find_direction(problem);
+    springs_.go(1.0);
+    problem.multiply(d, direction_);
+    for (std::size_t k = 0; k < d.size(); ++k) direction_[k] = problem.right()[k] - direction_[k];
+  } else {
+    std::fill(d.begin(), d.end(), 0.0);
+    std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
+  }
   for (std::size_t c = 0; c < rows.size(); ++c) {
     add_force(problem, c, springs_.force_on(c, springs_.piece[c], springs_.y[c], springs_.w[c]), -1.0,
               direction_);
   }
   if (!solve_linear(problem, solver, tolerance)) return false;
-  std::copy(direction_.begin(), direction_.end(), d.begin());
+  for (std::size_t k = 0; k < d.size(); ++k) d[k] += direction_[k];
   find_direction(problem);
+  springs_.go(1.0);
   // The gradient there is what the solution lacks and what the springs assumed get wrong.
   for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] = -residual_[k];
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    const double y = springs_.y[c] += springs_.dy[c], w = springs_.w[c] += springs_.dw[c];
+    const double y = springs_.y[c], w = springs_.w[c];
     const Piece assumed = springs_.piece[c], p = springs_.piece[c] = springs_.piece_at(c, y, w);
     if (p != assumed)
       add_force(problem, c, springs_.force(c) - springs_.force_on(c, assumed, y, w), 1.0, gradient_);
@@ -190,10 +200,7 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
     gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
   }
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
-  for (std::size_t c = 0; c < springs_.size(); ++c) {
-    springs_.y[c] += alpha * springs_.dy[c];
-    springs_.w[c] += alpha * springs_.dw[c];
-  }
+  springs_.go(alpha);
   for (const std::size_t c : bends_) springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
 }
 

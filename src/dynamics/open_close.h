@@ -36,7 +36,7 @@ struct OpenCloseResult {
 /// iterative solver left over, but for contacts that pass to another piece of their law on the way, which are few. So is the slope that the line search needs.
 class OpenClose {
  public:
-  /// d: the increment, overwritten. Bonds that break are cleared
+  /// d: the increment; where an iterative solver starts from, and then the solution. Bonds that break are cleared
   /// in the memory of the contacts (one per row) and in the rows of the problem.
   OpenCloseResult solve(StepProblem& problem, std::span<contact::Contact> contacts,
                         linalg::BlockSolver& solver, const SolverOptions& options, Profile& profile,

@@ -54,6 +54,14 @@ class SpringArray {
     floor[c] = spring.tensile() ? -HUGE_VAL : 0.0;
   }
 
+  /// Goes on along the direction of search; `piece` stays that of where it was.
+  void go(double alpha) {
+    for (std::size_t c = 0; c < y.size(); ++c) {
+      y[c] += alpha * dy[c];
+      w[c] += alpha * dw[c];
+    }
+  }
+
   [[nodiscard]] Piece piece_at(std::size_t c, double penetration, double displacement) const {
     const double elastic = ks[c] * displacement;
     return {penetration > floor[c], bound[c] <= 0.0       ? Shear::none

@@ -218,7 +218,7 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
 linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool must_be_direct) {
   // Block products that a solution by conjugate gradients is worth, for each pair of blocks (docs/performance.md). Static steps
   // have little inertia, and need many more iterations.
-  constexpr double dynamic_worth = 60.0, static_worth = 150.0;
+  constexpr double dynamic_worth = 40.0, static_worth = 150.0;
   constexpr std::size_t never_factored = 30'000;  // blocks; not even the order of elimination is looked for
   const LinearSolver wanted = model_.solver.linear;
   bool iterative = wanted == LinearSolver::iterative;
@@ -260,6 +260,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
         const Profile::Scope scope(profile_, Phase::assembly);
         return solver(state, drive.is_static, must_be_direct);
       }();
+      guess(state, drive);
       result = open_close_.solve(problem_, contacts_, chosen, model_.solver, profile_, increment_);
       report.iterations += result.iterations;
       if (!result.linear_failed) break;
@@ -271,6 +272,12 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     if (!moved && !impact) return true;
   }
   return true;
+}
+
+/// An iterative solver starts from the increment of a motion that goes on as it is.
+void Stepper::guess(const State& state, const Drive& drive) {
+  for (std::size_t k = 0; k < increment_.size(); ++k)
+    increment_[k] = drive.is_static || k >= model_.unknowns ? 0.0 : drive.step * state.velocity[k];
 }
 
 void Stepper::measure_spin(const State& state) {

@@ -96,6 +96,7 @@ class Stepper {
     has_places_ = direct_.analysed = iterative_.analysed = false;
     products_.reset();
   }
+  void guess(const State& state, const Drive& drive);
   void measure_spin(const State& state);
   [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();

@@ -108,7 +108,7 @@ TEST(BlockSolver, ResidualIsWhatIsMissing) {
 
 // What is factored in part is, bit for bit, what is factored as a whole.
 TEST(BlockSolver, FactorsWhatWasTouchedOnly) {
-  for (const auto& make : {make_block_cholesky, make_cholmod}) {
+  for (const auto& make : {make_block_cholesky, make_cholmod, make_block_conjugate_gradient}) {
     Problem p = random_problem(77, 40, {6, 12, 20});
     const auto solver = make(), whole = make();
     solver->analyse(p.sizes, p.pairs);

@@ -122,6 +122,29 @@ RunSetup shaken_wall() {
   return setup;
 }
 
+// All linear solvers solve the same problem. Before anything slides for good, they differ by no more than tolerances do.
+TEST(Run, LinearSolversAgree) {
+  RunSetup setup = shaken_wall();
+  setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake)};
+  setup.stages[1].duration = 0.1;
+  setup.histories.push_back({"top", "", {2.0, 2.4}});
+  std::vector<HistoryRow::Point> ends;
+  for (const auto linear : {dynamics::LinearSolver::direct, dynamics::LinearSolver::block,
+                            dynamics::LinearSolver::iterative, dynamics::LinearSolver::automatic}) {
+    setup.solver.linear = linear;
+    LastHistory observer;
+    const RunRecord record = run(setup, {}, observer);
+    EXPECT_EQ(record.open_close.unconverged_steps, 0);
+    ends.push_back(observer.last.points[0]);
+  }
+  EXPECT_GT(std::abs(ends[0].vx), 1e-3);
+  for (const HistoryRow::Point& end : ends) {
+    EXPECT_NEAR(end.ux, ends[0].ux, 1e-7);
+    EXPECT_NEAR(end.uy, ends[0].uy, 1e-7);
+    EXPECT_NEAR(end.vx, ends[0].vx, 1e-5);
+  }
+}
+
 // The same bits on every rerun, for any number of threads and from every build, and as long as nobody changes the
 // mechanics: whoever does so on purpose puts the new value here.
 TEST(Run, GoldenStateHash) {
