@@ -17,6 +17,10 @@ const axisLeft = 46;
 const axisBottom = 24;
 
 /** Draws the block system on a canvas: one moment, as a Look says, through a camera that can zoom and pan. */
+const smallestWithEdges = 2.5; // pixels
+const blocksPerPath = 512;
+const piecesPerPath = 2048;
+
 export class SectionView {
   readonly canvas: HTMLCanvasElement;
   look: Look;
@@ -251,17 +255,26 @@ export class SectionView {
       c.fillStyle = run.fixed[b] ? (this.hatch ?? css("--fixed")) : colors[b];
       c.fill("evenodd");
     }
-    c.beginPath();
-    for (let b = 0; b < run.blockCount; b++) if (this.isShown(b)) this.tracePath(b);
-    const small = Math.min(
-      1,
-      Math.sqrt((this.scaleNow * this.scaleNow * run.rockArea()) / run.blockCount) / 24,
-    );
+    this.strokeBlocks();
+  }
+
+  /** The edges of all blocks; none where blocks are too small for edges to be told apart. */
+  private strokeBlocks(): void {
+    const { run, look, context: c } = this;
+    const pixels = Math.sqrt((this.scaleNow * this.scaleNow * run.rockArea()) / run.blockCount);
+    if (pixels < smallestWithEdges) return;
+    const small = Math.min(1, pixels / 24);
     c.lineJoin = "round";
     c.lineWidth = 0.35 + 0.45 * small;
     c.strokeStyle = css("--joint");
     c.globalAlpha = look.joints === "plain" || look.joints === "set" ? 0.75 : 0.35;
-    c.stroke();
+    // A browser's path takes the longer to grow the longer it is.
+    for (let first = 0; first < run.blockCount; first += blocksPerPath) {
+      c.beginPath();
+      const end = Math.min(run.blockCount, first + blocksPerPath);
+      for (let b = first; b < end; b++) if (this.isShown(b)) this.tracePath(b);
+      c.stroke();
+    }
     c.globalAlpha = 1;
   }
 
@@ -289,12 +302,24 @@ export class SectionView {
     if (look.joints === "plain") return;
     const n = run.vertexCount;
     const fine = this.options.axes ? 1 : 0.75;
-    const batches = new Map<string, { color: string; width: number; path: Path2D }>();
+    interface Batch {
+      color: string;
+      width: number;
+      path: Path2D;
+      pieces: number;
+    }
+    const batches: Batch[] = [];
+    const open = new Map<string, Batch>();
     const add = (color: string, width: number, v: number, from: number, to: number) => {
       const w = run.next[v];
       const key = `${color} ${width.toFixed(1)}`;
-      let batch = batches.get(key);
-      if (!batch) batches.set(key, (batch = { color, width, path: new Path2D() }));
+      let batch = open.get(key);
+      if (!batch || batch.pieces === piecesPerPath) {
+        batch = { color, width, path: new Path2D(), pieces: 0 };
+        batches.push(batch);
+        open.set(key, batch);
+      }
+      batch.pieces++;
       const at = (s: number): [number, number] => [
         this.ax + this.scaleNow * (drawn[v] + s * (drawn[w] - drawn[v])),
         this.ay - this.scaleNow * (drawn[n + v] + s * (drawn[n + w] - drawn[n + v])),
@@ -321,7 +346,7 @@ export class SectionView {
       }
     }
     c.lineCap = "round";
-    for (const { color, width, path } of [...batches.values()].sort((a, b) => a.width - b.width)) {
+    for (const { color, width, path } of [...batches].sort((a, b) => a.width - b.width)) {
       c.strokeStyle = color;
       c.lineWidth = fine * width;
       c.stroke(path);
