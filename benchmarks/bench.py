@@ -99,7 +99,7 @@ def measure_cut(keyblock, name, repeat):
 def machine():
     model = next((line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "")
     compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout.split("\n")[0]
-    return {"processor": model, "cores": os.cpu_count(), "system": platform.platform(), "compiler": compiler}
+    return {"processor": model, "cores": os.cpu_count(), "system": f"{platform.system()} {platform.machine()}", "compiler": compiler}
 
 
 def derived(results):
