@@ -7,9 +7,8 @@ namespace keyblock::dynamics {
 
 namespace {
 
-// Of the tolerance of a step, what the solution of its linear systems may take up.
-constexpr double linear_share = 0.3;
-constexpr double forcing = 0.003;
+constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
+constexpr double forcing = 0.003;     // of what is out of balance, likewise
 
 }  // namespace
 

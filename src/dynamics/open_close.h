@@ -24,7 +24,7 @@ struct OpenCloseResult {
 
 /// Open-close iteration: a Newton method with an exact line search on the convex, piecewise quadratic Π(D) of a step.
 ///
-///     1. solve with the springs that acted in the last step; if the same springs act at the solution, it is exact;
+///     1. solve with the springs that acted in the last step; if the same springs act at the solution, that is it;
 ///     2. otherwise repeat: solve ∇²Π p = −∇Π with the springs acting at D, and go to the minimum of Π(D + αp), which
 ///        is the root of a piecewise linear function of α;
 ///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
@@ -33,7 +33,8 @@ struct OpenCloseResult {
 ///     5. bonds whose strength is exceeded break, and the iteration goes on. A broken bond stays broken.
 ///
 /// Along a Newton direction p the gradient is known without the matrix: ∇Π(D + αp) = (1 − α) ∇Π(D) − α ρ, with ρ what an
-/// iterative solver left over, but for contacts that pass to another piece of their law on the way, which are few. So is the slope that the line search needs.
+/// iterative solver left over, but for contacts that pass to another piece of their law on the way, which are few. So is
+/// the slope that the line search needs.
 class OpenClose {
  public:
   /// d: the increment; where an iterative solver starts from, and then the solution. Bonds that break are cleared

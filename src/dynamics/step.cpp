@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "core/index.h"
 
@@ -161,83 +160,6 @@ void Stepper::detect(State& state) {
   ensure_pattern(state, changed);
 }
 
-/// Room in the matrix for every pair of blocks that has contacts. A pair without room has the matrix analysed anew; pairs that
-/// have contacts no more keep theirs until they are many.
-void Stepper::ensure_pattern(State& state, bool candidates_changed) {
-  using Pair = std::pair<int, int>;
-  constexpr int fixed = -1, missing = -2;
-  constexpr double most_idle = 0.15;
-  const auto pair_of = [&](int vertex, int edge) {
-    const int a = model_.blocks[at(model_.surface.block[at(vertex)])].unknown;
-    const int b = model_.blocks[at(model_.surface.block[at(edge)])].unknown;
-    return Pair(std::minmax(a, b));
-  };
-  const auto find_places = [&] {
-    const std::vector<contact::Candidate>& list = state.contacts;
-    pair_of_candidate_.resize(list.size());
-    Pair last{fixed, fixed};
-    int place = fixed;
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      if (const Pair pair = pair_of(list[k].vertex, list[k].edge); pair != last) {
-        const auto found = std::lower_bound(state.pattern.begin(), state.pattern.end(), pair);
-        last = pair;
-        place = pair.first < 0 ? fixed
-                : found != state.pattern.end() && *found == pair
-                    ? static_cast<int>(found - state.pattern.begin())
-                    : missing;
-      }
-      pair_of_candidate_[k] = place;
-    }
-  };
-  if (candidates_changed || !has_places_) find_places();
-  has_places_ = true;
-  const bool has_room = std::none_of(contacts_.begin(), contacts_.end(), [&](const contact::Contact& c) {
-    return pair_of_candidate_[at(c.candidate)] == missing;
-  });
-  if (has_room) return;
-  std::vector<Pair> used;
-  for (const contact::Contact& c : contacts_) {
-    const Pair pair = pair_of(c.vertex, c.edge);
-    if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
-  }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<Pair> all;
-  std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
-                 std::back_inserter(all));
-  const bool idle =
-      static_cast<double>(all.size() - used.size()) > most_idle * static_cast<double>(used.size());
-  state.pattern = idle ? std::move(used) : std::move(all);
-  find_places();
-  direct_.analysed = iterative_.analysed = false;
-  products_.reset();
-}
-
-/// The solver that takes least, knowing the pattern. The choice depends on the state alone, so that a run that is resumed takes
-/// the same.
-linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool must_be_direct) {
-  // Block products that a solution by conjugate gradients is worth, for each pair of blocks (docs/performance.md). Static steps
-  // have little inertia, and need many more iterations.
-  constexpr double dynamic_worth = 40.0, static_worth = 150.0;
-  constexpr std::size_t never_factored = 30'000;  // blocks; not even the order of elimination is looked for
-  const LinearSolver wanted = model_.solver.linear;
-  bool iterative = wanted == LinearSolver::iterative;
-  if (wanted == LinearSolver::automatic && !must_be_direct &&
-      model_.solver.contact == ContactMethod::penalty) {
-    if (!products_) {
-      products_ = unknown_sizes_.size() > never_factored
-                      ? HUGE_VAL
-                      : linalg::cholesky_products(static_cast<int>(unknown_sizes_.size()), state.pattern);
-    }
-    iterative =
-        *products_ > (is_static ? static_worth : dynamic_worth) * static_cast<double>(state.pattern.size());
-  }
-  Linear& linear = iterative ? iterative_ : direct_;
-  if (!linear.analysed) linear.solver->analyse(unknown_sizes_, state.pattern);
-  linear.analysed = true;
-  return *linear.solver;
-}
-
 void Stepper::build_problem(const State& state, const Drive& drive) {
   const Profile::Scope scope(profile_, Phase::terms);
   problem_.build(model_, state, drive, model_.surface, contacts_, team_);
@@ -249,35 +171,29 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   prescribe(state, drive);
   predict_reach(state, drive);
   constexpr int looks = 4;
-  for (int look = 1; look <= looks; ++look) {
+  bool must_be_direct = false;
+  for (int look = 1; look <= looks;) {
     detect(state);
     build_problem(state, drive);
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       problem_.rows()[c].pair = pair_of_candidate_[at(contacts_[c].candidate)];
-    OpenCloseResult result;
-    for (const bool must_be_direct : {false, true}) {
-      linalg::BlockSolver& chosen = [&]() -> linalg::BlockSolver& {
-        const Profile::Scope scope(profile_, Phase::assembly);
-        return solver(state, drive.is_static, must_be_direct);
-      }();
-      guess(state, drive);
-      result = open_close_.solve(problem_, contacts_, chosen, model_.solver, profile_, increment_);
-      report.iterations += result.iterations;
-      if (!result.linear_failed) break;
+    linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
+    if (chosen.is_iterative()) guess(state, drive);
+    const OpenCloseResult result =
+        open_close_.solve(problem_, contacts_, chosen, model_.solver, profile_, increment_);
+    report.iterations += result.iterations;
+    if (result.linear_failed && !must_be_direct) {
+      must_be_direct = true;
+      continue;
     }
     measure_spin(state);
     if (!result.converged) return false;
     if (turned_too_far()) return false;
     const bool moved = moved_too_far(), impact = look < looks && meet_impacts(state, drive);
     if (!moved && !impact) return true;
+    ++look;
   }
   return true;
-}
-
-/// An iterative solver starts from the increment of a motion that goes on as it is.
-void Stepper::guess(const State& state, const Drive& drive) {
-  for (std::size_t k = 0; k < increment_.size(); ++k)
-    increment_[k] = drive.is_static || k >= model_.unknowns ? 0.0 : drive.step * state.velocity[k];
 }
 
 void Stepper::measure_spin(const State& state) {

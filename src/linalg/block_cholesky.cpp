@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/index.h"
 #include "linalg/block_kernels.h"
 #include "linalg/block_solver.h"
 
@@ -14,18 +15,18 @@ namespace {
 /// factorization.
 std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int, int>> pairs,
                                             double* products = nullptr) {
-  std::vector<int> start(static_cast<std::size_t>(n) + 1, 0), neighbour(2 * pairs.size() + 1);
+  std::vector<int> start(at(n) + 1, 0), neighbour(2 * pairs.size() + 1);
   for (const auto& [i, j] : pairs) {
-    ++start[static_cast<std::size_t>(i) + 1];
-    ++start[static_cast<std::size_t>(j) + 1];
+    ++start[at(i) + 1];
+    ++start[at(j) + 1];
   }
-  for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) start[k + 1] += start[k];
+  for (std::size_t k = 0; k < at(n); ++k) start[k + 1] += start[k];
   std::vector<int> next(start.begin(), start.end() - 1);
   for (const auto& [i, j] : pairs) {
-    neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(i)]++)] = j;
-    neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(j)]++)] = i;
+    neighbour[at(next[static_cast<std::size_t>(i)]++)] = j;
+    neighbour[at(next[static_cast<std::size_t>(j)]++)] = i;
   }
-  std::vector<int> order(static_cast<std::size_t>(n));
+  std::vector<int> order(at(n));
   double control[AMD_CONTROL], info[AMD_INFO];
   amd_defaults(control);
   if (n > 0 && amd_order(n, start.data(), neighbour.data(), order.data(), control, info) < 0) {
@@ -42,14 +43,13 @@ class BlockCholesky final : public BlockSolver {
     std::fill(matrix_.begin(), matrix_.end(), 0.0);
     std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
   }
-  double* diagonal(int block) override { return &matrix_[diagonal_[index(block)]]; }
-  BlockSlot slot(int pair) override { return slots_[index(pair)]; }
-  void touch(int block) override { stale_[position_[index(block)]] = 1; }
+  double* diagonal(int block) override { return &matrix_[diagonal_[at(block)]]; }
+  BlockSlot slot(int pair) override { return slots_[at(pair)]; }
+  void touch(int block) override { stale_[position_[at(block)]] = 1; }
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
 
  private:
-  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   void find_structure(std::span<const std::pair<int, int>> pairs);
   void place_values();
   void place_matrix(std::span<const std::pair<int, int>> pairs);
@@ -115,9 +115,9 @@ void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pai
   stride_.assign(n, 0);
   offset_.assign(n, 0);
   std::vector<std::size_t> start(n + 1, 0);
-  for (std::size_t i = 0; i < n; ++i) start[i + 1] = start[i] + index(sizes[i]);
+  for (std::size_t i = 0; i < n; ++i) start[i + 1] = start[i] + at(sizes[i]);
   for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t block = index(order[k]);
+    const std::size_t block = at(order[k]);
     position_[block] = k;
     size_[k] = sizes[block];
     stride_[k] = padded_rows(sizes[block]);
@@ -136,7 +136,7 @@ void BlockCholesky::place_matrix(std::span<const std::pair<int, int>> pairs) {
   std::vector<std::vector<std::size_t>> pairs_of(n);  // by column
   const auto column_and_row = [&](std::size_t k) {
     return std::pair<std::size_t, std::size_t>(
-        std::minmax(position_[index(pairs[k].first)], position_[index(pairs[k].second)]));
+        std::minmax(position_[at(pairs[k].first)], position_[at(pairs[k].second)]));
   };
   for (std::size_t k = 0; k < pairs.size(); ++k) pairs_of[column_and_row(k).first].push_back(k);
   std::vector<std::size_t> place(pairs.size()), by_column(n);
@@ -144,8 +144,8 @@ void BlockCholesky::place_matrix(std::span<const std::pair<int, int>> pairs) {
   sources_.clear();
   source_start_.assign(1, 0);
   const auto add = [&](std::size_t to, int count) {
-    sources_.push_back({used, to, index(count)});
-    used += index(count);
+    sources_.push_back({used, to, at(count)});
+    used += at(count);
     return sources_.back().from;
   };
   for (std::size_t j = 0; j < n; ++j) {
@@ -169,8 +169,8 @@ void BlockCholesky::place_matrix(std::span<const std::pair<int, int>> pairs) {
   slots_.clear();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [i, j] = pairs[k];
-    const bool i_below = position_[index(i)] > position_[index(j)];
-    const std::size_t row = position_[index(i_below ? i : j)];
+    const bool i_below = position_[at(i)] > position_[at(j)];
+    const std::size_t row = position_[at(i_below ? i : j)];
     slots_.push_back({&matrix_[place[k]], stride_[row], i_below ? i : j, i_below ? j : i});
   }
 }
@@ -181,7 +181,7 @@ void BlockCholesky::find_structure(std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = size_.size();
   std::vector<std::vector<std::size_t>> below(n), children(n);
   for (const auto& [i, j] : pairs) {
-    const auto [low, high] = std::minmax(position_[index(i)], position_[index(j)]);
+    const auto [low, high] = std::minmax(position_[at(i)], position_[at(j)]);
     below[low].push_back(high);
   }
   row_start_.assign(1, 0);
@@ -223,15 +223,15 @@ void BlockCholesky::place_values() {
   for (std::size_t j = 0; j < n; ++j) {
     column_value_[j] = value;
     work_start_[j] = work;
-    value += index(stride_[j] * size_[j]);
-    work += index(stride_[j]);
+    value += at(stride_[j] * size_[j]);
+    work += at(stride_[j]);
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       row_value_[e] = value;
-      value += index(stride_[rows_[e]] * size_[j]);
+      value += at(stride_[rows_[e]] * size_[j]);
     }
   }
   values_.assign(value, 0.0);
-  const std::size_t largest = n == 0 ? 0 : index(*std::max_element(stride_.begin(), stride_.end()));
+  const std::size_t largest = n == 0 ? 0 : at(*std::max_element(stride_.begin(), stride_.end()));
   solved_.assign(largest, 0.0);
   scale_.assign(largest, 0.0);
   work_.assign(work, 0.0);
@@ -306,11 +306,10 @@ int BlockCholesky::gather(std::size_t j, int c) {
   for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
     const std::size_t i = rows_[e];
     const int rows = stride<equal>(i);
-    add_lane_products(rows / row_padding, &values_[row_value_[e] + index(c * rows)], &work_[work_start_[i]],
-                      t);
+    add_lane_products(rows / row_padding, &values_[row_value_[e] + at(c * rows)], &work_[work_start_[i]], t);
   }
-  const double* y = &work_[work_start_[j] + index(c)];
-  double* out = &solved_[index(c)];
+  const double* y = &work_[work_start_[j] + at(c)];
+  double* out = &solved_[at(c)];
   for (int k = 0; k < columns; ++k) out[k] = y[k] - sum(t[k]);
   return columns;
 }
@@ -320,8 +319,8 @@ template <int equal, int columns>
 int BlockCholesky::finish(std::size_t j, int c) {
   Lanes t[columns]{};
   const int rows = stride<equal>(j);
-  add_lane_products(rows / row_padding, &values_[column_value_[j] + index(c * rows)], solved_.data(), t);
-  double* out = &work_[work_start_[j] + index(c)];
+  add_lane_products(rows / row_padding, &values_[column_value_[j] + at(c * rows)], solved_.data(), t);
+  double* out = &work_[work_start_[j] + at(c)];
   for (int k = 0; k < columns; ++k) out[k] = sum(t[k]);
   return columns;
 }
@@ -330,18 +329,13 @@ template <int equal>
 void BlockCholesky::solve_columns(std::span<double> x) {
   const std::size_t n = size_.size();
   for (std::size_t j = 0; j < n; ++j) {
-    for (int k = 0; k < size<equal>(j); ++k) work_[work_start_[j] + index(k)] = x[offset_[j] + index(k)];
+    for (int k = 0; k < size<equal>(j); ++k) work_[work_start_[j] + at(k)] = x[offset_[j] + at(k)];
   }
   for (std::size_t j = 0; j < n; ++j) {
     const int size_j = size<equal>(j), rows = stride<equal>(j);
     double* y = &work_[work_start_[j]];
-    const double* inverse = &values_[column_value_[j]];
-    for (int l = 0; l < rows; l += row_padding) {
-      Lanes t{};
-      for (int c = 0; c < size_j; ++c) t = add_product(load(inverse + c * rows + l), broadcast(y[c]), t);
-      store(&solved_[index(l)], t);
-    }
-    for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[index(l)]));
+    multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
+    for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       const std::size_t i = rows_[e];
       subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y,
@@ -355,7 +349,7 @@ void BlockCholesky::solve_columns(std::span<double> x) {
     for (int c = 0; c < size_j;) c += size_j - c >= 6 ? finish<equal, 6>(j, c) : finish<equal, 1>(j, c);
   }
   for (std::size_t j = 0; j < n; ++j) {
-    for (int k = 0; k < size<equal>(j); ++k) x[offset_[j] + index(k)] = work_[work_start_[j] + index(k)];
+    for (int k = 0; k < size<equal>(j); ++k) x[offset_[j] + at(k)] = work_[work_start_[j] + at(k)];
   }
 }
 

@@ -63,6 +63,7 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<std::uint8_t> stale_;
   Vector scratch_;                   ///< of one block
   Vector t_, z_, r_, p_, q_, wide_;  ///< padded
+  Vector correction_;                ///< of x
   bool solved_ = true;
 };
 
@@ -134,13 +135,8 @@ bool BlockConjugateGradient::factor() {
       // C_i⁻¹ A_ij, column by column, then from the right.
       const int rows = stride_[i];
       for (int c = 0; c < size_[j]; ++c) {
-        const double* from = &matrix_[values + at(c * rows)];
-        for (int l = 0; l < rows; l += row_padding) {
-          Lanes t{};
-          for (int k = 0; k < size_[i]; ++k)
-            t = add_product(load(&inverse_[inverse_start_[i] + at(k * rows + l)]), broadcast(from[k]), t);
-          store(&scratch_[at(c * rows + l)], t);
-        }
+        multiply(rows / row_padding, size_[i], &inverse_[inverse_start_[i]], &matrix_[values + at(c * rows)],
+                 &scratch_[at(c * rows)]);
       }
       multiply_right(rows / row_padding, size_[j], &inverse_[inverse_start_[j]], scratch_.data());
       for (std::size_t k = 0; k < at(rows * size_[j]); ++k)
@@ -159,7 +155,7 @@ void BlockConjugateGradient::divide_forward(Vector& v) const {
       const Entry& entry = entries_[e];
       const int lanes = stride_[entry.row] / row_padding;
       double* y = &v[start_[entry.row]];
-      if (size_[j] == 6 && lanes == 1) {
+      if (size_[j] == 6 && lanes == 1) {  // order 1: loops of known length
         subtract_times(1, 6, &lower_[entry.lower], x, y);
       } else {
         subtract_times(lanes, size_[j], &lower_[entry.lower], x, y);
@@ -199,13 +195,8 @@ void BlockConjugateGradient::apply(const Vector& y, Vector& out) {
 /// out ← C⁻¹ x.
 void BlockConjugateGradient::scale(std::span<const double> x, Vector& out) const {
   for (std::size_t j = 0; j < size_.size(); ++j) {
-    const double* inverse = &inverse_[inverse_start_[j]];
-    for (int l = 0; l < stride_[j]; l += row_padding) {
-      Lanes t{};
-      for (int c = 0; c < size_[j]; ++c)
-        t = add_product(load(inverse + c * stride_[j] + l), broadcast(x[offset_[j] + at(c)]), t);
-      store(&out[start_[j] + at(l)], t);
-    }
+    multiply(stride_[j] / row_padding, size_[j], &inverse_[inverse_start_[j]], &x[offset_[j]],
+             &out[start_[j]]);
   }
 }
 
@@ -267,7 +258,7 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
   std::copy(x.begin(), x.end(), residual.begin());
   std::fill(x.begin(), x.end(), 0.0);
   solved_ = true;
-  Vector correction(x.size());
+  correction_.resize(x.size());
   int iterations = 0;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
     if (iterations >= most_iterations) {
@@ -294,9 +285,9 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
       for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = r_[k] + beta * p_[k];
     }
     divide_backward(z_);
-    unscale(z_, correction);
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] += correction[k];
-    subtract_product(correction, residual);
+    unscale(z_, correction_);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] += correction_[k];
+    subtract_product(correction_, residual);
   }
 }
 

@@ -171,6 +171,16 @@ inline void multiply_right_6(const double* inverse, double* x) {
   for (int q = 0; q < 6; ++q) store(x + q * row_padding, column[q]);
 }
 
+/// y = A x; y and x are not the same.
+inline void multiply(int lanes, int columns, const double* a, const double* x, double* y) {
+  const int stride = lanes * row_padding;
+  for (int l = 0; l < stride; l += row_padding) {
+    Lanes t{};
+    for (int j = 0; j < columns; ++j) t = add_product(load(a + j * stride + l), broadcast(x[j]), t);
+    store(y + l, t);
+  }
+}
+
 /// y −= A x.
 template <typename Number>
 void subtract_times(int lanes, int columns, const Number* a, const double* x, double* y) {

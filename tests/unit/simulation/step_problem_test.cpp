@@ -9,6 +9,22 @@
 namespace keyblock::dynamics {
 namespace {
 
+/// Room for the pairs of three blocks.
+void analyse(const Model& model, StepProblem& problem, linalg::BlockSolver& solver) {
+  std::vector<int> sizes;
+  for (const Block& block : model.blocks) {
+    if (!block.fixed) sizes.push_back(2 * block.size);
+  }
+  const std::vector<std::pair<int, int>> pairs{{0, 1}, {0, 2}, {1, 2}};
+  for (StepProblem::Row& row : problem.rows()) {
+    if (row.unknown_a < 0 || row.unknown_b < 0) continue;
+    const auto pair = std::minmax(row.unknown_a, row.unknown_b);
+    row.pair =
+        static_cast<int>(std::find(pairs.begin(), pairs.end(), std::pair<int, int>(pair)) - pairs.begin());
+  }
+  solver.analyse(sizes, pairs);
+}
+
 class StepProblemOrder : public ::testing::TestWithParam<int> {};
 
 // The matrix that is assembled is the derivative of the gradient, and the gradient that of the forces, at every order.
@@ -29,18 +45,6 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   drive.rule = rule;
   const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
   problem.build(s.model, s.state, drive, s.model.surface, contacts, s.team);
-  std::vector<int> sizes;
-  for (const Block& block : s.model.blocks) {
-    if (!block.fixed) sizes.push_back(2 * block.size);
-  }
-  const std::vector<std::pair<int, int>> pairs{{0, 1}, {0, 2}, {1, 2}};
-  for (StepProblem::Row& row : problem.rows()) {
-    if (row.unknown_a < 0 || row.unknown_b < 0) continue;
-    const auto pair = std::minmax(row.unknown_a, row.unknown_b);
-    row.pair =
-        static_cast<int>(std::find(pairs.begin(), pairs.end(), std::pair<int, int>(pair)) - pairs.begin());
-  }
-
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<double> d(s.model.coefficients, 0.0), direction(d.size(), 0.0);
@@ -63,7 +67,7 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
 
   // K direction, by solving: K⁻¹ (∂g · direction) must give the direction back.
   const auto solver = linalg::make_block_cholesky();
-  solver->analyse(sizes, pairs);
+  analyse(s.model, problem, *solver);
   problem.assemble(*solver);
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {
     const StepProblem::Row& row = problem.rows()[c];
@@ -78,6 +82,45 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   std::vector<double> residual(x.size());
   solver->solve(x, residual, [](std::span<const double>) { return 0.0; });
   for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], direction[k], 1e-4) << k;
+}
+
+// The open-close iteration keeps its gradient up to date without the matrix; it must stay that of the problem.
+TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
+  simulation::Scene scene(1e7, 20.0);
+  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5, 0.0, false, GetParam());
+  scene.rectangle({1.0, 0.0}, 1.0, 0.5, 0.0, false, 1);
+  scene.rectangle({0.5, 0.5}, 1.0, 0.5, 0.0, false, GetParam());
+  simulation::Simulator s(scene);
+  s.run(0.05, 0.005);
+  // A blow to the upper block: contacts open and slide.
+  s.state.velocity[s.model.blocks[3].first] += 0.5;
+  s.state.velocity[s.model.blocks[3].first + 1] += 0.1;
+  for (const auto& make : {linalg::make_block_cholesky, linalg::make_block_conjugate_gradient}) {
+    StepProblem problem;
+    Drive drive;
+    drive.step = 0.005;
+    drive.end_time = s.state.time + drive.step;
+    const std::vector<Integrator> rule(s.model.blocks.size());
+    drive.rule = rule;
+    std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
+    problem.build(s.model, s.state, drive, s.model.surface, contacts, s.team);
+    const std::unique_ptr<linalg::BlockSolver> solver = make();
+    analyse(s.model, problem, *solver);
+    std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
+    OpenClose iteration;
+    const OpenCloseResult result = iteration.solve(problem, contacts, *solver, s.model.solver, s.profile, d);
+    EXPECT_TRUE(result.converged);
+    EXPECT_GT(result.iterations, 1);
+    problem.gradient(d, iteration.relative(), g);
+    EXPECT_LE(problem.residual_ratio(g), s.model.solver.tolerance);
+    for (std::size_t b = 0; b < s.model.blocks.size(); ++b) {
+      const Block& block = s.model.blocks[b];
+      if (block.fixed) continue;
+      for (std::size_t k = block.first; k < block.first + 2 * static_cast<std::size_t>(block.size); ++k)
+        EXPECT_NEAR(g[k], iteration.gradient()[k], 1e-8 * problem.weight(b)) << k;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, StepProblemOrder, ::testing::Values(1, 2, 3, 5));
