@@ -228,7 +228,7 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
          {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "
                      "conjugate gradients, "
                      "`automatic` the cheaper of the two, and `direct` the factorization of a library, to "
-                     "check them by."});
+                     "check them by. The augmented Lagrangian always factors."});
 }
 
 void read_vary(TableReader& t, VarySpec& vary) {
