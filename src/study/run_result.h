@@ -1,0 +1,95 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/vec2.h"
+#include "simulation/record.h"
+
+/// What a study keeps of its runs: small enough that ten thousand of them are read in seconds.
+namespace keyblock::study {
+
+/// A square raster around the openings, the same for all runs of a study; cells row by row from the lower left.
+struct MapGrid {
+  Vec2 corner;        ///< lower left, real coordinates, m
+  double cell = 0.0;  ///< m
+  int columns = 0, rows = 0;
+};
+
+/// The shaking of a stage and what had happened by its end. Measures are cumulative since the first excavation.
+struct StageMeasures {
+  std::string name;
+  simulation::StageKind kind = simulation::StageKind::settle;
+  double pga = 0.0;    ///< m/s², largest length of the scaled ground acceleration in the section
+  double pgv = 0.0;    ///< m/s, the same of the ground velocity
+  double arias = 0.0;  ///< m/s, sum of both components: π/(2g) ∫ a² dt
+  simulation::Damage damage;
+};
+
+struct FallenBlock {
+  int block = 0;
+  std::string name;   ///< empty for cut blocks
+  int stage = 0;      ///< in which it fell
+  Vec2 centroid;      ///< where it lay, real coordinates, m
+  double area = 0.0;  ///< m²
+};
+
+/// One realization × one combination × one variant, when it has ended.
+struct RunResult {
+  std::string key;  ///< stable name of the run and of its folder: docs/studies.md
+  int realization = 0;
+  std::vector<std::string> values;  ///< TOML text of the value on every axis of the study, in their order
+  std::string
+      variant;  ///< of the sensitivity check: "" (the run itself), "friction-", "friction+", "released"
+  std::string
+      error;  ///< why it failed; empty when it is done. The rest below is then that of the stages that ended
+  int blocks = 0;
+  long steps = 0;
+  double wall_time = 0.0;  ///< s
+  std::string state_hash;
+  long unconverged_steps = 0;
+  double max_overlap = 0.0;  ///< m
+  double energy_residual_ratio = 0.0;
+  std::vector<StageMeasures> stages;
+  std::vector<FallenBlock> fallen;
+  /// Of every cell of the study's grid: where the rock that lay there is at the end.
+  std::vector<simulation::BlockStatus> map;
+};
+
+/// An axis of the grid of a study: a [[study.vary]] table.
+struct Axis {
+  std::string key;                  ///< key path of what varies
+  std::vector<std::string> values;  ///< TOML text
+};
+
+/// A level of damage to know the probability of: a measure (by its name in summary.json) above a threshold.
+struct DamageLevel {
+  std::string name;     ///< "light"
+  std::string measure;  ///< "fallen_area_m2"
+  double threshold = 0.0;
+};
+
+/// When a result is marginal: it changes by more than `share` of itself in a variant (run_result.h: RunResult::variant).
+struct MarginalCheck {
+  double friction = 3.0;  ///< degrees by which the friction angle of all joints is lowered and raised
+  double share = 0.5;     ///< of the larger of both fallen areas
+};
+
+/// The runs that are there, with what a reader needs to group them.
+struct StudyData {
+  std::string title;
+  std::uint64_t seed = 0;
+  std::string version;
+  std::vector<Axis> axes;
+  std::string stage;  ///< at whose end the measures are compared: by default the last
+  std::vector<DamageLevel> levels;
+  std::optional<MarginalCheck> marginal;  ///< given when variants are run
+  double confidence = 0.95;
+  MapGrid grid;
+  std::vector<std::vector<Vec2>> outlines;  ///< of the excavations, real coordinates
+  std::vector<RunResult> runs;              ///< by realization, then combination, then variant
+  std::size_t planned = 0;                  ///< runs of the whole plan
+};
+
+}  // namespace keyblock::study
