@@ -9,6 +9,8 @@ namespace {
 
 constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
 constexpr double forcing = 0.003;     // of what is out of balance, likewise
+constexpr double rough_share = 0.5;   // of what new bounds put out of balance, where the next look at them is taken
+constexpr double least_share = 0.25;  // of the way to a new bound
 
 }  // namespace
 
@@ -31,6 +33,7 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
     springs_.piece[c] = {contacts[c].memory.state != contact::State::open || s.tensile(), assumed};
   }
   assembled_ = false;
+  bound_steps_.clear();
 }
 
 /// out += scale · ∂ψ/∂D for a contact whose springs push with `force`.
@@ -204,7 +207,7 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
 }
 
 bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver,
-                         const SolverOptions& options, bool warm, std::span<double> d,
+                         const SolverOptions& options, bool warm, double enough, std::span<double> d,
                          OpenCloseResult& result) {
   const int limit = result.iterations + options.max_iterations;
   const auto same_springs = [&] {
@@ -224,7 +227,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
     find_direction(problem);
     const double alpha = line_search();
     go(problem, alpha, d);
-    if (problem.residual_ratio(gradient_) < options.tolerance) return true;
+    if (problem.residual_ratio(gradient_) < enough) return true;
   }
   return false;
 }
@@ -255,9 +258,19 @@ bool OpenClose::update_bounds(StepProblem& problem, std::span<contact::Contact> 
   }
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
+  // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
+  // shows to be right for it (secant).
+  const bool first = bound_steps_.empty();
+  bound_steps_.resize(rows.size());
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (contacts[c].fused) continue;
-    rows[c].spring.set_bound(bound(c));
+    const double missing = bound(c) - springs_.bound[c];
+    const double gained = bound_steps_[c].missing - missing;
+    double share = 1.0;
+    if (!first && bound_steps_[c].taken * gained > 0.0)
+      share = std::clamp(bound_steps_[c].taken / gained, least_share, 1.0);
+    bound_steps_[c] = {missing, share * missing};
+    rows[c].spring.set_bound(springs_.bound[c] + share * missing);
     set_law(problem, c);
   }
   return true;
@@ -332,8 +345,9 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   worst_ = HUGE_VAL;
   stalls_ = 0;
   bool warm = false;
+  double enough = options.tolerance;
   for (;;) {
-    result.converged = minimize(problem, solver, options, warm, d, result);
+    result.converged = minimize(problem, solver, options, warm, enough, d, result);
     if (!result.converged) {
       result.linear_failed = !solver.solved();
       break;
@@ -350,9 +364,13 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     }
     const double tolerance =
         result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
-    if (result.bound_updates >= options.max_bound_updates) break;
-    if (!update_bounds(problem, contacts, tolerance)) break;
-    ++result.bound_updates;
+    if (result.bound_updates < options.max_bound_updates && update_bounds(problem, contacts, tolerance)) {
+      ++result.bound_updates;
+      enough = std::max(options.tolerance, rough_share * problem.residual_ratio(gradient_));
+      continue;
+    }
+    if (problem.residual_ratio(gradient_) < options.tolerance) break;
+    enough = options.tolerance;
   }
   for (std::size_t c = 0; c < rows; ++c)
     r_[c] = problem.relative(problem.rows()[c], d) + problem.rows()[c].moved;

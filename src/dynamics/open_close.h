@@ -56,7 +56,7 @@ class OpenClose {
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
-                bool warm, std::span<double> d, OpenCloseResult& result);
+                bool warm, double enough, std::span<double> d, OpenCloseResult& result);
   bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                    std::span<double> d, OpenCloseResult& result);
   void find_direction(const StepProblem& problem);
@@ -81,6 +81,11 @@ class OpenClose {
   std::vector<Vec2> shift_;  ///< m, of springs: normal, shear
   double worst_ = 0.0;       ///< m, largest penetration or drift at the last update of multipliers
   int stalls_ = 0;           ///< updates in a row that did not make it smaller
+  /// Of a bound, N per thickness: by how much it was wrong, and the change it got for it.
+  struct BoundStep {
+    double missing = 0.0, taken = 0.0;
+  };
+  std::vector<BoundStep> bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
   std::vector<double> residual_;  ///< ρ of the last linear solution: A p = −g − ρ
   double slope_at_zero_ = 0.0, curvature_ = 0.0;
