@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/index.h"
+#include "linalg/block_kernels.h"
 
 namespace keyblock::dynamics {
 
@@ -217,20 +218,14 @@ struct Stiffness {
   double xx, xy, yy;
 };
 
-/// target += scale · (φ_r φ_cᵀ) ⊗ C; the lower triangle alone when rows and columns are the same block. `known`: N of both,
-/// or 0 where it is known at run time only.
-template <int known, bool lower>
-void add_outer(const double* phi_r, int size_r, const double* phi_c, int size_c, Stiffness k, double scale,
+/// target += scale · (φ_r φ_cᵀ) ⊗ C, with columns of `stride` numbers.
+void add_outer(const double* phi_r, int rows, const double* phi_c, int columns, Stiffness k, double scale,
                double* target, int stride) {
-  const int rows = known > 0 ? known : size_r, columns = known > 0 ? known : size_c;
-  const int step = known > 0 ? linalg::padded_rows(2 * known) : stride;
-#pragma GCC unroll 4
   for (int c = 0; c < columns; ++c) {
-    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * step;
-    double* y = x + step;
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
+    double* y = x + stride;
     const double f = scale * phi_c[c], fxx = f * k.xx, fxy = f * k.xy, fyy = f * k.yy;
-#pragma GCC unroll 4
-    for (int r = lower ? c : 0; r < rows; ++r) {
+    for (int r = 0; r < rows; ++r) {
       x[2 * r] += phi_r[r] * fxx;
       x[2 * r + 1] += phi_r[r] * fxy;
       y[2 * r] += phi_r[r] * fxy;
@@ -239,11 +234,27 @@ void add_outer(const double* phi_r, int size_r, const double* phi_c, int size_c,
   }
 }
 
+/// The same between two blocks of order 1, a column at once.
+void add_outer_3(const double* phi_r, const double* phi_c, Stiffness k, double scale, double* target) {
+  using linalg::Lanes, linalg::load, linalg::store;
+  const Lanes rows{phi_r[0], phi_r[0], phi_r[1], phi_r[1], phi_r[2], phi_r[2], 0.0, 0.0};
+  const Lanes kx{k.xx, k.xy, k.xx, k.xy, k.xx, k.xy, 0.0, 0.0},
+      ky{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, 0.0, 0.0};
+#pragma GCC unroll 3
+  for (int c = 0; c < 3; ++c) {
+    const Lanes f = linalg::broadcast(scale * phi_c[c]);
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * linalg::row_padding;
+    double* y = x + linalg::row_padding;
+    store(x, load(x) + rows * (f * kx));
+    store(y, load(y) + rows * (f * ky));
+  }
+}
+
 void add_to_diagonal(const double* phi, int size, Stiffness k, double* target) {
   if (size == 3) {
-    add_outer<3, true>(phi, 3, phi, 3, k, 1.0, target, 0);
+    add_outer_3(phi, phi, k, 1.0, target);
   } else {
-    add_outer<0, true>(phi, size, phi, size, k, 1.0, target, linalg::padded_rows(2 * size));
+    add_outer(phi, size, phi, size, k, 1.0, target, linalg::padded_rows(2 * size));
   }
 }
 
@@ -278,9 +289,9 @@ void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::Bloc
   const double *phi_r = a_along_rows ? phi_a : phi_b, *phi_c = a_along_rows ? phi_b : phi_a;
   const int size_r = a_along_rows ? row.size_a : row.size_b, size_c = a_along_rows ? row.size_b : row.size_a;
   if (size_r == 3 && size_c == 3) {
-    add_outer<3, false>(phi_r, 3, phi_c, 3, k, -1.0, slot.values, 0);
+    add_outer_3(phi_r, phi_c, k, -1.0, slot.values);
   } else {
-    add_outer<0, false>(phi_r, size_r, phi_c, size_c, k, -1.0, slot.values, slot.stride);
+    add_outer(phi_r, size_r, phi_c, size_c, k, -1.0, slot.values, slot.stride);
   }
 }
 

@@ -25,7 +25,7 @@ struct BlockSlot {
 /// A symmetric positive definite matrix of dense blocks, of sizes that may differ, and its factorization.
 ///
 ///     analyse(sizes, pairs)   once per pattern
-///     clear(); add to diagonal(i) (lower triangle) and slot(k); factor(); solve(x)   as often as wanted
+///     clear(); add to diagonal(i) (what is above its diagonal counts for nothing) and slot(k); factor(); solve(x)   as often as wanted
 ///     add to diagonal(i) and slot(k); touch(i); factor(); solve(x)                   when little has changed
 ///
 /// solve() may be called any number of times after factor().
