@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/index.h"
+
 namespace keyblock::contact {
 
 double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
@@ -12,37 +14,37 @@ double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
   return norm(p - a - s * d);
 }
 
-Candidates::Key Candidates::key(const Surface& surface, const Candidate& c) {
-  const auto [low, high] = std::minmax(surface.block[static_cast<std::size_t>(c.vertex)],
-                                       surface.block[static_cast<std::size_t>(c.edge)]);
+Candidates::Key Candidates::key(const Candidate& c) {
+  const auto [low, high] = std::minmax(c.block_a, c.block_b);
   return {low, high, c.vertex, c.edge};
 }
 
-bool Candidates::update(const Surface& surface, std::span<const double> reach, std::vector<Candidate>& list) {
-  const auto blocks = static_cast<std::size_t>(surface.blocks());
+bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list) {
+  const auto blocks = at(surface.blocks());
   std::vector<std::uint8_t> dirty(blocks, looked_at_.empty());
   bool any = looked_at_.empty();
   if (any) {
     looked_at_.assign(surface.position.size(), Vec2{});
     margin_.assign(blocks, 0.0);
     box_.assign(blocks, Box{});
+    away_.assign(blocks, 0.0);
   }
   for (std::size_t b = 0; b < blocks; ++b) {
     if (!dirty[b]) {
       if (!surface.present[b]) continue;
       double moved = 0.0;
-      for (auto v = static_cast<std::size_t>(surface.block_begin[b]);
-           v < static_cast<std::size_t>(surface.block_begin[b + 1]); ++v) {
+      for (auto v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
         moved = std::max(moved, squared_norm(surface.position[v] - looked_at_[v]));
       }
-      if (std::sqrt(moved) + reach[b] <= margin_[b]) continue;
+      away_[b] = std::sqrt(moved) + reach[b];
+      if (away_[b] <= margin_[b]) continue;
       dirty[b] = 1;
       any = true;
     }
+    away_[b] = reach[b];
     margin_[b] = surface.fixed[b] && reach[b] == 0.0 ? 0.0 : tolerances_.margin + 4.0 * reach[b];
     box_[b] = {};
-    for (auto v = static_cast<std::size_t>(surface.block_begin[b]);
-         v < static_cast<std::size_t>(surface.block_begin[b + 1]); ++v) {
+    for (auto v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
       looked_at_[v] = surface.position[v];
       box_[b].add(surface.position[v]);
     }
@@ -74,7 +76,7 @@ class Grid {
     origin_ = all.min;
     columns_ = std::clamp(static_cast<int>(all.size().x / cell_) + 1, 1, 4096);
     rows_ = std::clamp(static_cast<int>(all.size().y / cell_) + 1, 1, 4096);
-    members_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    members_.resize(at(columns_) * at(rows_));
     for (std::size_t b = 0; b < boxes.size(); ++b) {
       if (!present[b]) continue;
       const Range r = range(boxes[b]);
@@ -91,10 +93,10 @@ class Grid {
   /// Blocks whose boxes overlap that of block b, each once, not b itself; ascending.
   void query(int b, std::vector<int>& found) const {
     found.clear();
-    const Box& box = boxes_[static_cast<std::size_t>(b)];
+    const Box& box = boxes_[at(b)];
     const Range r = range(box);
     const auto add = [&](int other) {
-      if (other != b && boxes_[static_cast<std::size_t>(other)].overlaps(box)) found.push_back(other);
+      if (other != b && boxes_[at(other)].overlaps(box)) found.push_back(other);
     };
     if ((r.x1 - r.x0 + 1) * (r.y1 - r.y0 + 1) > huge) {
       for (std::size_t other = 0; other < boxes_.size(); ++other) {
@@ -124,7 +126,7 @@ class Grid {
     return {index(box.min.x, origin_.x, columns_), index(box.max.x, origin_.x, columns_),
             index(box.min.y, origin_.y, rows_), index(box.max.y, origin_.y, rows_)};
   }
-  [[nodiscard]] std::size_t cell(int x, int y) const { return static_cast<std::size_t>(y * columns_ + x); }
+  [[nodiscard]] std::size_t cell(int x, int y) const { return at(y * columns_ + x); }
 
   std::span<const Box> boxes_;
   std::span<const std::uint8_t> present_;
@@ -138,11 +140,10 @@ class Grid {
 }  // namespace
 
 bool Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
-                         std::vector<Candidate>& list) const {
+                         CandidateList& list) const {
   std::vector<int> looking;
   for (int b = 0; b < surface.blocks(); ++b) {
-    if (dirty[static_cast<std::size_t>(b)] && surface.present[static_cast<std::size_t>(b)])
-      looking.push_back(b);
+    if (dirty[at(b)] && surface.present[at(b)]) looking.push_back(b);
   }
   std::vector<Candidate> found;
   std::vector<int> neighbours;
@@ -150,7 +151,7 @@ bool Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> d
   std::optional<Grid> grid;
   if (looking.size() > few) grid.emplace(box_, surface.present);
   for (const int a : looking) {
-    const auto ia = static_cast<std::size_t>(a);
+    const auto ia = at(a);
     if (grid) {
       grid->query(a, neighbours);
     } else {
@@ -161,62 +162,73 @@ bool Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> d
       }
     }
     for (const int b : neighbours) {
-      const auto ib = static_cast<std::size_t>(b);
+      const auto ib = at(b);
       if (dirty[ib] && b < a) continue;  // done from the other side
       if (surface.fixed[ia] && surface.fixed[ib]) continue;
       collect_pair(surface, a, b, found);
       collect_pair(surface, b, a, found);
     }
   }
-  const auto before = [&](const Candidate& x, const Candidate& y) {
-    return key(surface, x) < key(surface, y);
-  };
+  const auto before = [](const Candidate& x, const Candidate& y) { return key(x) < key(y); };
   std::sort(found.begin(), found.end(), before);
   const auto is_old = [&](const Candidate& c) {
-    const auto is_dirty = [&](int vertex) {
-      return dirty[static_cast<std::size_t>(surface.block[static_cast<std::size_t>(vertex)])] != 0;
-    };
-    return is_dirty(c.vertex) || is_dirty(c.edge);
+    return dirty[at(c.block_a)] != 0 || dirty[at(c.block_b)] != 0;
   };
   // A block that moves through the air, or shifts a little among its neighbours, leaves the list as it is.
   std::size_t same = 0;
-  bool changed = false;
-  for (std::size_t k = 0; k < list.size() && !changed; ++k) {
-    if (!is_old(list[k])) continue;
-    changed =
-        same == found.size() || found[same].vertex != list[k].vertex || found[same].edge != list[k].edge;
+  for (std::size_t k = 0; k < list.pairs.size() && same < found.size(); ++k) {
+    Candidate& c = list.pairs[k];
+    if (!is_old(c)) continue;
+    if (found[same].vertex != c.vertex || found[same].edge != c.edge) break;
+    c.clearance = list.memory[k].bonded ? 0.0 : found[same].clearance;
     ++same;
   }
-  if (!changed && same == found.size()) return false;
+  if (same == found.size() &&
+      std::count_if(list.pairs.begin(), list.pairs.end(), is_old) == std::ssize(found))
+    return false;
 
-  std::vector<Candidate> kept, old;
-  for (const Candidate& c : list) (is_old(c) ? old : kept).push_back(c);
-  auto memory = old.begin();
-  for (Candidate& c : found) {
-    while (memory != old.end() && before(*memory, c)) ++memory;
-    if (memory != old.end() && !before(c, *memory)) c.memory = memory->memory;
+  CandidateList merged;
+  merged.pairs.reserve(list.pairs.size() + found.size());
+  merged.memory.reserve(list.pairs.size() + found.size());
+  const auto add = [&](const Candidate& c, const Memory& memory) {
+    if (memory.tracked) merged.tracked.push_back(static_cast<int>(merged.pairs.size()));
+    merged.pairs.push_back(c);
+    merged.memory.push_back(memory);
+    if (memory.bonded) merged.pairs.back().clearance = 0.0;
+  };
+  std::size_t k = 0;
+  for (const Candidate& c : found) {
+    for (; k < list.pairs.size() && before(list.pairs[k], c); ++k) {
+      if (!is_old(list.pairs[k])) add(list.pairs[k], list.memory[k]);
+    }
+    const bool known = k < list.pairs.size() && !before(c, list.pairs[k]);
+    add(c, known ? list.memory[k] : Memory{});
+    if (known) ++k;
   }
-  list.resize(kept.size() + found.size());
-  std::merge(kept.begin(), kept.end(), found.begin(), found.end(), list.begin(), before);
+  for (; k < list.pairs.size(); ++k) {
+    if (!is_old(list.pairs[k])) add(list.pairs[k], list.memory[k]);
+  }
+  list = std::move(merged);
   return true;
 }
 
 /// Vertices of a near edges of b.
 void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const {
-  const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+  const auto ia = at(a), ib = at(b);
   // Positions are those at the last look, which the margins refer to.
   const double margin = margin_[ia] + margin_[ib] + tolerances_.activation;
   const Box near = box_[ib].grown(margin_[ia] + tolerances_.depth_limit);
   for (int v = surface.block_begin[ia]; v < surface.block_begin[ia + 1]; ++v) {
-    const auto iv = static_cast<std::size_t>(v);
+    const auto iv = at(v);
     const Vec2 p = looked_at_[iv];
     if (surface.reflex[iv] || !near.contains(p)) continue;
     for (int e = surface.block_begin[ib]; e < surface.block_begin[ib + 1]; ++e) {
-      const auto from = static_cast<std::size_t>(e), to = static_cast<std::size_t>(surface.next[from]);
+      const auto from = at(e), to = at(surface.next[from]);
       const bool inside = cross(looked_at_[to] - looked_at_[from], p - looked_at_[from]) > 0.0;
       const bool deep = inside || surface.reflex[from] || surface.reflex[to];
       const double reach = margin + (deep ? tolerances_.depth_limit : 0.0);
-      if (distance_to_segment(p, looked_at_[from], looked_at_[to]) < reach) found.push_back({v, e, {}});
+      if (distance_to_segment(p, looked_at_[from], looked_at_[to]) < reach)
+        found.push_back({v, e, a, b, clearance(surface, looked_at_, tolerances_, v, e)});
     }
   }
 }
@@ -225,15 +237,14 @@ std::vector<Candidate> all_pairs_within(const Surface& surface, double distance)
   std::vector<Candidate> found;
   for (int v = 0; v < surface.vertices(); ++v) {
     for (int e = 0; e < surface.vertices(); ++e) {
-      const auto iv = static_cast<std::size_t>(v), ie = static_cast<std::size_t>(e);
-      const auto a = static_cast<std::size_t>(surface.block[iv]),
-                 b = static_cast<std::size_t>(surface.block[ie]);
+      const auto iv = at(v), ie = at(e);
+      const auto a = at(surface.block[iv]), b = at(surface.block[ie]);
       if (a == b || surface.reflex[iv] || !surface.present[a] || !surface.present[b] ||
           (surface.fixed[a] && surface.fixed[b]))
         continue;
       if (distance_to_segment(surface.position[iv], surface.position[ie],
-                              surface.position[static_cast<std::size_t>(surface.next[ie])]) < distance) {
-        found.push_back({v, e, {}});
+                              surface.position[at(surface.next[ie])]) < distance) {
+        found.push_back({v, e, surface.block[iv], surface.block[ie]});
       }
     }
   }

@@ -30,25 +30,42 @@ struct Memory {
   double slip = 0.0;        ///< m, shear displacement since the slip was last set to zero
 };
 
-/// A vertex near an edge of another block.
+/// A vertex of block a near an edge of block b.
 struct Candidate {
   int vertex = 0;
   int edge = 0;
-  Memory memory;
+  int block_a = 0, block_b = 0;
+  /// m: as long as both blocks together have moved less since they were looked at, this is no contact.
+  double clearance = 0.0;
 };
+
+/// Candidates in the order (smaller block, larger block, vertex, edge), and what each remembers.
+struct CandidateList {
+  std::vector<Candidate> pairs;
+  std::vector<Memory> memory;  ///< as many
+  std::vector<int> tracked;    ///< those whose memory is tracked, ascending
+};
+
+/// Clearance of a candidate with vertices at `position`: 0 where it is, or may at once be, a contact. Detection::passes says
+/// what a contact is; with m_a and m_b the motion of the blocks, reach of the step included, a line of length L that runs from A turns
+/// by less than 2.2 m_b / L, so that distances of V from it change by less than (3 + 2.2 |V − A| / L) (m_a + m_b).
+double clearance(const Surface& surface, std::span<const Vec2> position, const Tolerances& tolerances,
+                 int vertex, int edge);
 
 /// Collects the vertices near edges, and keeps their list while blocks move little. The list itself belongs to the state.
 ///
 /// Each block has a margin; as long as no vertex of it has moved further than that, its candidates contain every contact
-/// there can be. A block that has used up its margin is looked at anew, alone. Candidates are ordered by
-/// (smaller block, larger block, vertex, edge), so the order of contacts does not depend on when that happened.
+/// there can be. A block that has used up its margin is looked at anew, alone. The order of the candidates does not depend on
+/// when that happened.
 class Candidates {
  public:
   explicit Candidates(const Tolerances& tolerances) : tolerances_(tolerances) {}
 
   /// Brings `list` up to date; memory of candidates that stay is kept. reach[b]: m, bound on the motion of block b in the
   /// coming step. Returns true when the list has changed.
-  bool update(const Surface& surface, std::span<const double> reach, std::vector<Candidate>& list);
+  bool update(const Surface& surface, std::span<const double> reach, CandidateList& list);
+  /// m, per block, as of the last update: how far it may be, by the end of the step, from where it was looked at.
+  [[nodiscard]] std::span<const double> away() const { return away_; }
   /// Forgets the positions at which blocks were looked at: all are looked at anew in the next update.
   void invalidate() { looked_at_.clear(); }
 
@@ -57,14 +74,14 @@ class Candidates {
     int low, high, vertex, edge;
     friend auto operator<=>(const Key&, const Key&) = default;
   };
-  static Key key(const Surface& surface, const Candidate& c);
-  bool look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
-               std::vector<Candidate>& list) const;
+  static Key key(const Candidate& c);
+  bool look_at(const Surface& surface, std::span<const std::uint8_t> dirty, CandidateList& list) const;
   void collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const;
 
   Tolerances tolerances_;
   std::vector<Vec2> looked_at_;  ///< vertex positions when their block was last looked at
   std::vector<double> margin_;   ///< per block
+  std::vector<double> away_;     ///< per block
   std::vector<Box> box_;         ///< per block, when looked at, grown by its margin
 };
 

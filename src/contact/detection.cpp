@@ -40,14 +40,14 @@ void Detection::measure_edges(const Surface& surface) {
 }
 
 bool Detection::passes(const Surface& surface, std::span<const double> reach, const Candidate& c,
-                       Found& found) const {
+                       const Memory& memory, Found& found) const {
   const Vec2 a = surface.position[at(c.edge)], v = surface.position[at(c.vertex)];
   const Line& line = lines_[at(c.edge)];
   const Vec2 normal = line.normal();
   const double gap = dot(normal, v - a), along = dot(line.tangent, v - a), length = line.length;
-  const int block_a = surface.block[at(c.vertex)], block_b = surface.block[at(c.edge)];
+  const int block_a = c.block_a, block_b = c.block_b;
   const double motion = reach[at(block_a)] + reach[at(block_b)];
-  if (!c.memory.bonded && gap > tolerances_.activation + motion) return false;
+  if (!memory.bonded && gap > tolerances_.activation + motion) return false;
   const double deepest =
       std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
   if (gap < -deepest) return false;
@@ -99,14 +99,17 @@ void Detection::sort_corners(const Surface& surface) {
   }
 }
 
-void Detection::find(const Surface& surface, std::span<const double> reach,
-                     std::span<const Candidate> candidates, std::vector<Contact>& contacts) {
+void Detection::find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
+                     const CandidateList& candidates, std::vector<Contact>& contacts) {
   measure_edges(surface);
-  found_.resize(candidates.size());
+  const std::span<const Memory> memory = candidates.memory;
+  found_.resize(candidates.pairs.size());
   std::size_t count = 0;
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
+  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+    const Candidate& c = candidates.pairs[k];
+    if (away[at(c.block_a)] + away[at(c.block_b)] < c.clearance) continue;
     Found& found = found_[count];
-    if (!passes(surface, reach, candidates[k], found)) continue;
+    if (!passes(surface, reach, c, memory[k], found)) continue;
     found.candidate = static_cast<int>(k);
     ++count;
   }
@@ -118,18 +121,18 @@ void Detection::find(const Surface& surface, std::span<const double> reach,
     while (last < members_.size() && found_[at(members_[last])].low == f.low &&
            found_[at(members_[last])].high == f.high)
       ++last;
-    compete(std::span(members_).subspan(first, last - first), candidates);
+    compete(std::span(members_).subspan(first, last - first), memory);
     first = last;
   }
   contacts.clear();
   for (const Found& f : found_) {
-    if (!f.dropped) add(surface, f, candidates, contacts);
+    if (!f.dropped) add(surface, f, memory, contacts);
   }
 }
 
 /// Which of the candidates for one pair of corners is the contact.
-void Detection::compete(std::span<const int> members, std::span<const Candidate> candidates) {
-  const auto memory = [&](const Found& f) -> const Memory& { return candidates[at(f.candidate)].memory; };
+void Detection::compete(std::span<const int> members, std::span<const Memory> memories) {
+  const auto memory = [&](const Found& f) -> const Memory& { return memories[at(f.candidate)]; };
   const auto turned = [&](const Found& f, const Found& g) {
     return std::abs(cross(lines_[at(f.edge)].tangent, lines_[at(g.edge)].tangent)) >=
            Tolerances::sine_parallel;
@@ -189,7 +192,7 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 
 }  // namespace
 
-void Detection::add(const Surface& surface, const Found& found, std::span<const Candidate> candidates,
+void Detection::add(const Surface& surface, const Found& found, std::span<const Memory> memories,
                     std::vector<Contact>& contacts) const {
   const Line& line = lines_[at(found.edge)];
   const Vec2 a = surface.position[at(found.edge)], v = surface.position[at(found.vertex)],
@@ -209,12 +212,12 @@ void Detection::add(const Surface& surface, const Found& found, std::span<const 
       (shared_length(surface, v, surface.previous[at(found.vertex)], a, normal, line.tangent, line.length) +
        shared_length(surface, v, surface.next[at(found.vertex)], a, normal, line.tangent, line.length));
 
-  Memory& memory = contact.memory = candidates[at(found.candidate)].memory;
+  Memory& memory = contact.memory = memories[at(found.candidate)];
   if (found.holder >= 0) {
     // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides,
     // the tangents of the two lines run against each other, and normal and tangent turn together.
     const double slip = memory.slip;
-    memory = candidates[at(found.holder)].memory;
+    memory = memories[at(found.holder)];
     memory.slip += slip;
   }
   if (!memory.tracked) {
@@ -240,14 +243,20 @@ void Detection::add(const Surface& surface, const Found& found, std::span<const 
   contact.depth = -contact.gap - memory.offset + memory.multiplier;
 }
 
-void keep_memory(std::span<const Contact> contacts, std::span<Candidate> candidates) {
-  for (Candidate& c : candidates) {
-    if (!c.memory.tracked) continue;
-    const double slip = c.memory.slip;
-    c.memory = {};
-    c.memory.slip = slip;
+void keep_memory(std::span<const Contact> contacts, CandidateList& candidates) {
+  for (const int k : candidates.tracked) {
+    Memory& memory = candidates.memory[at(k)];
+    const double slip = memory.slip;
+    memory = {};
+    memory.slip = slip;
   }
-  for (const Contact& c : contacts) candidates[at(c.candidate)].memory = c.memory;
+  candidates.tracked.clear();
+  for (const Contact& c : contacts) {
+    candidates.memory[at(c.candidate)] = c.memory;
+    candidates.tracked.push_back(c.candidate);
+    if (c.memory.bonded)
+      candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
+  }
 }
 
 }  // namespace keyblock::contact

@@ -30,7 +30,7 @@ struct Contact {
 };
 
 /// Takes the memory of the contacts of a step over into the candidates; the others forget all but their slip.
-void keep_memory(std::span<const Contact> contacts, std::span<Candidate> candidates);
+void keep_memory(std::span<const Contact> contacts, CandidateList& candidates);
 
 /// Geometry of candidates turned into the contacts of a step.
 ///
@@ -47,9 +47,10 @@ class Detection {
   Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
 
-  /// Contacts of the step in the order of the candidates. reach[b]: m, bound on the motion of block b in the step.
-  void find(const Surface& surface, std::span<const double> reach, std::span<const Candidate> candidates,
-            std::vector<Contact>& contacts);
+  /// Contacts of the step in the order of the candidates. reach[b]: m, bound on the motion of block b in the step; away[b]:
+  /// Candidates::away.
+  void find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
+            const CandidateList& candidates, std::vector<Contact>& contacts);
 
   [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
   [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
@@ -71,10 +72,11 @@ class Detection {
     int holder;  ///< candidate whose memory it takes over; −1: its own
   };
   void measure_edges(const Surface& surface);
-  bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, Found& found) const;
+  bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, const Memory& memory,
+              Found& found) const;
   void sort_corners(const Surface& surface);
-  void compete(std::span<const int> members, std::span<const Candidate> candidates);
-  void add(const Surface& surface, const Found& found, std::span<const Candidate> candidates,
+  void compete(std::span<const int> members, std::span<const Memory> memories);
+  void add(const Surface& surface, const Found& found, std::span<const Memory> memories,
            std::vector<Contact>& contacts) const;
 
   Tolerances tolerances_;

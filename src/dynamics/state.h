@@ -27,7 +27,7 @@ struct State {
   std::vector<double> acceleration, force;
   std::vector<std::uint8_t> acceleration_known;  ///< per block
   std::vector<double> moved;  ///< m, per block: largest displacement of a vertex in the last step
-  std::vector<contact::Candidate> contacts;  ///< candidates with their memory
+  contact::CandidateList contacts;
   std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for
   EnergyLedger ledger;
 };

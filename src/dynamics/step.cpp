@@ -75,7 +75,7 @@ void Stepper::start(State& state) {
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
-  detection_.find(model_.surface, reach_, state.contacts, contacts_);
+  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, contacts_);
   for (contact::Contact& c : contacts_) {
     contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
@@ -116,10 +116,10 @@ void Stepper::resume(State& state) {
 std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
   contact::Candidates candidates(tolerances_);
   const std::vector<double> still(model_.blocks.size(), 0.0);
-  std::vector<contact::Candidate> list = state.contacts;
+  contact::CandidateList list = state.contacts;
   candidates.update(model_.surface, still, list);
   std::vector<contact::Contact> contacts;
-  detection_.find(model_.surface, still, list, contacts);
+  detection_.find(model_.surface, still, candidates.away(), list, contacts);
   return contacts;
 }
 
@@ -156,7 +156,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
 void Stepper::detect(State& state) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
-  detection_.find(model_.surface, reach_, state.contacts, contacts_);
+  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, contacts_);
   ensure_pattern(state, changed);
 }
 

@@ -8,7 +8,7 @@ namespace keyblock::dynamics {
 
 double Stepper::stored_energy(const State& state) {
   double sum = 0.0;
-  for (const contact::Candidate& c : state.contacts) sum += c.memory.tracked ? c.memory.stored : 0.0;
+  for (const int k : state.contacts.tracked) sum += state.contacts.memory[at(k)].stored;
   return sum;
 }
 

@@ -14,18 +14,16 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
   using Pair = std::pair<int, int>;
   constexpr int fixed = -1, missing = -2;
   constexpr double most_idle = 0.15;
-  const auto pair_of = [&](int vertex, int edge) {
-    const int a = model_.blocks[at(model_.surface.block[at(vertex)])].unknown;
-    const int b = model_.blocks[at(model_.surface.block[at(edge)])].unknown;
-    return Pair(std::minmax(a, b));
+  const auto pair_of = [&](int a, int b) {
+    return Pair(std::minmax(model_.blocks[at(a)].unknown, model_.blocks[at(b)].unknown));
   };
   const auto find_places = [&] {
-    const std::vector<contact::Candidate>& list = state.contacts;
+    const std::vector<contact::Candidate>& list = state.contacts.pairs;
     pair_of_candidate_.resize(list.size());
     Pair last{fixed, fixed};
     int place = fixed;
     for (std::size_t k = 0; k < list.size(); ++k) {
-      if (const Pair pair = pair_of(list[k].vertex, list[k].edge); pair != last) {
+      if (const Pair pair = pair_of(list[k].block_a, list[k].block_b); pair != last) {
         const auto found = std::lower_bound(state.pattern.begin(), state.pattern.end(), pair);
         last = pair;
         place = pair.first < 0 ? fixed
@@ -44,7 +42,7 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
   if (has_room) return;
   std::vector<Pair> used;
   for (const contact::Contact& c : contacts_) {
-    const Pair pair = pair_of(c.vertex, c.edge);
+    const Pair pair = pair_of(c.block_a, c.block_b);
     if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
   }
   std::sort(used.begin(), used.end());

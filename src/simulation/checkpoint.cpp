@@ -5,12 +5,13 @@
 #include "core/archive.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/index.h"
 
 namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0004;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0005;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -58,7 +59,9 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.force);
   archive(s.mechanics.acceleration_known);
   archive(s.mechanics.moved);
-  archive(s.mechanics.contacts);
+  archive(s.mechanics.contacts.pairs);
+  archive(s.mechanics.contacts.memory);
+  archive(s.mechanics.contacts.tracked);
   archive(s.mechanics.pattern);
   archive(s.mechanics.ledger);
   archive(s.present);
@@ -139,11 +142,12 @@ std::string state_hash(const dynamics::State& state) {
   Hash hash;
   hash.add(state.position);
   hash.add(state.velocity);
-  for (const contact::Candidate& c : state.contacts) {
-    if (!c.memory.tracked) continue;
+  for (const int k : state.contacts.tracked) {
+    const contact::Candidate& c = state.contacts.pairs[at(k)];
+    const contact::Memory& memory = state.contacts.memory[at(k)];
     const double numbers[] = {
-        static_cast<double>(c.vertex), static_cast<double>(c.edge),        c.memory.offset, c.memory.shear,
-        c.memory.normal_force,         static_cast<double>(c.memory.state)};
+        static_cast<double>(c.vertex), static_cast<double>(c.edge),      memory.offset, memory.shear,
+        memory.normal_force,           static_cast<double>(memory.state)};
     hash.add(numbers, sizeof(numbers));
   }
   return fmt::format("{:016x}", hash.value());

@@ -10,9 +10,9 @@
 namespace keyblock::contact {
 namespace {
 
-std::set<std::pair<int, int>> keys(const std::vector<Candidate>& list) {
+std::set<std::pair<int, int>> keys(const CandidateList& list) {
   std::set<std::pair<int, int>> set;
-  for (const Candidate& c : list) set.insert({c.vertex, c.edge});
+  for (const Candidate& c : list.pairs) set.insert({c.vertex, c.edge});
   return set;
 }
 
@@ -31,7 +31,7 @@ TEST(Candidates, ContainEveryNearPairWhileBlocksMove) {
   Surface surface = wall(8, 6);
   const Tolerances tolerances(0.7);
   Candidates candidates(tolerances);
-  std::vector<Candidate> list;
+  CandidateList list;
   const std::vector<double> reach(static_cast<std::size_t>(surface.blocks()), 1e-3);
   for (int step = 0; step < 60; ++step) {
     candidates.update(surface, reach, list);
@@ -53,15 +53,15 @@ TEST(Candidates, ContainEveryNearPairWhileBlocksMove) {
 TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
   Surface surface = wall(3, 2);
   Candidates candidates(Tolerances(0.7));
-  std::vector<Candidate> list;
+  CandidateList list;
   const std::vector<double> reach(static_cast<std::size_t>(surface.blocks()), 0.0);
   candidates.update(surface, reach, list);
-  for (std::size_t k = 0; k < list.size(); ++k) list[k].memory.slip = static_cast<double>(k + 1);
-  const std::vector<Candidate> before = list;
+  for (std::size_t k = 0; k < list.memory.size(); ++k) list.memory[k].slip = static_cast<double>(k + 1);
+  const CandidateList before = list;
   candidates.invalidate();
   EXPECT_FALSE(candidates.update(surface, reach, list));  // the same
-  ASSERT_EQ(list.size(), before.size());
-  for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(list[k].memory.slip, before[k].memory.slip);
+  ASSERT_EQ(list.pairs.size(), before.pairs.size());
+  for (std::size_t k = 0; k < list.memory.size(); ++k) EXPECT_EQ(list.memory[k].slip, before.memory[k].slip);
 }
 
 TEST(Candidates, IgnoreAbsentAndPairsOfFixedBlocks) {
@@ -71,9 +71,9 @@ TEST(Candidates, IgnoreAbsentAndPairsOfFixedBlocks) {
   add_block(surface, rectangle(0, 1, 1, 2));
   surface.present[2] = 0;
   Candidates candidates(Tolerances(1.0));
-  std::vector<Candidate> list;
+  CandidateList list;
   candidates.update(surface, std::vector<double>(3, 0.0), list);
-  EXPECT_TRUE(list.empty());
+  EXPECT_TRUE(list.pairs.empty());
 }
 
 }  // namespace

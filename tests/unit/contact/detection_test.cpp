@@ -11,7 +11,7 @@ namespace keyblock::contact {
 namespace {
 
 /// Contacts of a surface as it stands; `list` keeps the memory between calls.
-std::vector<Contact> find(const Surface& surface, std::vector<Candidate>& list) {
+std::vector<Contact> find(const Surface& surface, CandidateList& list) {
   const Tolerances tolerances(1.0);
   Candidates candidates(tolerances);
   const std::vector<double> still(static_cast<std::size_t>(surface.blocks()), 0.0);
@@ -19,13 +19,13 @@ std::vector<Contact> find(const Surface& surface, std::vector<Candidate>& list) 
   Detection detection(tolerances, {JointLaw{}},
                       std::vector<double>(static_cast<std::size_t>(surface.blocks()), 1e9));
   std::vector<Contact> contacts;
-  detection.find(surface, still, list, contacts);
+  detection.find(surface, still, candidates.away(), list, contacts);
   keep_memory(contacts, list);
   return contacts;
 }
 
 std::vector<Contact> find(const Surface& surface) {
-  std::vector<Candidate> list;
+  CandidateList list;
   return find(surface, list);
 }
 
@@ -105,7 +105,7 @@ TEST(Detection, CornerOnCornerTakesTheShortestWayOut) {
 }
 
 TEST(Detection, MemoryMovesOverWhenVertexAndEdgeChangeSides) {
-  std::vector<Candidate> list;
+  CandidateList list;
   Contact last;
   double shear = 0.0;
   for (int step = 0; step <= 20; ++step) {
@@ -120,7 +120,7 @@ TEST(Detection, MemoryMovesOverWhenVertexAndEdgeChangeSides) {
           return surface.position[static_cast<std::size_t>(x.vertex)].x <
                  surface.position[static_cast<std::size_t>(y.vertex)].x;
         });
-    Memory& memory = list[static_cast<std::size_t>(right->candidate)].memory;
+    Memory& memory = list.memory[static_cast<std::size_t>(right->candidate)];
     if (step > 0) {
       EXPECT_EQ(memory.shear, shear) << step;
       EXPECT_TRUE(memory.tracked);
@@ -148,7 +148,7 @@ TEST(Detection, VertexThatSlipsPastAConcaveCornerIsKept) {
 }
 
 TEST(Detection, BornPenetratedContactsGetAnOffsetThatOnlyShrinks) {
-  std::vector<Candidate> list;
+  CandidateList list;
   const auto upper_at = [&](double y) {
     Surface surface;
     add_block(surface, rectangle(0, 0, 2, 1), true);
