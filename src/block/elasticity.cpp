@@ -26,7 +26,7 @@ Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material
   c33_ = e / (2.0 * (1.0 + nu));
   // A linear S₀ times the quadratic E has degree 2(n − 1) + 1, above 4(n − 1) only at n = 1.
   const int degree = std::max(4 * (basis.order() - 1), in_situ ? 2 * (basis.order() - 1) + 1 : 0);
-  for (const WeightedPoint& w : polygon_rule(region, degree)) {
+  for (const WeightedPoint& w : thinned_rule(polygon_rule(region, degree), degree)) {
     weight_.push_back(w.weight);
     initial_.push_back(in_situ_at(in_situ, w.point));
     gradient_.resize(gradient_.size() + static_cast<std::size_t>(size_));
@@ -88,6 +88,21 @@ void Elasticity::add_force(const double* a, double* force) const {
 
 namespace {
 
+/// Whether g + shift · 1 has a Cholesky factor.
+bool is_positive_definite(const double* g, int n, double shift) {
+  std::vector<double> a(g, g + n * n);
+  for (int j = 0; j < n; ++j) {
+    double* column = &a[static_cast<std::size_t>(j * n)];
+    const double pivot = column[j] + shift;
+    if (!(pivot > 0.0)) return false;
+    for (int q = j + 1; q < n; ++q) {
+      const double factor = column[q] / pivot;
+      for (int r = q; r < n; ++r) a[static_cast<std::size_t>(q * n + r)] -= factor * column[r];
+    }
+  }
+  return true;
+}
+
 /// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor; does nothing when a
 /// bound shows that none is below.
 void floor_eigenvalues(double* g, int n, double floor) {
@@ -98,7 +113,7 @@ void floor_eigenvalues(double* g, int n, double floor) {
     for (int k = 0; k < n; ++k) others += k == i ? 0.0 : std::abs(entry(i, k));
     bound = std::max(bound, others - entry(i, i));
   }
-  if (bound <= floor) return;
+  if (bound <= floor || is_positive_definite(g, n, floor)) return;
   Eigen::MatrixXd whole(n, n);
   for (int c = 0; c < n; ++c) {
     for (int r = 0; r < n; ++r) whole(r, c) = entry(r, c);

@@ -31,7 +31,8 @@ Pose::Pose(const Polygon& region, const Basis& basis) : size_(basis.size()) {
   const auto n = static_cast<std::size_t>(size_);
   w_.assign(n * n, 0.0);
   std::vector<Vec2> g(n);
-  for (const WeightedPoint& w : polygon_rule(region, 2 * (basis.order() - 1))) {
+  const int degree = 2 * (basis.order() - 1);
+  for (const WeightedPoint& w : thinned_rule(polygon_rule(region, degree), degree)) {
     basis.gradients(w.point, g.data());
     for (std::size_t k = 0; k < n; ++k) {
       for (std::size_t l = 0; l < n; ++l) w_[k * n + l] += w.weight * cross(g[k], g[l]);

@@ -234,28 +234,39 @@ void add_outer(const double* phi_r, int rows, const double* phi_c, int columns, 
   }
 }
 
-/// The same between two blocks of order 1, a column at once.
-void add_outer_3(const double* phi_r, const double* phi_c, Stiffness k, double scale, double* target) {
+/// The same between two blocks of N basis functions, a column at once.
+template <int size>
+void add_outer(const double* phi_r, const double* phi_c, Stiffness k, double scale, double* target) {
   using linalg::Lanes, linalg::load, linalg::store;
-  const Lanes rows{phi_r[0], phi_r[0], phi_r[1], phi_r[1], phi_r[2], phi_r[2], 0.0, 0.0};
-  const Lanes kx{k.xx, k.xy, k.xx, k.xy, k.xx, k.xy, 0.0, 0.0},
-      ky{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, 0.0, 0.0};
-#pragma GCC unroll 3
-  for (int c = 0; c < 3; ++c) {
-    const Lanes f = linalg::broadcast(scale * phi_c[c]);
-    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * linalg::row_padding;
-    double* y = x + linalg::row_padding;
-    store(x, load(x) + rows * (f * kx));
-    store(y, load(y) + rows * (f * ky));
+  constexpr int stride = linalg::padded_rows(2 * size), lanes = stride / linalg::row_padding;
+  const auto phi = [&](int r) { return r < size ? phi_r[r] : 0.0; };
+  Lanes rows[lanes];
+#pragma GCC unroll 2
+  for (int l = 0; l < lanes; ++l) {
+    const double p0 = phi(4 * l), p1 = phi(4 * l + 1), p2 = phi(4 * l + 2), p3 = phi(4 * l + 3);
+    rows[l] = Lanes{p0, p0, p1, p1, p2, p2, p3, p3};
+  }
+  const Lanes kx{k.xx, k.xy, k.xx, k.xy, k.xx, k.xy, k.xx, k.xy},
+      ky{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, k.xy, k.yy};
+#pragma GCC unroll 6
+  for (int c = 0; c < size; ++c) {
+    const Lanes f = linalg::broadcast(scale * phi_c[c]), fx = f * kx, fy = f * ky;
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
+    double* y = x + stride;
+#pragma GCC unroll 2
+    for (int l = 0; l < lanes; ++l) {
+      store(x + l * linalg::row_padding, load(x + l * linalg::row_padding) + rows[l] * fx);
+      store(y + l * linalg::row_padding, load(y + l * linalg::row_padding) + rows[l] * fy);
+    }
   }
 }
 
-void add_to_diagonal(const double* phi, int size, Stiffness k, double* target) {
-  if (size == 3) {
-    add_outer_3(phi, phi, k, 1.0, target);
-  } else {
-    add_outer(phi, size, phi, size, k, 1.0, target, linalg::padded_rows(2 * size));
-  }
+/// The same, whichever it is.
+void add_block(const double* phi_r, int rows, const double* phi_c, int columns, Stiffness k, double scale,
+               double* target, int stride) {
+  if (rows == 3 && columns == 3) return add_outer<3>(phi_r, phi_c, k, scale, target);
+  if (rows == 6 && columns == 6) return add_outer<6>(phi_r, phi_c, k, scale, target);
+  add_outer(phi_r, rows, phi_c, columns, k, scale, target, stride);
 }
 
 }  // namespace
@@ -281,17 +292,18 @@ void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::Bloc
   const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
                     kn * n.y * n.y + ks * t.y * t.y};
   const double *phi_a = &phi_[row.phi], *phi_b = phi_a + row.size_a;
-  if (row.size_a > 0) add_to_diagonal(phi_a, row.size_a, k, solver.diagonal(row.unknown_a));
-  if (row.size_b > 0) add_to_diagonal(phi_b, row.size_b, k, solver.diagonal(row.unknown_b));
+  const auto add_diagonal = [&](const double* phi, int size, int unknown) {
+    if (size > 0)
+      add_block(phi, size, phi, size, k, 1.0, solver.diagonal(unknown), linalg::padded_rows(2 * size));
+  };
+  add_diagonal(phi_a, row.size_a, row.unknown_a);
+  add_diagonal(phi_b, row.size_b, row.unknown_b);
   if (row.pair < 0) return;
   const linalg::BlockSlot slot = solver.slot(row.pair);
-  const bool a_along_rows = slot.row == row.unknown_a;
-  const double *phi_r = a_along_rows ? phi_a : phi_b, *phi_c = a_along_rows ? phi_b : phi_a;
-  const int size_r = a_along_rows ? row.size_a : row.size_b, size_c = a_along_rows ? row.size_b : row.size_a;
-  if (size_r == 3 && size_c == 3) {
-    add_outer_3(phi_r, phi_c, k, -1.0, slot.values);
+  if (slot.row == row.unknown_a) {
+    add_block(phi_a, row.size_a, phi_b, row.size_b, k, -1.0, slot.values, slot.stride);
   } else {
-    add_outer(phi_r, size_r, phi_c, size_c, k, -1.0, slot.values, slot.stride);
+    add_block(phi_b, row.size_b, phi_a, row.size_a, k, -1.0, slot.values, slot.stride);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "geometry/quadrature.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -68,6 +69,127 @@ std::vector<WeightedPoint> polygon_rule(const Polygon& polygon, int degree) {
     }
   }
   return rule;
+}
+
+namespace {
+
+/// Legendre polynomials P_i(x) P_j(y), i + j ≤ degree, of points scaled to [−1, 1]².
+std::vector<std::vector<double>> moments_of_points(const std::vector<WeightedPoint>& rule, int degree) {
+  Box box;
+  for (const WeightedPoint& w : rule) box.add(w.point);
+  const Vec2 centre = 0.5 * (box.min + box.max), half = 0.5 * box.size();
+  std::vector<std::vector<double>> moments(rule.size());
+  const auto legendre = [&](double x) {
+    std::vector<double> p{1.0, x};
+    for (int k = 2; k <= degree; ++k)
+      p.push_back(((2 * k - 1) * x * p[p.size() - 1] - (k - 1) * p[p.size() - 2]) / k);
+    return p;
+  };
+  for (std::size_t q = 0; q < rule.size(); ++q) {
+    const Vec2 at = rule[q].point - centre;
+    const auto px = legendre(at.x / half.x), py = legendre(at.y / half.y);
+    for (int i = 0; i <= degree; ++i) {
+      for (int j = 0; i + j <= degree; ++j)
+        moments[q].push_back(px[static_cast<std::size_t>(i)] * py[static_cast<std::size_t>(j)]);
+    }
+  }
+  return moments;
+}
+
+/// The moments of all points in terms of those of some, the basis: column q of the tableau holds how much of each basis point
+/// has the moments of point q.
+class Tableau {
+ public:
+  explicit Tableau(std::vector<std::vector<double>> columns) : columns_(std::move(columns)) {
+    const std::size_t rows = columns_[0].size();
+    basis_.assign(rows, none);
+    for (std::size_t step = 0; step < rows; ++step) {
+      std::size_t row = none, column = none;
+      double largest = least_pivot;
+      for (std::size_t q = 0; q < columns_.size(); ++q) {
+        for (std::size_t r = 0; r < rows; ++r) {
+          if (basis_[r] == none && std::abs(columns_[q][r]) > largest) {
+            largest = std::abs(columns_[q][r]);
+            row = r;
+            column = q;
+          }
+        }
+      }
+      if (row == none) return;  // the points do not tell the other moments apart
+      exchange(row, column);
+    }
+  }
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  [[nodiscard]] const std::vector<std::size_t>& basis() const { return basis_; }
+  [[nodiscard]] const std::vector<double>& column(std::size_t q) const { return columns_[q]; }
+  /// Puts a point into the basis, in a row where its column is not zero.
+  void exchange(std::size_t row, std::size_t point) {
+    const std::vector<double> pivot = columns_[point];
+    for (std::vector<double>& c : columns_) {
+      const double value = c[row] / pivot[row];
+      if (value == 0.0) continue;
+      for (std::size_t r = 0; r < c.size(); ++r) c[r] -= value * pivot[r];
+      c[row] = value;
+    }
+    basis_[row] = point;
+  }
+
+ private:
+  static constexpr double least_pivot = 1e-12;
+  std::vector<std::vector<double>> columns_;
+  std::vector<std::size_t> basis_;
+};
+
+/// Moves the weight of one point to those of the basis, until it or one of them has none left.
+void move_weight(Tableau& tableau, std::size_t point, std::vector<WeightedPoint>& rule) {
+  const std::vector<double>& column = tableau.column(point);
+  double share = 1.0;
+  std::size_t leaves = Tableau::none;
+  for (std::size_t r = 0; r < column.size(); ++r) {
+    if (tableau.basis()[r] == Tableau::none) continue;
+    const double weight = rule[tableau.basis()[r]].weight, change = rule[point].weight * column[r];
+    if (weight * change < 0.0 && share * std::abs(change) > std::abs(weight)) {
+      share = std::abs(weight / change);
+      leaves = r;
+    }
+  }
+  const double moved = share * rule[point].weight;
+  for (std::size_t r = 0; r < column.size(); ++r) {
+    if (tableau.basis()[r] != Tableau::none) rule[tableau.basis()[r]].weight += moved * column[r];
+  }
+  rule[point].weight -= moved;
+  if (leaves == Tableau::none) {
+    rule[point].weight = 0.0;
+    return;
+  }
+  rule[tableau.basis()[leaves]].weight = 0.0;
+  tableau.exchange(leaves, point);
+}
+
+}  // namespace
+
+std::vector<WeightedPoint> thinned_rule(const std::vector<WeightedPoint>& rule, int degree) {
+  constexpr int highest = 12;
+  constexpr double rounding = 1e-13;  // of the sum of all weights
+  if (degree < 1 || degree > highest || rule.size() <= 1) return rule;
+  const std::vector<std::vector<double>> moments = moments_of_points(rule, degree);
+  if (rule.size() <= moments[0].size()) return rule;
+  Tableau tableau(moments);
+  std::vector<WeightedPoint> thin = rule;
+  for (std::size_t q = 0; q < rule.size(); ++q) {
+    if (std::find(tableau.basis().begin(), tableau.basis().end(), q) == tableau.basis().end())
+      move_weight(tableau, q, thin);
+  }
+  double total = 0.0;
+  for (const WeightedPoint& w : rule) total += std::abs(w.weight);
+  for (std::size_t k = 0; k < moments[0].size(); ++k) {
+    double missing = 0.0;
+    for (std::size_t q = 0; q < rule.size(); ++q)
+      missing += (thin[q].weight - rule[q].weight) * moments[q][k];
+    if (!(std::abs(missing) <= rounding * total)) return rule;
+  }
+  std::erase_if(thin, [](const WeightedPoint& w) { return w.weight == 0.0; });
+  return thin;
 }
 
 }  // namespace keyblock

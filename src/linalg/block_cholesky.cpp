@@ -282,8 +282,8 @@ bool BlockCholesky::factor_columns() {
     if (!invert_factor(size<equal>(j), inverse, scale_.data())) return false;
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       double* x = &values_[row_value_[e]];
-      if constexpr (equal == 6) {
-        multiply_right_6(inverse, x);
+      if constexpr (equal > 0) {
+        multiply_right<equal>(inverse, x);
       } else {
         multiply_right(stride<equal>(rows_[e]) / row_padding, size<equal>(j), inverse, x);
       }

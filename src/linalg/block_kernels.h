@@ -156,19 +156,24 @@ inline void multiply_right(int lanes, int n, const double* inverse, double* x) {
     }
   }
 }
-inline void multiply_right_6(const double* inverse, double* x) {
-  Lanes column[6];
-#pragma GCC unroll 6
-  for (int q = 0; q < 6; ++q) column[q] = load(x + q * row_padding);
-#pragma GCC unroll 6
-  for (int j = 5; j >= 0; --j) {
-    column[j] = column[j] * inverse[j * row_padding + j];
-#pragma GCC unroll 6
-    for (int q = 0; q < j; ++q)
-      column[j] = add_product(column[q], broadcast(inverse[q * row_padding + j]), column[j]);
+/// The same for blocks of n columns and rows, held in registers.
+template <int n>
+void multiply_right(const double* inverse, double* x) {
+  constexpr int stride = padded_rows(n);
+  for (int l = 0; l < stride; l += row_padding) {
+    Lanes column[n];
+#pragma GCC unroll 12
+    for (int q = 0; q < n; ++q) column[q] = load(x + q * stride + l);
+#pragma GCC unroll 12
+    for (int j = n - 1; j >= 0; --j) {
+      column[j] = column[j] * inverse[j * stride + j];
+#pragma GCC unroll 12
+      for (int q = 0; q < j; ++q)
+        column[j] = add_product(column[q], broadcast(inverse[q * stride + j]), column[j]);
+    }
+#pragma GCC unroll 12
+    for (int q = 0; q < n; ++q) store(x + q * stride + l, column[q]);
   }
-#pragma GCC unroll 6
-  for (int q = 0; q < 6; ++q) store(x + q * row_padding, column[q]);
 }
 
 /// y = A x; y and x are not the same.

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <tuple>
 
+#include "core/index.h"
 #include "surface_builder.h"
 
 namespace keyblock::contact {
@@ -102,6 +104,58 @@ TEST(Detection, CornerOnCornerTakesTheShortestWayOut) {
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_NEAR(contacts[0].normal.x, 1.0, 1e-12);
   EXPECT_NEAR(contacts[0].gap, -0.0005, 1e-12);
+}
+
+// Oracle: without clearances every candidate is looked at in every step.
+TEST(Detection, ClearanceHidesNoContact) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Surface surface;
+  for (int j = 0; j < 8; ++j) {
+    for (int i = 0; i < 8; ++i) {  // a crooked wall: corners at all angles, small gaps and overlaps
+      const auto shaken = [&](double x, double y) {
+        return Vec2{x + 0.004 * uniform(random), y + 0.004 * uniform(random)};
+      };
+      const double x = i + 0.3 * j, y = 0.4 * j;
+      add_block(surface,
+                {{shaken(x, y), shaken(x + 1, y), shaken(x + 1.3, y + 0.4), shaken(x + 0.3, y + 0.4)}, {}});
+    }
+  }
+  const Tolerances tolerances(0.6);
+  Candidates candidates(tolerances);
+  Detection detection(tolerances, {JointLaw{}}, std::vector<double>(64, 1e9));
+  CandidateList list;
+  long skipped = 0, found = 0;
+  for (int step = 0; step < 200; ++step) {
+    std::vector<double> reach(64, 0.0);
+    for (double& r : reach) r = 1e-4 * std::abs(uniform(random));
+    candidates.update(surface, reach, list);
+    CandidateList all = list;
+    for (Candidate& c : all.pairs) {
+      skipped += candidates.away()[at(c.block_a)] + candidates.away()[at(c.block_b)] < c.clearance;
+      c.clearance = 0.0;
+    }
+    std::vector<Contact> fast, slow;
+    detection.find(surface, reach, candidates.away(), list, fast);
+    detection.find(surface, reach, candidates.away(), all, slow);
+    ASSERT_EQ(fast.size(), slow.size()) << step;
+    for (std::size_t k = 0; k < fast.size(); ++k) {
+      EXPECT_EQ(fast[k].candidate, slow[k].candidate);
+      EXPECT_EQ(fast[k].memory.tracked, slow[k].memory.tracked);
+    }
+    found += static_cast<long>(fast.size());
+    keep_memory(fast, list);
+    for (int b = 0; b < 64; ++b) {
+      const double pace = b % 9 == 0 ? 0.004 : 0.0004, turn = pace * uniform(random);
+      const Vec2 motion{pace * uniform(random), pace * uniform(random)}, centre = surface.position[at(4 * b)];
+      for (int v = 4 * b; v < 4 * b + 4; ++v) {
+        const Vec2 r = surface.position[at(v)] - centre;
+        surface.position[at(v)] += motion + turn * Vec2{-r.y, r.x};
+      }
+    }
+  }
+  EXPECT_GT(found, 10'000);
+  EXPECT_GT(skipped, found);  // most candidates are no contacts, and known not to be
 }
 
 TEST(Detection, MemoryMovesOverWhenVertexAndEdgeChangeSides) {
