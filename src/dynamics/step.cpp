@@ -32,7 +32,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       detection_(tolerances_, model.laws, penalties(model)),
       direct_{model.solver.linear == LinearSolver::direct ? linalg::make_cholmod()
                                                           : linalg::make_block_cholesky()},
-      iterative_{linalg::make_block_conjugate_gradient()},
+      iterative_{linalg::make_block_conjugate_gradient(&team)},
       reach_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       spin_(model.blocks.size(), 0.0),

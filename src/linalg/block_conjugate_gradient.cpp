@@ -10,6 +10,78 @@ namespace keyblock::linalg {
 namespace {
 
 constexpr int most_iterations = 400;
+constexpr std::size_t parts = 8;            // into which a large system is cut
+constexpr std::size_t worth_parts = 4'000;  // blocks
+
+/// Order of the blocks: some parts that are not coupled with each other, and last the blocks between them. Parts are runs of levels
+/// of a breadth-first search, each ended by a level of the last kind. The order depends on the pattern alone.
+struct Partition {
+  std::vector<int> order;  ///< place → block
+  std::vector<std::size_t>
+      begin;  ///< first place of every part; then of the blocks between, which may be none; then n
+};
+
+Partition partition(std::size_t n, std::span<const std::pair<int, int>> pairs) {
+  Partition result;
+  if (n < worth_parts) {
+    for (std::size_t k = 0; k < n; ++k) result.order.push_back(static_cast<int>(k));
+    result.begin = {0, n, n};
+    return result;
+  }
+  std::vector<std::vector<int>> neighbours(n);
+  for (const auto& [i, j] : pairs) {
+    neighbours[at(i)].push_back(j);
+    neighbours[at(j)].push_back(i);
+  }
+  // Blocks by levels; a second search from where the first ended has longer and narrower ones.
+  std::vector<int> order, level;
+  const auto search = [&](int root) {
+    order.clear();
+    level.assign(n, -1);
+    for (std::size_t next = 0; order.size() < n; ++next) {
+      if (next == order.size()) {  // the first block, or the next of those not coupled with any so far
+        const int start =
+            next == 0 ? root : static_cast<int>(std::find(level.begin(), level.end(), -1) - level.begin());
+        level[at(start)] = next == 0 ? 0 : level[at(order.back())] + 1;
+        order.push_back(start);
+      }
+      for (const int k : neighbours[at(order[next])]) {
+        if (level[at(k)] >= 0) continue;
+        level[at(k)] = level[at(order[next])] + 1;
+        order.push_back(k);
+      }
+    }
+  };
+  search(0);
+  search(order.back());
+  std::vector<int> between;
+  result.begin.push_back(0);
+  for (std::size_t first = 0; first < n;) {
+    std::size_t last = first;
+    const int here = level[at(order[first])];
+    while (last < n && level[at(order[last])] == here) ++last;
+    const bool ends = order.size() - last > 0 && first >= result.begin.size() * n / parts;
+    if (ends) {
+      between.insert(between.end(), order.begin() + static_cast<std::ptrdiff_t>(first),
+                     order.begin() + static_cast<std::ptrdiff_t>(last));
+      result.begin.push_back(result.order.size());
+    } else {
+      result.order.insert(result.order.end(), order.begin() + static_cast<std::ptrdiff_t>(first),
+                          order.begin() + static_cast<std::ptrdiff_t>(last));
+    }
+    first = last;
+  }
+  // Within a part in the order given, which is that of the caller's vectors.
+  result.begin.push_back(result.order.size());
+  for (std::size_t k = 0; k + 1 < result.begin.size(); ++k) {
+    std::sort(result.order.begin() + static_cast<std::ptrdiff_t>(result.begin[k]),
+              result.order.begin() + static_cast<std::ptrdiff_t>(result.begin[k + 1]));
+  }
+  std::sort(between.begin(), between.end());
+  result.order.insert(result.order.end(), between.begin(), between.end());
+  result.begin.push_back(n);
+  return result;
+}
 
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (L + 1 + Lᵀ) Cᵀ with
 /// L_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly below the diagonal. Preconditioned from both sides by (1 + L) it is
@@ -17,17 +89,19 @@ constexpr int most_iterations = 400;
 ///     Â y = t + (1 + L)⁻¹ (y − t),     t = (1 + Lᵀ)⁻¹ y
 ///
 /// L has single precision: it takes half the memory to read in every iteration, and the residual is that of the matrix itself.
-/// Vectors are padded as the blocks are.
+/// Vectors are padded as the blocks are. In the order of `partition`, the parts are solved for at the same time, by as many threads
+/// as there are; sums go part by part.
 class BlockConjugateGradient final : public BlockSolver {
  public:
+  explicit BlockConjugateGradient(ThreadTeam* team) : team_(team) {}
   void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
   void clear() override {
     std::fill(matrix_.begin(), matrix_.end(), 0.0);
     std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
   }
-  double* diagonal(int block) override { return &matrix_[diagonal_[at(block)]]; }
+  double* diagonal(int block) override { return &matrix_[diagonal_[place_[at(block)]]]; }
   BlockSlot slot(int pair) override { return slots_[at(pair)]; }
-  void touch(int block) override { stale_[at(block)] = 1; }
+  void touch(int block) override { stale_[place_[at(block)]] = 1; }
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
   [[nodiscard]] bool is_iterative() const override { return true; }
@@ -35,123 +109,213 @@ class BlockConjugateGradient final : public BlockSolver {
 
  private:
   using Vector = std::vector<double>;
+  struct Range {
+    std::size_t first, last;  ///< places
+  };
 
+  template <typename Body>
+  void for_parts(const Body& body) const;
+  template <typename Body>
+  double sum_over_ranges(const Body& body);
+  [[nodiscard]] Range between() const { return {begin_[begin_.size() - 2], begin_.back()}; }
+  void forward(Vector& v, Range range) const;
   void divide_forward(Vector& v) const;
+  void backward(Vector& v, Range range) const;
   void divide_backward(Vector& v) const;
-  void apply(const Vector& y, Vector& out);
+  template <typename Body>
+  void padded(Range range, const Body& body) const;
+  double apply(double beta);
+  double go(double alpha);
   void scale(std::span<const double> x, Vector& out) const;
-  void unscale(const Vector& v, std::span<double> x);
+  void unscale(const Vector& v, std::span<double> x) const;
   void subtract_product(std::span<const double> x, std::span<double> residual);
-  static double dot(const Vector& a, const Vector& b);
 
   struct Entry {
     std::size_t row;     ///< > column
     std::size_t values;  ///< into matrix_
     std::size_t lower;   ///< into lower_
   };
-  std::vector<int> size_, stride_;        ///< per block
-  std::vector<std::size_t> offset_;       ///< per block: its unknowns in x
-  std::vector<std::size_t> start_;        ///< per block, into padded vectors
+  // Everything is by place in the order of the partition, but for the slots.
+  ThreadTeam* team_;
+  std::vector<std::size_t> place_;  ///< block → place
+  std::vector<std::size_t> begin_;  ///< Partition::begin
+  std::vector<int> size_, stride_;
+  std::vector<std::size_t> offset_;       ///< its unknowns in x
+  std::vector<std::size_t> start_;        ///< into padded vectors
   std::vector<std::size_t> entry_start_;  ///< per column, into entries_
+  std::vector<std::size_t>
+      between_start_;  ///< per column, likewise: the first whose row lies between the parts
   std::vector<Entry> entries_;
-  std::vector<std::size_t> diagonal_;       ///< per block, into matrix_
-  std::vector<std::size_t> inverse_start_;  ///< per block, into inverse_
+  struct RowEntry {
+    std::size_t column, lower;
+  };
+  std::vector<std::size_t> row_start_;      ///< per block between the parts, into row_entries_
+  std::vector<RowEntry> row_entries_;       ///< of a row, by columns
+  std::vector<std::size_t> diagonal_;       ///< into matrix_
+  std::vector<std::size_t> inverse_start_;  ///< into inverse_
   std::vector<BlockSlot> slots_;
   Vector matrix_;             ///< A
   Vector inverse_;            ///< C_j⁻¹
   std::vector<float> lower_;  ///< L
   std::vector<std::uint8_t> stale_;
-  Vector scratch_;                   ///< of one block
+  int largest_ = 0;                  ///< stride of a block
   Vector t_, z_, r_, p_, q_, wide_;  ///< padded
   Vector correction_;                ///< of x
+  Vector sums_;                      ///< per range
   bool solved_ = true;
 };
 
+/// Of every part, and then of the blocks between them; parts may go at the same time.
+template <typename Body>
+void BlockConjugateGradient::for_parts(const Body& body) const {
+  const std::size_t count = begin_.size() - 2;
+  const auto some = [&](std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) body(k, Range{begin_[k], begin_[k + 1]});
+  };
+  if (team_ == nullptr || count == 1) {
+    some(0, count);
+  } else {
+    team_->for_range(count, 2, some);
+  }
+}
+
+/// Σ over parts and what lies between, in that order.
+template <typename Body>
+double BlockConjugateGradient::sum_over_ranges(const Body& body) {
+  for_parts([&](std::size_t k, Range range) { sums_[k] = body(range); });
+  sums_.back() = body(between());
+  double total = 0.0;
+  for (const double part : sums_) total += part;
+  return total;
+}
+
+/// Of every register of a padded vector that belongs to a range.
+template <typename Body>
+void BlockConjugateGradient::padded(Range range, const Body& body) const {
+  const auto start = [&](std::size_t place) { return place < start_.size() ? start_[place] : p_.size(); };
+  for (std::size_t k = start(range.first); k < start(range.last); k += row_padding) body(k);
+}
+
 void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = sizes.size();
-  size_.assign(sizes.begin(), sizes.end());
+  Partition found = partition(n, pairs);
+  begin_ = std::move(found.begin);
+  sums_.assign(begin_.size() - 1, 0.0);
+  place_.resize(n);
+  for (std::size_t k = 0; k < n; ++k) place_[at(found.order[k])] = k;
+  std::vector<std::size_t> unknown(n + 1, 0);
+  for (std::size_t b = 0; b < n; ++b) unknown[b + 1] = unknown[b] + at(sizes[b]);
+  size_.clear();
   stride_.clear();
   offset_.clear();
   start_.clear();
-  std::size_t unknowns = 0, padded = 0, used = 0, lower = 0, inverse = 0;
-  int largest = 0;
-  for (const int size : sizes) {
+  largest_ = 0;
+  std::size_t padded = 0, used = 0, lower = 0, inverse = 0;
+  for (const int block : found.order) {
+    const int size = sizes[at(block)];
+    size_.push_back(size);
     stride_.push_back(padded_rows(size));
-    offset_.push_back(unknowns);
+    offset_.push_back(unknown[at(block)]);
     start_.push_back(padded);
-    unknowns += at(size);
     padded += at(padded_rows(size));
-    largest = std::max(largest, padded_rows(size));
+    largest_ = std::max(largest_, padded_rows(size));
   }
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> below(n);  // row, pair
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [low, high] = std::minmax(pairs[k].first, pairs[k].second);
-    below[at(low)].emplace_back(at(high), k);
+    const auto [low, high] = std::minmax(place_[at(pairs[k].first)], place_[at(pairs[k].second)]);
+    below[low].emplace_back(high, k);
   }
   diagonal_.clear();
   inverse_start_.clear();
   entries_.clear();
   entry_start_.assign(1, 0);
-  std::vector<std::size_t> place(pairs.size());
+  between_start_.clear();
+  std::vector<std::size_t> places(pairs.size());
+  const std::size_t first_between = between().first;
+  std::vector<std::vector<RowEntry>> rows(n - first_between);
   for (std::size_t j = 0; j < n; ++j) {
     diagonal_.push_back(used);
     inverse_start_.push_back(inverse);
     used += at(stride_[j] * size_[j]);
     inverse += at(stride_[j] * size_[j]);
     std::sort(below[j].begin(), below[j].end());
+    between_start_.push_back(entries_.size());
     for (const auto& [row, k] : below[j]) {
       entries_.push_back({row, used, lower});
-      place[k] = used;
+      if (row < first_between) {
+        between_start_[j] = entries_.size();
+      } else {
+        rows[row - first_between].push_back({j, lower});
+      }
+      places[k] = used;
       used += at(stride_[row] * size_[j]);
       lower += at(stride_[row] * size_[j]);
     }
     entry_start_.push_back(entries_.size());
   }
+  row_start_.assign(1, 0);
+  row_entries_.clear();
+  for (const auto& row : rows) {
+    row_entries_.insert(row_entries_.end(), row.begin(), row.end());
+    row_start_.push_back(row_entries_.size());
+  }
   matrix_.assign(used, 0.0);
   inverse_.assign(inverse, 0.0);
   lower_.assign(lower, 0.0F);
   stale_.assign(n, 1);
-  scratch_.assign(at(largest * largest), 0.0);
   for (Vector* v : {&t_, &z_, &r_, &p_, &q_, &wide_}) v->assign(padded, 0.0);
   slots_.clear();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [column, row] = std::minmax(pairs[k].first, pairs[k].second);
-    slots_.push_back({&matrix_[place[k]], stride_[at(row)], row, column});
+    const auto [i, j] = pairs[k];
+    const bool i_below = place_[at(i)] > place_[at(j)];
+    slots_.push_back(
+        {&matrix_[places[k]], padded_rows(sizes[at(i_below ? i : j)]), i_below ? i : j, i_below ? j : i});
   }
 }
 
 bool BlockConjugateGradient::factor() {
-  const std::size_t n = size_.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    if (stale_[j] == 0) continue;
-    double* inverse = &inverse_[inverse_start_[j]];
-    std::copy_n(&matrix_[diagonal_[j]], stride_[j] * size_[j], inverse);
-    if (!invert_factor(size_[j], inverse, scratch_.data())) return false;
-  }
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const auto [i, values, lower] = entries_[e];
-      if (stale_[i] == 0 && stale_[j] == 0) continue;
-      // C_i⁻¹ A_ij, column by column, then from the right.
-      const int rows = stride_[i];
-      for (int c = 0; c < size_[j]; ++c) {
-        multiply(rows / row_padding, size_[i], &inverse_[inverse_start_[i]], &matrix_[values + at(c * rows)],
-                 &scratch_[at(c * rows)]);
-      }
-      multiply_right(rows / row_padding, size_[j], &inverse_[inverse_start_[j]], scratch_.data());
-      for (std::size_t k = 0; k < at(rows * size_[j]); ++k)
-        lower_[lower + k] = static_cast<float>(scratch_[k]);
+  std::vector<std::uint8_t> good(begin_.size() - 1, 1);
+  const auto invert = [&](std::size_t k, Range range) {
+    Vector scratch(at(largest_));
+    for (std::size_t j = range.first; j < range.last && good[k] != 0; ++j) {
+      if (stale_[j] == 0) continue;
+      double* inverse = &inverse_[inverse_start_[j]];
+      std::copy_n(&matrix_[diagonal_[j]], stride_[j] * size_[j], inverse);
+      good[k] = invert_factor(size_[j], inverse, scratch.data());
     }
-  }
+  };
+  for_parts(invert);
+  invert(good.size() - 1, between());
+  if (std::find(good.begin(), good.end(), 0) != good.end()) return false;
+  const auto divide = [&](std::size_t, Range range) {
+    Vector scratch(at(largest_ * largest_));
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
+        const auto [i, values, lower] = entries_[e];
+        if (stale_[i] == 0 && stale_[j] == 0) continue;
+        // C_i⁻¹ A_ij, column by column, then from the right.
+        const int rows = stride_[i];
+        for (int c = 0; c < size_[j]; ++c) {
+          multiply(rows / row_padding, size_[i], &inverse_[inverse_start_[i]],
+                   &matrix_[values + at(c * rows)], &scratch[at(c * rows)]);
+        }
+        multiply_right(rows / row_padding, size_[j], &inverse_[inverse_start_[j]], scratch.data());
+        for (std::size_t k = 0; k < at(rows * size_[j]); ++k)
+          lower_[lower + k] = static_cast<float>(scratch[k]);
+      }
+    }
+  };
+  for_parts(divide);
+  divide(0, between());
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
   return true;
 }
 
-/// v ← (1 + L)⁻¹ v.
-void BlockConjugateGradient::divide_forward(Vector& v) const {
-  for (std::size_t j = 0; j < size_.size(); ++j) {
+/// What the columns of a part take from its own rows.
+void BlockConjugateGradient::forward(Vector& v, Range range) const {
+  for (std::size_t j = range.first; j < range.last; ++j) {
     const double* x = &v[start_[j]];
-    for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
+    for (std::size_t e = entry_start_[j]; e < between_start_[j]; ++e) {
       const Entry& entry = entries_[e];
       const int lanes = stride_[entry.row] / row_padding;
       double* y = &v[start_[entry.row]];
@@ -164,8 +328,19 @@ void BlockConjugateGradient::divide_forward(Vector& v) const {
   }
 }
 
-/// v ← (1 + Lᵀ)⁻¹ v.
-void BlockConjugateGradient::divide_backward(Vector& v) const {
+/// v ← (1 + L)⁻¹ v. Rows between the parts gather, so that no two parts write to them.
+void BlockConjugateGradient::divide_forward(Vector& v) const {
+  for_parts([&](std::size_t, Range range) { forward(v, range); });
+  const std::size_t first = between().first;
+  for (std::size_t i = first; i < size_.size(); ++i) {
+    for (std::size_t e = row_start_[i - first]; e < row_start_[i - first + 1]; ++e) {
+      const auto [j, lower] = row_entries_[e];
+      subtract_times(stride_[i] / row_padding, size_[j], &lower_[lower], &v[start_[j]], &v[start_[i]]);
+    }
+  }
+}
+
+void BlockConjugateGradient::backward(Vector& v, Range range) const {
   const auto columns = [&]<int width>(std::size_t j, int c) {
     Lanes t[width]{};
     for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
@@ -177,19 +352,43 @@ void BlockConjugateGradient::divide_backward(Vector& v) const {
     for (int k = 0; k < width; ++k) y[k] -= sum(t[k]);
     return width;
   };
-  for (std::size_t j = size_.size(); j-- > 0;) {
+  for (std::size_t j = range.last; j-- > range.first;) {
     if (entry_start_[j] == entry_start_[j + 1]) continue;
     for (int c = 0; c < size_[j];)
       c += size_[j] - c >= 6 ? columns.template operator()<6>(j, c) : columns.template operator()<1>(j, c);
   }
 }
 
-void BlockConjugateGradient::apply(const Vector& y, Vector& out) {
-  t_ = y;
-  divide_backward(t_);
-  for (std::size_t k = 0; k < y.size(); ++k) out[k] = y[k] - t_[k];
-  divide_forward(out);
-  for (std::size_t k = 0; k < y.size(); ++k) out[k] += t_[k];
+/// v ← (1 + Lᵀ)⁻¹ v.
+void BlockConjugateGradient::divide_backward(Vector& v) const {
+  backward(v, between());
+  for_parts([&](std::size_t, Range range) { backward(v, range); });
+}
+
+/// p ← r + β p and q ← Â p. Returns p · q.
+double BlockConjugateGradient::apply(double beta) {
+  const auto before = [&](std::size_t, Range range) {
+    const Lanes b = broadcast(beta);
+    padded(range, [&](std::size_t k) {
+      const Lanes p = load(&r_[k]) + b * load(&p_[k]);
+      store(&p_[k], p);
+      store(&t_[k], p);
+    });
+    backward(t_, range);
+    padded(range, [&](std::size_t k) { store(&q_[k], load(&p_[k]) - load(&t_[k])); });
+  };
+  before(0, between());
+  for_parts(before);
+  divide_forward(q_);
+  return sum_over_ranges([&](Range range) {
+    Lanes total{};
+    padded(range, [&](std::size_t k) {
+      const Lanes q = load(&q_[k]) + load(&t_[k]);
+      store(&q_[k], q);
+      total = add_product(load(&p_[k]), q, total);
+    });
+    return sum(total);
+  });
 }
 
 /// out ← C⁻¹ x.
@@ -201,7 +400,7 @@ void BlockConjugateGradient::scale(std::span<const double> x, Vector& out) const
 }
 
 /// x ← C⁻ᵀ v.
-void BlockConjugateGradient::unscale(const Vector& v, std::span<double> x) {
+void BlockConjugateGradient::unscale(const Vector& v, std::span<double> x) const {
   for (std::size_t j = 0; j < size_.size(); ++j) {
     for (int c = 0; c < size_[j]; ++c) {
       Lanes t[1]{};
@@ -248,10 +447,19 @@ void BlockConjugateGradient::subtract_product(std::span<const double> x, std::sp
   }
 }
 
-double BlockConjugateGradient::dot(const Vector& a, const Vector& b) {
-  Lanes t{};
-  for (std::size_t k = 0; k < a.size(); k += row_padding) t = add_product(load(&a[k]), load(&b[k]), t);
-  return sum(t);
+/// z ← z + α p and r ← r − α q. Returns r · r.
+double BlockConjugateGradient::go(double alpha) {
+  const Lanes a = broadcast(alpha);
+  return sum_over_ranges([&](Range range) {
+    Lanes total{};
+    padded(range, [&](std::size_t k) {
+      store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
+      const Lanes r = load(&r_[k]) - a * load(&q_[k]);
+      store(&r_[k], r);
+      total = add_product(r, r, total);
+    });
+    return sum(total);
+  });
 }
 
 void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess) {
@@ -267,22 +475,16 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
     }
     scale(residual, r_);
     divide_forward(r_);
-    p_ = r_;
+    std::fill(p_.begin(), p_.end(), 0.0);
     std::fill(z_.begin(), z_.end(), 0.0);
-    double rr = dot(r_, r_);
+    double rr = go(0.0), beta = 0.0;
     // The residual of the scaled system tells when to look at that of the real one.
     const double drop = 0.5 / too_large, wanted = drop * drop * rr;
     while (rr > wanted && iterations < most_iterations) {
       ++iterations;
-      apply(p_, q_);
-      const double alpha = rr / dot(p_, q_);
-      for (std::size_t k = 0; k < r_.size(); ++k) {
-        z_[k] += alpha * p_[k];
-        r_[k] -= alpha * q_[k];
-      }
-      const double next = dot(r_, r_), beta = next / rr;
+      const double next = go(rr / apply(beta));
+      beta = next / rr;
       rr = next;
-      for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = r_[k] + beta * p_[k];
     }
     divide_backward(z_);
     unscale(z_, correction_);
@@ -293,8 +495,8 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
 
 }  // namespace
 
-std::unique_ptr<BlockSolver> make_block_conjugate_gradient() {
-  return std::make_unique<BlockConjugateGradient>();
+std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {
+  return std::make_unique<BlockConjugateGradient>(team);
 }
 
 }  // namespace keyblock::linalg

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.h"
+
 namespace keyblock::linalg {
 
 /// Rows of a dense block are padded to a multiple of this, so that a column starts a SIMD register.
@@ -62,7 +64,8 @@ double cholesky_products(int blocks, std::span<const std::pair<int, int>> pairs)
 
 /// Conjugate gradients with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat
 /// 1981). In a dynamic step inertia bounds the condition of the matrix, so that the iterations do not grow with the model.
-std::unique_ptr<BlockSolver> make_block_conjugate_gradient();
+/// Large systems are solved by the threads of `team`, which may be null; the bits are the same.
+std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team);
 
 /// CHOLMOD on the scalar matrix: slower at the sizes of a block system, kept as the oracle.
 std::unique_ptr<BlockSolver> make_cholmod();

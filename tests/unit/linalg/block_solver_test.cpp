@@ -84,10 +84,14 @@ Eigen::VectorXd solve(BlockSolver& solver, const Problem& p) {
   return Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
 }
 
+std::unique_ptr<BlockSolver> make_iterative() {
+  return make_block_conjugate_gradient(nullptr);
+}
+
 // What an iterative solver leaves is what it says.
 TEST(BlockSolver, ResidualIsWhatIsMissing) {
   const Problem p = random_problem(5, 30, {6, 12});
-  const auto solver = make_block_conjugate_gradient();
+  const auto solver = make_iterative();
   solver->analyse(p.sizes, p.pairs);
   solve(*solver, p);
   std::vector<double> x(p.right.data(), p.right.data() + p.right.size()), residual(x.size());
@@ -108,7 +112,7 @@ TEST(BlockSolver, ResidualIsWhatIsMissing) {
 
 // What is factored in part is, bit for bit, what is factored as a whole.
 TEST(BlockSolver, FactorsWhatWasTouchedOnly) {
-  for (const auto& make : {make_block_cholesky, make_cholmod, make_block_conjugate_gradient}) {
+  for (const auto& make : {make_block_cholesky, make_cholmod, make_iterative}) {
     Problem p = random_problem(77, 40, {6, 12, 20});
     const auto solver = make(), whole = make();
     solver->analyse(p.sizes, p.pairs);
@@ -142,7 +146,7 @@ TEST(BlockSolver, AgreesWithDenseSolutionForEqualAndMixedBlocks) {
       if (choice[0] == 132 && n > 7) continue;
       const Problem p = random_problem(++seed, n, choice);
       const Eigen::VectorXd expected = p.dense.ldlt().solve(p.right);
-      for (const auto& make : {make_block_cholesky, make_cholmod, make_block_conjugate_gradient}) {
+      for (const auto& make : {make_block_cholesky, make_cholmod, make_iterative}) {
         const auto solver = make();
         solver->analyse(p.sizes, p.pairs);
         for (int repeat = 0; repeat < 2; ++repeat) {
@@ -170,6 +174,50 @@ TEST(BlockSolver, AnEmptySystemIsSolved) {
   std::vector<double> x;
   std::vector<double> residual(x.size());
   solver->solve(x, residual, [](std::span<const double>) { return 0.0; });
+}
+
+// Enough blocks to be cut into parts: a grid with diagonals here and there, and a piece that is not coupled with it.
+TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
+  constexpr int side = 70, blocks = side * side + 40;
+  std::vector<std::pair<int, int>> pairs;
+  std::mt19937 random(3);
+  for (int k = 0; k < side * side; ++k) {
+    if (k % side != 0) pairs.emplace_back(k - 1, k);
+    if (k >= side) pairs.emplace_back(k, k - side);
+    if (k > side && k % side != 0 && random() % 5 == 0) pairs.emplace_back(k - side - 1, k);
+  }
+  for (int k = side * side + 1; k < blocks; ++k) pairs.emplace_back(k - 1, k);
+  const std::vector<int> sizes(blocks, 6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> right(6 * blocks), coupling(36 * pairs.size());
+  for (double& v : right) v = uniform(random);
+  for (double& v : coupling) v = uniform(random);
+  const auto solution = [&](BlockSolver& solver) {
+    solver.analyse(sizes, pairs);
+    solver.clear();
+    for (int b = 0; b < blocks; ++b) {
+      for (int k = 0; k < 6; ++k) solver.diagonal(b)[k * padded_rows(6) + k] = 24.0;
+    }
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const BlockSlot slot = solver.slot(static_cast<int>(p));
+      const bool turned = slot.row != pairs[p].first;
+      for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < 6; ++c)
+          slot.values[c * slot.stride + r] =
+              coupling[36 * p + static_cast<std::size_t>(turned ? 6 * c + r : 6 * r + c)];
+      }
+    }
+    EXPECT_TRUE(solver.factor());
+    std::vector<double> x = right, residual(x.size());
+    solver.solve(x, residual, strict());
+    return x;
+  };
+  const auto expected = solution(*make_block_cholesky()), alone = solution(*make_iterative());
+  for (std::size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(alone[k], expected[k], 1e-10);
+  for (const int threads : {2, 3, 8}) {
+    ThreadTeam team(threads);
+    EXPECT_EQ(solution(*make_block_conjugate_gradient(&team)), alone) << threads;
+  }
 }
 
 }  // namespace
