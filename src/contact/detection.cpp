@@ -10,6 +10,9 @@ namespace keyblock::contact {
 
 namespace {
 
+constexpr std::size_t worth_threads = 10'000;  // vertices, candidates or contacts
+constexpr std::size_t piece = 4'096;           // candidates
+
 /// Whether the edge from v to `other` lies outside the line, up to the angle tolerance.
 bool outside(const Surface& surface, Vec2 v, int other, Vec2 normal) {
   const Vec2 u = surface.position[at(other)] - v;
@@ -30,13 +33,15 @@ double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 nor
 
 }  // namespace
 
-void Detection::measure_edges(const Surface& surface) {
+void Detection::measure_edges(const Surface& surface, ThreadTeam& team) {
   lines_.resize(surface.position.size());
-  for (std::size_t e = 0; e < lines_.size(); ++e) {
-    const Vec2 along = surface.position[at(surface.next[e])] - surface.position[e];
-    const double length = norm(along);
-    lines_[e] = {along / length, length};
-  }
+  team.for_range(lines_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      const Vec2 along = surface.position[at(surface.next[e])] - surface.position[e];
+      const double length = norm(along);
+      lines_[e] = {along / length, length};
+    }
+  });
 }
 
 bool Detection::passes(const Surface& surface, std::span<const double> reach, const Candidate& c,
@@ -99,21 +104,35 @@ void Detection::sort_corners(const Surface& surface) {
   }
 }
 
+/// The candidates that pass, piece by piece, so that their order is the same whoever finds them.
+void Detection::look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
+                     const CandidateList& candidates, ThreadTeam& team) {
+  const std::size_t n = candidates.pairs.size(), pieces = (n + piece - 1) / piece;
+  found_in_.resize(pieces);
+  team.for_range(pieces, std::max<std::size_t>(2, worth_threads / piece),
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t p = begin; p < end; ++p) {
+                     std::vector<Found>& found = found_in_[p];
+                     found.clear();
+                     Found next{};
+                     for (std::size_t k = p * piece; k < std::min(n, (p + 1) * piece); ++k) {
+                       const Candidate& c = candidates.pairs[k];
+                       if (away[at(c.block_a)] + away[at(c.block_b)] < c.clearance) continue;
+                       if (!passes(surface, reach, c, candidates.memory[k], next)) continue;
+                       next.candidate = static_cast<int>(k);
+                       found.push_back(next);
+                     }
+                   }
+                 });
+  found_.clear();
+  for (const std::vector<Found>& some : found_in_) found_.insert(found_.end(), some.begin(), some.end());
+}
+
 void Detection::find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
-                     const CandidateList& candidates, std::vector<Contact>& contacts) {
-  measure_edges(surface);
+                     const CandidateList& candidates, ThreadTeam& team, std::vector<Contact>& contacts) {
   const std::span<const Memory> memory = candidates.memory;
-  found_.resize(candidates.pairs.size());
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
-    const Candidate& c = candidates.pairs[k];
-    if (away[at(c.block_a)] + away[at(c.block_b)] < c.clearance) continue;
-    Found& found = found_[count];
-    if (!passes(surface, reach, c, memory[k], found)) continue;
-    found.candidate = static_cast<int>(k);
-    ++count;
-  }
-  found_.resize(count);
+  measure_edges(surface, team);
+  look(surface, reach, away, candidates, team);
   sort_corners(surface);
   for (std::size_t first = 0; first < members_.size();) {
     const Found& f = found_[at(members_[first])];
@@ -124,10 +143,14 @@ void Detection::find(const Surface& surface, std::span<const double> reach, std:
     compete(std::span(members_).subspan(first, last - first), memory);
     first = last;
   }
-  contacts.clear();
-  for (const Found& f : found_) {
-    if (!f.dropped) add(surface, f, memory, contacts);
+  kept_.clear();
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    if (!found_[k].dropped) kept_.push_back(static_cast<int>(k));
   }
+  contacts.resize(kept_.size());
+  team.for_range(kept_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) add(surface, found_[at(kept_[k])], memory, contacts[k]);
+  });
 }
 
 /// Which of the candidates for one pair of corners is the contact.
@@ -193,11 +216,10 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 }  // namespace
 
 void Detection::add(const Surface& surface, const Found& found, std::span<const Memory> memories,
-                    std::vector<Contact>& contacts) const {
+                    Contact& contact) const {
   const Line& line = lines_[at(found.edge)];
   const Vec2 a = surface.position[at(found.edge)], v = surface.position[at(found.vertex)],
              normal = line.normal();
-  Contact& contact = contacts.emplace_back();
   contact.candidate = found.candidate;
   contact.block_a = surface.block[at(found.vertex)];
   contact.block_b = surface.block[at(found.edge)];
@@ -234,11 +256,9 @@ void Detection::add(const Surface& surface, const Found& found, std::span<const 
   contact.normal_stiffness = per_length * std::max(contact.length, tolerances_.least_length);
   contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
   contact.friction_coefficient = law.friction_coefficient;
-  if (memory.bonded) {
-    contact.cohesion = law.cohesion * contact.length;
-    contact.tension = law.tension * contact.length;
-    contact.fused = law.fused;
-  }
+  contact.cohesion = memory.bonded ? law.cohesion * contact.length : 0.0;
+  contact.tension = memory.bonded ? law.tension * contact.length : 0.0;
+  contact.fused = memory.bonded && law.fused;
   keep_energy(memory, contact.gap, contact.normal_stiffness);
   contact.depth = -contact.gap - memory.offset + memory.multiplier;
 }

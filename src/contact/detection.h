@@ -4,6 +4,7 @@
 
 #include "contact/candidates.h"
 #include "contact/surface.h"
+#include "core/parallel.h"
 
 namespace keyblock::contact {
 
@@ -50,7 +51,7 @@ class Detection {
   /// Contacts of the step in the order of the candidates. reach[b]: m, bound on the motion of block b in the step; away[b]:
   /// Candidates::away.
   void find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
-            const CandidateList& candidates, std::vector<Contact>& contacts);
+            const CandidateList& candidates, ThreadTeam& team, std::vector<Contact>& contacts);
 
   [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
   [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
@@ -71,20 +72,24 @@ class Detection {
     bool dropped;
     int holder;  ///< candidate whose memory it takes over; −1: its own
   };
-  void measure_edges(const Surface& surface);
+  void measure_edges(const Surface& surface, ThreadTeam& team);
+  void look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
+            const CandidateList& candidates, ThreadTeam& team);
   bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, const Memory& memory,
               Found& found) const;
   void sort_corners(const Surface& surface);
   void compete(std::span<const int> members, std::span<const Memory> memories);
   void add(const Surface& surface, const Found& found, std::span<const Memory> memories,
-           std::vector<Contact>& contacts) const;
+           Contact& contact) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
-  std::vector<Line> lines_;        ///< per edge
-  std::vector<Found> found_;       ///< in the order of the candidates
+  std::vector<Line> lines_;                   ///< per edge
+  std::vector<Found> found_;                  ///< in the order of the candidates
+  std::vector<std::vector<Found>> found_in_;  ///< the same, piece by piece of the candidates
+  std::vector<int> kept_;                     ///< into found_: not dropped
   std::vector<int> corner_begin_;  ///< per vertex: those of which it is the lower corner, into members_
   std::vector<int> members_;       ///< into found_, by (low, high, place)
 };

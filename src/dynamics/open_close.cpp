@@ -7,6 +7,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
+constexpr std::size_t worth_threads = 10'000;  // contacts
 constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
 constexpr double forcing = 0.003;     // of what is out of balance, likewise
 constexpr double rough_share =
@@ -97,11 +98,13 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
 /// What the direction of search does to every spring.
 void OpenClose::find_direction(const StepProblem& problem) {
   const auto& rows = problem.rows();
-  for (std::size_t c = 0; c < rows.size(); ++c) {
-    const Vec2 r = problem.relative(rows[c], direction_);
-    springs_.dy[c] = -dot(rows[c].normal, r);
-    springs_.dw[c] = dot(rows[c].tangent, r);
-  }
+  team_->for_range(rows.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Vec2 r = problem.relative(rows[c], direction_);
+      springs_.dy[c] = -dot(rows[c].normal, r);
+      springs_.dw[c] = dot(rows[c].tangent, r);
+    }
+  });
 }
 
 /// Solves with the springs of the last step, as if they could pull and hold without limit. An iterative solver goes on from d.
@@ -331,8 +334,9 @@ bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> co
 }
 
 OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contact> contacts,
-                                 linalg::BlockSolver& solver, const SolverOptions& options, Profile& profile,
-                                 std::span<double> d) {
+                                 linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
+                                 Profile& profile, std::span<double> d) {
+  team_ = &team;
   profile_ = &profile;
   const Profile::Scope scope(profile, Phase::search);
   const std::size_t rows = problem.rows().size();
@@ -373,8 +377,10 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     if (problem.residual_ratio(gradient_) < options.tolerance) break;
     enough = options.tolerance;
   }
-  for (std::size_t c = 0; c < rows; ++c)
-    r_[c] = problem.relative(problem.rows()[c], d) + problem.rows()[c].moved;
+  team.for_range(rows, worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      r_[c] = problem.relative(problem.rows()[c], d) + problem.rows()[c].moved;
+  });
   result.residual_ratio = problem.residual_ratio(gradient_);
   return result;
 }

@@ -40,8 +40,8 @@ class OpenClose {
   /// d: the increment; where an iterative solver starts from, and then the solution. Bonds that break are cleared
   /// in the memory of the contacts (one per row) and in the rows of the problem.
   OpenCloseResult solve(StepProblem& problem, std::span<contact::Contact> contacts,
-                        linalg::BlockSolver& solver, const SolverOptions& options, Profile& profile,
-                        std::span<double> d);
+                        linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
+                        Profile& profile, std::span<double> d);
 
   /// r of every row at the solution.
   [[nodiscard]] std::span<const Vec2> relative() const { return r_; }
@@ -72,6 +72,7 @@ class OpenClose {
   bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
   bool break_bonds(StepProblem& problem, std::span<contact::Contact> contacts);
 
+  ThreadTeam* team_ = nullptr;
   Profile* profile_ = nullptr;
   SpringArray springs_;
   std::vector<Piece> factored_;     ///< per contact: what the matrix at hand was made with
@@ -85,7 +86,8 @@ class OpenClose {
   struct BoundStep {
     double missing = 0.0, taken = 0.0;
   };
-  std::vector<BoundStep> bound_steps_;  ///< per contact, of the last update in this step; empty before the first
+  std::vector<BoundStep>
+      bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
   std::vector<double> residual_;  ///< ρ of the last linear solution: A p = −g − ρ
   double slope_at_zero_ = 0.0, curvature_ = 0.0;

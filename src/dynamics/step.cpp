@@ -75,7 +75,7 @@ void Stepper::start(State& state) {
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
-  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, contacts_);
+  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, team_, contacts_);
   for (contact::Contact& c : contacts_) {
     contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
@@ -119,7 +119,7 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
   contact::CandidateList list = state.contacts;
   candidates.update(model_.surface, still, list);
   std::vector<contact::Contact> contacts;
-  detection_.find(model_.surface, still, candidates.away(), list, contacts);
+  detection_.find(model_.surface, still, candidates.away(), list, team_, contacts);
   return contacts;
 }
 
@@ -156,7 +156,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
 void Stepper::detect(State& state) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
-  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, contacts_);
+  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, team_, contacts_);
   ensure_pattern(state, changed);
 }
 
@@ -180,7 +180,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     if (chosen.is_iterative()) guess(state, drive);
     const OpenCloseResult result =
-        open_close_.solve(problem_, contacts_, chosen, model_.solver, profile_, increment_);
+        open_close_.solve(problem_, contacts_, chosen, model_.solver, team_, profile_, increment_);
     report.iterations += result.iterations;
     if (result.linear_failed && !must_be_direct) {
       must_be_direct = true;

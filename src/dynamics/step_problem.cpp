@@ -35,7 +35,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   }
   build_blocks(state, drive, team);
   add_supports(state, drive);
-  build_rows(drive, surface, contacts);
+  build_rows(drive, surface, contacts, team);
 }
 
 void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
@@ -109,51 +109,51 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 }
 
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
-                             std::span<const contact::Contact> contacts) {
+                             std::span<const contact::Contact> contacts, ThreadTeam& team) {
+  constexpr std::size_t worth_threads = 10'000;  // contacts
   rows_.resize(contacts.size());
   std::size_t used = 0;
-  for (const contact::Contact& c : contacts)
-    used += at(model_->blocks[at(c.block_a)].size + model_->blocks[at(c.block_b)].size);
-  phi_.resize(used);
-  used = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const contact::Contact& c = contacts[k];
-    const Block& a = model_->blocks[at(c.block_a)];
-    const Block& b = model_->blocks[at(c.block_b)];
-    const contact::Memory& memory = c.memory;
-    Row& row = rows_[k];
-    row.first_a = a.first;
-    row.first_b = b.first;
-    row.size_a = a.fixed ? 0 : a.size;
-    row.size_b = b.fixed ? 0 : b.size;
-    row.unknown_a = a.unknown;
-    row.unknown_b = b.unknown;
-    row.phi = used;
-    std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[used]);
-    used += at(row.size_a);
-    const double* from = &surface.phi[surface.phi_begin[at(c.edge)]];
-    const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(c.edge)])]];
-    for (int i = 0; i < row.size_b; ++i)
-      phi_[used + at(i)] = (1.0 - c.position) * from[i] + c.position * to[i];
-    used += at(row.size_b);
-    row.normal = c.normal;
-    row.tangent = c.tangent;
-    row.moved =
-        drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
-    const double mass = reduced_mass(c);
-    row.inertia =
-        mass * drive.rule[at(a.fixed ? c.block_b : c.block_a)].inertia() / (drive.step * drive.step);
-    const auto dashpot = [&](double stiffness) {
-      return drive.is_static
-                 ? 0.0
-                 : 2.0 * model_->solver.contact_damping * std::sqrt(stiffness * mass) / drive.step;
-    };
-    row.spring =
-        contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
-                         dashpot(c.shear_stiffness), c.depth, memory.shear,
-                         c.fused ? HUGE_VAL : c.friction_coefficient * memory.bounding_force + c.cohesion,
-                         c.fused || (memory.bonded && c.tension > 0.0)});
+    rows_[k].phi = used;
+    used += at(model_->blocks[at(contacts[k].block_a)].size + model_->blocks[at(contacts[k].block_b)].size);
   }
+  phi_.resize(used);
+  team.for_range(contacts.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) build_row(drive, surface, contacts[k], rows_[k]);
+  });
+}
+
+void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
+                            Row& row) {
+  const Block& a = model_->blocks[at(c.block_a)];
+  const Block& b = model_->blocks[at(c.block_b)];
+  const contact::Memory& memory = c.memory;
+  row.first_a = a.first;
+  row.first_b = b.first;
+  row.size_a = a.fixed ? 0 : a.size;
+  row.size_b = b.fixed ? 0 : b.size;
+  row.unknown_a = a.unknown;
+  row.unknown_b = b.unknown;
+  std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[row.phi]);
+  double* phi_b = &phi_[row.phi] + row.size_a;
+  const double* from = &surface.phi[surface.phi_begin[at(c.edge)]];
+  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(c.edge)])]];
+  for (int i = 0; i < row.size_b; ++i) phi_b[i] = (1.0 - c.position) * from[i] + c.position * to[i];
+  row.normal = c.normal;
+  row.tangent = c.tangent;
+  row.moved =
+      drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
+  const double mass = reduced_mass(c);
+  row.inertia = mass * drive.rule[at(a.fixed ? c.block_b : c.block_a)].inertia() / (drive.step * drive.step);
+  const auto dashpot = [&](double stiffness) {
+    return drive.is_static ? 0.0
+                           : 2.0 * model_->solver.contact_damping * std::sqrt(stiffness * mass) / drive.step;
+  };
+  row.spring =
+      contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
+                       dashpot(c.shear_stiffness), c.depth, memory.shear,
+                       c.fused ? HUGE_VAL : c.friction_coefficient * memory.bounding_force + c.cohesion,
+                       c.fused || (memory.bonded && c.tension > 0.0)});
 }
 
 double StepProblem::reduced_mass(const contact::Contact& c) const {

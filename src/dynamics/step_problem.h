@@ -105,7 +105,8 @@ class StepProblem {
   void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
-                  std::span<const contact::Contact> contacts);
+                  std::span<const contact::Contact> contacts, ThreadTeam& team);
+  void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
 
   const Model* model_ = nullptr;
   std::vector<Row> rows_;

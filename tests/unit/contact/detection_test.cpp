@@ -21,7 +21,8 @@ std::vector<Contact> find(const Surface& surface, CandidateList& list) {
   Detection detection(tolerances, {JointLaw{}},
                       std::vector<double>(static_cast<std::size_t>(surface.blocks()), 1e9));
   std::vector<Contact> contacts;
-  detection.find(surface, still, candidates.away(), list, contacts);
+  ThreadTeam alone(1);
+  detection.find(surface, still, candidates.away(), list, alone, contacts);
   keep_memory(contacts, list);
   return contacts;
 }
@@ -124,6 +125,7 @@ TEST(Detection, ClearanceHidesNoContact) {
   const Tolerances tolerances(0.6);
   Candidates candidates(tolerances);
   Detection detection(tolerances, {JointLaw{}}, std::vector<double>(64, 1e9));
+  ThreadTeam alone(1);
   CandidateList list;
   long skipped = 0, found = 0;
   for (int step = 0; step < 200; ++step) {
@@ -136,8 +138,8 @@ TEST(Detection, ClearanceHidesNoContact) {
       c.clearance = 0.0;
     }
     std::vector<Contact> fast, slow;
-    detection.find(surface, reach, candidates.away(), list, fast);
-    detection.find(surface, reach, candidates.away(), all, slow);
+    detection.find(surface, reach, candidates.away(), list, alone, fast);
+    detection.find(surface, reach, candidates.away(), all, alone, slow);
     ASSERT_EQ(fast.size(), slow.size()) << step;
     for (std::size_t k = 0; k < fast.size(); ++k) {
       EXPECT_EQ(fast[k].candidate, slow[k].candidate);

@@ -110,7 +110,8 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     analyse(s.model, problem, *solver);
     std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
     OpenClose iteration;
-    const OpenCloseResult result = iteration.solve(problem, contacts, *solver, s.model.solver, s.profile, d);
+    const OpenCloseResult result =
+        iteration.solve(problem, contacts, *solver, s.model.solver, s.team, s.profile, d);
     EXPECT_TRUE(result.converged);
     EXPECT_GT(result.iterations, 1);
     problem.gradient(d, iteration.relative(), g);
