@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Times whole scenes against the goals, prints a table and writes JSON.
 
-    bench.py KEYBLOCK [--json FILE] [--scenes REGEX] [--repeat N]
+    bench.py KEYBLOCK [--json FILE] [--scenes REGEX] [--repeat N] [--instructions]
 
 Each scene is run as a user would run it; the time of a step is that of its shaking stage, from summary.json, the median of the
-repetitions. Machines differ and are shared: compare ratios taken in one run.
+repetitions. Machines differ and are shared: compare ratios taken in one run. With --instructions a few steps of each scene are run
+under valgrind, whose counts are the same on every rerun; KEYBLOCK is then the program of the preset `profile`.
 """
 
 import argparse
@@ -48,6 +49,13 @@ STEPS = {
 }
 CUTS = {"cutting 20,000 cells": (20_000, 0.3), "cutting 1,000,000 cells": (1_000_000, 30.0)}
 
+# name: scenario and overrides; their dynamic steps are counted, settling is not
+COUNTED = {
+    "tunnel, order 1": lambda: (TUNNEL, ["stage.quiet.duration=0.1", f"{QUAKE}.duration=0.1", "stage.after.duration=0.002"]),
+    "wall of 512 bricks": lambda: (scenes.wall(20, 25, 0.1), []),
+    "grid of 1,000 blocks": lambda: (scenes.grid(1_000, 0.1), []),
+}
+
 
 def run(command):
     """Wall time in s and largest memory in kB."""
@@ -82,6 +90,23 @@ def measure_steps(keyblock, name, repeat):
     return {"value": statistics.median(times), "unit": "ms/step", "goal": goal, "all": times, "blocks": blocks,
             "solutions_per_step": summary["open_close"]["mean_iterations"], "kB_per_block": memory / blocks,
             "state_hash": summary["state_hash"], "profile": summary["profile"]}
+
+
+def count_instructions(keyblock, name):
+    text, overrides = COUNTED[name]()
+    with tempfile.TemporaryDirectory() as name_of_folder:
+        folder = pathlib.Path(name_of_folder)
+        (folder / "scene.toml").write_text(text)
+        command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder / 'counts'}",
+                   "--toggle-collect=keyblock::dynamics::Stepper::advance(*",
+                   keyblock, "run", folder / "scene.toml", "-o", folder / "out"]
+        for override in overrides:
+            command += ["--set", override]
+        run(command)
+        counted = int(re.search(r"^(?:totals|summary): (\d+)", (folder / "counts").read_text(), re.MULTILINE)[1])
+        stages = json.loads((folder / "out" / "summary.json").read_text())["stages"]
+    steps = sum(stage["steps"] for stage in stages if stage["kind"] != "settle")
+    return {"value": counted / steps / 1e6, "unit": "M/step", "goal": None}
 
 
 def measure_cut(keyblock, name, repeat):
@@ -135,9 +160,12 @@ def main():
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--scenes", default="", help="regular expression on the names")
     parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--instructions", action="store_true", help="count instructions instead of time")
     arguments = parser.parse_args()
     results = {}
-    for names, measure in ((STEPS, measure_steps), (CUTS, measure_cut)):
+    count = lambda keyblock, name, _: count_instructions(keyblock, name)  # noqa: E731
+    kinds = ((COUNTED, count),) if arguments.instructions else ((STEPS, measure_steps), (CUTS, measure_cut))
+    for names, measure in kinds:
         for name in names:
             if re.search(arguments.scenes, name):
                 print(f"{name} ...", file=sys.stderr)
