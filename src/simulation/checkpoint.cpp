@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0004;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0005;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -37,6 +37,8 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.start_time);
   archive(s.duration);
   archive(s.pga);
+  archive(s.pgv);
+  archive(s.arias);
   archive(s.equilibrium_reached);
   archive(s.worst_residual_ratio);
   archive(s.moving);
