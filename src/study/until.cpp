@@ -54,11 +54,11 @@ struct Sums {
   }
 };
 
-bool narrow(const Sums& s, const scenario::UntilSpec& until, double confidence) {
+bool narrow(const Sums& s, const scenario::UntilSpec& until, double quantile) {
   if (s.count < 2) return false;
   const double n = s.count, mean = s.first + s.sum / n;
   const double variance = std::max(0.0, (s.squares - s.sum * s.sum / n) / (n - 1.0));
-  const double half = student_quantile(0.5 + 0.5 * confidence, n - 1.0) * std::sqrt(variance / n);
+  const double half = quantile * std::sqrt(variance / n);
   return (until.half_width && half <= *until.half_width * std::abs(mean)) ||
          (until.width && 2.0 * half <= *until.width);
 }
@@ -94,16 +94,23 @@ std::optional<int> enough_realizations(const Plan& plan, const std::vector<const
       by_realization[plan.runs[k].realization].push_back(k);
   }
   std::map<std::vector<std::vector<std::string>>, Sums> sums;
+  std::map<int, double> quantiles;  // that were needed before
+  const auto quantile = [&](int count) {
+    const auto [place, added] = quantiles.try_emplace(count, 0.0);
+    if (added && count > 1) place->second = student_quantile(0.5 + 0.5 * plan.confidence, count - 1.0);
+    return place->second;
+  };
   for (const auto& [realization, runs] : by_realization) {
     for (const std::size_t k : runs) {
       if (results[k] == nullptr) return std::nullopt;
       Sums& sum = sums[plan.runs[k].values];
       if (const auto value = measured(plan, *results[k])) sum.add(*value);
     }
+    if (realization + 1 < plan.until->minimum) continue;
     const bool enough = std::all_of(sums.begin(), sums.end(), [&](const auto& entry) {
-      return narrow(entry.second, *plan.until, plan.confidence);
+      return narrow(entry.second, *plan.until, quantile(entry.second.count));
     });
-    if (realization + 1 >= plan.until->minimum && enough) return realization + 1;
+    if (enough) return realization + 1;
   }
   return std::nullopt;
 }

@@ -130,6 +130,8 @@ class Workers {
     const PlannedRun& run = plan_.runs[k];
     RunState& state = files_.states[k];
     state = read_run_state(directory_, plan_, run);
+    if (plan_.until) update_enough();
+    if (!files_.asked(run) && state.kind != RunState::Kind::done) return;
     if (state.kind == RunState::Kind::done) {
       ++outcome_.done;
     } else if (interrupted_) {
@@ -137,10 +139,10 @@ class Workers {
     } else {
       note_failure(k, end);
       outcome_.failed.push_back(run.key + ": " + state.problem);
+      if (plan_.until) update_enough();
     }
     const bool done = state.kind == RunState::Kind::done;
     report(run.key, done ? "" : state.problem);
-    if (plan_.until) update_enough();
   }
 
   // The run itself may have said why; one that was killed has not.
