@@ -28,6 +28,7 @@ void describe(CLI::App& app, int& exit_code) {
       "  keyblock run tunnel.toml -o out/tunnel\n"
       "  keyblock run tunnel.toml -o out/strong --set \"stage.'first earthquake'.scale=2\"\n"
       "  keyblock motion record.smc --plot\n"
+      "  keyblock study run tunnel.toml -o out/study --workers 8\n"
       "  keyblock verify\n\n"
       "Each command has its own --help.\n"
       "Exit codes: 0 done, 1 the input is wrong or a check does not hold, 2 the run failed or was "
@@ -40,6 +41,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_export(app);
   add_motion(app);
   add_verify(app, exit_code);
+  add_study(app);
 }
 
 /// --help and --version arrive here too; they are no mistakes.
@@ -57,8 +59,11 @@ int explain(const CLI::App& app, const std::vector<std::string>& words, const CL
                              scenario::list_words(names, " and "), hint.empty() ? "" : "; " + hint);
     return input_wrong;
   }
-  while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
-  const std::string command = asked == &app ? "keyblock" : "keyblock " + asked->get_name();
+  std::string command = "keyblock";
+  while (!asked->get_subcommands().empty()) {
+    asked = asked->get_subcommands().front();
+    command += " " + asked->get_name();
+  }
   std::cerr << command << ": " << error.what() << "\nSee " << command << " --help.\n";
   return input_wrong;
 }

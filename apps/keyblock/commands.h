@@ -17,4 +17,7 @@ void add_motion(CLI::App& app);
 /// A row that does not hold sets `exit_code`, which must outlive the parsing.
 void add_verify(CLI::App& app, int& exit_code);
 
+/// study run, study task, study collect, study submit.
+void add_study(CLI::App& app);
+
 }  // namespace keyblock::app

@@ -32,19 +32,8 @@ constexpr std::string_view plain = "\x1b[0m";
 constexpr std::string_view redraw = "\r\x1b[?7l";
 constexpr std::string_view redrawn = "\x1b[K\x1b[?7h";
 
-/// Something to be said beside a bar. Those of high rank are left out first.
-struct Field {
-  int rank;
-  std::string text;
-};
-
 std::string rate_text(double steps_per_second) {
   return fmt::format("{:.{}f} steps/s", steps_per_second, steps_per_second < 10.0 ? 1 : 0);
-}
-
-std::string percent_text(double fraction) {
-  const double percent = std::round(100.0 * std::clamp(fraction, 0.0, 1.0));
-  return fmt::format("{:3.0f} %", fraction < 1.0 ? std::min(percent, 99.0) : percent);
 }
 
 std::string state_text(const Progress& p) {
@@ -88,7 +77,13 @@ std::string full_label(int index, int count, std::string_view name, const Termin
   return stage_label(index, count, name, static_cast<int>(name.size()), terminal);
 }
 
-/// Label, bar and fields in one line of the terminal's width (less one column, where the cursor rests).
+}  // namespace
+
+std::string percent_text(double fraction) {
+  const double percent = std::round(100.0 * std::clamp(fraction, 0.0, 1.0));
+  return fmt::format("{:3.0f} %", fraction < 1.0 ? std::min(percent, 99.0) : percent);
+}
+
 std::string composed_line(std::string label, double fraction, std::vector<Field> fields,
                           const Terminal& terminal) {
   const int available = terminal.width - 1;
@@ -100,6 +95,10 @@ std::string composed_line(std::string label, double fraction, std::vector<Field>
   const std::string text = fitted(std::move(fields), beside_label - shortest_bar);
   const int length = std::min(longest_bar, beside_label - column_count(text));
   return label + " " + bar(fraction, length, terminal) + text;
+}
+
+std::string redrawn_line(const std::string& line) {
+  return fmt::format("{}{}{}", redraw, line, redrawn);
 }
 
 double wall_clock() {
@@ -115,8 +114,6 @@ void write_to_standard_error(const std::string& text) {
     rest.remove_prefix(static_cast<std::size_t>(written));
   }
 }
-
-}  // namespace
 
 std::string clock_text(double seconds) {
   if (!(seconds >= 0.0) || seconds > 1e9) return "?";
@@ -201,7 +198,7 @@ void ProgressObserver::progress(const Progress& progress) {
   last_ = progress;
   const Terminal terminal = terminal_();
   if (terminal.interactive) {
-    write_(fmt::format("{}{}{}", redraw, bar_line(progress, terminal), redrawn));
+    write_(redrawn_line(bar_line(progress, terminal)));
     bar_is_open_ = true;
   } else if (clock_() - last_log_ >= log_interval) {
     last_log_ = clock_();
@@ -212,8 +209,7 @@ void ProgressObserver::progress(const Progress& progress) {
 void ProgressObserver::stage_end(int index, const StageRecord& record) {
   const Terminal terminal = terminal_();
   if (terminal.interactive) {
-    write_(fmt::format("{}{}{}\n", redraw, finished_line(index, stage_count_, record, last_, terminal),
-                       redrawn));
+    write_(redrawn_line(finished_line(index, stage_count_, record, last_, terminal)) + "\n");
     bar_is_open_ = false;
     return;
   }

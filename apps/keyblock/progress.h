@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "simulation/record.h"
 #include "terminal.h"
@@ -9,6 +10,25 @@ namespace keyblock::app {
 
 /// 75.4 → "1:15", 4000 → "1:06:40", negative or not finite → "?".
 std::string clock_text(double seconds);
+
+/// Something to be said beside a bar. Those of high rank are left out first.
+struct Field {
+  int rank;
+  std::string text;
+};
+
+/// Label, bar and fields in one line of the terminal's width (less one column, where the cursor rests).
+std::string composed_line(std::string label, double fraction, std::vector<Field> fields,
+                          const Terminal& terminal);
+
+/// A line that takes the place of the one the cursor is on.
+std::string redrawn_line(const std::string& line);
+
+/// ` 42 %`; 100 % only when all is done.
+std::string percent_text(double fraction);
+
+void write_to_standard_error(const std::string& text);
+double wall_clock();  ///< s, of a clock that never goes back
 
 /// The bar of the stage at hand, at most terminal.width columns:
 /// `4/5 first earthquake ━━━━━━╸────   58 %  step 5800  11.60 s  512 steps/s  ETA 0:08  3.1 it.`

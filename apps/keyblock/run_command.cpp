@@ -10,7 +10,6 @@
 
 #include "commands.h"
 #include "core/error.h"
-#include "fan_out.h"
 #include "interrupt.h"
 #include "outcome.h"
 #include "progress.h"
@@ -20,6 +19,7 @@
 #include "results/run_data.h"
 #include "scenario/build.h"
 #include "scenario_arguments.h"
+#include "simulation/fan_out.h"
 #include "simulation/run.h"
 
 namespace keyblock::app {
@@ -51,7 +51,7 @@ simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const Ru
   }
   results::ResultWriter writer(folder, guard.resumes());
   ProgressObserver progress = ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()));
-  FanOut observers({&guard, &writer, &progress});
+  simulation::FanOut observers({&guard, &writer, &progress});
   simulation::RunOptions options;
   options.threads = arguments.threads;
   options.directory = folder;

@@ -12,13 +12,17 @@ scenario::Scenario ScenarioArguments::read() const {
   return scenario::parse_scenario(file, overrides);
 }
 
-void add_scenario_arguments(CLI::App& command, ScenarioArguments& arguments) {
+void add_scenario_file(CLI::App& command, ScenarioArguments& arguments) {
   command.add_option("SCENARIO", arguments.file, "Scenario file, TOML")->required();
   command
       .add_option("--set", arguments.overrides,
                   "Put a value in the place of the file's, as in --set rock.order=2; once for each")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+void add_scenario_arguments(CLI::App& command, ScenarioArguments& arguments) {
+  add_scenario_file(command, arguments);
   command
       .add_option("--realization", arguments.realization,
                   "Which of the rock masses that the joint statistics and the seed stand for")

@@ -20,7 +20,10 @@ struct ScenarioArguments {
   [[nodiscard]] scenario::Scenario read() const;
 };
 
-/// Adds them to a command; `arguments` must outlive the parsing.
+/// Adds SCENARIO and --set to a command; `arguments` must outlive the parsing.
+void add_scenario_file(CLI::App& command, ScenarioArguments& arguments);
+
+/// Adds all of them to a command; `arguments` must outlive the parsing.
 void add_scenario_arguments(CLI::App& command, ScenarioArguments& arguments);
 
 /// Tells the user, on standard error, what seems wrong with the scenario although it can be run.

@@ -25,7 +25,46 @@ std::string direction(const MotionComponent& component) {
   return component.azimuth ? fmt::format("azimuth {}°", *component.azimuth) : "direction not stated";
 }
 
+// Largest |v| of a stretch of h seconds on which acceleration goes straight from a to b, v at its start. In its middle
+// |v| is largest where v·a changes from positive to negative.
+double peak_velocity(Vec2 v, Vec2 a, Vec2 b, double h) {
+  const auto velocity = [&](double s) { return v + h * s * (a + 0.5 * s * (b - a)); };
+  double peak = std::max(norm(v), norm(velocity(1.0)));
+  if (dot(v, a) >= 0.0 && dot(velocity(1.0), b) <= 0.0) {
+    double low = 0.0, high = 1.0;
+    for (int k = 0; k < 50; ++k) {
+      const double s = 0.5 * (low + high);
+      (dot(velocity(s), a + s * (b - a)) > 0.0 ? low : high) = s;
+    }
+    peak = std::max(peak, norm(velocity(low)));
+  }
+  return peak;
+}
+
 }  // namespace
+
+ShakingMeasures measure(const GroundMotion& motion, double scale, double duration) {
+  const std::vector<double>& t = motion.times();
+  const std::vector<Vec2>& a = motion.accelerations();
+  ShakingMeasures m;
+  Vec2 velocity;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < t.size() && t[k] <= duration; ++k) {
+    m.peak = std::max(m.peak, norm(a[k]));
+    if (k + 1 == t.size()) break;
+    const double h = std::min(t[k + 1], duration) - t[k];
+    if (h <= 0.0) continue;
+    const Vec2 end = lerp(a[k], a[k + 1], h / (t[k + 1] - t[k]));
+    m.peak = std::max(m.peak, norm(end));
+    m.peak_velocity = std::max(m.peak_velocity, peak_velocity(velocity, a[k], end, h));
+    velocity += 0.5 * h * (a[k] + end);
+    squares += h / 3.0 * (dot(a[k], a[k]) + dot(a[k], end) + dot(end, end));
+  }
+  m.peak *= std::abs(scale);
+  m.peak_velocity *= std::abs(scale);
+  m.arias_intensity = std::numbers::pi / (2.0 * standard_gravity) * squares * scale * scale;
+  return m;
+}
 
 MotionMeasures measure(const MotionComponent& component) {
   const std::vector<double>& a = component.acceleration;

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "loading/ground_motion.h"
 #include "loading/motion_file.h"
 
 namespace keyblock::loading {
@@ -18,6 +19,15 @@ struct MotionMeasures {
       0.0;  ///< s, between 5 % and 95 % of the Arias intensity (Trifunac & Brady 1975)
 };
 MotionMeasures measure(const MotionComponent& component);
+
+/// The same of the motion of the base in the section, over its first `duration` seconds: what a stage applies.
+struct ShakingMeasures {
+  double peak = 0.0;  ///< m/s², largest |a| (PGA)
+  double peak_velocity =
+      0.0;  ///< m/s, largest |∫a dt| from rest at the start (PGV); between samples where v·a changes sign
+  double arias_intensity = 0.0;  ///< m/s, sum of both components: π/(2g) ∫|a|² dt
+};
+ShakingMeasures measure(const GroundMotion& motion, double scale, double duration);
 
 /// What a file holds, for people: one paragraph per component, then the notes.
 std::string describe_motion(const std::vector<MotionComponent>& components);

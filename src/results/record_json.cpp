@@ -163,6 +163,8 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"start_time", r.start_time},
                           {"duration", r.duration},
                           {"pga", r.pga},
+                          {"pgv", r.pgv},
+                          {"arias", r.arias},
                           {"equilibrium_reached", r.equilibrium_reached},
                           {"worst_residual_ratio", r.worst_residual_ratio},
                           {"moving", moving},
@@ -195,6 +197,8 @@ StageLine read_stage_json(const std::string& text) {
     r.start_time = number(json.at("start_time"));
     r.duration = number(json.at("duration"));
     r.pga = number(json.at("pga"));
+    if (json.contains("pgv")) r.pgv = number(json.at("pgv"));  // not in files of version 0.1
+    if (json.contains("arias")) r.arias = number(json.at("arias"));
     json.at("equilibrium_reached").get_to(r.equilibrium_reached);
     r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
     for (const auto& m : json.at("moving"))

@@ -101,6 +101,8 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"duration", r.duration},
           {"scale", r.stage.scale},
           {"pga_m_s2", r.pga},
+          {"pgv_m_s", r.pgv},
+          {"arias_m_s", r.arias},
           {"wall_time_s", r.wall_time},
           {"interrupted", r.interrupted},
           {"equilibrium", equilibrium(r)},

@@ -61,22 +61,64 @@ void merge(std::vector<Diagnostic>& all, std::vector<Diagnostic> more) {
   }
 }
 
-// What one value of [[study.vary]] would do to the scenario. Returns false when its key leads nowhere, for which the
-// other values need not be tried.
-bool try_value(const std::string& key, const Value& value, const Value& document,
-               const std::filesystem::path& file, std::vector<Diagnostic>& diagnostics) {
+// What one value of [[study.vary]], or several that vary together, would do to the scenario. Returns false when a key
+// leads nowhere, for which the other values need not be tried.
+bool try_values(const std::vector<const Value*>& keys, const std::vector<const Value*>& values,
+                const Value& document, const std::filesystem::path& file,
+                std::vector<Diagnostic>& diagnostics) {
   Value varied = document;
-  try {
-    if (const auto failed = apply_override(make_override(key, value), varied)) {
-      merge(diagnostics, {*failed});
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    try {
+      if (const auto failed = apply_override(make_override(keys[k]->text, *values[k]), varied)) {
+        merge(diagnostics, {*failed});
+        return false;
+      }
+    } catch (const InputError& error) {
+      merge(diagnostics, error.diagnostics());
       return false;
     }
-  } catch (const InputError& error) {
-    merge(diagnostics, error.diagnostics());
-    return false;
   }
   merge(diagnostics, read_document(varied, file).diagnostics);
   return true;
+}
+
+// The keys of an axis that are strings: `key`, or `keys`.
+std::vector<const Value*> keys_of(const Value& axis) {
+  std::vector<const Value*> keys;
+  const Value *key = axis.find("key"), *list = axis.find("keys");
+  if (list == nullptr) {
+    if (key != nullptr && key->is(Value::Type::string)) keys.push_back(key);
+    return keys;
+  }
+  for (const Value& item : list->items) {
+    if (item.is(Value::Type::string)) keys.push_back(&item);
+  }
+  return keys;
+}
+
+// A key may vary once, and not in [study] itself.
+void check_keys(const std::vector<const Value*>& keys, std::vector<std::vector<PathSegment>>& before,
+                std::vector<Diagnostic>& diagnostics) {
+  const auto same_path = [](const auto& a, const auto& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const PathSegment& x, const PathSegment& y) { return x.key == y.key; });
+  };
+  for (const Value* key : keys) {
+    auto path = parse_key_path(key->text);
+    if (!path) continue;
+    const bool again =
+        std::any_of(before.begin(), before.end(), [&](const auto& other) { return same_path(other, *path); });
+    if (again)
+      merge(diagnostics, {{key->where, key->text, "a key that varies already", "every key once", ""}});
+    if (path->front().key == "study") {
+      merge(diagnostics, {{key->where, key->text, "a key of [study]", "a key of what is studied", ""}});
+    }
+    before.push_back(std::move(*path));
+  }
+}
+
+void remove_study(Value& document) {
+  std::erase_if(document.items, [](const Value& member) { return member.key == "study"; });
 }
 
 // Tries every value of [[study.vary]] alone.
@@ -86,12 +128,22 @@ void check_study(const Value& document, const std::filesystem::path& file,
   const Value* vary = study == nullptr ? nullptr : study->find("vary");
   if (vary == nullptr || !vary->is(Value::Type::array)) return;
   Value without_study = document;
-  std::erase_if(without_study.items, [](const Value& member) { return member.key == "study"; });
+  remove_study(without_study);
+  std::vector<std::vector<PathSegment>> paths;
   for (const Value& axis : vary->items) {
-    const Value *key = axis.find("key"), *values = axis.find("values");
-    if (key == nullptr || values == nullptr || !key->is(Value::Type::string)) continue;
-    for (const Value& value : values->items) {
-      if (!try_value(key->text, value, without_study, file, diagnostics)) break;
+    const Value* values = axis.find("values");
+    const std::vector<const Value*> keys = keys_of(axis);
+    if (keys.empty() || values == nullptr || !values->is(Value::Type::array)) continue;
+    check_keys(keys, paths, diagnostics);
+    const bool several = axis.find("keys") != nullptr;
+    for (const Value& item : values->items) {
+      std::vector<const Value*> row{&item};
+      if (several) {
+        row.clear();
+        for (const Value& value : item.items) row.push_back(&value);
+      }
+      if (row.size() != keys.size()) continue;
+      if (!try_values(keys, row, without_study, file, diagnostics)) break;
     }
   }
 }
@@ -133,12 +185,18 @@ void sort_by_position(std::vector<Diagnostic>& diagnostics, const std::string& f
                    [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
 }
 
-}  // namespace
+void sort_keys(Value& value) {
+  if (value.is(Value::Type::table)) {
+    std::stable_sort(value.items.begin(), value.items.end(),
+                     [](const Value& a, const Value& b) { return a.key < b.key; });
+  }
+  for (Value& item : value.items) sort_keys(item);
+}
 
-Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
-                             const std::vector<std::string>& overrides) {
+// The document with its overrides; what is wrong with these is added to `diagnostics`.
+Value overridden(std::string_view text, const std::filesystem::path& file,
+                 const std::vector<std::string>& overrides, std::vector<Diagnostic>& diagnostics) {
   Value document = parse_toml(text, file.string());
-  std::vector<Diagnostic> diagnostics;
   for (const std::string& override_ : overrides) {
     try {
       if (const auto failed = apply_override(parse_override(override_), document))
@@ -147,6 +205,16 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
       merge(diagnostics, error.diagnostics());
     }
   }
+  return document;
+}
+
+}  // namespace
+
+Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
+                             const std::vector<std::string>& overrides, StudyTable study) {
+  std::vector<Diagnostic> diagnostics;
+  Value document = overridden(text, file, overrides, diagnostics);
+  if (study == StudyTable::leave_out) remove_study(document);
   Reading reading = read_document(document, file);
   merge(diagnostics, std::move(reading.diagnostics));
   check_study(document, file, diagnostics);
@@ -160,6 +228,16 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
   if (!scenario.text.empty() && scenario.text.back() != '\n') scenario.text += '\n';
   for (const std::string& override_ : overrides) scenario.text += "# --set " + override_ + "\n";
   return scenario;
+}
+
+Value document_without_study(std::string_view text, const std::filesystem::path& file,
+                             const std::vector<std::string>& overrides) {
+  std::vector<Diagnostic> diagnostics;
+  Value document = overridden(text, file, overrides, diagnostics);
+  if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
+  remove_study(document);
+  sort_keys(document);
+  return document;
 }
 
 Scenario parse_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

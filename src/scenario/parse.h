@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenario/scenario.h"
+#include "scenario/value.h"
 
 namespace keyblock::scenario {
 
@@ -16,8 +17,19 @@ namespace keyblock::scenario {
 /// overrides.
 Scenario parse_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+enum class StudyTable {
+  check,     ///< [study] is read, and all its values are tried
+  leave_out  ///< it is passed over: for one run of a study that has been checked
+};
+
 /// The same from text; `file` is the name in messages, and its folder that to which paths are relative.
 Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
-                             const std::vector<std::string>& overrides = {});
+                             const std::vector<std::string>& overrides = {},
+                             StudyTable study = StudyTable::check);
+
+/// The document with its overrides and without [study], the keys of every table in alphabetical order: what every run of a
+/// study starts from. Throws InputError.
+Value document_without_study(std::string_view text, const std::filesystem::path& file,
+                             const std::vector<std::string>& overrides);
 
 }  // namespace keyblock::scenario

@@ -231,27 +231,6 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
                      "check them by. The augmented Lagrangian always factors."});
 }
 
-void read_vary(TableReader& t, VarySpec& vary) {
-  t.string("key", vary.key,
-           {.meaning = "Key path of the value that varies, as for `--set`: `stage.'first earthquake'.scale`.",
-            .required = true});
-  const Value* values = t.any("values", "array", {.meaning = "The values it takes.", .required = true});
-  if (values == nullptr) return;
-  if (!values->is(Value::Type::array) || values->items.empty()) {
-    t.fail("values", describe(*values), "an array of values");
-    return;
-  }
-  for (const Value& value : values->items) vary.values.push_back(to_toml(value));
-}
-
-void read_study(TableReader& t, Scenario& scenario) {
-  StudySpec& study = scenario.study.emplace();
-  t.integer("realizations", study.realizations,
-            {.meaning = "Number of realizations of the joint sets.", .at_least = 1.0});
-  t.tables("vary", study.vary, {.meaning = "One axis of the grid; all combinations are run."},
-           [](TableReader& v, VarySpec& vary) { read_vary(v, vary); });
-}
-
 }  // namespace
 
 void read_run(TableReader& root, Scenario& scenario) {
@@ -282,9 +261,6 @@ void read_run(TableReader& root, Scenario& scenario) {
              [&](TableReader& t) { read_automatic_order(t, scenario.automatic); });
   root.table("solver", {.meaning = "How steps are solved. The defaults suit rock at engineering scale."},
              [&](TableReader& t) { read_solver(t, scenario.solver); });
-  root.table("study",
-             {.meaning = "A Monte Carlo study for `keyblock study`: realizations × a grid of values."},
-             [&](TableReader& t) { read_study(t, scenario); });
 }
 
 }  // namespace keyblock::scenario

@@ -90,6 +90,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   read_shapes(root, scenario);
   read_loading(root, scenario);
   read_run(root, scenario);
+  read_study(root, scenario);
   Consistency(root, scenario).check();
 }
 

@@ -14,6 +14,7 @@
 #include "loading/load.h"
 #include "loading/projection.h"
 #include "rockmass/joint_set.h"
+#include "scenario/study_spec.h"
 #include "simulation/setup.h"
 #include "simulation/stage.h"
 
@@ -117,17 +118,6 @@ struct MotionSpec {
   loading::AccelerationTable x, y;
   std::optional<loading::Sine> sine_x, sine_y;
   std::string path;
-};
-
-/// One axis of the grid of a study.
-struct VarySpec {
-  std::string key;                  ///< key path
-  std::vector<std::string> values;  ///< as TOML: `key=value` is an override
-};
-
-struct StudySpec {
-  int realizations = 1;
-  std::vector<VarySpec> vary;
 };
 
 struct Scenario {

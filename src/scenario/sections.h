@@ -18,8 +18,10 @@ void read_rock_mass(TableReader& root, Scenario& scenario);
 void read_shapes(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]].
 void read_loading(TableReader& root, Scenario& scenario);
-/// [time], [[stage]], [[history]], [damage], [output], [solver], [study].
+/// [time], [[stage]], [[history]], [damage], [output], [solver].
 void read_run(TableReader& root, Scenario& scenario);
+/// [study], after all that its keys name.
+void read_study(TableReader& root, Scenario& scenario);
 
 /// Keys of [rock]; with `required`, those without a default must be there.
 void read_rock_keys(TableReader& t, RockKeys& rock, bool required);

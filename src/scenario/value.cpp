@@ -93,4 +93,34 @@ std::string to_toml(const Value& value) {
   return {};
 }
 
+namespace {
+
+void add_differences(const Value* there, const Value* here, const std::string& path,
+                     std::vector<std::string>& found) {
+  const auto text = [](const Value* value) { return value == nullptr ? "nothing" : to_toml(*value); };
+  if (text(there) == text(here)) return;
+  const bool both = there != nullptr && here != nullptr && there->type == here->type;
+  if (both && there->is(Value::Type::table)) {
+    for (const Value& member : there->items)
+      add_differences(&member, here->find(member.key), join_path(path, member.key), found);
+    for (const Value& member : here->items) {
+      if (there->find(member.key) == nullptr)
+        add_differences(nullptr, &member, join_path(path, member.key), found);
+    }
+  } else if (both && there->is(Value::Type::array) && there->items.size() == here->items.size()) {
+    for (std::size_t k = 0; k < there->items.size(); ++k)
+      add_differences(&there->items[k], &here->items[k], join_index(path, k), found);
+  } else {
+    found.push_back(fmt::format("{}: {} there, {} here", path, text(there), text(here)));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const Value& there, const Value& here) {
+  std::vector<std::string> found;
+  add_differences(&there, &here, "", found);
+  return found;
+}
+
 }  // namespace keyblock::scenario

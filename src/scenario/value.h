@@ -40,6 +40,9 @@ std::string describe(const Value& value);
 /// The value as TOML, on one line.
 std::string to_toml(const Value& value);
 
+/// Where two documents differ, by key path: `rock.young: 3.0e9 there, 5.0e9 here`. Elements of lists are compared by place.
+std::vector<std::string> differences(const Value& there, const Value& here);
+
 /// Reads TOML. Positions name `file`. Throws InputError for a syntax error.
 Value parse_toml(std::string_view text, const std::string& file);
 

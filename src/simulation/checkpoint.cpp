@@ -38,6 +38,8 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.start_time);
   archive(s.duration);
   archive(s.pga);
+  archive(s.pgv);
+  archive(s.arias);
   archive(s.equilibrium_reached);
   archive(s.worst_residual_ratio);
   archive(s.moving);

@@ -140,9 +140,11 @@ struct StageRecord {
   Stage stage;
   long steps = 0;
   double start_time = 0.0, duration = 0.0;  ///< s
-  double pga = 0.0;                         ///< m/s², of the scaled motion in the section
-  bool equilibrium_reached = false;         ///< settle only
-  double worst_residual_ratio = 0.0;        ///< settle only: over blocks that are not moving
+  double pga = 0.0;    ///< m/s², of the scaled motion in the section, as far as the stage applies it
+  double pgv = 0.0;    ///< m/s, of its velocity from rest
+  double arias = 0.0;  ///< m/s, its Arias intensity, sum of both components
+  bool equilibrium_reached = false;   ///< settle only
+  double worst_residual_ratio = 0.0;  ///< settle only: over blocks that are not moving
   std::vector<MovingBlock> moving;
   std::vector<int> blocks_by_order;  ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/step.h"
+#include "loading/motion_measures.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
 #include "simulation/damage.h"
@@ -284,7 +285,10 @@ void Runner::shake(StageRecord& record) {
     const loading::GroundMotion& ground = setup_.motions.at(static_cast<std::size_t>(stage.motion));
     if (!stage.duration) duration = ground.duration();
     motion.emplace(ground, stage.scale, record.start_time);
-    record.pga = std::abs(stage.scale) * ground.peak();
+    const loading::ShakingMeasures shaking = loading::measure(ground, stage.scale, duration);
+    record.pga = shaking.peak;
+    record.pgv = shaking.peak_velocity;
+    record.arias = shaking.arias_intensity;
     const std::size_t every_nth = std::max<std::size_t>(1, ground.times().size() / motion_points);
     for (std::size_t k = 0; k < ground.times().size(); k += every_nth) {
       record.motion_time.push_back(ground.times()[k]);

@@ -7,7 +7,7 @@ import unittest
 
 from program import ROOT, Scenario
 
-COMMANDS = ("run", "check", "cut", "report", "export", "motion")
+COMMANDS = ("run", "check", "cut", "report", "export", "motion", "study")
 
 
 class Help(Scenario):

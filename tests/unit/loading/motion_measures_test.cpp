@@ -56,6 +56,31 @@ TEST(MotionMeasures, OfSilence) {
   EXPECT_THAT(plot_motion_svg({c}), Not(HasSubstr("nan")));
 }
 
+// A circle of radius a ω⁻¹ about its centre: |v| = (a/ω) |2 sin(ω t/2)|, largest after half a turn.
+TEST(ShakingMeasures, OfATurningAcceleration) {
+  const double a = 2.0, omega = 4.0, pi = std::numbers::pi;
+  std::vector<double> time;
+  std::vector<Vec2> acceleration;
+  for (int k = 0; k <= 4001; ++k) {  // half a turn lies between samples
+    time.push_back(2.0 * pi / omega * k / 4001.0);
+    acceleration.push_back({a * std::cos(omega * time.back()), a * std::sin(omega * time.back())});
+  }
+  const GroundMotion motion("turning", time, acceleration);
+  const ShakingMeasures m = measure(motion, -3.0, motion.duration());
+  EXPECT_NEAR(m.peak, 3.0 * a, 1e-12);
+  EXPECT_NEAR(m.peak_velocity, 3.0 * 2.0 * a / omega, 1e-5);
+  EXPECT_NEAR(m.arias_intensity, 9.0 * pi / (2.0 * standard_gravity) * a * a * motion.duration(), 1e-4);
+  const ShakingMeasures quarter = measure(motion, 1.0, 0.25 * motion.duration());
+  EXPECT_NEAR(quarter.peak_velocity, a / omega * std::sqrt(2.0), 1e-5);
+  EXPECT_NEAR(measure(motion, 1.0, 100.0).arias_intensity, m.arias_intensity / 9.0, 1e-12);
+}
+
+TEST(ShakingMeasures, VelocityPeaksBetweenSamples) {
+  const GroundMotion motion("m", {0.0, 1.0}, {{3.0, 4.0}, {-3.0, -4.0}});
+  EXPECT_NEAR(measure(motion, 1.0, 1.0).peak_velocity, 5.0 * 0.25, 1e-12);
+  EXPECT_NEAR(measure(motion, 1.0, 0.25).peak_velocity, 5.0 * 0.1875, 1e-12);
+}
+
 TEST(MotionDescription, NamesWhatAnEngineerAsks) {
   MotionComponent c = sine_record(3.0, 2.0, 10, 100);
   c.azimuth = 270.0;

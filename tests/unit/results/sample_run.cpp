@@ -141,6 +141,7 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
   EXPECT_EQ(a.stage.tolerance, b.stage.tolerance);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_TRUE(same(a.start_time, b.start_time) && same(a.duration, b.duration) && same(a.pga, b.pga));
+  EXPECT_TRUE(same(a.pgv, b.pgv) && same(a.arias, b.arias));
   EXPECT_EQ(a.equilibrium_reached, b.equilibrium_reached);
   EXPECT_TRUE(same(a.worst_residual_ratio, b.worst_residual_ratio));
   ASSERT_EQ(a.moving.size(), b.moving.size());
@@ -269,6 +270,8 @@ simulation::StageRecord SampleRun::stage(int index) {
     record.stage.scale = 0.3;
     record.stage.duration = 20 * step_size;
     record.pga = noise(1, 1);
+    record.pgv = noise(1, 2);
+    record.arias = noise(1, 3);
     record.motion_time = {0.0, 0.1, 0.2};
     record.motion = {{0.1, 0.2}, {0.3, -0.4}, {0.0, 0.0}};
   }

@@ -152,15 +152,64 @@ values = [true, false]
   ASSERT_TRUE(s.study);
   EXPECT_EQ(s.study->realizations, 100);
   ASSERT_EQ(s.study->vary.size(), 2U);
-  EXPECT_EQ(s.study->vary[0].key, "stage.quiet.duration");
-  EXPECT_EQ(s.study->vary[0].values, (std::vector<std::string>{"0.5", "1"}));
-  EXPECT_EQ(s.study->vary[1].values, (std::vector<std::string>{"true", "false"}));
+  EXPECT_EQ(s.study->vary[0].key_text(), "stage.quiet.duration");
+  using Values = std::vector<std::vector<std::string>>;
+  EXPECT_EQ(s.study->vary[0].values, (Values{{"0.5"}, {"1"}}));
+  EXPECT_EQ(s.study->vary[1].values, (Values{{"true"}, {"false"}}));
 }
 
 TEST(Study, OverridesMadeFromItAreRead) {
   const Scenario s = parse(with("[[study.vary]]\nkey = \"rock.order\"\nvalues = [2]\n"));
   const auto& vary = s.study->vary[0];
-  EXPECT_EQ(parse(two_blocks, {vary.key + "=" + vary.values[0]}).rock.order, 2);
+  EXPECT_EQ(parse(two_blocks, {vary.keys[0] + "=" + vary.values[0][0]}).rock.order, 2);
+}
+
+TEST(Study, KeysThatVaryTogether) {
+  const Scenario s = parse(with(R"(
+[study]
+[[study.vary]]
+keys = ["stage.quiet.duration", "block.top.fixed"]
+values = [[0.5, true], [1, false]]
+)"));
+  ASSERT_EQ(s.study->vary.size(), 1U);
+  EXPECT_EQ(s.study->vary[0].key_text(), "stage.quiet.duration + block.top.fixed");
+  EXPECT_EQ(s.study->vary[0].value_text(1), "1, false");
+}
+
+TEST(Study, AllItsTables) {
+  const Scenario s = parse(with(R"(
+[study]
+stage = "quiet"
+confidence = 0.9
+keep = "measures"
+until = { measure = "fallen_area_m2", half_width = 0.1, minimum = 5, maximum = 50 }
+marginal = { friction = 2.0 }
+map = { cell = 0.25 }
+[[study.level]]
+name = "any"
+measure = "fallen_blocks"
+threshold = 0
+)"));
+  const StudySpec& study = *s.study;
+  EXPECT_EQ(study.stage, "quiet");
+  EXPECT_EQ(study.confidence, 0.9);
+  EXPECT_EQ(study.keep, Keep::measures);
+  ASSERT_TRUE(study.until && study.marginal && study.map_cell);
+  EXPECT_EQ(study.until->maximum, 50);
+  EXPECT_EQ(study.marginal->friction, 2.0);
+  EXPECT_EQ(study.marginal->share, 0.5);
+  EXPECT_EQ(*study.map_cell, 0.25);
+  ASSERT_EQ(study.levels.size(), 1U);
+  EXPECT_EQ(study.levels[0].measure, "fallen_blocks");
+}
+
+TEST(Study, CanBeLeftOut) {
+  const std::string text = with("[study]\nrealizations = 3\n");
+  EXPECT_FALSE(parse_scenario_text(text, "s.toml", {}, StudyTable::leave_out).study);
+  EXPECT_EQ(to_toml(document_without_study(text, "s.toml", {})),
+            to_toml(document_without_study(with("# nothing\n"), "s.toml", {})));
+  EXPECT_NE(to_toml(document_without_study(text, "s.toml", {"rock.young=2e9"})),
+            to_toml(document_without_study(text, "s.toml", {})));
 }
 
 TEST(Positions, OfValuesAndOfTheNearestTable) {

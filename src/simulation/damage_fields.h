@@ -1,0 +1,43 @@
+#pragma once
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "simulation/record.h"
+
+/// The measures of damage by the names that they have in files.
+namespace keyblock::simulation {
+
+/// In SI units; `fallen_blocks` stands beside them.
+inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
+    {"fallen_area_m2", &Damage::fallen_area},
+    {"opening_filled_ratio", &Damage::opening_filled_ratio},
+    {"loosened_area_m2", &Damage::loosened_area},
+    {"slip_max_m", &Damage::slip_max},
+    {"slip_mean_m", &Damage::slip_mean},
+    {"slipped_length_m", &Damage::slipped_length},
+    {"opened_length_m", &Damage::opened_length},
+    {"closure_vertical_m", &Damage::closure_vertical},
+    {"closure_horizontal_m", &Damage::closure_horizontal}};
+// The count of fallen blocks takes the room of one more.
+static_assert(sizeof(Damage) == (1 + std::size(damage_fields)) * sizeof(double),
+              "a measure of the damage is missing");
+
+/// All names, `fallen_blocks` first.
+inline std::vector<std::string> damage_names() {
+  std::vector<std::string> names{"fallen_blocks"};
+  for (const auto& [name, member] : damage_fields) names.emplace_back(name);
+  return names;
+}
+
+/// The measure of this name; `fallen_blocks` for any that is none.
+inline double damage_value(const Damage& damage, std::string_view measure) {
+  for (const auto& [name, member] : damage_fields) {
+    if (measure == name) return damage.*member;
+  }
+  return damage.fallen_blocks;
+}
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,111 @@
+#include "study/collect.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "study/outputs.h"
+#include "study/plan_json.h"
+#include "study/until.h"
+
+namespace keyblock::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Places of runs by realization, then combination, then variant, in the orders of the axes.
+std::vector<std::size_t> sorted_places(const Plan& plan) {
+  using Rank = std::tuple<int, std::vector<std::size_t>, std::size_t>;
+  static const std::vector<std::string> variants{"", "friction-", "friction+", "released"};
+  const auto rank = [&](const PlannedRun& run) {
+    std::vector<std::size_t> combination;
+    for (std::size_t a = 0; a < std::min(plan.axes.size(), run.values.size()); ++a) {
+      const auto& values = plan.axes[a].values;
+      combination.push_back(
+          static_cast<std::size_t>(std::find(values.begin(), values.end(), run.values[a]) - values.begin()));
+    }
+    const auto variant = std::find(variants.begin(), variants.end(), run.variant) - variants.begin();
+    return Rank{run.realization, std::move(combination), static_cast<std::size_t>(variant)};
+  };
+  std::vector<std::pair<Rank, std::size_t>> ranked;
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) ranked.emplace_back(rank(plan.runs[k]), k);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::size_t> places;
+  for (const auto& [r, k] : ranked) places.push_back(k);
+  return places;
+}
+
+}  // namespace
+
+StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int realizations) {
+  StudyFiles files;
+  files.states.resize(plan.runs.size());
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    if (plan.runs[k].wanted && plan.runs[k].realization < realizations)
+      files.states[k] = read_run_state(directory, plan, plan.runs[k]);
+  }
+  std::vector<const RunResult*> results;
+  for (const RunState& state : files.states) {
+    const bool known = state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed;
+    results.push_back(known ? &state.result : nullptr);
+  }
+  files.enough = enough_realizations(plan, results);
+  return files;
+}
+
+StudyData study_data(const Plan& plan, StudyFiles files) {
+  StudyData study;
+  study.title = plan.title;
+  study.seed = plan.seed;
+  study.version = plan.version;
+  for (const scenario::VarySpec& axis : plan.axes) {
+    study.axes.push_back({axis.key_text(), {}});
+    for (std::size_t k = 0; k < axis.values.size(); ++k)
+      study.axes.back().values.push_back(axis.value_text(k));
+  }
+  study.stage = plan.stage;
+  study.levels = plan.levels;
+  study.marginal = plan.marginal;
+  study.confidence = plan.confidence;
+  study.grid = plan.grid;
+  study.outlines = plan.outlines;
+  for (const std::size_t k : sorted_places(plan)) {
+    if (!files.asked(plan.runs[k])) continue;
+    ++study.planned;
+    RunState& state = files.states[k];
+    if (state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed)
+      study.runs.push_back(std::move(state.result));
+  }
+  return study;
+}
+
+CollectReport collect(const fs::path& directory) {
+  const Plan plan = read_plan(directory);
+  StudyFiles files = read_study_files(directory, plan);
+  CollectReport report;
+  report.enough = files.enough;
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    if (!files.asked(plan.runs[k])) continue;
+    ++report.asked;
+    const RunState& state = files.states[k];
+    switch (state.kind) {
+      case RunState::Kind::done:
+        ++report.done;
+        break;
+      case RunState::Kind::missing:
+        report.missing.push_back(plan.runs[k].key);
+        break;
+      case RunState::Kind::failed:
+        report.failed.push_back(plan.runs[k].key + ": " + state.problem);
+        break;
+      case RunState::Kind::damaged:
+        report.damaged.push_back(state.problem);
+        break;
+    }
+  }
+  write_outputs(directory, study_data(plan, std::move(files)));
+  return report;
+}
+
+}  // namespace keyblock::study

@@ -1,0 +1,44 @@
+#pragma once
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/folder.h"
+#include "study/plan.h"
+
+namespace keyblock::study {
+
+/// What is there of a study.
+struct StudyFiles {
+  std::vector<RunState> states;  ///< in the places of plan.runs
+  std::optional<int> enough;     ///< realizations that [study.until] found enough (until.h)
+
+  /// Whether the study asks for this run: it is wanted, and of a realization that is needed.
+  [[nodiscard]] bool asked(const PlannedRun& run) const {
+    return run.wanted && (!enough || run.realization < *enough);
+  }
+};
+
+/// Reads the results of all wanted runs of realizations before `realizations`.
+StudyFiles read_study_files(const std::filesystem::path& directory, const Plan& plan,
+                            int realizations = std::numeric_limits<int>::max());
+
+/// How many of the runs that are asked for are there, and which are not, each with its key and what is known of it.
+struct CollectReport {
+  std::size_t asked = 0, done = 0;
+  std::vector<std::string> missing;  ///< keys
+  std::vector<std::string> failed;   ///< `KEY: why`
+  std::vector<std::string> damaged;  ///< the file, and what is wrong with it
+  std::optional<int> enough;
+};
+
+/// What readers need, by realization, then combination, then variant. Runs that failed are in it, with their error.
+StudyData study_data(const Plan& plan, StudyFiles files);
+
+/// Gathers the runs that are there: DIR/runs.csv, study.json, report.html (outputs.h). Throws InputError when DIR holds no
+/// plan, RunError when the files cannot be written.
+CollectReport collect(const std::filesystem::path& directory);
+
+}  // namespace keyblock::study

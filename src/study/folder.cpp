@@ -1,0 +1,197 @@
+#include "study/folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <memory>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "scenario/parse.h"
+#include "study/plan_json.h"
+#include "study/run_json.h"
+
+namespace keyblock::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_differences = 5;  // that are named
+
+[[noreturn]] void refuse(const fs::path& place, std::string found, std::string expected, std::string hint) {
+  Diagnostic diagnostic;
+  diagnostic.where.file = place.string();
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  diagnostic.hint = std::move(hint);
+  throw InputError(std::move(diagnostic));
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    refuse(folder, error ? error.message() : "a file", "a folder, or a place where one can be made", "");
+  }
+}
+
+// What makes two plans those of different studies.
+std::vector<std::string> differences(const Plan& there, const Plan& here) {
+  std::vector<std::string> found;
+  if (there.version != here.version)
+    found.push_back(fmt::format("version {} of keyblock there, {} here", there.version, here.version));
+  if (there.input != here.input) {
+    const auto document = [](const Plan& plan) {
+      return scenario::document_without_study(plan.text, plan.scenario, plan.overrides);
+    };
+    for (const std::string& line : scenario::differences(document(there), document(here)))
+      found.push_back(line);
+  }
+  std::map<fs::path, std::string> hashes;
+  for (const InputFile& file : there.files) hashes[fs::absolute(file.path).lexically_normal()] = file.hash;
+  for (const InputFile& file : here.files) {
+    const auto known = hashes.find(fs::absolute(file.path).lexically_normal());
+    if (known != hashes.end() && known->second != file.hash)
+      found.push_back("the content of " + file.path.string());
+  }
+  return found;
+}
+
+void check_same_study(const fs::path& directory, const Plan& there, const Plan& here) {
+  const std::vector<std::string> found = differences(there, here);
+  if (found.empty()) return;
+  std::string text = "another study: ";
+  for (std::size_t k = 0; k < std::min(found.size(), most_differences); ++k)
+    text += (k == 0 ? "" : "; ") + found[k];
+  if (found.size() > most_differences) text += fmt::format("; and {} more", found.size() - most_differences);
+  refuse(directory, text, "a study that differs in nothing but [study]", "take another folder");
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
+}
+
+}  // namespace
+
+fs::path plan_path(const fs::path& directory) {
+  return directory / "plan.json";
+}
+
+fs::path scenario_path(const fs::path& directory) {
+  return directory / "study.toml";
+}
+
+fs::path run_folder(const fs::path& directory, const std::string& key) {
+  return directory / "runs" / key;
+}
+
+FileLock::FileLock(fs::path path) : path_(std::move(path)) {
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0) throw RunError(fmt::format("{}: cannot create: {}", path_.string(), std::strerror(errno)));
+  held_ = ::flock(file_, LOCK_EX | LOCK_NB) == 0;
+  if (!held_) return;
+  const std::string text = fmt::format("process {} on {}\n", ::getpid(), host_name());
+  // Only for people; a full disk does not matter.
+  static_cast<void>(::ftruncate(file_, 0) == 0 && ::write(file_, text.data(), text.size()) > 0);
+}
+
+FileLock::~FileLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+std::string FileLock::holder() const {
+  std::string text = read_file(path_);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.empty() ? "another process" : text;
+}
+
+std::unique_ptr<FileLock> lock_study(const fs::path& directory) {
+  make_folder(directory);
+  auto lock = std::make_unique<FileLock>(directory / "lock");
+  if (!lock->held()) {
+    refuse(directory, fmt::format("a study that {} is running", lock->holder()),
+           "a folder that no other process works in", "wait until it has ended");
+  }
+  return lock;
+}
+
+void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
+  if (fs::exists(plan_path(directory))) {
+    const Plan there = read_plan(directory);
+    check_same_study(directory, there, plan);
+    if (!resume) {
+      refuse(directory, fmt::format("a study of {} runs", there.wanted()),
+             "a new folder, or --resume to go on with what is there", "");
+    }
+    keep_places(there.runs, plan);
+  } else if (fs::exists(directory / "result.h5")) {
+    refuse(directory, "the results of a run", "another folder", "");
+  }
+  make_folder(directory / "runs");
+  write_file_atomically(scenario_path(directory), plan.text);
+  write_file_atomically(plan_path(directory), plan_json(plan, directory));
+}
+
+std::string run_input(const Plan& plan) {
+  return plan.input + "-" + plan.version;
+}
+
+RunResult empty_result(const PlannedRun& run) {
+  RunResult result;
+  result.key = run.key;
+  result.realization = run.realization;
+  result.variant = run.variant;
+  for (const auto& row : run.values) {
+    std::string text;
+    for (const std::string& value : row) text += (text.empty() ? "" : ", ") + value;
+    result.values.push_back(std::move(text));
+  }
+  return result;
+}
+
+RunState read_run_state(const fs::path& directory, const Plan& plan, const PlannedRun& run) {
+  RunState state;
+  const fs::path folder = run_folder(directory, run.key);
+  const auto read = [&](const fs::path& path) {
+    try {
+      state.result = read_run_json(read_file(path), run_input(plan));
+      if (state.result.key != run.key) {
+        state.problem = fmt::format("{}: found the run {}", path.string(), state.result.key);
+        return false;
+      }
+      return true;
+    } catch (const InputError& error) {
+      const Diagnostic& d = error.diagnostics().front();
+      state.problem = fmt::format("{}: found {}", path.string(), d.found);
+      return false;
+    }
+  };
+  if (fs::exists(folder / "run.json")) {
+    state.kind = read(folder / "run.json") ? RunState::Kind::done : RunState::Kind::damaged;
+  } else if (fs::exists(folder / "failed.json")) {
+    state.kind = RunState::Kind::failed;
+    if (read(folder / "failed.json")) {
+      state.problem = state.result.error;
+    } else {
+      state.result = empty_result(run);
+      state.result.error = state.problem;
+    }
+  }
+  return state;
+}
+
+void write_failure(const fs::path& directory, const Plan& plan, const RunResult& result) {
+  const fs::path folder = run_folder(directory, result.key);
+  make_folder(folder);
+  write_file_atomically(folder / "failed.json", run_json(result, run_input(plan)));
+}
+
+}  // namespace keyblock::study

@@ -1,0 +1,65 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "study/plan.h"
+
+/// The folder of a study:
+///
+///   study.toml            the scenario, copied
+///   plan.json             what is to be run
+///   lock                  held by the process that plans or runs the study here
+///   runs/KEY/run.json     the measures of a run; written last: where it is, the run is done
+///   runs/KEY/failed.json  in its place, why the run failed the last time
+///   runs/KEY/log.txt      what the run said
+///   runs/KEY/…            thumbnail.svg, report.html, summary.json, result.h5, as far as they are kept
+namespace keyblock::study {
+
+std::filesystem::path plan_path(const std::filesystem::path& directory);
+std::filesystem::path scenario_path(const std::filesystem::path& directory);
+std::filesystem::path run_folder(const std::filesystem::path& directory, const std::string& key);
+
+/// Held while the object lives. Of processes that want the same file locked, on any machine that sees it, one gets it.
+class FileLock {
+ public:
+  /// Throws RunError when the file cannot be made.
+  explicit FileLock(std::filesystem::path path);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  [[nodiscard]] bool held() const { return held_; }
+  /// Who holds it, as far as is known: `process 1234 on HOST`.
+  [[nodiscard]] std::string holder() const;
+
+ private:
+  std::filesystem::path path_;
+  int file_ = -1;
+  bool held_ = false;
+};
+
+/// Locks the study for planning and running. Throws InputError when another process has it, or the folder cannot be made.
+std::unique_ptr<FileLock> lock_study(const std::filesystem::path& directory);
+
+/// Puts the plan into the folder. A folder that holds a plan already is gone on with only if `resume`, and only if it is of the
+/// same study: same scenario but for [study], same files, same version of the program. Runs keep their places
+/// (keep_places). Throws InputError that names what differs; the folder is then as it was.
+void enter_plan(const std::filesystem::path& directory, Plan& plan, bool resume);
+
+/// What a run has left.
+struct RunState {
+  enum class Kind { missing, done, failed, damaged } kind = Kind::missing;
+  RunResult result;     ///< done and failed
+  std::string problem;  ///< failed and damaged, with the name of the file
+};
+RunState read_run_state(const std::filesystem::path& directory, const Plan& plan, const PlannedRun& run);
+
+/// The identity of what is run, as run.json keeps it.
+std::string run_input(const Plan& plan);
+
+/// A result of this run without measures.
+RunResult empty_result(const PlannedRun& run);
+
+void write_failure(const std::filesystem::path& directory, const Plan& plan, const RunResult& result);
+
+}  // namespace keyblock::study

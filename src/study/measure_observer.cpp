@@ -1,0 +1,95 @@
+#include "study/measure_observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyblock::study {
+namespace {
+
+using simulation::BlockStatus;
+
+// Where the outlines of a block cross the horizontal line at y, ascending. A vertex on the line counts as above it.
+std::vector<double> crossings(const simulation::ModelRecord& model,
+                              const simulation::ModelRecord::Block& block, double y) {
+  std::vector<double> x;
+  for (std::size_t r = 0; r + 1 < block.ring_start.size(); ++r) {
+    const int begin = block.ring_start[r], end = block.ring_start[r + 1];
+    for (int k = begin; k < end; ++k) {
+      const Vec2 a = model.vertices[static_cast<std::size_t>(k)];
+      const Vec2 b = model.vertices[static_cast<std::size_t>(k + 1 < end ? k + 1 : begin)];
+      if ((a.y >= y) == (b.y >= y)) continue;
+      x.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+  }
+  std::sort(x.begin(), x.end());
+  return x;
+}
+
+}  // namespace
+
+std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRecord& model,
+                                 std::size_t blocks) {
+  std::vector<int> cells(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), -1);
+  const Vec2 corner = grid.corner - model.origin;
+  // The first cell whose centre lies at or beyond a coordinate, within 0 … count.
+  const auto first_beyond = [&](double x, double start, int count) {
+    return static_cast<int>(
+        std::clamp(std::ceil((x - start) / grid.cell - 0.5), 0.0, static_cast<double>(count)));
+  };
+  for (std::size_t b = 0; b < std::min(blocks, model.blocks.size()); ++b) {
+    const auto& block = model.blocks[b];
+    Box box;
+    for (int k = block.ring_start.front(); k < block.ring_start.back(); ++k)
+      box.add(model.vertices[static_cast<std::size_t>(k)]);
+    const int top = first_beyond(box.max.y, corner.y, grid.rows);
+    for (int row = first_beyond(box.min.y, corner.y, grid.rows); row < top; ++row) {
+      const std::vector<double> x = crossings(model, block, corner.y + (row + 0.5) * grid.cell);
+      for (std::size_t k = 0; k + 1 < x.size(); k += 2) {
+        const int end = first_beyond(x[k + 1], corner.x, grid.columns);
+        for (int column = first_beyond(x[k], corner.x, grid.columns); column < end; ++column) {
+          cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
+                static_cast<std::size_t>(column)] = static_cast<int>(b);
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+void MeasureObserver::begin(const simulation::ModelRecord& model) {
+  model_ = model;
+  result_.blocks = static_cast<int>(blocks_);
+  fell_.assign(blocks_, -1);
+}
+
+void MeasureObserver::stage_end(int index, const simulation::StageRecord& stage) {
+  if (stage.interrupted) return;
+  result_.stages.push_back(
+      {stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias, stage.damage});
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    const bool fallen = b < last_.status.size() && last_.status[b] == BlockStatus::fallen;
+    if (!fallen) fell_[b] = -1;
+    if (fallen && fell_[b] < 0) fell_[b] = index;
+  }
+}
+
+void MeasureObserver::end(const simulation::RunRecord& run) {
+  result_.steps = run.steps;
+  result_.wall_time = run.wall_time;
+  result_.state_hash = run.state_hash;
+  result_.unconverged_steps = run.open_close.unconverged_steps;
+  result_.max_overlap = run.max_overlap;
+  result_.energy_residual_ratio = run.energy.residual_ratio;
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    if (fell_[b] < 0) continue;
+    const auto& block = model_.blocks[b];
+    result_.fallen.push_back(
+        {static_cast<int>(b), block.name, fell_[b], block.centroid + model_.origin, block.area});
+  }
+  for (const int b : blocks_of_cells(grid_, model_, blocks_)) {
+    const auto k = static_cast<std::size_t>(b);
+    result_.map.push_back(b < 0 || k >= last_.status.size() ? BlockStatus::in_place : last_.status[k]);
+  }
+}
+
+}  // namespace keyblock::study

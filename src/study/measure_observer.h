@@ -1,0 +1,40 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "simulation/record.h"
+#include "study/run_result.h"
+
+namespace keyblock::study {
+
+/// Gathers the measures of a run. A block fell in the first stage from whose end on it has always counted as fallen.
+class MeasureObserver : public simulation::RunObserver {
+ public:
+  /// Fills `result` (but for key, realization, values, variant and error), which must outlive the run. The first `blocks`
+  /// blocks of the model are the rock; a frame comes after them.
+  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks)
+      : result_(result), grid_(grid), blocks_(blocks) {}
+
+  void begin(const simulation::ModelRecord& model) override;
+  void frame(const simulation::Frame& frame) override { last_ = frame; }
+  void stage_end(int index, const simulation::StageRecord& stage) override;
+  void end(const simulation::RunRecord& run) override;
+
+  [[nodiscard]] const simulation::ModelRecord& model() const { return model_; }
+  [[nodiscard]] const simulation::Frame& last_frame() const { return last_; }
+
+ private:
+  RunResult& result_;
+  MapGrid grid_;
+  std::size_t blocks_;
+  simulation::ModelRecord model_;
+  simulation::Frame last_;
+  std::vector<int> fell_;  ///< stage of every block; −1: has not fallen
+};
+
+/// Of every cell of the grid, row by row from the lower left, the index of the block in whose reference outline its centre
+/// lies, among the first `blocks` of the model; −1 where there is none.
+std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRecord& model,
+                                 std::size_t blocks);
+
+}  // namespace keyblock::study

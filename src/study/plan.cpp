@@ -1,0 +1,255 @@
+#include "study/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/archive.h"
+#include "core/atomic_file.h"
+#include "scenario/inputs.h"
+#include "scenario/key_path.h"
+#include "scenario/override.h"
+#include "scenario/parse.h"
+#include "scenario/sections.h"
+#include "study/variant.h"
+
+namespace keyblock::study {
+namespace {
+
+namespace fs = std::filesystem;
+using scenario::Scenario;
+
+constexpr double most_runs = 1e6;
+constexpr double most_cells = 1e6;
+constexpr int key_digits = 10;
+
+// Of what distinguishes the runs of one realization.
+std::string combination_hash(const std::vector<std::string>& overrides, const std::string& variant) {
+  std::vector<std::string> lines;
+  for (const std::string& text : overrides) {
+    const scenario::Override parsed = scenario::parse_override(text);
+    std::string path;
+    for (const scenario::PathSegment& segment : parsed.path) path = scenario::join_path(path, segment.key);
+    lines.push_back(path + "=" + scenario::to_toml(parsed.value));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return hash_text(text + "/" + variant).substr(0, key_digits);
+}
+
+std::string key_of(int realization, const std::string& hash) {
+  return fmt::format("r{:04}-{}", realization, hash);
+}
+
+void add_files(const Scenario& scenario, std::map<fs::path, std::string>& files) {
+  const auto add = [&](const fs::path& file) {
+    if (!files.contains(file)) files[file] = hash_text(read_file(file));
+  };
+  for (const auto& map : scenario.trace_maps) add(map.file);
+  for (const auto& motion : scenario.motions) {
+    for (const auto& component : motion.components) add(component.file);
+  }
+}
+
+// The files of the scenario, and of every value of its axes.
+std::vector<InputFile> files_of(const Plan& plan, const Scenario& base) {
+  std::map<fs::path, std::string> files;
+  add_files(base, files);
+  for (const scenario::VarySpec& axis : plan.axes) {
+    for (const auto& row : axis.values) {
+      std::vector<std::string> overrides = plan.overrides;
+      for (std::size_t j = 0; j < row.size(); ++j) overrides.push_back(axis.keys[j] + "=" + row[j]);
+      add_files(
+          scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out),
+          files);
+    }
+  }
+  std::vector<InputFile> list;
+  for (const auto& [path, hash] : files) list.push_back({path, hash});
+  return list;
+}
+
+void check_count(const Plan& plan, const Scenario& scenario, std::size_t variants) {
+  double count = static_cast<double>(plan.realizations) * static_cast<double>(variants);
+  for (const scenario::VarySpec& axis : plan.axes) count *= static_cast<double>(axis.values.size());
+  if (count <= most_runs) return;
+  throw InputError(Diagnostic{scenario.where("study"), "study", fmt::format("{:.3g} runs", count),
+                              fmt::format("at most {:.0e}", most_runs), ""});
+}
+
+// All combinations of one value per axis, the last axis changing fastest.
+std::vector<std::vector<std::vector<std::string>>> combinations(const std::vector<scenario::VarySpec>& axes) {
+  std::vector<std::vector<std::vector<std::string>>> all{{}};
+  for (const scenario::VarySpec& axis : axes) {
+    std::vector<std::vector<std::vector<std::string>>> longer;
+    for (const auto& start : all) {
+      for (const auto& value : axis.values) {
+        longer.push_back(start);
+        longer.back().push_back(value);
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+void list_runs(Plan& plan, const std::vector<std::string>& variants) {
+  std::vector<PlannedRun> one_realization;
+  std::vector<std::string> hashes;
+  for (const auto& values : combinations(plan.axes)) {
+    for (const std::string& variant : variants) {
+      one_realization.push_back({"", 0, values, variant, true});
+      hashes.push_back(combination_hash(overrides_of(plan, one_realization.back()),
+                                        variant_identity(variant, plan.marginal.value_or(MarginalCheck{}))));
+    }
+  }
+  for (int realization = 0; realization < plan.realizations; ++realization) {
+    for (std::size_t k = 0; k < one_realization.size(); ++k) {
+      plan.runs.push_back(one_realization[k]);
+      plan.runs.back().realization = realization;
+      plan.runs.back().key = key_of(realization, hashes[k]);
+    }
+  }
+}
+
+Box box_of_model(const Scenario& scenario) {
+  Box box;
+  if (scenario.domain) {
+    box.add(Vec2{scenario.domain->x.first, scenario.domain->y.first});
+    box.add(Vec2{scenario.domain->x.second, scenario.domain->y.second});
+  }
+  for (const scenario::BlockSpec& block : scenario.blocks) box.add(bounds(block.polygon));
+  return box;
+}
+
+}  // namespace
+
+std::string hash_text(std::string_view content) {
+  Hash hash;
+  hash.add(content.data(), content.size());
+  return fmt::format("{:016x}", hash.value());
+}
+
+std::string run_key(int realization, const std::vector<std::string>& overrides, const std::string& variant) {
+  return key_of(realization, combination_hash(overrides, variant));
+}
+
+std::vector<std::string> overrides_of(const Plan& plan, const PlannedRun& run) {
+  std::vector<std::string> overrides;
+  for (std::size_t a = 0; a < run.values.size(); ++a) {
+    for (std::size_t j = 0; j < run.values[a].size(); ++j)
+      overrides.push_back(plan.axes.at(a).keys.at(j) + "=" + run.values[a][j]);
+  }
+  return overrides;
+}
+
+std::size_t Plan::wanted() const {
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.wanted; }));
+}
+
+void keep_places(const std::vector<PlannedRun>& earlier, Plan& plan) {
+  std::map<std::string, std::size_t> asked;
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) asked[plan.runs[k].key] = k;
+  std::vector<PlannedRun> all;
+  std::vector<char> placed(plan.runs.size());
+  for (const PlannedRun& run : earlier) {
+    const auto found = asked.find(run.key);
+    if (found == asked.end()) {
+      all.push_back(run);
+      all.back().wanted = false;
+    } else {
+      all.push_back(plan.runs[found->second]);
+      placed[found->second] = 1;
+    }
+  }
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    if (!placed[k]) all.push_back(std::move(plan.runs[k]));
+  }
+  plan.runs = std::move(all);
+}
+
+MapGrid map_grid(const Scenario& scenario) {
+  const Box model = box_of_model(scenario);
+  Box box;
+  for (const scenario::ExcavationSpec& spec : scenario.excavations) {
+    for (const Vec2 p : scenario::excavation_outline(spec)) box.add(p);
+  }
+  double cell = 0.0;
+  if (scenario.excavations.empty()) {
+    box = model;
+    cell = std::max(box.size().x, box.size().y) / 80.0;
+  } else {
+    Box opening;
+    for (const Vec2 p : scenario::excavation_outline(scenario.excavations.front())) opening.add(p);
+    const double width = opening.size().x;
+    box = {box.min - Vec2{width, width}, box.max + Vec2{width, width}};
+    box.min = {std::max(box.min.x, model.min.x), std::max(box.min.y, model.min.y)};
+    box.max = {std::min(box.max.x, model.max.x), std::min(box.max.y, model.max.y)};
+    cell = width / 40.0;
+  }
+  if (scenario.study && scenario.study->map_cell) cell = *scenario.study->map_cell;
+  const Vec2 size = box.size();
+  if (!(cell > 0.0) || !(size.x > 0.0) || !(size.y > 0.0)) return {};
+  if (size.x / cell * (size.y / cell) > most_cells) {
+    throw InputError(Diagnostic{scenario.where("study.map.cell"), "study.map.cell",
+                                fmt::format("{:.2g} cells", size.x / cell * (size.y / cell)),
+                                fmt::format("at most {:.0e} cells", most_cells), ""});
+  }
+  return {box.min, cell, static_cast<int>(std::ceil(size.x / cell - 1e-9)),
+          static_cast<int>(std::ceil(size.y / cell - 1e-9))};
+}
+
+std::vector<DamageLevel> damage_levels(const Scenario& scenario) {
+  std::vector<DamageLevel> levels;
+  if (scenario.study) {
+    for (const scenario::LevelSpec& level : scenario.study->levels)
+      levels.push_back({level.name, level.measure, level.threshold});
+  }
+  if (!levels.empty()) return levels;
+  double area = 0.0;
+  for (const scenario::ExcavationSpec& spec : scenario.excavations)
+    area += std::abs(signed_area(scenario::excavation_outline(spec)));
+  if (area == 0.0) return {{"any", "fallen_blocks", 0.0}};
+  return {{"light", "fallen_area_m2", 0.002 * area},
+          {"moderate", "fallen_area_m2", 0.02 * area},
+          {"severe", "fallen_area_m2", 0.1 * area}};
+}
+
+Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, const std::string& version) {
+  Plan plan;
+  plan.scenario = file;
+  plan.text = read_file(file);
+  plan.overrides = overrides;
+  plan.version = version;
+  const Scenario scenario = scenario::parse_scenario_text(plan.text, file, overrides);
+  if (scenario.stages.empty()) {
+    throw InputError(Diagnostic{scenario.where("stage"), "stage", "nothing", "at least one [[stage]]", ""});
+  }
+  scenario::check_inputs(scenario);
+  plan.input = hash_text(scenario::to_toml(scenario::document_without_study(plan.text, file, overrides)));
+  plan.title = scenario.title;
+  plan.seed = scenario.seed;
+  const scenario::StudySpec study = scenario.study.value_or(scenario::StudySpec{});
+  plan.until = study.until;
+  plan.realizations = study.until ? study.until->maximum : study.realizations;
+  plan.axes = study.vary;
+  plan.stage = study.stage.empty() ? scenario.stages.back().name : study.stage;
+  plan.levels = damage_levels(scenario);
+  if (study.marginal) plan.marginal = MarginalCheck{study.marginal->friction, study.marginal->share};
+  plan.confidence = study.confidence;
+  plan.keep = study.keep;
+  plan.grid = map_grid(scenario);
+  for (const auto& spec : scenario.excavations) plan.outlines.push_back(scenario::excavation_outline(spec));
+  plan.files = files_of(plan, scenario);
+  const std::vector<std::string> variants =
+      plan.marginal ? variants_of(scenario, plan.stage) : std::vector<std::string>{""};
+  check_count(plan, scenario, variants.size());
+  list_runs(plan, variants);
+  return plan;
+}
+
+}  // namespace keyblock::study

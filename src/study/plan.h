@@ -1,0 +1,90 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/polygon.h"
+#include "scenario/scenario.h"
+#include "study/run_result.h"
+
+namespace keyblock::study {
+
+/// One run: a realization × a value on every axis × a variant.
+struct PlannedRun {
+  std::string key;  ///< see run_key
+  int realization = 0;
+  std::vector<std::vector<std::string>> values;  ///< of every axis, of each of its keys, as TOML
+  std::string variant;
+  /// False: an earlier plan of the same folder had it, the scenario asks for it no more. It keeps its place, so that the
+  /// index of a run never changes.
+  bool wanted = true;
+};
+
+/// A file that a scenario reads, as it was when the study was planned.
+struct InputFile {
+  std::filesystem::path path;
+  std::string hash;
+};
+
+/// All that is to be run, and what a reader of the results needs beside them.
+struct Plan {
+  std::filesystem::path scenario;  ///< the file; paths in the text are relative to its folder
+  std::string text;                ///< of it
+  std::vector<std::string> overrides;
+  std::string version;
+  std::string input;  ///< hash of the scenario with its overrides and without [study]
+  std::vector<InputFile> files;
+
+  std::string title;
+  std::uint64_t seed = 0;
+  int realizations = 1;  ///< with `until`, the most
+  std::vector<scenario::VarySpec> axes;
+  std::string stage;  ///< at whose end measures are compared
+  std::vector<DamageLevel> levels;
+  std::optional<MarginalCheck> marginal;
+  double confidence = 0.95;
+  std::optional<scenario::UntilSpec> until;
+  scenario::Keep keep = scenario::Keep::report;
+  MapGrid grid;
+  std::vector<Ring> outlines;
+
+  std::vector<PlannedRun> runs;
+
+  [[nodiscard]] std::size_t wanted() const;
+};
+
+/// Reads the scenario and lists its runs by realization, then combination (the first axis changes most slowly), then
+/// variant: the first part of a plan is a smaller study. A scenario without [study] is a study of one run. All
+/// combinations see the same joints, as these depend on seed and realization alone.
+///
+/// Throws InputError with every mistake of the scenario and of its files, and for more than a million runs.
+Plan make_plan(const std::filesystem::path& scenario, const std::vector<std::string>& overrides,
+               const std::string& version);
+
+/// The name of a run and of its folder: `r0007-5d2c81a0f3`, the realization and a hash (FNV-1a, 64 bit, its first ten
+/// digits) of the overrides `key=value` in the order of their text, keys written in one way, and of the variant. It
+/// depends neither on the other runs nor on the order of axes and values.
+std::string run_key(int realization, const std::vector<std::string>& overrides, const std::string& variant);
+
+/// `key=value` of every key of every axis.
+std::vector<std::string> overrides_of(const Plan& plan, const PlannedRun& run);
+
+/// The runs of `earlier` in their places, then those that `plan` has beyond them. What `plan` does not have is kept as not
+/// wanted.
+void keep_places(const std::vector<PlannedRun>& earlier, Plan& plan);
+
+/// The raster of the places around the openings: the box of all outlines, grown by the width of the opening (the first
+/// excavation) and cut to the domain; cells of width/40 unless given. Without excavations: the box of the domain or of the
+/// blocks, 80 cells along its longer side. Throws InputError for more than a million cells.
+MapGrid map_grid(const scenario::Scenario& scenario);
+
+/// Those of the scenario; by default 0.2, 2 and 10 % of the area of the openings fallen ("light", "moderate",
+/// "severe"), and without openings "any": a block has fallen.
+std::vector<DamageLevel> damage_levels(const scenario::Scenario& scenario);
+
+/// Content hash, 16 hexadecimal digits.
+std::string hash_text(std::string_view content);
+
+}  // namespace keyblock::study

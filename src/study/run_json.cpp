@@ -1,0 +1,153 @@
+#include "study/run_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "results/record_json.h"
+#include "simulation/damage_fields.h"
+#include "study/plan.h"
+
+namespace keyblock::study {
+namespace {
+
+using nlohmann::ordered_json;
+using simulation::BlockStatus;
+using simulation::StageKind;
+
+constexpr int format = 1;
+const std::string checksum_mark = ",\"checksum\":\"";
+
+[[noreturn]] void refuse(std::string found, std::string expected) {
+  Diagnostic diagnostic;
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  throw InputError(std::move(diagnostic));
+}
+
+// JSON has no NaN; it is written as null.
+double number(const ordered_json& value) {
+  return value.is_null() ? std::nan("") : value.get<double>();
+}
+
+ordered_json stage_json(const StageMeasures& stage) {
+  ordered_json damage{{"fallen_blocks", stage.damage.fallen_blocks}};
+  for (const auto& [name, member] : simulation::damage_fields) damage[name] = stage.damage.*member;
+  return {{"name", stage.name},       {"kind", results::stage_kind_name(stage.kind)},
+          {"pga_m_s2", stage.pga},    {"pgv_m_s", stage.pgv},
+          {"arias_m_s", stage.arias}, {"damage", damage}};
+}
+
+StageMeasures read_stage(const ordered_json& json) {
+  StageMeasures stage;
+  json.at("name").get_to(stage.name);
+  for (const StageKind kind : {StageKind::settle, StageKind::shake, StageKind::rest}) {
+    if (json.at("kind") == results::stage_kind_name(kind)) stage.kind = kind;
+  }
+  stage.pga = number(json.at("pga_m_s2"));
+  stage.pgv = number(json.at("pgv_m_s"));
+  stage.arias = number(json.at("arias_m_s"));
+  const ordered_json& damage = json.at("damage");
+  damage.at("fallen_blocks").get_to(stage.damage.fallen_blocks);
+  for (const auto& [name, member] : simulation::damage_fields) stage.damage.*member = number(damage.at(name));
+  return stage;
+}
+
+ordered_json map_json(const std::vector<BlockStatus>& map) {
+  ordered_json runs = ordered_json::array();
+  for (std::size_t k = 0; k < map.size();) {
+    std::size_t end = k;
+    while (end < map.size() && map[end] == map[k]) ++end;
+    runs.push_back(static_cast<int>(map[k]));
+    runs.push_back(end - k);
+    k = end;
+  }
+  return runs;
+}
+
+std::vector<BlockStatus> read_map(const ordered_json& runs) {
+  std::vector<BlockStatus> map;
+  for (std::size_t k = 0; k + 1 < runs.size(); k += 2)
+    map.insert(map.end(), runs[k + 1].get<std::size_t>(), static_cast<BlockStatus>(runs[k].get<int>()));
+  return map;
+}
+
+RunResult read_result(const ordered_json& json) {
+  RunResult run;
+  json.at("key").get_to(run.key);
+  json.at("realization").get_to(run.realization);
+  json.at("values").get_to(run.values);
+  json.at("variant").get_to(run.variant);
+  json.at("error").get_to(run.error);
+  json.at("blocks").get_to(run.blocks);
+  json.at("steps").get_to(run.steps);
+  run.wall_time = number(json.at("wall_time_s"));
+  json.at("state_hash").get_to(run.state_hash);
+  json.at("unconverged_steps").get_to(run.unconverged_steps);
+  run.max_overlap = number(json.at("max_overlap_m"));
+  run.energy_residual_ratio = number(json.at("energy_residual_ratio"));
+  for (const auto& stage : json.at("stages")) run.stages.push_back(read_stage(stage));
+  for (const auto& block : json.at("fallen")) {
+    const auto& centroid = block.at("centroid");
+    run.fallen.push_back({block.at("block").get<int>(),
+                          block.at("name").get<std::string>(),
+                          block.at("stage").get<int>(),
+                          {number(centroid.at(0)), number(centroid.at(1))},
+                          number(block.at("area_m2"))});
+  }
+  run.map = read_map(json.at("map"));
+  return run;
+}
+
+}  // namespace
+
+std::string run_json(const RunResult& run, const std::string& input) {
+  ordered_json stages = ordered_json::array(), fallen = ordered_json::array();
+  for (const StageMeasures& stage : run.stages) stages.push_back(stage_json(stage));
+  for (const FallenBlock& block : run.fallen) {
+    fallen.push_back({{"block", block.block},
+                      {"name", block.name},
+                      {"stage", block.stage},
+                      {"centroid", {block.centroid.x, block.centroid.y}},
+                      {"area_m2", block.area}});
+  }
+  const ordered_json json{{"format", format},
+                          {"input", input},
+                          {"key", run.key},
+                          {"realization", run.realization},
+                          {"values", run.values},
+                          {"variant", run.variant},
+                          {"error", run.error},
+                          {"blocks", run.blocks},
+                          {"steps", run.steps},
+                          {"wall_time_s", run.wall_time},
+                          {"state_hash", run.state_hash},
+                          {"unconverged_steps", run.unconverged_steps},
+                          {"max_overlap_m", run.max_overlap},
+                          {"energy_residual_ratio", run.energy_residual_ratio},
+                          {"stages", stages},
+                          {"fallen", fallen},
+                          {"map", map_json(run.map)}};
+  std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  text.pop_back();
+  return text + checksum_mark + hash_text(text) + "\"}\n";
+}
+
+RunResult read_run_json(const std::string& text, const std::string& input) {
+  const std::string expected = "the measures of a run as keyblock wrote them";
+  const std::size_t mark = text.rfind(checksum_mark);
+  if (mark == std::string::npos) refuse("a truncated file", expected);
+  const std::string sum = text.substr(mark + checksum_mark.size());
+  if (sum != hash_text(std::string_view(text).substr(0, mark)) + "\"}\n")
+    refuse("a file that was truncated or changed", expected);
+  try {
+    const ordered_json json = ordered_json::parse(text);
+    if (json.at("format") != format) refuse("another format", "format " + std::to_string(format));
+    if (json.at("input") != input) refuse("the run of another study or version", "one of this study");
+    return read_result(json);
+  } catch (const nlohmann::json::exception& error) {
+    refuse(error.what(), expected);
+  }
+}
+
+}  // namespace keyblock::study

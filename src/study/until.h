@@ -1,0 +1,23 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "study/plan.h"
+
+namespace keyblock::study {
+
+/// How many realizations the rule [study.until] asks for: the smallest n from `minimum` on for which, over the first n
+/// realizations and for every combination, the confidence interval of the mean m of the measure,
+///
+///     m ± t s / √N,   t the quantile of Student's distribution with N − 1 degrees of freedom,
+///
+/// is narrow enough. Runs that failed are left out; at least two must have been done. As n depends on the results alone, it is the same
+/// for any number of workers. Nothing when no n up to the first run that is missing is enough, or without a rule.
+///
+/// `results` are in the places of plan.runs; null: missing. Variants have no say.
+std::optional<int> enough_realizations(const Plan& plan, const std::vector<const RunResult*>& results);
+
+/// x with P(T ≤ x) = p for Student's distribution of `freedom` degrees of freedom.
+double student_quantile(double p, double freedom);
+
+}  // namespace keyblock::study

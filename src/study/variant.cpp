@@ -1,0 +1,71 @@
+#include "study/variant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace keyblock::study {
+namespace {
+
+using simulation::Stage;
+using simulation::StageKind;
+
+constexpr double steepest_friction = 89.9;  // °
+
+void change_friction(scenario::Scenario& scenario, double by) {
+  const auto change = [&](std::optional<double>& friction) {
+    if (friction) friction = std::clamp(*friction + by, 0.0, steepest_friction);
+  };
+  if (!scenario.joints.friction) scenario.joints.friction = 0.0;
+  change(scenario.joints.friction);
+  for (auto& set : scenario.joint_sets) change(set.joints.friction);
+  for (auto& map : scenario.trace_maps) change(map.joints.friction);
+}
+
+// The settling stages that an immediate release leaves out: [first, last).
+std::pair<std::size_t, std::size_t> settling_after_excavation(const std::vector<Stage>& stages) {
+  std::size_t first = 0;
+  while (first < stages.size() && stages[first].excavate.empty()) ++first;
+  std::size_t last = first;
+  while (last < stages.size() && stages[last].kind == StageKind::settle) ++last;
+  if (last == stages.size()) return {0, 0};
+  return {first, last};
+}
+
+void release(std::vector<Stage>& stages) {
+  const auto [first, last] = settling_after_excavation(stages);
+  if (first == last) return;
+  std::vector<int> all;
+  for (std::size_t k = first; k <= last; ++k)
+    all.insert(all.end(), stages[k].excavate.begin(), stages[k].excavate.end());
+  stages[last].excavate = std::move(all);
+  stages.erase(stages.begin() + static_cast<std::ptrdiff_t>(first),
+               stages.begin() + static_cast<std::ptrdiff_t>(last));
+}
+
+}  // namespace
+
+std::vector<std::string> variants_of(const scenario::Scenario& scenario, const std::string& stage) {
+  std::vector<std::string> variants{"", "friction-", "friction+"};
+  const auto [first, last] = settling_after_excavation(scenario.stages);
+  bool compared = false;
+  for (std::size_t k = first; k < last; ++k) compared = compared || scenario.stages[k].name == stage;
+  if (first < last && !compared) variants.emplace_back("released");
+  return variants;
+}
+
+void apply_variant(scenario::Scenario& scenario, const std::string& variant, const MarginalCheck& check) {
+  if (variant.empty()) return;
+  if (variant == "friction-") return change_friction(scenario, -check.friction);
+  if (variant == "friction+") return change_friction(scenario, check.friction);
+  if (variant == "released") return release(scenario.stages);
+  throw std::invalid_argument("no variant '" + variant + "'");
+}
+
+std::string variant_identity(const std::string& variant, const MarginalCheck& check) {
+  return variant.starts_with("friction") ? fmt::format("{}{}", variant, check.friction) : variant;
+}
+
+}  // namespace keyblock::study
