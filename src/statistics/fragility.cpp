@@ -18,7 +18,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double same_intensity = 1e-9;
 /// Fisher scoring ends when a step is below this, in units of η.
 constexpr double step_tolerance = 1e-9;
-constexpr int most_steps = 200;
+/// The same for resamples, which scatter by far more.
+constexpr double replicate_tolerance = 1e-5;
+constexpr int most_steps = 200, most_halvings = 40;
 /// Beyond, Φ and its complement are at the end of the floating-point range.
 constexpr double largest_eta = 35.0;
 
@@ -31,56 +33,61 @@ struct Row {
   double x, n, z;
 };
 
-double log_likelihood(std::span<const Row> rows, Probit line) {
-  double sum = 0.0;
-  for (const Row& row : rows) {
-    const double eta = std::clamp(line.a + line.b * row.x, -largest_eta, largest_eta);
-    if (row.z > 0.0) sum += row.z * std::log(normal_cdf(eta));
-    if (row.z < row.n) sum += (row.n - row.z) * std::log(normal_cdf(-eta));
-  }
-  return sum;
-}
-
-/// The step I⁻¹ s of Fisher scoring: score s = Σ (z − n p) φ/(p q) (1, x), information I = Σ n φ²/(p q) (1, x)(1, x)ᵀ.
-Probit scoring_step(std::span<const Row> rows, Probit line) {
+/// ln L at a line, its score s = Σ (z − n p) φ/(p q) (1, x) and its information I = Σ n φ²/(p q) (1, x)(1, x)ᵀ.
+struct Evaluation {
+  double log_likelihood = 0.0;
   double s_0 = 0.0, s_1 = 0.0, i_00 = 0.0, i_01 = 0.0, i_11 = 0.0;
+};
+
+Evaluation evaluate(std::span<const Row> rows, Probit line) {
+  Evaluation e;
   for (const Row& row : rows) {
     const double eta = std::clamp(line.a + line.b * row.x, -largest_eta, largest_eta);
-    const double p = normal_cdf(eta), q = normal_cdf(-eta);
+    // The smaller of both tails by erfc, the other as its complement.
+    const double tail = normal_cdf(-std::abs(eta));
+    const double p = eta < 0.0 ? tail : 1.0 - tail;
+    const double q = eta < 0.0 ? 1.0 - tail : tail;
     const double density = std::exp(-0.5 * eta * eta) / std::sqrt(2.0 * std::numbers::pi);
+    if (row.z > 0.0) e.log_likelihood += row.z * std::log(p);
+    if (row.z < row.n) e.log_likelihood += (row.n - row.z) * std::log(q);
     const double residual = (row.z * q - (row.n - row.z) * p) * (density / p) / q;
     const double weight = row.n * (density / p) * (density / q);
-    s_0 += residual;
-    s_1 += residual * row.x;
-    i_00 += weight;
-    i_01 += weight * row.x;
-    i_11 += weight * row.x * row.x;
+    e.s_0 += residual;
+    e.s_1 += residual * row.x;
+    e.i_00 += weight;
+    e.i_01 += weight * row.x;
+    e.i_11 += weight * row.x * row.x;
   }
-  const double determinant = i_00 * i_11 - i_01 * i_01;
-  if (!(determinant > 1e-14 * i_00 * i_11)) return i_00 > 0.0 ? Probit{s_0 / i_00, 0.0} : Probit{};
-  return {(i_11 * s_0 - i_01 * s_1) / determinant, (i_00 * s_1 - i_01 * s_0) / determinant};
+  return e;
 }
 
-/// The most likely line; exists and is unique for data that are not separated.
-Probit most_likely(std::span<const Row> rows, double share) {
-  Probit line{inverse_normal_cdf(share), 0.0};
-  double value = log_likelihood(rows, line);
+/// The step I⁻¹ s of Fisher scoring.
+Probit scoring_step(const Evaluation& e) {
+  const double determinant = e.i_00 * e.i_11 - e.i_01 * e.i_01;
+  if (!(determinant > 1e-14 * e.i_00 * e.i_11)) return e.i_00 > 0.0 ? Probit{e.s_0 / e.i_00, 0.0} : Probit{};
+  return {(e.i_11 * e.s_0 - e.i_01 * e.s_1) / determinant, (e.i_00 * e.s_1 - e.i_01 * e.s_0) / determinant};
+}
+
+/// The most likely line, from any start; exists and is unique for data that are not separated.
+Probit most_likely(std::span<const Row> rows, Probit line, double tolerance) {
+  Evaluation here = evaluate(rows, line);
   double reach = 0.0;
   for (const Row& row : rows) reach = std::max(reach, std::abs(row.x));
   for (int k = 0; k < most_steps; ++k) {
-    Probit step = scoring_step(rows, line);
-    if (std::abs(step.a) + reach * std::abs(step.b) < step_tolerance) break;
-    for (int halving = 0; halving < 40; ++halving) {
+    Probit step = scoring_step(here);
+    if (std::abs(step.a) + reach * std::abs(step.b) < tolerance) break;
+    bool better = false;
+    for (int halving = 0; halving < most_halvings && !better; ++halving) {
       const Probit next{line.a + step.a, line.b + step.b};
-      const double there = log_likelihood(rows, next);
-      if (there >= value) {
+      const Evaluation there = evaluate(rows, next);
+      better = there.log_likelihood >= here.log_likelihood;
+      if (better) {
         line = next;
-        value = there;
-        break;
+        here = there;
       }
       step = {0.5 * step.a, 0.5 * step.b};
-      if (halving == 39) return line;  // at rounding: no step goes up any more
     }
+    if (!better) break;  // at rounding: no step goes up any more
   }
   return line;
 }
@@ -149,7 +156,10 @@ double FragilityFit::probability(double intensity) const {
   }
 }
 
-FragilityFit fit_fragility(std::span<const Stripe> stripes) {
+namespace {
+
+/// `start`: a curve from which to go, where there is one.
+FragilityFit fit_from(std::span<const Stripe> stripes, const FragilityFit* start, double tolerance) {
   FragilityFit fit;
   const Ends ends = ends_of(stripes);
   if (!(ends.n > 0.0)) return fit;
@@ -176,7 +186,10 @@ FragilityFit fit_fragility(std::span<const Stripe> stripes) {
   std::vector<Row> rows;
   for (const Stripe& s : stripes)
     if (s.runs > 0.0) rows.push_back({std::log(s.intensity) - centre, s.runs, s.exceeded});
-  const Probit line = most_likely(rows, fit.share);
+  const Probit first = start != nullptr
+                           ? Probit{(centre - std::log(start->theta)) / start->beta, 1.0 / start->beta}
+                           : Probit{inverse_normal_cdf(fit.share), 0.0};
+  const Probit line = most_likely(rows, first, tolerance);
   // A slope that is rounding alone is none.
   if (!(line.b * (std::log(ends.last) - std::log(ends.first)) > 1e-8)) return fit;
   fit.status = FragilityStatus::fitted;
@@ -184,8 +197,6 @@ FragilityFit fit_fragility(std::span<const Stripe> stripes) {
   fit.theta = std::exp(centre - line.a / line.b);
   return fit;
 }
-
-namespace {
 
 /// The runs as a table: stripes, and for each cluster what it adds to them.
 struct Table {
@@ -232,6 +243,10 @@ Estimate with_interval(double value, std::vector<double>& replicates, double con
 
 }  // namespace
 
+FragilityFit fit_fragility(std::span<const Stripe> stripes) {
+  return fit_from(stripes, nullptr, step_tolerance);
+}
+
 FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
                                double confidence, std::size_t resamples) {
   const Table table = tabulate(runs);
@@ -259,7 +274,7 @@ FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<cons
         stripes[part.stripe].exceeded += part.exceeded;
       }
     }
-    const FragilityFit fit = fit_fragility(stripes);
+    const FragilityFit fit = fit_from(stripes, &curve.fit, replicate_tolerance);
     if (fit.status == FragilityStatus::fitted) {
       ++curve.resamples_fitted;
       theta.push_back(fit.theta);
