@@ -47,7 +47,6 @@ std::vector<double> means_without_one(std::span<const double> sample, double cen
 
 std::vector<double> deviations_without_one(std::span<const double> sample, double centre, double deviation) {
   const auto n = static_cast<double>(sample.size());
-  if (sample.size() < 3) return {};
   const double squares = (n - 1.0) * deviation * deviation;
   std::vector<double> result(sample.size());
   for (std::size_t i = 0; i < sample.size(); ++i) {
@@ -113,23 +112,19 @@ Description describe(std::span<const double> ascending, std::span<const double> 
   if (ascending.empty()) return result;
   result.min = ascending.front();
   result.max = ascending.back();
-  if (result.n < 2) return result;
+  if (result.n < smallest_bootstrap_sample) return result;
 
   const double centre = result.mean.value;
   const auto n = static_cast<double>(result.n);
   std::vector<double> means(resamples.count()), deviations(resamples.count());
   std::vector<std::vector<double>> quantiles(probabilities.size(), std::vector<double>(resamples.count()));
-  std::vector<double> centred(ascending.begin(), ascending.end());
-  for (double& x : centred) x -= centre;
   for (std::size_t r = 0; r < resamples.count(); ++r) {
     const auto ranks = resamples.ranks(r);
     double sum = 0.0, squares = 0.0;
-    for (const std::uint32_t k : ranks) {
-      sum += centred[k];
-      squares += centred[k] * centred[k];
-    }
-    means[r] = centre + sum / n;
-    deviations[r] = std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1.0));
+    for (const std::uint32_t k : ranks) sum += ascending[k];
+    means[r] = sum / n;
+    for (const std::uint32_t k : ranks) squares += (ascending[k] - means[r]) * (ascending[k] - means[r]);
+    deviations[r] = std::sqrt(squares / (n - 1.0));
     for (std::size_t q = 0; q < probabilities.size(); ++q) {
       const double h = (n - 1.0) * probabilities[q];
       const auto below = static_cast<std::size_t>(h);
@@ -139,12 +134,10 @@ Description describe(std::span<const double> ascending, std::span<const double> 
     }
   }
   result.mean = with(centre, bca_interval(means, centre, means_without_one(ascending, centre), confidence));
-  if (result.n >= 3) {
-    const double deviation = result.standard_deviation.value;
-    result.standard_deviation =
-        with(deviation, bca_interval(deviations, deviation,
-                                     deviations_without_one(ascending, centre, deviation), confidence));
-  }
+  const double deviation = result.standard_deviation.value;
+  result.standard_deviation = with(
+      deviation,
+      bca_interval(deviations, deviation, deviations_without_one(ascending, centre, deviation), confidence));
   for (std::size_t q = 0; q < probabilities.size(); ++q)
     result.quantiles[q] = with(result.quantiles[q].value, percentile_interval(quantiles[q], confidence));
   return result;

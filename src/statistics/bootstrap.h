@@ -10,6 +10,8 @@
 namespace keyblock::statistics {
 
 inline constexpr std::size_t usual_resamples = 1000;
+/// Resamples of fewer values than this hardly differ from the sample, and their intervals are far too narrow: none are given.
+inline constexpr std::size_t smallest_bootstrap_sample = 5;
 /// Key of the random numbers: the same sample gives the same interval on every rerun and machine.
 inline constexpr std::uint64_t bootstrap_key = 1979;
 
@@ -49,7 +51,7 @@ struct Description {
   double min = not_a_number, max = not_a_number;
 };
 
-/// `ascending` has the size that `resamples` is for. Intervals need n ≥ 2, that of the standard deviation n ≥ 3.
+/// `ascending` has the size that `resamples` is for. Intervals need n ≥ smallest_bootstrap_sample.
 Description describe(std::span<const double> ascending, std::span<const double> probabilities,
                      const Resamples& resamples, double confidence);
 

@@ -260,7 +260,8 @@ FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<cons
   curve.intensity.assign(at.begin(), at.end());
   for (const double x : at)
     curve.probability.push_back({curve.fit.probability(x), not_a_number, not_a_number});
-  if (table.clusters.size() < 2 || curve.fit.status != FragilityStatus::fitted) return curve;
+  if (table.clusters.size() < smallest_bootstrap_sample || curve.fit.status != FragilityStatus::fitted)
+    return curve;
 
   const Resamples draws(table.clusters.size(), resamples);
   std::vector<double> theta, beta;

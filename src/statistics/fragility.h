@@ -62,7 +62,8 @@ struct Observation {
 
 /// The fit with its band. The bootstrap draws whole clusters, so that what the runs of one realization have in common
 /// does not make the band too narrow. Resamples without a fit enter the band with their step or constant, and are left
-/// out of the intervals of θ and β. Where all runs together give no fit there is neither band nor interval.
+/// out of the intervals of θ and β. Where all runs together give no
+/// fit, or with fewer than smallest_bootstrap_sample clusters, there is neither band nor interval.
 struct FragilityCurve {
   FragilityFit fit;
   Estimate theta, beta;

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "study/precision.h"
+
 namespace keyblock::study {
 
 namespace {
@@ -185,7 +187,8 @@ ordered_json head(const StudyData& study, const Summary& summary) {
     };
     json["precision"] = {{"measure", study.precision->measure},
                          {"half_width", limit(study.precision->half_width)},
-                         {"width", limit(study.precision->width)}};
+                         {"width", limit(study.precision->width)},
+                         {"reached", precise_enough(study)}};
   }
   json["marginal"] = nullptr;
   if (study.marginal)

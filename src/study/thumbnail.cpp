@@ -76,8 +76,7 @@ class Drawing {
         "stroke-linejoin=\"round\">{}",
         std::lround(size.x * scale), std::lround(size.y * scale), resolution / 500.0, style);
     for (std::size_t c = 0; c < paths.size(); ++c)
-      if (!paths[c].empty())
-        svg += fmt::format("<path class=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/>", class_names[c], paths[c]);
+      if (!paths[c].empty()) svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", class_names[c], paths[c]);
     for (const auto& outline : model_.excavation_outlines) {
       std::string path;
       Unit from{0, 0};

@@ -73,10 +73,14 @@ TEST(Describe, SmallSamplesSayWhatTheyCan) {
   const std::vector<double> pair{1.0, 3.0};
   const Description two = describe(pair, quartiles, Resamples(2), 0.95);
   EXPECT_EQ(two.mean.value, 2.0);
-  EXPECT_EQ(two.mean.low, 1.0);
-  EXPECT_EQ(two.mean.high, 3.0);
+  EXPECT_TRUE(std::isnan(two.mean.low));
   EXPECT_DOUBLE_EQ(two.standard_deviation.value, std::sqrt(2.0));
-  EXPECT_TRUE(std::isnan(two.standard_deviation.low));
+  EXPECT_EQ(two.quantiles[1].value, 2.0);
+  const std::vector<double> five{1.0, 2.0, 3.0, 4.0, 6.0};
+  const Description enough = describe(five, quartiles, Resamples(5), 0.95);
+  EXPECT_LT(enough.mean.low, 3.2);
+  EXPECT_GT(enough.mean.high, 3.2);
+  EXPECT_LT(enough.standard_deviation.low, enough.standard_deviation.value);
 }
 
 TEST(Describe, EqualNumbersAreCertain) {
@@ -86,6 +90,16 @@ TEST(Describe, EqualNumbersAreCertain) {
   EXPECT_EQ(d.mean.high, 0.25);
   EXPECT_EQ(d.standard_deviation.value, 0.0);
   EXPECT_EQ(d.standard_deviation.high, 0.0);
+}
+
+// Where most values are zero some resamples hold nothing else: their mean is zero, not rounding.
+TEST(Describe, ZerosStayZeros) {
+  std::vector<double> x(30, 0.0);
+  x.back() = 0.3;
+  const Description d = describe(x, quartiles, Resamples(30), 0.95);
+  EXPECT_EQ(d.mean.low, 0.0);
+  EXPECT_EQ(d.standard_deviation.low, 0.0);
+  EXPECT_EQ(d.quantiles[2].high, 0.0);
 }
 
 // A skew sample of 40: the interval of the mean must hold the true one about as often as it says, and miss on both sides.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <numbers>
 
-#include "core/atomic_file.h"
 #include "core/index.h"
 #include "core/random.h"
 #include "study/outputs.h"
@@ -203,8 +203,8 @@ void write_synthetic_pictures(const std::filesystem::path& directory, const stud
     const auto [model, frame] = synthetic_tunnel(run.realization, run.stages.back().damage.fallen_area / 4.0);
     const std::filesystem::path folder = directory / "runs" / run.key;
     std::filesystem::create_directories(folder);
-    write_file_atomically(folder / "thumbnail.svg", study::thumbnail_svg(model, frame));
-    write_file_atomically(folder / "report.html", "<!doctype html><title>" + run.key + "</title>");
+    std::ofstream(folder / "thumbnail.svg") << study::thumbnail_svg(model, frame);
+    std::ofstream(folder / "report.html") << "<!doctype html><title>" << run.key << "</title>";
   }
 }
 
