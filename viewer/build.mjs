@@ -1,4 +1,5 @@
-// node build.mjs [--out FILE] [--packages NODE_MODULES]: bundles src/ and uPlot into one HTML file, the template of report.html.
+// node build.mjs [--out FOLDER] [--packages NODE_MODULES]: bundles src/ into two HTML files, the templates of report.html
+// of a run (with uPlot) and of a study.
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { dirname, join, resolve } from "node:path";
@@ -12,7 +13,7 @@ function option(name, fallback) {
 }
 
 const packages = option("packages", join(here, "node_modules"));
-const out = option("out", join(here, "dist", "template.html"));
+const out = option("out", join(here, "dist"));
 const esbuild = createRequire(join(packages, "index.js"))("esbuild");
 
 async function bundle(entry) {
@@ -30,16 +31,22 @@ async function bundle(entry) {
   return result.outputFiles[0].text.trim();
 }
 
-const parts = {
-  style: await bundle("style.css"),
-  script: (await bundle("main.ts")).replaceAll("</script", "<\\/script"),
-};
-const page = (await readFile(join(here, "src", "page.html"), "utf8")).replace(
-  /@@(style|script)@@/g,
-  (_, name) => parts[name],
-);
-for (const mark of ["@@title@@", "@@header@@", "@@arrays@@"]) {
-  if (page.split(mark).length !== 2) throw new Error(`the page must hold ${mark} exactly once`);
+/** One page: its styles and its program put into page.html. */
+async function build(file, style, script) {
+  const parts = {
+    style: await bundle(style),
+    script: (await bundle(script)).replaceAll("</script", "<\\/script"),
+  };
+  const page = (await readFile(join(here, "src", "page.html"), "utf8")).replace(
+    /@@(style|script)@@/g,
+    (_, name) => parts[name],
+  );
+  for (const mark of ["@@title@@", "@@header@@", "@@arrays@@"]) {
+    if (page.split(mark).length !== 2) throw new Error(`the page must hold ${mark} exactly once`);
+  }
+  await writeFile(join(out, file), page);
 }
-await mkdir(dirname(out), { recursive: true });
-await writeFile(out, page);
+
+await mkdir(out, { recursive: true });
+await build("template.html", "style.css", "main.ts");
+await build("study_template.html", "study/style.css", "study/main.ts");

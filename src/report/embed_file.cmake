@@ -1,4 +1,5 @@
-# cmake -DINPUT=FILE -DOUTPUT=FILE.cpp -P embed_file.cmake: a source that holds the bytes of a file.
+# cmake -DINPUT=FILE -DOUTPUT=FILE.cpp -DFUNCTION=NAME -P embed_file.cmake: a source that holds the bytes of a file, given by a
+# function declared in report/viewer_template.h.
 file(READ ${INPUT} bytes HEX)
 string(REGEX REPLACE "(................................................................)" "\\1\n" bytes "${bytes}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
@@ -12,7 +13,7 @@ ${bytes}
 };
 }  // namespace
 
-std::string_view viewer_template() {
+std::string_view ${FUNCTION}() {
   return {reinterpret_cast<const char*>(bytes), sizeof bytes};
 }
 

@@ -1,5 +1,5 @@
-# Builds the page of the report from viewer/ (TypeScript, with npm packages by lock file) into
-# generated/viewer/template.html of the build folder, and embeds it into keyblock_report.
+# Builds the pages of the reports from viewer/ (TypeScript, with npm packages by lock file) into generated/viewer/ of the
+# build folder, template.html for a run and study_template.html for a study, and embeds them into keyblock_report.
 # The packages are installed in the build folder, so that build folders do not disturb each other.
 find_program(NODE_EXECUTABLE NAMES node nodejs)
 find_program(NPM_EXECUTABLE npm)
@@ -10,9 +10,8 @@ endif()
 
 set(viewer_source ${PROJECT_SOURCE_DIR}/viewer)
 set(viewer_build ${PROJECT_BINARY_DIR}/viewer)
-set(viewer_template ${PROJECT_BINARY_DIR}/generated/viewer/template.html)
-set(viewer_embedded ${PROJECT_BINARY_DIR}/generated/viewer/template.cpp)
-file(GLOB viewer_files CONFIGURE_DEPENDS ${viewer_source}/src/*)
+set(viewer_generated ${PROJECT_BINARY_DIR}/generated/viewer)
+file(GLOB_RECURSE viewer_files CONFIGURE_DEPENDS ${viewer_source}/src/*)
 
 add_custom_command(
   OUTPUT ${viewer_build}/installed
@@ -24,15 +23,22 @@ add_custom_command(
   COMMENT "Installing the npm packages of the report's page"
   VERBATIM)
 add_custom_command(
-  OUTPUT ${viewer_template}
-  COMMAND ${NODE_EXECUTABLE} ${viewer_source}/build.mjs --packages ${viewer_build}/node_modules --out ${viewer_template}
+  OUTPUT ${viewer_generated}/template.html ${viewer_generated}/study_template.html
+  COMMAND ${NODE_EXECUTABLE} ${viewer_source}/build.mjs --packages ${viewer_build}/node_modules --out ${viewer_generated}
   DEPENDS ${viewer_build}/installed ${viewer_source}/build.mjs ${viewer_files}
-  COMMENT "Bundling the report's page"
+  COMMENT "Bundling the reports' pages"
   VERBATIM)
-add_custom_command(
-  OUTPUT ${viewer_embedded}
-  COMMAND ${CMAKE_COMMAND} -DINPUT=${viewer_template} -DOUTPUT=${viewer_embedded}
-          -P ${CMAKE_CURRENT_LIST_DIR}/embed_file.cmake
-  DEPENDS ${viewer_template} ${CMAKE_CURRENT_LIST_DIR}/embed_file.cmake
-  VERBATIM)
-target_sources(keyblock_report PRIVATE ${viewer_embedded})
+
+# embed_page(FILE FUNCTION): FILE of the bundled pages, given by a function of viewer_template.h.
+function(embed_page page function)
+  set(embedded ${viewer_generated}/${function}.cpp)
+  add_custom_command(
+    OUTPUT ${embedded}
+    COMMAND ${CMAKE_COMMAND} -DINPUT=${viewer_generated}/${page} -DOUTPUT=${embedded} -DFUNCTION=${function}
+            -P ${PROJECT_SOURCE_DIR}/src/report/embed_file.cmake
+    DEPENDS ${viewer_generated}/${page} ${PROJECT_SOURCE_DIR}/src/report/embed_file.cmake
+    VERBATIM)
+  target_sources(keyblock_report PRIVATE ${embedded})
+endfunction()
+embed_page(template.html viewer_template)
+embed_page(study_template.html study_template)

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/page_data.h"
+#include "report/page_template.h"
 
 namespace keyblock::report {
 
@@ -140,10 +141,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
        {"stage", "time", "iterations", "step_size", "penetration", "max_displacement", "closed_contacts",
         "kinetic", "strain", "gravity", "contact", "friction", "damping", "numerical", "input", "residual"}},
       {"arrays", entries}};
-  const std::string text = header.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  std::string safe;
-  for (const char c : text) c == '<' ? safe += "\\u003c" : safe += c;
-  return safe;
+  return script_json(header.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 PageData make_page_data(const results::RunData& run) {

@@ -76,6 +76,14 @@ struct MarginalCheck {
   double share = 0.5;     ///< of the larger of both fallen areas
 };
 
+/// When enough realizations are there: the confidence interval of the mean of a measure is narrow enough in every
+/// combination. Where both limits are given, one of them is enough.
+struct Precision {
+  std::string measure;               ///< by its name in summary.json
+  std::optional<double> half_width;  ///< half the width is at most this share of the mean
+  std::optional<double> width;       ///< the width is at most this, in the unit of the measure
+};
+
 /// The runs that are there, with what a reader needs to group them.
 struct StudyData {
   std::string title;
@@ -86,6 +94,7 @@ struct StudyData {
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;  ///< given when variants are run
   double confidence = 0.95;
+  std::optional<Precision> precision;  ///< given when realizations are added until it is reached
   MapGrid grid;
   std::vector<std::vector<Vec2>> outlines;  ///< of the excavations, real coordinates
   std::vector<RunResult> runs;              ///< by realization, then combination, then variant

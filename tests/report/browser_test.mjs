@@ -1,99 +1,24 @@
 // browser_test.mjs SAMPLES NODE_MODULES: opens the sample reports in headless Chromium and uses them as a reader would.
 // Screenshots are left in SAMPLES/screenshots. Exit code 77: skipped, as there is no Chromium.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, mkdtempSync, rmSync, statSync } from "node:fs";
-import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
+import { statSync } from "node:fs";
+import { join } from "node:path";
+import {
+  close,
+  openers,
+  run,
+  settle,
+  sidewaysOverflow,
+  text,
+} from "./browser.mjs";
 
-const [samples, packages] = process.argv.slice(2).map((path) => resolve(path));
-const executablePath = [
-  "/usr/bin/chromium",
-  "/usr/bin/chromium-browser",
-  "/usr/bin/google-chrome",
-].find(existsSync);
-if (!executablePath) {
-  console.log(
-    "SKIPPED: no Chromium is installed, so the report has not been opened in a browser",
-  );
-  process.exit(process.env.CI ? 1 : 77);
-}
-const { chromium } = createRequire(join(packages, "index.js"))(
-  "playwright-core",
-);
-const screenshots = join(samples, "screenshots");
-mkdirSync(screenshots, { recursive: true });
-const profile = mkdtempSync(join(tmpdir(), "keyblock-browser-"));
-const context = await chromium.launchPersistentContext(profile, {
-  executablePath,
-  headless: true,
-  args: [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-  ],
-});
-
-/** Opens a sample; the returned `complaints` collect what must not happen. */
-async function open(
-  name,
-  { width = 1400, height = 1000, colorScheme = "light" } = {},
-) {
-  const page = await context.newPage();
-  await page.setViewportSize({ width, height });
-  await page.emulateMedia({ colorScheme });
-  const complaints = [];
-  page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type()))
-      complaints.push(`console ${message.type()}: ${message.text()}`);
-  });
-  page.on("pageerror", (error) => complaints.push(`uncaught: ${error}`));
-  page.on("requestfailed", (request) =>
-    complaints.push(`failed request: ${request.url()}`),
-  );
-  page.on("request", (request) => {
-    if (!/^(file|data|blob):/.test(request.url()))
-      complaints.push(`request to the network: ${request.url()}`);
-  });
-  const begin = performance.now();
-  await page.goto(pathToFileURL(join(samples, name, "report.html")).href);
-  await page.waitForFunction(
-    () => document.documentElement.dataset.ready === "true",
-    null,
-    {
-      timeout: 20_000,
-    },
-  );
-  page.complaints = complaints;
-  page.seconds = (performance.now() - begin) / 1000;
-  return page;
-}
-
-async function close(page) {
-  assert.deepEqual(page.complaints, []);
-  await page.close();
-}
-
+const { samples, screenshots, open, shoot } = await openers();
 const canvas = ".canvas-box canvas";
 const pixels = (page, selector = canvas) =>
   page.evaluate((s) => document.querySelector(s).toDataURL(), selector);
 const label = (page) => page.textContent("#time-label");
 const marker = (page, plot = ".aside .now-line") =>
   page.evaluate((s) => document.querySelector(s).style.transform, plot);
-const settle = (page) =>
-  page.evaluate(
-    () =>
-      new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))),
-  );
-const text = (page, selector) =>
-  page.evaluate((s) => document.querySelector(s)?.innerText ?? "", selector);
-const sidewaysOverflow = (page) =>
-  page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 
 async function slideTo(page, frame) {
   await page.$eval(
@@ -105,15 +30,6 @@ async function slideTo(page, frame) {
     frame,
   );
   await settle(page);
-}
-
-/** Brings every plot into being and saves the whole page. */
-async function shoot(page, name) {
-  await settle(page);
-  await page.screenshot({
-    path: join(screenshots, `${name}.png`),
-    fullPage: true,
-  });
 }
 
 const tests = {
@@ -392,17 +308,4 @@ const tests = {
   },
 };
 
-let failed = 0;
-for (const [name, run] of Object.entries(tests)) {
-  try {
-    await run();
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    failed++;
-    console.log(`FAILED  ${name}\n${error.stack}`);
-  }
-}
-await context.close();
-rmSync(profile, { recursive: true, force: true });
-console.log(`${Object.keys(tests).length - failed} passed, ${failed} failed`);
-process.exitCode = failed > 0 ? 1 : 0;
+await run(tests);

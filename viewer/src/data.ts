@@ -81,7 +81,15 @@ export interface Header {
   displacement_quantum: number;
   stress_quantum: number;
   step_columns: string[];
-  arrays: { name: string; type: string; offset: number; count: number }[];
+  arrays: ArrayEntry[];
+}
+
+/** Where an array lies in the unpacked bytes. */
+export interface ArrayEntry {
+  name: string;
+  type: string;
+  offset: number;
+  count: number;
 }
 
 const readers = {
@@ -96,7 +104,7 @@ type Readers = typeof readers;
 /** The unpacked arrays, by name. */
 export class Arrays {
   constructor(
-    private readonly entries: Header["arrays"],
+    private readonly entries: ArrayEntry[],
     private readonly buffer: ArrayBuffer,
   ) {}
 
@@ -142,8 +150,12 @@ export async function unpack(base64: string): Promise<ArrayBuffer> {
   return new Response(stream).arrayBuffer();
 }
 
-export async function readPage(): Promise<{ header: Header; arrays: Arrays }> {
+/** The header and the arrays of this page. */
+export async function readPage<H extends { arrays: ArrayEntry[] } = Header>(): Promise<{
+  header: H;
+  arrays: Arrays;
+}> {
   const text = (id: string) => document.getElementById(id)?.textContent?.trim() ?? "";
-  const header = JSON.parse(text("header")) as Header;
+  const header = JSON.parse(text("header")) as H;
   return { header, arrays: new Arrays(header.arrays, await unpack(text("arrays"))) };
 }

@@ -56,3 +56,43 @@ export function section(id: string, title: string, ...children: Child[]): HTMLEl
 export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
+
+/** A table in a box that scrolls sideways where the page is too narrow. */
+export function tableBox(caption: string, head: Child[][], rows: Child[][], className = ""): HTMLElement {
+  const header = h("thead");
+  for (const cells of head) header.append(h("tr", {}, ...cells));
+  const body = h("tbody");
+  for (const cells of rows) body.append(h("tr", {}, ...cells));
+  const table = h("table", { class: className }, h("caption", {}, caption), header, body);
+  return h("div", { class: "table-box", tabindex: "0", role: "region", "aria-label": caption }, table);
+}
+
+/** The head of a column, with its unit under its name. */
+export function column(text: string, unit = "", isText = false): HTMLElement {
+  return h(
+    "th",
+    { scope: "col", class: isText ? "text" : "" },
+    text,
+    unit ? h("span", { class: "unit" }, unit) : null,
+  );
+}
+
+/** Names with what they are, side by side where there is room. */
+export function factList(facts: [string, Child][]): HTMLElement {
+  const list = h("dl", { class: "facts" });
+  for (const [name, value] of facts) list.append(h("div", {}, h("dt", {}, name), h("dd", {}, value)));
+  return list;
+}
+
+/** svg("path", { d: "M0 0" }): as h, for the elements of a drawing. */
+export function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string | number> = {},
+  ...children: Child[]
+): SVGElementTagNameMap[K] {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  for (const child of children)
+    if (child !== null && child !== undefined) element.append(child instanceof Node ? child : String(child));
+  return element;
+}

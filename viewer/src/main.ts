@@ -3,6 +3,7 @@ import { Clock } from "./clock";
 import { readPage, type Header } from "./data";
 import { h, section, type Child } from "./dom";
 import { Fields } from "./fields";
+import { findingList } from "./findings";
 import { NowFacts } from "./now_facts";
 import { count, integer } from "./format";
 import { Pictures } from "./pictures";
@@ -10,13 +11,7 @@ import type { Plot } from "./plots";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { Run } from "./run";
 import { cuttingFacts, damageTable, movingTable, qualityTable, runFacts, stageTable } from "./tables";
-import { findings, type Finding } from "./verdict";
-
-function findingList(items: readonly Finding[]): HTMLElement {
-  const list = h("ul", { class: "findings" });
-  for (const { grade, text } of items) list.append(h("li", { class: `finding ${grade}` }, text));
-  return list;
-}
+import { findings } from "./verdict";
 
 function head(header: Header): HTMLElement {
   const { model } = header;

@@ -1,33 +1,8 @@
 import type { Damage, Stage } from "./data";
-import { h, type Child } from "./dom";
+import { column, factList, h, tableBox, type Child } from "./dom";
 import { count, duration, fixed, integer, signed, significant } from "./format";
 import type { Run } from "./run";
 import { checks, excavatedArea, marginalStages } from "./verdict";
-
-/** A table in a box that scrolls sideways where the page is too narrow. */
-function tableBox(caption: string, head: Child[][], rows: Child[][], className = ""): HTMLElement {
-  const header = h("thead");
-  for (const cells of head) header.append(h("tr", {}, ...cells));
-  const body = h("tbody");
-  for (const cells of rows) body.append(h("tr", {}, ...cells));
-  const table = h("table", { class: className }, h("caption", {}, caption), header, body);
-  return h("div", { class: "table-box", tabindex: "0", role: "region", "aria-label": caption }, table);
-}
-
-function column(text: string, unit = "", isText = false): HTMLElement {
-  return h(
-    "th",
-    { scope: "col", class: isText ? "text" : "" },
-    text,
-    unit ? h("span", { class: "unit" }, unit) : null,
-  );
-}
-
-function factList(facts: [string, Child][]): HTMLElement {
-  const list = h("dl", { class: "facts" });
-  for (const [name, value] of facts) list.append(h("div", {}, h("dt", {}, name), h("dd", {}, value)));
-  return list;
-}
 
 export function runFacts(run: Run): HTMLElement {
   const { model, run: record } = run.header;

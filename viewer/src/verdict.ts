@@ -1,13 +1,7 @@
 import type { Stage } from "./data";
+import type { Finding } from "./findings";
 import { count, fixed, integer, length, list, significant } from "./format";
 import { Status, type Run } from "./run";
-
-export type Grade = "attention" | "plain";
-
-export interface Finding {
-  grade: Grade;
-  text: string;
-}
 
 const quoted = (name: string) => `“${name}”`;
 

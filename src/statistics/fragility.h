@@ -1,0 +1,81 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "statistics/bootstrap.h"
+#include "statistics/interval.h"
+
+/// Fragility: the probability P(x) that damage exceeds a level under shaking of intensity x, as a lognormal curve
+///
+///   P(x) = Φ(ln(x/θ)/β)      θ: median, the intensity with P = ½;  β: logarithmic standard deviation
+///
+/// fitted by maximum likelihood: n_j runs at intensity x_j, of which z_j exceed the level,
+///
+///   ln L = Σ_j z_j ln P(x_j) + (n_j − z_j) ln(1 − P(x_j))
+///
+/// (Shinozuka, Feng, Lee & Naganuma 2000, "Statistical analysis of fragility curves"; Baker 2015, "Efficient analytical
+/// fragility function fitting using dynamic structural analysis", eq. 11).
+namespace keyblock::statistics {
+
+/// All runs at one intensity.
+struct Stripe {
+  double intensity = 0.0;
+  double runs = 0.0;      ///< n_j
+  double exceeded = 0.0;  ///< z_j
+};
+
+enum class FragilityStatus {
+  fitted,
+  no_data,          ///< no run with an intensity above zero
+  one_intensity,    ///< all runs at the same intensity: a point, no curve
+  never_exceeded,   ///< z = 0 everywhere
+  always_exceeded,  ///< z = n everywhere
+  separated,  ///< one intensity parts exceeded from not exceeded: L grows without bound as β → 0, and θ may be anywhere
+  ///< between two intensities
+  not_increasing,  ///< more shaking does not go with more damage: the likeliest curve is flat or falls
+};
+
+const char* name_of(FragilityStatus status);
+
+struct FragilityFit {
+  FragilityStatus status = FragilityStatus::no_data;
+  double theta =
+      not_a_number;  ///< fitted; separated: geometric mean of the two intensities; ∞ never, 0 always exceeded
+  double beta = not_a_number;   ///< fitted; separated: 0
+  double share = not_a_number;  ///< Σ z / Σ n
+  /// The likeliest curve that does not fall: for what is not fitted, a step or a constant. Not a number without data
+  /// or at one intensity.
+  [[nodiscard]] double probability(double intensity) const;
+};
+
+/// Stripes of intensity above zero, ascending; empty ones (runs = 0) are passed over. With η = a + b ln x, b = 1/β and
+/// θ = exp(−a/b), ln L is concave; Fisher scoring with step halving finds its maximum from any start.
+FragilityFit fit_fragility(std::span<const Stripe> stripes);
+
+/// A run, as seen by a fragility curve.
+struct Observation {
+  double intensity = 0.0;
+  bool exceeded = false;
+  int cluster = 0;  ///< the realization: the same rock at all intensities, hence not independent
+};
+
+/// The fit with its band. The bootstrap draws whole clusters, so that what the runs of one realization have in common
+/// does not make the band too narrow. Resamples without a fit enter the band with their step or constant, and are left
+/// out of the intervals of θ and β. Where all runs together give no
+/// fit, or with fewer than smallest_bootstrap_sample clusters, there is neither band nor interval.
+struct FragilityCurve {
+  FragilityFit fit;
+  Estimate theta, beta;
+  std::vector<Stripe> stripes;
+  std::vector<double> intensity;      ///< as asked for
+  std::vector<Estimate> probability;  ///< there, pointwise band; not a number where there is no curve
+  std::size_t clusters = 0;
+  std::size_t left_out = 0;          ///< runs without shaking: ln 0 is no place on the curve
+  std::size_t resamples_fitted = 0;  ///< of all resamples
+};
+
+FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
+                               double confidence, std::size_t resamples = usual_resamples);
+
+}  // namespace keyblock::statistics

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "statistics/proportion.h"
+#include "study/summaries.h"
+
+namespace keyblock::study {
+
+namespace {
+
+/// Points of a drawn curve, evenly spaced in the logarithm of the intensity.
+constexpr std::size_t curve_points = 61;
+/// By what factor it is drawn beyond the weakest and the strongest shaking.
+constexpr double beyond = 1.6;
+
+struct Group {
+  std::vector<std::string> values;
+  std::vector<std::size_t> combinations;
+};
+
+std::vector<Group> grouped(const Summary& summary) {
+  std::vector<Group> groups;
+  std::map<std::vector<std::string>, std::size_t> place;
+  for (std::size_t c = 0; c < summary.combinations.size(); ++c) {
+    std::vector<std::string> values = summary.combinations[c].values;
+    for (std::size_t a = 0; a < std::min(values.size(), summary.shaking_axis.size()); ++a)
+      if (summary.shaking_axis[a]) values[a].clear();
+    const auto [found, fresh] = place.try_emplace(values, groups.size());
+    if (fresh) groups.push_back({values, {}});
+    groups[found->second].combinations.push_back(c);
+  }
+  return groups;
+}
+
+/// Intensity to sort by; combinations without runs come last.
+double strength(const Summary& summary, std::size_t combination, std::size_t intensity) {
+  const double x = summary.combinations[combination].intensity[intensity];
+  return std::isnan(x) ? HUGE_VAL : x;
+}
+
+std::vector<double> curve_grid(const std::vector<statistics::Observation>& runs) {
+  double low = HUGE_VAL, high = 0.0;
+  for (const auto& run : runs) {
+    if (run.intensity > 0.0) low = std::min(low, run.intensity);
+    high = std::max(high, run.intensity);
+  }
+  std::vector<double> grid;
+  if (!(high > low)) return grid;
+  low /= beyond;
+  high *= beyond;
+  for (std::size_t k = 0; k < curve_points; ++k)
+    grid.push_back(low *
+                   std::pow(high / low, static_cast<double>(k) / static_cast<double>(curve_points - 1)));
+  return grid;
+}
+
+}  // namespace
+
+std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summary& summary) {
+  std::vector<FragilityGroup> result;
+  if (std::find(summary.shaking_axis.begin(), summary.shaking_axis.end(), true) == summary.shaking_axis.end())
+    return result;
+  std::vector<Group> groups = grouped(summary);
+  for (std::size_t l = 0; l < study.levels.size(); ++l) {
+    const auto measure = find_measure(study.levels[l].measure);
+    if (!measure) continue;
+    for (std::size_t i = 0; i < intensities().size(); ++i) {
+      for (Group& group : groups) {
+        std::stable_sort(
+            group.combinations.begin(), group.combinations.end(),
+            [&](std::size_t a, std::size_t b) { return strength(summary, a, i) < strength(summary, b, i); });
+        std::vector<statistics::Observation> runs;
+        for (const std::size_t c : group.combinations) {
+          for (const std::size_t r : summary.combinations[c].runs) {
+            const Measured m = measured(study, study.runs[r]);
+            runs.push_back({m.intensity[i],
+                            measures()[*measure].of(m.stage->damage) > study.levels[l].threshold,
+                            study.runs[r].realization});
+          }
+        }
+        FragilityGroup made{l, i, group.values, group.combinations, {}, {}};
+        made.curve = statistics::fragility_curve(runs, curve_grid(runs), study.confidence);
+        for (const statistics::Stripe& s : made.curve.stripes)
+          made.points.push_back(statistics::proportion(static_cast<std::size_t>(s.exceeded),
+                                                       static_cast<std::size_t>(s.runs), study.confidence));
+        result.push_back(std::move(made));
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace keyblock::study

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "study/run_result.h"
+
+namespace keyblock::study {
+
+/// A measure of damage, as summary.json has it.
+struct Measure {
+  std::string name;   ///< "fallen_area_m2"
+  std::string title;  ///< "fallen area"
+  std::string unit;   ///< "m²"; empty for counts and ratios
+  double (*of)(const simulation::Damage&);
+};
+
+/// All measures, in the order of summary.json.
+std::span<const Measure> measures();
+
+/// Place of a measure in measures() by its name; none when there is no such measure.
+std::optional<std::size_t> find_measure(std::string_view name);
+
+/// Kinds of intensity of shaking.
+struct Intensity {
+  std::string name;   ///< "pga_m_s2"
+  std::string title;  ///< "PGA"
+  std::string unit;   ///< "m/s²"
+  double StageMeasures::*of;
+};
+std::span<const Intensity> intensities();
+
+/// The value on an axis for people and tables: a TOML string without escapes loses its quotes, all else stays.
+std::string plain_value(std::string_view toml);
+
+}  // namespace keyblock::study

@@ -1,0 +1,223 @@
+#include "study/study_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "study/precision.h"
+
+namespace keyblock::study {
+
+namespace {
+
+using nlohmann::ordered_json;
+using statistics::Estimate;
+
+/// Six significant digits; null for what is not finite.
+ordered_json number(double x) {
+  if (!std::isfinite(x)) return nullptr;
+  if (x == std::floor(x) && std::abs(x) < 1e6) return static_cast<int>(x);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return std::strtod(text, nullptr);
+}
+
+template <typename Range, typename Member>
+ordered_json column(const Range& range, Member member) {
+  ordered_json values = ordered_json::array();
+  for (const auto& x : range) values.push_back(number(member(x)));
+  return values;
+}
+
+ordered_json estimate(const Estimate& e) {
+  return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
+}
+
+/// Columns NAME, low, high.
+void add_band(ordered_json& json, const char* name, const std::vector<Estimate>& estimates) {
+  json[name] = column(estimates, [](const Estimate& e) { return e.value; });
+  json["low"] = column(estimates, [](const Estimate& e) { return e.low; });
+  json["high"] = column(estimates, [](const Estimate& e) { return e.high; });
+}
+
+ordered_json measure_json(const MeasureSummary& m) {
+  const statistics::Description& d = m.description;
+  ordered_json quantiles = ordered_json::array();
+  for (std::size_t q = 0; q < summary_quantiles.size(); ++q) {
+    ordered_json row{{"p", summary_quantiles[q]}};
+    row.update(estimate(d.quantiles[q]));
+    quantiles.push_back(row);
+  }
+  ordered_json running{{"n", m.running.n}};
+  add_band(running, "mean", m.running.mean);
+  ordered_json exceedance{{"value", column(m.exceedance.value, [](double v) { return v; })}};
+  add_band(exceedance, "probability", m.exceedance.above);
+  return {{"n", d.n},
+          {"mean", estimate(d.mean)},
+          {"std", estimate(d.standard_deviation)},
+          {"min", number(d.min)},
+          {"max", number(d.max)},
+          {"quantiles", quantiles},
+          {"running_mean", running},
+          {"exceedance", exceedance}};
+}
+
+ordered_json texts(const std::vector<std::string>& values) {
+  ordered_json result = ordered_json::array();
+  for (const std::string& v : values) result.push_back(plain_value(v));
+  return result;
+}
+
+ordered_json key_of(const StudyData& study, const std::optional<std::size_t>& run) {
+  return run ? ordered_json(study.runs[*run].key) : ordered_json(nullptr);
+}
+
+ordered_json combination_json(const StudyData& study, const Combination& c) {
+  ordered_json json{{"values", texts(c.values)}, {"n", c.runs.size()}, {"failed", c.failed}};
+  for (std::size_t k = 0; k < intensities().size(); ++k) json[intensities()[k].name] = number(c.intensity[k]);
+  json["worst"] = key_of(study, c.worst);
+  json["median"] = key_of(study, c.median);
+  json["checked"] = c.checked;
+  json["marginal"] = c.marginal;
+  ordered_json levels = ordered_json::array();
+  for (std::size_t l = 0; l < c.levels.size(); ++l) {
+    ordered_json row{{"name", study.levels[l].name}, {"exceeded", c.levels[l].exceeded}};
+    const Estimate& p = c.levels[l].probability;
+    row["probability"] = number(p.value);
+    row["low"] = number(p.low);
+    row["high"] = number(p.high);
+    levels.push_back(row);
+  }
+  json["levels"] = levels;
+  ordered_json all = ordered_json::object();
+  for (std::size_t m = 0; m < c.measures.size(); ++m) all[measures()[m].name] = measure_json(c.measures[m]);
+  json["measures"] = all;
+  json["map"] = {{"n", c.mapped}, {"fallen", c.fallen}, {"fallen_or_loosened", c.disturbed}};
+  return json;
+}
+
+ordered_json fragility_json(const StudyData& study, const Summary& summary, const FragilityGroup& group) {
+  ordered_json values = ordered_json::array();
+  for (std::size_t a = 0; a < group.values.size(); ++a) {
+    const bool shaking = a < summary.shaking_axis.size() && summary.shaking_axis[a];
+    values.push_back(shaking ? ordered_json(nullptr) : ordered_json(plain_value(group.values[a])));
+  }
+  const auto& curve = group.curve;
+  ordered_json points{
+      {"intensity", column(curve.stripes, [](const statistics::Stripe& s) { return s.intensity; })},
+      {"n", column(curve.stripes, [](const statistics::Stripe& s) { return s.runs; })},
+      {"exceeded", column(curve.stripes, [](const statistics::Stripe& s) { return s.exceeded; })}};
+  add_band(points, "probability", group.points);
+  ordered_json band{{"intensity", column(curve.intensity, [](double x) { return x; })}};
+  add_band(band, "probability", curve.probability);
+  return {{"level", study.levels[group.level].name},
+          {"intensity", intensities()[group.intensity].name},
+          {"values", values},
+          {"combinations", group.combinations},
+          {"status", statistics::name_of(curve.fit.status)},
+          {"theta", estimate(curve.theta)},
+          {"beta", estimate(curve.beta)},
+          {"realizations", curve.clusters},
+          {"without_shaking", curve.left_out},
+          {"resamples_fitted", curve.resamples_fitted},
+          {"points", points},
+          {"curve", band}};
+}
+
+ordered_json failed_json(const StudyData& study) {
+  ordered_json rows = ordered_json::array();
+  for (const RunResult& run : study.runs) {
+    if (measured(study, run).stage != nullptr) continue;
+    rows.push_back({{"key", run.key},
+                    {"realization", run.realization},
+                    {"values", texts(run.values)},
+                    {"variant", run.variant},
+                    {"error", run.error}});
+  }
+  return rows;
+}
+
+ordered_json points(const std::vector<Vec2>& outline) {
+  ordered_json rows = ordered_json::array();
+  for (const Vec2 p : outline) rows.push_back({number(p.x), number(p.y)});
+  return rows;
+}
+
+ordered_json head(const StudyData& study, const Summary& summary) {
+  ordered_json axes = ordered_json::array();
+  for (std::size_t a = 0; a < study.axes.size(); ++a)
+    axes.push_back({{"key", study.axes[a].key},
+                    {"values", texts(study.axes[a].values)},
+                    {"shaking", static_cast<bool>(summary.shaking_axis[a])}});
+  ordered_json levels = ordered_json::array();
+  for (const DamageLevel& level : study.levels)
+    levels.push_back({{"name", level.name}, {"measure", level.measure}, {"threshold", level.threshold}});
+  ordered_json units = ordered_json::array();
+  for (const Measure& m : measures())
+    units.push_back({{"name", m.name}, {"title", m.title}, {"unit", m.unit}});
+  ordered_json kinds = ordered_json::array();
+  for (const Intensity& i : intensities())
+    kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}});
+  int realizations = 0;
+  {
+    std::vector<int> all;
+    for (const RunResult& run : study.runs) all.push_back(run.realization);
+    std::sort(all.begin(), all.end());
+    realizations = static_cast<int>(std::unique(all.begin(), all.end()) - all.begin());
+  }
+  ordered_json json{
+      {"title", study.title},
+      {"version", study.version},
+      {"seed", study.seed},
+      {"realizations", realizations},
+      {"runs", {{"planned", study.planned}, {"done", summary.done}, {"failed", summary.failed}}},
+      {"stage", study.stage},
+      {"confidence", study.confidence},
+      {"bootstrap_resamples", statistics::usual_resamples},
+      {"axes", axes},
+      {"levels", levels},
+      {"measures", units},
+      {"intensities", kinds}};
+  json["precision"] = nullptr;
+  if (study.precision) {
+    const auto limit = [](const std::optional<double>& x) {
+      return x ? ordered_json(*x) : ordered_json(nullptr);
+    };
+    json["precision"] = {{"measure", study.precision->measure},
+                         {"half_width", limit(study.precision->half_width)},
+                         {"width", limit(study.precision->width)},
+                         {"reached", precise_enough(study)}};
+  }
+  json["marginal"] = nullptr;
+  if (study.marginal)
+    json["marginal"] = {{"friction_degrees", study.marginal->friction},
+                        {"share", study.marginal->share},
+                        {"smallest_area_m2", smallest_marginal_area}};
+  return json;
+}
+
+}  // namespace
+
+std::string study_json(const StudyData& study, const Summary& summary) {
+  ordered_json json = head(study, summary);
+  ordered_json combinations = ordered_json::array();
+  for (const Combination& c : summary.combinations) combinations.push_back(combination_json(study, c));
+  json["combinations"] = std::move(combinations);
+  ordered_json fragility = ordered_json::array();
+  for (const FragilityGroup& group : summary.fragility)
+    fragility.push_back(fragility_json(study, summary, group));
+  json["fragility"] = std::move(fragility);
+  json["grid"] = {{"corner", {number(study.grid.corner.x), number(study.grid.corner.y)}},
+                  {"cell_m", number(study.grid.cell)},
+                  {"columns", study.grid.columns},
+                  {"rows", study.grid.rows}};
+  ordered_json outlines = ordered_json::array();
+  for (const auto& outline : study.outlines) outlines.push_back(points(outline));
+  json["outlines"] = std::move(outlines);
+  json["failed"] = failed_json(study);
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace keyblock::study

@@ -1,0 +1,217 @@
+#include "study/summaries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "core/index.h"
+#include "statistics/proportion.h"
+
+namespace keyblock::study {
+
+namespace {
+
+/// Places of values on their axes: combinations sort as the grid runs. A value that no axis has comes last.
+std::vector<std::size_t> places(const StudyData& study, const RunResult& run) {
+  std::vector<std::size_t> result;
+  for (std::size_t a = 0; a < run.values.size(); ++a) {
+    std::size_t place = 0;
+    if (a < study.axes.size()) {
+      const auto& values = study.axes[a].values;
+      place =
+          static_cast<std::size_t>(std::find(values.begin(), values.end(), run.values[a]) - values.begin());
+    }
+    result.push_back(place);
+  }
+  return result;
+}
+
+/// The resamples for each size of sample, drawn once.
+class ResampleStore {
+ public:
+  const statistics::Resamples& of(std::size_t n) { return store_.try_emplace(n, n).first->second; }
+
+ private:
+  std::map<std::size_t, statistics::Resamples> store_;
+};
+
+void choose_worst_and_median(const StudyData& study, Combination& c) {
+  if (c.runs.empty()) return;
+  std::vector<std::size_t> order = c.runs;
+  const auto rank = [&](std::size_t r) {
+    const simulation::Damage& d = measured(study, study.runs[r]).stage->damage;
+    return std::tuple(d.fallen_area, d.loosened_area, d.slip_max, -study.runs[r].realization);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  c.worst = order.back();
+  c.median = order[(order.size() - 1) / 2];
+}
+
+void describe_measures(const StudyData& study, ResampleStore& store, Combination& c) {
+  const statistics::Resamples& resamples = store.of(c.runs.size());
+  std::vector<const simulation::Damage*> damages;
+  for (const std::size_t r : c.runs) damages.push_back(&measured(study, study.runs[r]).stage->damage);
+  for (const Measure& measure : measures()) {
+    std::vector<double> values;
+    for (const simulation::Damage* d : damages) values.push_back(measure.of(*d));
+    MeasureSummary summary;
+    summary.running = statistics::running_mean(values, study.confidence);
+    std::sort(values.begin(), values.end());
+    summary.description = statistics::describe(values, summary_quantiles, resamples, study.confidence);
+    summary.exceedance = statistics::exceedance_curve(values, study.confidence);
+    c.measures.push_back(std::move(summary));
+  }
+}
+
+void count_levels(const StudyData& study, Combination& c) {
+  for (const DamageLevel& level : study.levels) {
+    LevelSummary summary;
+    const auto measure = find_measure(level.measure);
+    std::size_t n = 0;
+    if (measure) {
+      n = c.runs.size();
+      for (const std::size_t r : c.runs)
+        if (measures()[*measure].of(measured(study, study.runs[r]).stage->damage) > level.threshold)
+          ++summary.exceeded;
+    }
+    summary.probability = statistics::proportion(summary.exceeded, n, study.confidence);
+    c.levels.push_back(summary);
+  }
+}
+
+void count_cells(const StudyData& study, Combination& c) {
+  using simulation::BlockStatus;
+  if (study.grid.columns <= 0 || study.grid.rows <= 0) return;
+  const std::size_t cells = at(study.grid.columns) * at(study.grid.rows);
+  std::vector<int> rock(cells, 0);
+  c.fallen.assign(cells, 0);
+  c.disturbed.assign(cells, 0);
+  for (const std::size_t r : c.runs) {
+    const auto& map = study.runs[r].map;
+    if (map.size() != cells) continue;
+    ++c.mapped;
+    for (std::size_t k = 0; k < cells; ++k) {
+      rock[k] += map[k] != BlockStatus::excavated ? 1 : 0;
+      c.fallen[k] += map[k] == BlockStatus::fallen ? 1 : 0;
+      c.disturbed[k] += map[k] == BlockStatus::fallen || map[k] == BlockStatus::loosened ? 1 : 0;
+    }
+  }
+  for (std::size_t k = 0; k < cells; ++k)
+    if (rock[k] == 0) c.fallen[k] = c.disturbed[k] = -1;
+}
+
+void average_intensity(const StudyData& study, Combination& c) {
+  for (const std::size_t r : c.runs) {
+    const Measured m = measured(study, study.runs[r]);
+    for (std::size_t k = 0; k < m.intensity.size(); ++k) c.intensity[k] += m.intensity[k];
+  }
+  for (double& x : c.intensity)
+    x = c.runs.empty() ? statistics::not_a_number : x / static_cast<double>(c.runs.size());
+}
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && std::string_view(text).substr(text.size() - end.size()) == end;
+}
+
+/// An axis is one of shaking when its key says so, or when two combinations that differ on it alone differ in intensity.
+std::vector<bool> shaking_axes(const StudyData& study, const std::vector<Combination>& combinations) {
+  std::vector<bool> result;
+  for (std::size_t a = 0; a < study.axes.size(); ++a) {
+    bool shaking = ends_with(study.axes[a].key, ".scale") || ends_with(study.axes[a].key, ".motion");
+    std::map<std::vector<std::string>, std::array<double, 3>> seen;
+    for (const Combination& c : combinations) {
+      if (shaking || c.runs.empty() || a >= c.values.size()) continue;
+      std::vector<std::string> others = c.values;
+      others[a].clear();
+      const auto& first = seen.try_emplace(others, c.intensity).first->second;
+      for (std::size_t k = 0; k < first.size(); ++k)
+        shaking = shaking || std::abs(first[k] - c.intensity[k]) > 1e-6 * std::max(first[k], c.intensity[k]);
+    }
+    result.push_back(shaking);
+  }
+  return result;
+}
+
+}  // namespace
+
+Measured measured(const StudyData& study, const RunResult& run) {
+  Measured result;
+  if (!run.error.empty() || run.stages.empty()) return result;
+  for (const StageMeasures& stage : run.stages) {
+    for (std::size_t k = 0; k < result.intensity.size(); ++k)
+      result.intensity[k] = std::max(result.intensity[k], stage.*(intensities()[k].of));
+    if (study.stage.empty() ? &stage == &run.stages.back() : stage.name == study.stage) {
+      result.stage = &stage;
+      return result;
+    }
+  }
+  return {};
+}
+
+std::vector<Marginal> marginal_runs(const StudyData& study) {
+  std::vector<Marginal> result(study.runs.size(), Marginal::unknown);
+  if (!study.marginal) return result;
+  std::map<std::pair<int, std::vector<std::string>>, std::size_t> own;
+  for (std::size_t r = 0; r < study.runs.size(); ++r) {
+    const RunResult& run = study.runs[r];
+    if (run.variant.empty() && measured(study, run).stage != nullptr) own[{run.realization, run.values}] = r;
+  }
+  for (const RunResult& run : study.runs) {
+    if (run.variant.empty()) continue;
+    const Measured variant = measured(study, run);
+    const auto found = own.find({run.realization, run.values});
+    if (variant.stage == nullptr || found == own.end()) continue;
+    const double a = measured(study, study.runs[found->second]).stage->damage.fallen_area;
+    const double b = variant.stage->damage.fallen_area;
+    const double change = std::abs(a - b);
+    Marginal& verdict = result[found->second];
+    if (change > study.marginal->share * std::max(a, b) && change > smallest_marginal_area)
+      verdict = Marginal::yes;
+    else if (verdict == Marginal::unknown)
+      verdict = Marginal::no;
+  }
+  return result;
+}
+
+Summary summarize(const StudyData& study) {
+  Summary summary;
+  summary.marginal = marginal_runs(study);
+  summary.combination_of.assign(study.runs.size(), -1);
+  std::map<std::pair<std::vector<std::size_t>, std::vector<std::string>>, std::vector<std::size_t>> groups;
+  for (std::size_t r = 0; r < study.runs.size(); ++r) {
+    const RunResult& run = study.runs[r];
+    groups[{places(study, run), run.values}].push_back(r);
+    const bool done = measured(study, run).stage != nullptr;
+    ++(done ? summary.done : summary.failed);
+  }
+  ResampleStore store;
+  for (const auto& [key, members] : groups) {
+    Combination c;
+    c.values = key.second;
+    for (const std::size_t r : members) {
+      summary.combination_of[r] = static_cast<int>(summary.combinations.size());
+      if (!study.runs[r].variant.empty()) continue;
+      if (measured(study, study.runs[r]).stage != nullptr)
+        c.runs.push_back(r);
+      else
+        ++c.failed;
+      if (summary.marginal[r] != Marginal::unknown) ++c.checked;
+      if (summary.marginal[r] == Marginal::yes) ++c.marginal;
+    }
+    std::stable_sort(c.runs.begin(), c.runs.end(), [&](std::size_t a, std::size_t b) {
+      return study.runs[a].realization < study.runs[b].realization;
+    });
+    average_intensity(study, c);
+    choose_worst_and_median(study, c);
+    describe_measures(study, store, c);
+    count_levels(study, c);
+    count_cells(study, c);
+    summary.combinations.push_back(std::move(c));
+  }
+  summary.shaking_axis = shaking_axes(study, summary.combinations);
+  summary.fragility = fragility_groups(study, summary);
+  return summary;
+}
+
+}  // namespace keyblock::study

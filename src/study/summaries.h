@@ -1,0 +1,84 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "statistics/bootstrap.h"
+#include "statistics/curves.h"
+#include "statistics/fragility.h"
+#include "study/measures.h"
+#include "study/run_result.h"
+
+/// What the runs of a study say together. Definitions, formulas and sources: docs/study-report.md.
+namespace keyblock::study {
+
+inline constexpr std::array<double, 5> summary_quantiles{0.05, 0.25, 0.5, 0.75, 0.95};
+/// A run is marginal only where a variant changes its fallen area by more than this, m².
+inline constexpr double smallest_marginal_area = 0.01;
+
+/// The stage at whose end a run is measured (StudyData::stage, or its last), and the strongest shaking until then.
+/// Nullptr where the run failed or did not get there.
+struct Measured {
+  const StageMeasures* stage = nullptr;
+  std::array<double, 3> intensity{};  ///< as intensities(): largest over the stages up to the measured one
+};
+Measured measured(const StudyData& study, const RunResult& run);
+
+enum class Marginal { unknown, no, yes };  ///< unknown: no variant of the run has been measured
+
+struct MeasureSummary {
+  statistics::Description description;  ///< quantiles: summary_quantiles
+  statistics::RunningMean running;      ///< by realization
+  statistics::ExceedanceCurve exceedance;
+};
+
+struct LevelSummary {
+  std::size_t exceeded = 0;
+  statistics::Estimate probability;
+};
+
+/// All runs with the same value on every axis, variant "".
+struct Combination {
+  std::vector<std::string> values;           ///< as RunResult::values
+  std::vector<std::size_t> runs;             ///< those measured: places in StudyData::runs, by realization
+  std::size_t failed = 0;                    ///< those with an error, or without the stage
+  std::array<double, 3> intensity{};         ///< mean over the runs; all alike unless the motion varies
+  std::optional<std::size_t> worst, median;  ///< runs with the largest and with the middle fallen area
+  std::size_t checked = 0, marginal = 0;     ///< runs with variants, and those of them that are marginal
+  std::vector<MeasureSummary> measures;      ///< as measures()
+  std::vector<LevelSummary> levels;          ///< as StudyData::levels
+  std::size_t mapped = 0;                    ///< runs with a map
+  /// By cell of the grid: in how many of them its rock has fallen, and has fallen or loosened; −1 where all excavate it.
+  std::vector<int> fallen, disturbed;
+};
+
+/// The combinations that differ in the shaking alone, as one curve.
+struct FragilityGroup {
+  std::size_t level = 0, intensity = 0;
+  std::vector<std::string> values;        ///< empty text on the axes of the shaking
+  std::vector<std::size_t> combinations;  ///< by intensity
+  std::vector<statistics::Estimate>
+      points;  ///< exceeded share at each stripe of the curve, Wilson's interval
+  statistics::FragilityCurve curve;
+};
+
+struct Summary {
+  std::vector<Combination> combinations;  ///< in the order of the axes, the last one running fastest
+  std::vector<bool> shaking_axis;  ///< by axis: its key ends in .scale or .motion, or it changes an intensity
+  std::vector<FragilityGroup>
+      fragility;                     ///< by level, intensity, group; empty where no axis changes the shaking
+  std::vector<Marginal> marginal;    ///< by run; that of variants is unknown
+  std::vector<int> combination_of;   ///< by run; variants have that of their run
+  std::size_t done = 0, failed = 0;  ///< all runs, variants too
+};
+
+/// Deterministic; 10,000 runs take seconds.
+Summary summarize(const StudyData& study);
+
+/// Parts of it. `groups` of fragility, and whether runs are marginal.
+std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summary& summary);
+std::vector<Marginal> marginal_runs(const StudyData& study);
+
+}  // namespace keyblock::study

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "core/index.h"
+#include "study/outputs.h"
+
+namespace keyblock::study {
+
+namespace {
+
+/// Width of the window in units of the picture: blocks are drawn at whole units. The finest with which the picture is
+/// small enough is taken, or the last.
+constexpr std::array<int, 5> resolutions{400, 320, 250, 190, 140};
+constexpr std::size_t largest_size = 12'000;
+/// Room around the openings, as a share of their size: about 1.3 widths from the centre of a single one.
+constexpr double room = 0.8;
+
+constexpr std::string_view style =
+    "<style>.r{fill:#e4e1d8;stroke:#6b6f73}.x{fill:#d3d5d7;stroke:#6b6f73}.l{fill:#e69f00;stroke:#33373b}"
+    ".f{fill:#d55e00;stroke:#33373b}.o{fill:none;stroke:#c2185b;stroke-dasharray:6 4;stroke-width:2}"
+    "@media (prefers-color-scheme:dark){.r{fill:#4a4d50;stroke:#16181b}.x{fill:#33373b;stroke:#16181b}"
+    ".l,.f{stroke:#0d0e10}.o{stroke:#ff6fa8}}</style>";
+
+enum class Class { rock, fixed, loosened, fallen };
+constexpr std::array<char, 4> class_names{'r', 'x', 'l', 'f'};
+
+struct Unit {
+  long x, y;
+  friend bool operator==(Unit, Unit) = default;
+};
+
+class Drawing {
+ public:
+  Drawing(const simulation::ModelRecord& model, const simulation::Frame& frame)
+      : model_(model), frame_(frame) {
+    for (const auto& outline : model.excavation_outlines)
+      for (const Vec2 p : outline) window_.add(p);
+    Box rock;
+    for (std::size_t b = 0; b < model.blocks.size(); ++b)
+      if (!model.blocks[b].fixed && class_of(b)) add_ring(rock, b);
+    if (window_.min.x > window_.max.x) {
+      window_ = rock;
+      if (window_.min.x > window_.max.x)
+        for (const Vec2 p : model.vertices) window_.add(p);
+    } else {
+      const Vec2 size = window_.size();
+      window_ = window_.grown(room * std::max(size.x, size.y));
+    }
+    if (window_.min.x > window_.max.x) window_ = {{0.0, 0.0}, {1.0, 1.0}};
+  }
+
+  [[nodiscard]] std::string draw(int resolution) const {
+    const Vec2 size = window_.size();
+    const double scale = resolution / std::max({size.x, size.y, 1e-300});
+    std::array<std::string, 4> paths;
+    std::array<Unit, 4> pen{};
+    for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+      const auto what = class_of(b);
+      if (!what) continue;
+      Box box;
+      add_ring(box, b);
+      if (box.max.x < window_.min.x || box.min.x > window_.max.x || box.max.y < window_.min.y ||
+          box.min.y > window_.max.y)
+        continue;
+      const auto c = static_cast<std::size_t>(*what);
+      add_block(paths[c], pen[c], b, scale);
+    }
+    std::string svg = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" stroke-width=\"{:.2g}\" "
+        "stroke-linejoin=\"round\">{}",
+        std::lround(size.x * scale), std::lround(size.y * scale), resolution / 500.0, style);
+    for (std::size_t c = 0; c < paths.size(); ++c)
+      if (!paths[c].empty()) svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", class_names[c], paths[c]);
+    for (const auto& outline : model_.excavation_outlines) {
+      std::string path;
+      Unit from{0, 0};
+      std::vector<Unit> ring;
+      for (const Vec2 p : outline) ring.push_back(unit(p, scale));
+      add_ring(path, from, ring);
+      if (!path.empty()) svg += fmt::format("<path class=\"o\" d=\"{}\"/>", path);
+    }
+    return svg + "</svg>\n";
+  }
+
+ private:
+  /// None: excavated, not drawn.
+  [[nodiscard]] std::optional<Class> class_of(std::size_t block) const {
+    if (model_.blocks[block].fixed) return Class::fixed;
+    const auto status =
+        block < frame_.status.size() ? frame_.status[block] : simulation::BlockStatus::in_place;
+    switch (status) {
+      case simulation::BlockStatus::excavated:
+        return std::nullopt;
+      case simulation::BlockStatus::fallen:
+        return Class::fallen;
+      case simulation::BlockStatus::loosened:
+        return Class::loosened;
+      case simulation::BlockStatus::in_place:
+        break;
+    }
+    return Class::rock;
+  }
+
+  [[nodiscard]] Vec2 position(int vertex) const {
+    const Vec2 p = model_.vertices[at(vertex)];
+    if (at(vertex) >= frame_.displacement.size()) return p;
+    const auto& u = frame_.displacement[at(vertex)];
+    return p + Vec2{u[0], u[1]};
+  }
+
+  [[nodiscard]] Unit unit(Vec2 p, double scale) const {
+    return {std::lround((p.x - window_.min.x) * scale), std::lround((window_.max.y - p.y) * scale)};
+  }
+
+  void add_ring(Box& box, std::size_t block) const {
+    const auto& starts = model_.blocks[block].ring_start;
+    for (int v = starts.front(); v < starts.back(); ++v) box.add(position(v));
+  }
+
+  void add_block(std::string& path, Unit& from, std::size_t block, double scale) const {
+    const auto& starts = model_.blocks[block].ring_start;
+    for (std::size_t r = 0; r + 1 < starts.size(); ++r) {
+      std::vector<Unit> ring;
+      for (int v = starts[r]; v < starts[r + 1]; ++v) ring.push_back(unit(position(v), scale));
+      add_ring(path, from, ring);
+    }
+  }
+
+  /// A closed path in steps from the point before; points that fall together, or on a line, are one.
+  static void add_ring(std::string& path, Unit& from, const std::vector<Unit>& ring) {
+    std::vector<Unit> kept;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      if (!kept.empty() && ring[k] == kept.back()) continue;
+      if (kept.size() >= 2 && on_line(kept[kept.size() - 2], kept.back(), ring[k])) kept.pop_back();
+      kept.push_back(ring[k]);
+    }
+    while (kept.size() > 1 && kept.back() == kept.front()) kept.pop_back();
+    if (kept.size() < 3) return;
+    path += 'm';
+    step(path, from, kept[0]);
+    path += 'l';
+    for (std::size_t k = 1; k < kept.size(); ++k) step(path, kept[k - 1], kept[k], k > 1);
+    path += 'z';
+    from = kept[0];
+  }
+
+  static bool on_line(Unit a, Unit b, Unit c) {
+    return (b.x - a.x) * (c.y - b.y) == (b.y - a.y) * (c.x - b.x) &&
+           (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y) > 0;
+  }
+
+  static void step(std::string& path, Unit a, Unit b, bool apart = false) {
+    const long x = b.x - a.x, y = b.y - a.y;
+    if (apart && x >= 0) path += ' ';
+    fmt::format_to(std::back_inserter(path), "{}{}{}", x, y < 0 ? "" : " ", y);
+  }
+
+  const simulation::ModelRecord& model_;
+  const simulation::Frame& frame_;
+  Box window_;
+};
+
+}  // namespace
+
+std::string thumbnail_svg(const simulation::ModelRecord& model, const simulation::Frame& frame) {
+  const Drawing drawing(model, frame);
+  std::string svg;
+  for (const int resolution : resolutions) {
+    svg = drawing.draw(resolution);
+    if (svg.size() <= largest_size) break;
+  }
+  return svg;
+}
+
+}  // namespace keyblock::study

@@ -1,0 +1,246 @@
+// study_browser_test.mjs SAMPLES NODE_MODULES: opens the reports of made-up studies in headless Chromium and uses them as a
+// reader would. Screenshots are left in SAMPLES/screenshots. Exit code 77: skipped, as there is no Chromium.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import {
+  close,
+  openers,
+  run,
+  settle,
+  sidewaysOverflow,
+  text,
+} from "./browser.mjs";
+
+const { samples, open, shoot } = await openers();
+const study = (name) =>
+  JSON.parse(readFileSync(join(samples, name, "study.json"), "utf8"));
+const drawing = (page, id, k = 0) =>
+  page.$$eval(
+    `#${id} .chart-target svg`,
+    (all, n) => all[n]?.outerHTML ?? "",
+    k,
+  );
+const pixels = (page, k) =>
+  page.$$eval("#map canvas", (all, n) => all[n].toDataURL(), k);
+const select = (page, label, value) =>
+  page
+    .locator(".selection label", { hasText: label })
+    .locator("select")
+    .selectOption(value);
+
+const tests = {
+  async "tells the result first, then how sure it is, then the runs"() {
+    const page = await open("study");
+    const headings = await page.$$eval("h2", (all) =>
+      all.map((e) => e.textContent),
+    );
+    assert.deepEqual(headings, [
+      "Result",
+      "Fragility",
+      "Probability of damage",
+      "How much, and how sure",
+      "Where rock falls",
+      "Measures of damage",
+      "Worst and median run",
+      "Every realization at the end",
+      "All runs",
+      "Failed and missing runs",
+      "How it was computed",
+    ]);
+    assert.equal(await text(page, "h1"), "Tunnel <synthetic> & shaken");
+    assert.equal(await page.title(), "Tunnel <synthetic> & shaken");
+    const verdict = await text(page, ".verdict");
+    const found =
+      /^With scale of first earthquake 1\.0, order 1, (\d+) of (\d+) realizations lose more than ([\d.]+)\sm² of rock \((\d+)–(\d+)\s%\)\.$/.exec(
+        verdict,
+      );
+    assert.ok(found, verdict);
+    const { combinations, levels } = study("study");
+    const level = levels.findIndex((l) => l.threshold === Number(found[3]));
+    const own = combinations.find((c) => c.values.join() === "1.0,1");
+    assert.equal(Number(found[1]), own.levels[level].exceeded);
+    assert.equal(Number(found[2]), own.n);
+    assert.equal(Number(found[4]), Math.round(100 * own.levels[level].low));
+    const all = await text(page, "#verdict");
+    assert.match(all, /Not enough realizations: \d+ of 8 combinations/);
+    assert.match(all, /13 runs failed and 2 runs of 960 are missing/);
+    assert.match(all, /\d+ of \d+ checked runs are marginal/);
+    assert.match(await text(page, "#method"), /18446744073709551615/);
+    assert.equal(await sidewaysOverflow(page), 0);
+    await shoot(page, "study-1400");
+    await close(page);
+  },
+
+  async "fragility has a curve, points and a band for every group, and switches"() {
+    const page = await open("study");
+    const count = (selector) => page.locator(`#fragility ${selector}`).count();
+    assert.equal(await count("path.curve"), 2);
+    assert.equal(await count("path.band"), 2);
+    assert.equal(await count("g.point"), 8);
+    const [level, intensity] = [0, 1].map((k) =>
+      page.locator("#fragility select").nth(k),
+    );
+    const pga = await drawing(page, "fragility");
+    assert.match(pga, /PGA \(m\/s²\)/);
+    await intensity.selectOption("arias_m_s");
+    const arias = await drawing(page, "fragility");
+    assert.match(arias, /Arias intensity \(m\/s\)/);
+    assert.notEqual(arias, pga);
+    await intensity.selectOption("pgv_m_s");
+    await level.selectOption("severe");
+    // Nothing is that severe: points, no curve, and the table says why.
+    assert.equal(await count("path.curve"), 0);
+    assert.equal(await count("g.point"), 8);
+    assert.match(await text(page, "#fragility table"), /never exceeded/);
+    await close(page);
+  },
+
+  async "the selection changes curves, maps, tables and pictures"() {
+    const page = await open("study");
+    const state = async () => [
+      await drawing(page, "distribution", 0),
+      await drawing(page, "distribution", 1),
+      await pixels(page, 0),
+      await pixels(page, 1),
+      await text(page, "#measures tbody"),
+      await text(page, "#extremes"),
+      await text(page, "#gallery"),
+    ];
+    const before = await state();
+    await select(page, "scale", "0.4");
+    await select(page, "order", "2");
+    await settle(page);
+    const after = await state();
+    before.forEach((value, k) =>
+      assert.notEqual(value, after[k], `thing ${k} did not change`),
+    );
+    assert.match(
+      await text(page, "#gallery .chosen"),
+      /^scale of first earthquake 0\.4, order 2: 60 realizations/,
+    );
+    await select(page, "measure", "slip_max_m");
+    assert.match(await drawing(page, "distribution", 0), /largest slip \(mm\)/);
+    // A click on a combination chooses it.
+    await page.locator("#measures button.link").first().click();
+    assert.match(await text(page, "#map .chosen"), /earthquake 0\.2, order 1/);
+    await close(page);
+  },
+
+  async "every realization has its picture, which leads to its report"() {
+    const page = await open("study");
+    await select(page, "scale", "0.2");
+    const figures = page.locator("#gallery figure");
+    assert.equal(await figures.count(), 60);
+    assert.equal(await page.locator("#gallery .failed").count(), 1);
+    assert.match(await figures.nth(7).innerText(), /killed by signal 9/);
+    assert.ok((await page.locator("#gallery .marginal").count()) > 0);
+    const image = page.locator("#gallery img").first();
+    await image.scrollIntoViewIfNeeded();
+    await page.waitForFunction(
+      () => document.querySelector("#gallery img").naturalWidth > 0,
+    );
+    assert.equal(await page.locator("#extremes img").count(), 2);
+    await page.locator("#gallery select").selectOption("area");
+    const worst = await figures.first().locator("strong").innerText();
+    assert.ok(
+      (await text(page, "#extremes")).includes(worst.replace("R", "r")),
+      worst,
+    );
+    await page.locator("#gallery a").first().click();
+    await page.waitForURL(/runs\/r\d+-s0\.2-o1\/report\.html$/);
+    await close(page);
+  },
+
+  async "runs sort by any column, and more of them are shown when asked"() {
+    const page = await open("study");
+    const first = () =>
+      page.$$eval("#runs tbody tr", (rows) =>
+        rows.map((r) => r.children[7].textContent),
+      );
+    assert.equal((await first()).length, 100);
+    await page.locator("#runs button.sort", { hasText: "fallen area" }).click();
+    const numbers = (await first()).map(Number);
+    assert.ok(numbers.every((x, k) => k === 0 || x <= numbers[k - 1]));
+    assert.ok(numbers[0] > 0);
+    await page.locator("#runs button.sort", { hasText: "fallen area" }).click();
+    assert.equal(Number((await first())[0]), 0);
+    await page.locator("#runs button", { hasText: "Show more" }).click();
+    assert.equal((await first()).length, 600);
+    assert.equal(await page.locator("#failed tbody tr").count(), 13);
+    for (const file of ["runs.csv", "study.json"])
+      assert.equal(await page.locator(`#runs a[href="${file}"]`).count(), 1);
+    await close(page);
+  },
+
+  async "the pointer reads curves and maps"() {
+    const page = await open("study");
+    const chart = page.locator("#distribution .chart-target").first();
+    await chart.scrollIntoViewIfNeeded();
+    const box = await chart.boundingBox();
+    await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
+    assert.match(await text(page, "#distribution .reading"), /^\s*[\d.]+ %$/);
+    const map = page.locator("#map canvas").first();
+    await map.scrollIntoViewIfNeeded();
+    const place = await map.boundingBox();
+    await page.mouse.move(
+      place.x + 0.5 * place.width,
+      place.y + 0.22 * place.height,
+    );
+    assert.match(
+      await text(page, "#map .hint"),
+      /^x .*, y .* m: \d+ of 59 realizations/,
+    );
+    await close(page);
+  },
+
+  async "a small study without levels, maps and pictures shows what there is"() {
+    const page = await open("study_small");
+    assert.equal(await page.locator("#fragility, #map, #gallery").count(), 0);
+    assert.match(
+      await text(page, ".verdict"),
+      /of rock falls on average of 2 realizations\.$/,
+    );
+    assert.equal(await page.locator("#runs tbody tr").count(), 2);
+    await shoot(page, "study_small-1400");
+    await close(page);
+  },
+
+  async "a study without runs says so"() {
+    const page = await open("study_empty");
+    assert.match(await text(page, ".verdict"), /No run has ended/);
+    await close(page);
+  },
+
+  async "a study with many pictures holds some of them, says so, and opens soon"() {
+    const page = await open("study_large");
+    assert.match(
+      await text(page, "#gallery .hint"),
+      /This page holds the pictures of 1,500 runs/,
+    );
+    assert.ok((await page.locator("#gallery .no-picture").count()) > 0);
+    assert.equal(await page.locator("#extremes img").count(), 2);
+    console.log(`  ready after ${page.seconds.toFixed(2)} s`);
+    assert.ok(page.seconds < 3 * (process.env.CI ? 3 : 1.5));
+    await close(page);
+  },
+
+  async "fits narrow windows, a dark screen and paper"() {
+    const narrow = await open("study", { width: 400 });
+    assert.ok((await sidewaysOverflow(narrow)) <= 0);
+    await shoot(narrow, "study-400");
+    await close(narrow);
+    const page = await open("study", { width: 800 });
+    assert.ok((await sidewaysOverflow(page)) <= 0);
+    await page.pdf({
+      path: join(samples, "screenshots", "study.pdf"),
+      format: "A4",
+    });
+    await close(page);
+    const dark = await open("study", { colorScheme: "dark" });
+    await shoot(dark, "study-dark");
+    await close(dark);
+  },
+};
+
+await run(tests);

@@ -1,0 +1,36 @@
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "../unit/study/synthetic_study.h"
+#include "study/outputs.h"
+
+/// write_study_samples DIR: one folder with a study's outputs for each kind of study that the browser test opens.
+int main(int argc, char** argv) {
+  using keyblock::testing::SyntheticStudyOptions;
+  if (argc != 2) {
+    std::fputs("usage: write_study_samples DIR\n", stderr);
+    return 1;
+  }
+  const auto write = [&](const std::string& name, const SyntheticStudyOptions& options) {
+    const std::filesystem::path directory = std::filesystem::path(argv[1]) / name;
+    std::filesystem::create_directories(directory);
+    const auto study = keyblock::testing::synthetic_study(options);
+    keyblock::testing::write_synthetic_pictures(directory, study, options);
+    keyblock::study::write_outputs(directory, study);
+  };
+  write("study", {});
+  // One combination, hardly any runs, neither levels nor maps nor pictures.
+  write("study_small", {.realizations = 2,
+                        .scales = {"1.0"},
+                        .orders = {"1"},
+                        .variants = false,
+                        .failures = false,
+                        .levels = false,
+                        .map = false,
+                        .pictures = 0});
+  // More pictures than a page holds.
+  write("study_large", {.realizations = 190, .variants = false, .failures = false});
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "study_empty");
+  keyblock::study::write_outputs(std::filesystem::path(argv[1]) / "study_empty", {});
+}

@@ -1,0 +1,195 @@
+#include "study/summaries.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "synthetic_study.h"
+
+namespace keyblock::study {
+namespace {
+
+/// A run of one combination with one shaken stage.
+RunResult made_run(int realization, std::vector<std::string> values, double pga, double fallen,
+                   std::string variant = "") {
+  RunResult run;
+  run.key = "r" + std::to_string(realization) + values[0] + variant;
+  run.realization = realization;
+  run.values = std::move(values);
+  run.variant = std::move(variant);
+  StageMeasures quiet, shake;
+  quiet.name = "excavated";
+  shake.name = "quake";
+  shake.kind = simulation::StageKind::shake;
+  shake.pga = pga;
+  shake.damage.fallen_area = fallen;
+  run.stages = {quiet, shake};
+  return run;
+}
+
+StudyData small() {
+  StudyData study;
+  study.axes = {{"joints.friction", {"30", "40"}}};
+  study.levels = {{"light", "fallen_area_m2", 1.0}};
+  study.stage = "quake";
+  const double fallen[] = {4.0, 0.0, 1.0, 2.0, 9.0};
+  for (int r = 0; r < 5; ++r) study.runs.push_back(made_run(r, {"30"}, 2.0, fallen[r]));
+  study.runs.push_back(made_run(0, {"40"}, 2.0, 0.5));
+  study.runs.push_back(made_run(1, {"40"}, 2.0, 0.0));
+  study.runs.back().error = "killed";
+  return study;
+}
+
+TEST(Summaries, DescribeEachCombinationByHand) {
+  const StudyData study = small();
+  const Summary summary = summarize(study);
+  ASSERT_EQ(summary.combinations.size(), 2U);
+  const Combination& c = summary.combinations[0];
+  EXPECT_EQ(c.values, (std::vector<std::string>{"30"}));
+  const MeasureSummary& fallen = c.measures[*find_measure("fallen_area_m2")];
+  EXPECT_EQ(fallen.description.n, 5U);
+  EXPECT_DOUBLE_EQ(fallen.description.mean.value, 3.2);
+  EXPECT_DOUBLE_EQ(fallen.description.quantiles[2].value, 2.0);
+  EXPECT_LT(fallen.description.mean.low, 3.2);
+  EXPECT_GT(fallen.description.mean.high, 3.2);
+  EXPECT_EQ(study.runs[*c.worst].realization, 4);
+  EXPECT_EQ(study.runs[*c.median].realization, 3);
+  EXPECT_EQ(c.levels[0].exceeded, 3U);  // 1.0 is not above 1.0
+  EXPECT_DOUBLE_EQ(c.levels[0].probability.value, 0.6);
+  // The running mean goes by realization: 4, 2, 5/3, 7/4, 16/5.
+  EXPECT_DOUBLE_EQ(fallen.running.mean[3].value, 1.75);
+  const Combination& other = summary.combinations[1];
+  EXPECT_EQ(other.runs.size(), 1U);
+  EXPECT_EQ(other.failed, 1U);
+  EXPECT_EQ(summary.done, 6U);
+  EXPECT_EQ(summary.failed, 1U);
+  EXPECT_FALSE(summary.shaking_axis[0]);
+  EXPECT_TRUE(summary.fragility.empty());
+}
+
+TEST(Summaries, AStudyWithoutRunsIsOne) {
+  StudyData study;
+  EXPECT_TRUE(summarize(study).combinations.empty());
+  study.runs.resize(1);
+  study.runs[0].error = "no memory";
+  const Summary summary = summarize(study);
+  ASSERT_EQ(summary.combinations.size(), 1U);
+  EXPECT_EQ(summary.combinations[0].measures[0].description.n, 0U);
+  EXPECT_FALSE(summary.combinations[0].worst.has_value());
+}
+
+TEST(Summaries, TheStrongestShakingUpToTheMeasuredStageCounts) {
+  StudyData study = small();
+  RunResult& run = study.runs[0];
+  StageMeasures second = run.stages[1];
+  second.name = "second quake";
+  second.pga = 5.0;
+  run.stages.push_back(second);
+  EXPECT_EQ(measured(study, run).intensity[0], 2.0);
+  study.stage = "";
+  EXPECT_EQ(measured(study, run).intensity[0], 5.0);
+  EXPECT_EQ(measured(study, run).stage, &run.stages[2]);
+  study.stage = "none such";
+  EXPECT_EQ(measured(study, run).stage, nullptr);
+}
+
+// An axis is one of shaking by what it does, not only by its name; curves go through all others apart.
+TEST(Summaries, FragilityGroupsDifferInShakingAlone) {
+  StudyData study;
+  study.axes = {{"joints.friction", {"30", "40"}}, {"motion.m.window", {"[0, 1]", "[0, 2]", "[0, 3]"}}};
+  study.levels = {{"any", "fallen_area_m2", 0.1}, {"unknown", "no_such_measure", 0.1}};
+  for (int r = 0; r < 40; ++r)
+    for (const char* friction : {"30", "40"})
+      for (int w = 0; w < 3; ++w)
+        study.runs.push_back(made_run(r, {friction, study.axes[1].values[static_cast<std::size_t>(w)]},
+                                      1.0 + w,
+                                      (r * 7 % 40) < 8 + 10 * w + (friction[0] == '3' ? 5 : 0) ? 1.0 : 0.0));
+  const Summary summary = summarize(study);
+  EXPECT_EQ(summary.shaking_axis, (std::vector<bool>{false, true}));
+  ASSERT_EQ(summary.fragility.size(), 6U);  // 1 level, 3 intensities, 2 groups
+  const FragilityGroup& weak = summary.fragility[0];
+  EXPECT_EQ(weak.values, (std::vector<std::string>{"30", ""}));
+  EXPECT_EQ(weak.combinations, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(weak.curve.fit.status, statistics::FragilityStatus::fitted);
+  EXPECT_EQ(weak.curve.clusters, 40U);
+  ASSERT_EQ(weak.points.size(), 3U);
+  EXPECT_DOUBLE_EQ(weak.points[0].value, 13.0 / 40.0);
+  EXPECT_LT(weak.curve.theta.value, summary.fragility[1].curve.theta.value);
+  EXPECT_FALSE(weak.curve.intensity.empty());
+  // PGV was zero everywhere: no curve, and it says why.
+  EXPECT_EQ(summary.fragility[2].curve.fit.status, statistics::FragilityStatus::no_data);
+  EXPECT_EQ(summary.fragility[2].curve.left_out, 120U);
+}
+
+TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {
+  StudyData study;
+  study.axes = {{"rock.order", {"1"}}};
+  study.marginal = MarginalCheck{3.0, 0.5};
+  const auto add = [&](int r, double own, std::vector<double> others) {
+    study.runs.push_back(made_run(r, {"1"}, 1.0, own));
+    const char* names[] = {"friction-", "friction+", "released"};
+    for (std::size_t k = 0; k < others.size(); ++k)
+      study.runs.push_back(made_run(r, {"1"}, 1.0, others[k], names[k]));
+  };
+  add(0, 1.0, {1.9, 0.6, 1.0});   // by 47 % of the larger
+  add(1, 1.0, {1.0, 0.45, 1.0});  // by 55 %
+  add(2, 0.0, {0.008});           // all of it, but hardly anything
+  add(3, 0.0, {0.2});
+  add(4, 3.0, {});
+  const Summary summary = summarize(study);
+  std::vector<Marginal> own;
+  for (std::size_t r = 0; r < study.runs.size(); ++r)
+    if (study.runs[r].variant.empty()) own.push_back(summary.marginal[r]);
+  EXPECT_EQ(own, (std::vector<Marginal>{Marginal::no, Marginal::yes, Marginal::no, Marginal::yes,
+                                        Marginal::unknown}));
+  EXPECT_EQ(summary.combinations[0].checked, 4U);
+  EXPECT_EQ(summary.combinations[0].marginal, 2U);
+  // Variants are no realizations of their own.
+  EXPECT_EQ(summary.combinations[0].runs.size(), 5U);
+  EXPECT_EQ(summary.combinations[0].measures[0].description.n, 5U);
+}
+
+TEST(Summaries, MapsCountRunsByCell) {
+  using simulation::BlockStatus;
+  StudyData study = small();
+  study.grid = {{0.0, 0.0}, 1.0, 2, 1};
+  study.runs[0].map = {BlockStatus::fallen, BlockStatus::excavated};
+  study.runs[1].map = {BlockStatus::loosened, BlockStatus::excavated};
+  study.runs[2].map = {BlockStatus::in_place, BlockStatus::excavated};
+  const Summary summary = summarize(study);
+  EXPECT_EQ(summary.combinations[0].mapped, 3U);
+  EXPECT_EQ(summary.combinations[0].fallen, (std::vector<int>{1, -1}));
+  EXPECT_EQ(summary.combinations[0].disturbed, (std::vector<int>{2, -1}));
+}
+
+TEST(Summaries, CombinationsFollowTheAxes) {
+  const StudyData study = testing::synthetic_study();
+  const Summary summary = summarize(study);
+  ASSERT_EQ(summary.combinations.size(), 8U);
+  EXPECT_EQ(summary.combinations[0].values, (std::vector<std::string>{"0.2", "1"}));
+  EXPECT_EQ(summary.combinations[1].values, (std::vector<std::string>{"0.2", "2"}));
+  EXPECT_EQ(summary.combinations[7].values, (std::vector<std::string>{"1.0", "2"}));
+  EXPECT_EQ(summary.shaking_axis, (std::vector<bool>{true, false}));
+  // Stronger shaking, more damage; order 2, less.
+  const auto mean = [&](std::size_t c) { return summary.combinations[c].measures[1].description.mean.value; };
+  EXPECT_GT(mean(6), mean(0));
+  EXPECT_GT(mean(6), mean(7));
+}
+
+TEST(Measures, AreThoseOfTheSummary) {
+  ASSERT_EQ(measures().size(), 10U);
+  EXPECT_EQ(measures()[0].name, "fallen_blocks");
+  EXPECT_EQ(find_measure("closure_horizontal_m"), 9U);
+  EXPECT_FALSE(find_measure("fallen").has_value());
+}
+
+TEST(Measures, PlainValuesLoseTheirQuotes) {
+  EXPECT_EQ(plain_value("0.5"), "0.5");
+  EXPECT_EQ(plain_value("\"weak rock\""), "weak rock");
+  EXPECT_EQ(plain_value("'C:\\x'"), "C:\\x");
+  EXPECT_EQ(plain_value(R"("a\"b")"), R"("a\"b")");
+  EXPECT_EQ(plain_value("[1, 2]"), "[1, 2]");
+}
+
+}  // namespace
+}  // namespace keyblock::study

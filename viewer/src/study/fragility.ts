@@ -1,0 +1,166 @@
+import { choice, column, h, section, tableBox } from "../dom";
+import { integer, significant } from "../format";
+import { Chart, curveColors, type ChartSeries } from "./chart";
+import type { Fragility, IntensityName, Study } from "./data";
+import { percent, shownAs, withUnit } from "./quantities";
+
+const reasons: Record<string, string> = {
+  no_data: "no curve: no run was shaken",
+  one_intensity: "no curve: all runs at the same intensity",
+  never_exceeded: "no curve: never exceeded",
+  always_exceeded: "no curve: always exceeded",
+  separated: "no curve: one intensity parts exceeded from not exceeded",
+  not_increasing: "no curve: no more damage with more shaking",
+};
+
+/** Probability of a level of damage over the intensity of the shaking. */
+export class FragilityView {
+  readonly element: HTMLElement;
+  private readonly chart = new Chart();
+  private readonly table = h("div");
+  private level: string;
+  private intensity: IntensityName = "pga_m_s2";
+
+  constructor(private readonly study: Study) {
+    const { levels, intensities, confidence } = study.json;
+    this.level = levels[0]?.name ?? "";
+    const levelText = (l: (typeof levels)[number]) =>
+      `${l.name}: ${study.measure(l.measure).title} > ${withUnit(shownAs(study.measure(l.measure)), l.threshold)}`;
+    this.element = section(
+      "fragility",
+      "Fragility",
+      h(
+        "p",
+        {},
+        `Probability that damage exceeds a level, against the strongest shaking of the run. Points: share of the realizations, with ${percent(confidence)} intervals. Curve: lognormal, by maximum likelihood, with the band of a bootstrap over realizations.`,
+      ),
+      h(
+        "div",
+        { class: "controls screen-only" },
+        choice(
+          "level",
+          levels.map((l) => ({ value: l.name, text: levelText(l) })),
+          this.level,
+          (value) => {
+            this.level = value;
+            this.draw();
+          },
+        ),
+        choice(
+          "intensity",
+          intensities.map((i) => ({ value: i.name, text: i.title })),
+          this.intensity,
+          (value) => {
+            this.intensity = value as IntensityName;
+            this.draw();
+          },
+        ),
+      ),
+      this.chart.element,
+      this.table,
+    );
+    this.draw();
+  }
+
+  private groups(): Fragility[] {
+    return this.study.json.fragility.filter((f) => f.level === this.level && f.intensity === this.intensity);
+  }
+
+  private draw(): void {
+    const groups = this.groups();
+    const { intensities } = this.study.json;
+    const kind = intensities.find((i) => i.name === this.intensity)!;
+    const all = groups.flatMap((g) => [...g.points.intensity, ...g.curve.intensity]).filter((x) => x > 0);
+    const [min, max] = all.length > 0 ? [Math.min(...all), Math.max(...all)] : [0.1, 10];
+    const series: ChartSeries[] = groups.flatMap((g, k) => {
+      const color = curveColors[k % curveColors.length];
+      const name = this.study.combinationName(g.values);
+      const curve: ChartSeries = {
+        name,
+        color,
+        kind: "line",
+        x: g.curve.intensity,
+        y: g.curve.probability.map((p) => (g.status === "fitted" ? p : null)),
+        low: g.curve.low,
+        high: g.curve.high,
+      };
+      const points: ChartSeries = {
+        name,
+        color,
+        kind: "points",
+        x: g.points.intensity,
+        y: g.points.probability,
+        low: g.points.low,
+        high: g.points.high,
+        shift: 5 * (k - 0.5 * (groups.length - 1)),
+      };
+      return [curve, points];
+    });
+    this.chart.show({
+      title: `Probability of “${this.level}”`,
+      note: `over ${kind.title}`,
+      xName: `${kind.title} (${kind.unit}), logarithmic`,
+      yName: "probability",
+      x: { min: min / 1.05, max: Math.max(max, 1.2 * min) * 1.05, logarithmic: true },
+      y: { min: 0, max: 1, logarithmic: false },
+      percent: true,
+      series,
+      height: 320,
+    });
+    this.table.replaceChildren(this.parameters(groups, kind.unit));
+  }
+
+  private parameters(groups: Fragility[], unit: string): HTMLElement {
+    const q = { name: "", title: "", unit, factor: 1 };
+    const range = (e: { low: number | null; high: number | null }) =>
+      e.low === null || e.high === null ? "" : `${significant(e.low)} … ${significant(e.high)}`;
+    const rows = groups.map((g) => {
+      const name = h("th", { scope: "row", class: "text" }, this.study.combinationName(g.values));
+      const n = h("td", {}, integer(g.realizations));
+      if (g.status !== "fitted")
+        return [name, n, h("td", { class: "text", colspan: 2 }, reasons[g.status] ?? g.status)];
+      return [
+        name,
+        n,
+        h("td", {}, withUnit(q, g.theta.value), h("span", { class: "sub" }, range(g.theta))),
+        h("td", {}, significant(g.beta.value), h("span", { class: "sub" }, range(g.beta))),
+      ];
+    });
+    return tableBox(
+      `Median θ and logarithmic standard deviation β of “${this.level}”, with bootstrap intervals`,
+      [[column("Curve", "", true), column("Realizations"), column("θ", unit), column("β")]],
+      rows,
+      "narrow",
+    );
+  }
+}
+
+/** Probability of every level in every combination: the points of all curves as numbers. */
+export function probabilityTable(study: Study): HTMLElement {
+  const { combinations, levels, confidence } = study.json;
+  const head = [
+    column("Combination", "", true),
+    column("Realizations"),
+    ...levels.map((l) => {
+      const q = shownAs(study.measure(l.measure));
+      return column(l.name, `${q.title} > ${withUnit(q, l.threshold)}`);
+    }),
+  ];
+  const rows = combinations.map((c) => [
+    h("th", { scope: "row", class: "text" }, study.combinationName(c.values)),
+    h("td", {}, integer(c.n)),
+    ...c.levels.map((l) =>
+      h(
+        "td",
+        {},
+        percent(l.probability),
+        h("span", { class: "sub" }, `${percent(l.low)} … ${percent(l.high)}`),
+      ),
+    ),
+  ]);
+  return tableBox(
+    `Probability of the levels of damage, with ${percent(confidence)} intervals (Wilson)`,
+    [head],
+    rows,
+  );
+}

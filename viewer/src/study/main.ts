@@ -1,0 +1,158 @@
+import { h, section, type Child } from "../dom";
+import { findingList } from "../findings";
+import { count, integer } from "../format";
+import { readStudy, type Study } from "./data";
+import { Distribution } from "./distribution";
+import { FragilityView, probabilityTable } from "./fragility";
+import { FrequencyMaps } from "./frequency_map";
+import { Extremes, Gallery, pictureNote } from "./pictures";
+import { Selection } from "./selection";
+import { failedTable, howComputed, MeasureTables, RunTable } from "./tables";
+import { studyFindings } from "./verdict";
+
+function head(study: Study): HTMLElement {
+  const { title, version, realizations, combinations } = study.json;
+  return h(
+    "header",
+    {},
+    h("h1", {}, title || "Untitled study"),
+    h(
+      "div",
+      { class: "subtitle" },
+      `Monte Carlo study with keyblock ${version} · ${count(realizations, "realization")} × ${count(combinations.length, "combination")} · seed ${study.header.seed}`,
+    ),
+  );
+}
+
+/** The name of the chosen combination, which follows the selection. */
+function chosenName(study: Study, selection: Selection): HTMLElement {
+  const name = h("p", { class: "chosen" });
+  const write = () => {
+    const c = study.json.combinations[selection.combination];
+    name.textContent = c ? `${study.combinationName(c.values)}: ${count(c.n, "realization")}` : "";
+  };
+  selection.onChange(write);
+  write();
+  return name;
+}
+
+function statistics(study: Study, selection: Selection): Child[] {
+  const { levels, fragility, grid } = study.json;
+  const parts: Child[] = [];
+  if (fragility.length > 0) parts.push(new FragilityView(study).element);
+  if (levels.length > 0) parts.push(section("levels", "Probability of damage", probabilityTable(study)));
+  parts.push(
+    selection.element,
+    section(
+      "distribution",
+      "How much, and how sure",
+      chosenName(study, selection),
+      new Distribution(study, selection).element,
+    ),
+  );
+  const mapped = study.json.combinations.some((c) => c.map.n > 0);
+  if (mapped && grid.columns > 0) {
+    const map = new FrequencyMaps(study, selection);
+    parts.push(section("map", "Where rock falls", chosenName(study, selection), map.element));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => map.draw());
+    for (const moment of ["beforeprint", "afterprint"]) addEventListener(moment, () => map.draw());
+  }
+  parts.push(section("measures", "Measures of damage", new MeasureTables(study, selection).element));
+  return parts;
+}
+
+function runs(study: Study, selection: Selection): Child[] {
+  const parts: Child[] = [];
+  const note = pictureNote(study);
+  if (study.pictureCount() > 0)
+    parts.push(
+      section(
+        "extremes",
+        "Worst and median run",
+        chosenName(study, selection),
+        new Extremes(study, selection).element,
+        legend(),
+      ),
+      section(
+        "gallery",
+        "Every realization at the end",
+        chosenName(study, selection),
+        note ? h("p", { class: "hint" }, note) : null,
+        new Gallery(study, selection).element,
+      ),
+    );
+  parts.push(
+    section(
+      "runs",
+      "All runs",
+      h(
+        "p",
+        {},
+        "The same as files: ",
+        h("a", { href: "runs.csv" }, "runs.csv"),
+        ", one row per run with all stages, and ",
+        h("a", { href: "study.json" }, "study.json"),
+        ", the statistics.",
+      ),
+      new RunTable(study).element,
+    ),
+  );
+  const failed = failedTable(study);
+  const missing = Math.max(0, study.json.runs.planned - study.json.runs.done - study.json.runs.failed);
+  if (failed || missing > 0)
+    parts.push(
+      section(
+        "failed",
+        "Failed and missing runs",
+        failed,
+        missing > 0
+          ? h("p", {}, `${integer(missing)} of ${count(study.json.runs.planned, "planned run")} missing.`)
+          : null,
+      ),
+    );
+  return parts;
+}
+
+/** Colours of the pictures. */
+function legend(): HTMLElement {
+  const list = h("ul", { class: "legend-classes" });
+  for (const [color, name] of [
+    ["var(--rock)", "in place"],
+    ["#e69f00", "loosened"],
+    ["#d55e00", "fallen"],
+  ]) {
+    const swatch = h("span", { class: "swatch" });
+    swatch.style.background = color;
+    list.append(h("li", {}, swatch, name));
+  }
+  return list;
+}
+
+function build(study: Study, main: HTMLElement): void {
+  const [verdict, ...others] = studyFindings(study);
+  const parts: Child[] = [
+    head(study),
+    section("verdict", "Result", h("p", { class: "verdict" }, verdict.text), findingList(others)),
+  ];
+  if (study.json.combinations.length > 0) {
+    const selection = new Selection(study);
+    parts.push(...statistics(study, selection), ...runs(study, selection));
+  }
+  parts.push(section("method", "How it was computed", howComputed(study)));
+  main.replaceChildren(...parts.filter((p): p is Node => p instanceof Node));
+}
+
+async function start(): Promise<void> {
+  const main = document.getElementById("report")!;
+  try {
+    build(await readStudy(), main);
+    document.documentElement.dataset.ready = "true";
+  } catch (error) {
+    main.replaceChildren(
+      h("p", { class: "error", role: "alert" }, `This report cannot be shown: ${String(error)}`),
+    );
+    throw error;
+  }
+}
+
+void start();

@@ -1,0 +1,162 @@
+import type { Finding } from "../findings";
+import { count, integer, list, significant } from "../format";
+import type { Combination, Estimate, Study } from "./data";
+import { percent, percentRange, relativeHalfWidth, shownAs, withUnit } from "./quantities";
+import { headline } from "./selection";
+
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** Combinations with the strongest shaking, which differ in the other axes. */
+function strongest(study: Study): number[] {
+  const { axes, combinations } = study.json;
+  const first = combinations[headline(study)];
+  if (!first) return [];
+  return combinations.flatMap((c, k) =>
+    c.n > 0 && c.values.every((v, a) => !axes[a]?.shaking || v === first.values[a]) ? [k] : [],
+  );
+}
+
+/** The level that tells most here: the one whose probability is nearest to one half. */
+function tellingLevel(c: Combination): number {
+  let best = 0;
+  c.levels.forEach((level, l) => {
+    if (Math.abs((level.probability ?? 0) - 0.5) < Math.abs((c.levels[best].probability ?? 0) - 0.5))
+      best = l;
+  });
+  return best;
+}
+
+function exceeding(study: Study, l: number, plural: boolean): string {
+  const { measure, threshold } = study.json.levels[l];
+  const q = shownAs(study.measure(measure));
+  const [lose, have] = plural ? ["lose", "have"] : ["loses", "has"];
+  if (measure === "fallen_area_m2") return `${lose} more than ${withUnit(q, threshold)} of rock`;
+  if (measure === "fallen_blocks") return `${lose} more than ${count(threshold, "block")}`;
+  return `${have} ${q.title} above ${withUnit(q, threshold)}`;
+}
+
+function probabilitySentence(study: Study, k: number, l: number): string {
+  const c = study.json.combinations[k];
+  const name = study.combinationName(c.values);
+  const level = c.levels[l];
+  const start = name === "all runs" ? "" : `With ${name}, `;
+  const text = `${start}${integer(level.exceeded)} of ${count(c.n, "realization")} ${exceeding(study, l, level.exceeded !== 1)} (${percentRange(level.low, level.high)})`;
+  return `${capital(text)}.`;
+}
+
+function meanSentence(study: Study, k: number): string {
+  const c = study.json.combinations[k];
+  const q = shownAs(study.measure("fallen_area_m2"));
+  const mean = c.measures["fallen_area_m2"]?.mean;
+  const name = study.combinationName(c.values);
+  const range =
+    mean?.low === null || mean?.low === undefined
+      ? ""
+      : ` (${withUnit(q, mean.low)} to ${withUnit(q, mean.high)})`;
+  return `${name === "all runs" ? "" : `With ${name}, `}${withUnit(q, mean?.value ?? null)}${range} of rock falls on average of ${count(c.n, "realization")}.`;
+}
+
+/** What the study says, in sentences. The first is the verdict. */
+export function studyFindings(study: Study): Finding[] {
+  const { combinations, levels, confidence } = study.json;
+  const shaken = strongest(study);
+  if (shaken.length === 0)
+    return [{ grade: "attention", text: "No run has ended: there is nothing to tell yet." }, ...gaps(study)];
+  const found: Finding[] = [];
+  const l = levels.length > 0 ? tellingLevel(combinations[shaken[0]]) : -1;
+  for (const k of shaken.slice(0, 6))
+    found.push({ grade: "plain", text: l >= 0 ? probabilitySentence(study, k, l) : meanSentence(study, k) });
+  if (l >= 0)
+    found.push({
+      grade: "plain",
+      text: `That is the level “${levels[l].name}”. In brackets: ${percent(confidence)} confidence interval of the probability.`,
+    });
+  return [...found, ...precisionFindings(study), ...gaps(study), ...marginalFindings(study)];
+}
+
+/** Whether enough realizations were run. */
+function precisionFindings(study: Study): Finding[] {
+  const { precision, combinations, confidence } = study.json;
+  const q = shownAs(study.measure(precision?.measure ?? "fallen_area_m2"));
+  const rows = combinations.flatMap((c) => {
+    const mean = c.measures[q.name]?.mean;
+    return c.n > 0 && mean ? [{ c, mean }] : [];
+  });
+  if (rows.length === 0) return [];
+  const level = percent(confidence);
+  if (!precision) {
+    const c = combinations[headline(study)];
+    const mean = c.measures[q.name]?.mean;
+    const half = mean && relativeHalfWidth(mean);
+    if (!mean || mean.low === null || mean.high === null)
+      return [{ grade: "attention", text: "Too few realizations for confidence intervals." }];
+    return [
+      {
+        grade: "plain",
+        text: `Mean ${q.title} there: ${withUnit(q, mean.value)}, known to ± ${withUnit(q, 0.5 * (mean.high - mean.low), 2)}${half === null ? "" : ` or ± ${percent(half)}`} (half the ${level} interval). No precision was asked for.`,
+      },
+    ];
+  }
+  const limit = (mean: { value: number | null }) =>
+    Math.max((precision.half_width ?? 0) * Math.abs(mean.value ?? 0), 0.5 * (precision.width ?? 0));
+  // Where there is no interval, there are too few realizations for one.
+  const half = (mean: Estimate) =>
+    mean.low === null || mean.high === null ? Infinity : 0.5 * (mean.high - mean.low);
+  const wide = rows.filter(({ mean }) => half(mean) > limit(mean) * (1 + 1e-9));
+  const asked = [
+    precision.half_width === null ? [] : [`± ${percent(precision.half_width)} of the mean`],
+    precision.width === null ? [] : [`a width of ${withUnit(q, precision.width)}`],
+  ].flat();
+  const goal = `${asked.join(" or ")} (${level} interval of the mean ${q.title})`;
+  if (wide.length === 0)
+    return [{ grade: "good", text: `Enough realizations: every combination is known to ${goal}.` }];
+  // The width of an interval goes with the root of the number of realizations.
+  const needed = wide.flatMap(({ c, mean }) => {
+    const ratio = half(mean) / limit(mean);
+    return Number.isFinite(ratio) ? [{ c, n: c.n * ratio * ratio }] : [];
+  });
+  needed.sort((a, b) => a.n - b.n);
+  const guess = ({ c, n }: { c: Combination; n: number }) =>
+    `${study.combinationName(c.values)} about ${integer(Number(n.toPrecision(2)))}`;
+  const ends = needed.length > 1 ? [needed[0], needed[needed.length - 1]] : needed;
+  const estimate = ends.length > 0 ? ` Realizations that would be needed: ${list(ends.map(guess))}.` : "";
+  return [
+    {
+      grade: "attention",
+      text: `Not enough realizations: ${wide.length} of ${count(rows.length, "combination")} ${wide.length === 1 ? "is" : "are"} known less well than ${goal}.${estimate}`,
+    },
+  ];
+}
+
+/** Runs that failed or are missing. */
+function gaps(study: Study): Finding[] {
+  const { runs } = study.json;
+  const missing = Math.max(0, runs.planned - runs.done - runs.failed);
+  const parts: string[] = [];
+  if (runs.failed > 0) parts.push(`${count(runs.failed, "run")} failed`);
+  if (missing > 0)
+    parts.push(
+      `${count(missing, "run")} of ${integer(runs.planned)} ${missing === 1 ? "is" : "are"} missing`,
+    );
+  if (parts.length === 0) return [];
+  return [
+    {
+      grade: "attention",
+      text: `${capital(list(parts))}; the statistics leave them out. If they are those with most damage, the true figures are worse.`,
+    },
+  ];
+}
+
+function marginalFindings(study: Study): Finding[] {
+  const { marginal, combinations } = study.json;
+  if (!marginal) return [];
+  const checked = combinations.reduce((sum, c) => sum + c.checked, 0);
+  const found = combinations.reduce((sum, c) => sum + c.marginal, 0);
+  if (checked === 0) return [];
+  return [
+    {
+      grade: found > 0 ? "attention" : "good",
+      text: `${integer(found)} of ${count(checked, "checked run")} ${found === 1 ? "is" : "are"} marginal: friction ± ${significant(marginal.friction_degrees)}° or an immediate release changes the fallen area by more than ${percent(marginal.share)} of the larger.`,
+    },
+  ];
+}
