@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "study/precision.h"
-
 namespace keyblock::study {
 
 namespace {
@@ -188,7 +186,7 @@ ordered_json head(const StudyData& study, const Summary& summary) {
     json["precision"] = {{"measure", study.precision->measure},
                          {"half_width", limit(study.precision->half_width)},
                          {"width", limit(study.precision->width)},
-                         {"reached", precise_enough(study)}};
+                         {"reached", precise_enough(study, summary)}};
   }
   json["marginal"] = nullptr;
   if (study.marginal)

@@ -52,7 +52,7 @@ const tests = {
     assert.equal(await page.title(), "Tunnel <synthetic> & shaken");
     const verdict = await text(page, ".verdict");
     const found =
-      /^With scale of first earthquake 1\.0, order 1, (\d+) of (\d+) realizations lose more than ([\d.]+)\sm² of rock \((\d+)–(\d+)\s%\)\.$/.exec(
+      /^With scale of first earthquake 1\.0, order 1, (\d+) of (\d+) realizations lose more than ([\d.]+)\sm² of rock \((\d+)\u2060–\u2060(\d+)\s%\)\.$/.exec(
         verdict,
       );
     assert.ok(found, verdict);

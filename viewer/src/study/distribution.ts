@@ -86,7 +86,7 @@ export class Distribution {
     const y = scaleOf([...values(mean), ...values(low).slice(from), ...values(high).slice(from)]);
     this.running.show({
       title: "Running mean",
-      note: `of the first n realizations, ${percent(this.study.json.confidence)} band`,
+      note: `${label(q)} of the first n realizations, ${percent(this.study.json.confidence)} band`,
       xName: "realizations",
       yName: label(q),
       x: { min: 1, max: Math.max(2, n[n.length - 1] ?? 2), logarithmic: false },

@@ -59,5 +59,5 @@ export function percent(p: number | null, digits = 2): string {
 /** "25–44 %": of a proportion, in whole per cent. */
 export function percentRange(low: number | null, high: number | null): string {
   if (low === null || high === null) return "–";
-  return `${Math.round(100 * low)}–${Math.round(100 * high)}\u00a0%`;
+  return `${Math.round(100 * low)}\u2060–\u2060${Math.round(100 * high)}\u00a0%`; // word joiners: no break at the dash
 }

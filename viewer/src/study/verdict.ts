@@ -74,19 +74,26 @@ export function studyFindings(study: Study): Finding[] {
   return [...found, ...precisionFindings(study), ...gaps(study), ...marginalFindings(study)];
 }
 
+/** The end of the running mean with its band: what the precision is measured by. */
+function finalMean(c: Combination, measure: string): Estimate | null {
+  const running = c.measures[measure]?.running_mean;
+  const last = (running?.n.length ?? 0) - 1;
+  return last < 0 ? null : { value: running.mean[last], low: running.low[last], high: running.high[last] };
+}
+
 /** Whether enough realizations were run. */
 function precisionFindings(study: Study): Finding[] {
   const { precision, combinations, confidence } = study.json;
   const q = shownAs(study.measure(precision?.measure ?? "fallen_area_m2"));
   const rows = combinations.flatMap((c) => {
-    const mean = c.measures[q.name]?.mean;
+    const mean = finalMean(c, q.name);
     return c.n > 0 && mean ? [{ c, mean }] : [];
   });
   if (rows.length === 0) return [];
   const level = percent(confidence);
   if (!precision) {
     const c = combinations[headline(study)];
-    const mean = c.measures[q.name]?.mean;
+    const mean = finalMean(c, q.name);
     const half = mean && relativeHalfWidth(mean);
     if (!mean || mean.low === null || mean.high === null)
       return [{ grade: "attention", text: "Too few realizations for confidence intervals." }];
