@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -74,7 +75,7 @@ void run_study(const RunArguments& arguments) {
   options.report = [&](const study::StudyProgress& progress) { display.show(progress); };
   const study::WorkerOutcome outcome = study::run_workers(arguments.folder, plan, files, options);
   display.end();
-  tell(study::collect(arguments.folder), arguments.folder);
+  tell(study::gather(arguments.folder, plan, std::move(files)), arguments.folder);
   if (outcome.interrupted)
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
   if (!outcome.failed.empty()) {

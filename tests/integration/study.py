@@ -173,7 +173,7 @@ class Runs(Study):
         before = self.done()
         self.run_study("until.toml", "--resume")
         self.assertEqual(self.done(), before)
-        self.assertIn("does not ask for it", self.study("task", "out", 2 * enough).stdout)
+        self.assertIn("does not ask for it", self.study("task", "one", 2 * enough).stdout)
         self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until.replace("0.75", "0.0001") + SCALES)
         self.assertIn("24 of 24 runs done\n", self.run_study("until.toml", "--resume").stdout)
 
