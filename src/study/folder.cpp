@@ -54,12 +54,11 @@ std::vector<std::string> differences(const Plan& there, const Plan& here) {
     for (const std::string& line : scenario::differences(document(there), document(here)))
       found.push_back(line);
   }
-  std::map<fs::path, std::string> hashes;
-  for (const InputFile& file : there.files) hashes[fs::absolute(file.path).lexically_normal()] = file.hash;
+  std::map<std::string, std::string> hashes;
+  for (const InputFile& file : there.files) hashes[file.name] = file.hash;
   for (const InputFile& file : here.files) {
-    const auto known = hashes.find(fs::absolute(file.path).lexically_normal());
-    if (known != hashes.end() && known->second != file.hash)
-      found.push_back("the content of " + file.path.string());
+    const auto known = hashes.find(file.name);
+    if (known != hashes.end() && known->second != file.hash) found.push_back("the content of " + file.name);
   }
   return found;
 }

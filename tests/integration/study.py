@@ -303,6 +303,13 @@ class GoingOn(Study):
         self.study("task", "moved/out", "0")
         self.assertIn("6 of 6", self.study("collect", "moved/out").stdout)
 
+    def test_a_study_can_be_moved_alone(self):
+        self.run_study("small.toml")
+        self.run_file(self.keys()[0]).unlink()
+        (self.folder / "deep").mkdir()
+        self.out.rename(self.folder / "deep/out")
+        self.study("run", "small.toml", "-o", "deep/out", "--resume")
+
     def test_a_damaged_result_is_named_and_run_again(self):
         self.run_study("small.toml")
         keys, before = self.keys(), self.done()

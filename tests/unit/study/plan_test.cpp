@@ -119,7 +119,7 @@ TEST(Plan, IsReadAsItWasWritten) {
                "study.level=[{name='any', measure='fallen_blocks', threshold=0}]", "study.confidence=0.9"});
   plan.runs[2].wanted = false;
   plan.until = scenario::UntilSpec{"slip_max_m", 0.1, std::nullopt, 4, 50};
-  plan.files = {{gallery, "0123"}};
+  plan.files = {{"motions/a.smc", "0123"}};
   std::ofstream(plan_path(folder.path())) << plan_json(plan, folder.path());
   std::ofstream(scenario_path(folder.path())) << plan.text;
   const Plan read = read_plan(folder.path());
