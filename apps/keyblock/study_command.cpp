@@ -26,8 +26,6 @@
 namespace keyblock::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t most_named = 20;  // runs that are named one by one
 
 void list(const std::vector<std::string>& lines, const char* what) {
@@ -51,14 +49,14 @@ void tell(const study::CollectReport& report, const std::string& folder) {
   std::cout << "\nreport: " << folder << "/report.html" << std::endl;
 }
 
-struct RunArguments {
+struct StudyArguments {
   ScenarioArguments scenario;
   std::string folder;
   int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool resume = false;
 };
 
-void run_study(const RunArguments& arguments) {
+void run_study(const StudyArguments& arguments) {
   study::Plan plan =
       study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION);
   const auto lock = study::lock_study(arguments.folder);
@@ -123,7 +121,7 @@ void run_task(const TaskArguments& arguments) {
 }
 
 void describe_run(CLI::App& study) {
-  auto arguments = std::make_shared<RunArguments>();
+  auto arguments = std::make_shared<StudyArguments>();
   CLI::App* command = study.add_subcommand("run", "All runs of a study on this machine, and its report");
   add_scenario_file(*command, arguments->scenario);
   add_study_folder(*command, arguments->folder);

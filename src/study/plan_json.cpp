@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "study/folder.h"
+#include "study/refusal.h"
 
 namespace keyblock::study {
 namespace {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using scenario::Keep;
 
-constexpr int format = 1;
+constexpr int plan_format = 1;
 constexpr std::pair<Keep, const char*> keeps[] = {
     {Keep::all, "all"}, {Keep::report, "report"}, {Keep::measures, "measures"}};
 
@@ -121,14 +122,6 @@ void read_description(const ordered_json& json, Plan& plan) {
   }
 }
 
-[[noreturn]] void refuse(const fs::path& path, std::string found, std::string expected) {
-  Diagnostic diagnostic;
-  diagnostic.where.file = path.string();
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  throw InputError(std::move(diagnostic));
-}
-
 }  // namespace
 
 std::string plan_json(const Plan& plan, const fs::path& directory) {
@@ -136,7 +129,7 @@ std::string plan_json(const Plan& plan, const fs::path& directory) {
   for (const InputFile& file : plan.files) files.push_back({{"name", file.name}, {"hash", file.hash}});
   const fs::path scenario = fs::absolute(plan.scenario).lexically_normal();
   ordered_json json{
-      {"format", format},
+      {"format", plan_format},
       {"version", plan.version},
       {"scenario", scenario.lexically_relative(fs::absolute(directory).lexically_normal()).string()},
       {"scenario_path", scenario.string()},
@@ -159,13 +152,13 @@ std::string plan_json(const Plan& plan, const fs::path& directory) {
 Plan read_plan(const fs::path& directory) {
   const fs::path path = plan_path(directory);
   if (!fs::exists(path)) {
-    refuse(directory, "no plan.json", "the folder of a study, as keyblock study run makes it");
+    refuse(directory.string(), "no plan.json", "the folder of a study, as keyblock study run makes it");
   }
   Plan plan;
   try {
     const ordered_json json = ordered_json::parse(read_file(path));
-    if (json.at("format") != format)
-      refuse(path, "another format", fmt::format("format {} of the plan of a study", format));
+    if (json.at("format") != plan_format)
+      refuse(path.string(), "another format", fmt::format("format {} of the plan of a study", plan_format));
     json.at("version").get_to(plan.version);
     // Both may have been moved together, or the folder alone.
     plan.scenario = (directory / json.at("scenario").get<std::string>()).lexically_normal();
@@ -178,7 +171,7 @@ Plan read_plan(const fs::path& directory) {
     read_description(json, plan);
     read_runs(json.at("runs"), plan.runs);
   } catch (const nlohmann::json::exception& error) {
-    refuse(path, fmt::format("a damaged file ({})", error.what()), "the plan of a study");
+    refuse(path.string(), fmt::format("a damaged file ({})", error.what()), "the plan of a study");
   }
   plan.text = read_file(scenario_path(directory));
   return plan;

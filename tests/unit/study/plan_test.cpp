@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::filesystem::path gallery = std::filesystem::path(KEYBLOCK_TEST_DATA) / "study/gallery.toml";
+const std::filesystem::path gallery_file = std::filesystem::path(KEYBLOCK_TEST_DATA) / "study/gallery.toml";
 
 /// A folder that is removed with what is in it.
 class Folder {
@@ -34,7 +34,7 @@ class Folder {
 };
 
 Plan plan_of(const std::vector<std::string>& overrides = {}) {
-  return make_plan(gallery, overrides, "1.2.3");
+  return make_plan(gallery_file, overrides, "1.2.3");
 }
 
 std::vector<std::string> keys_of(const Plan& plan) {
@@ -144,7 +144,7 @@ TEST(EnterPlan, NamesWhatDiffers) {
     EXPECT_THAT(error.what(), HasSubstr("rock.young: 2000000000.0 there, 1000000000.0 here"));
     EXPECT_THAT(error.what(), HasSubstr("stage[3].duration: 0.2 there, 3 here"));
   }
-  other = make_plan(gallery, {}, "9.9.9");
+  other = make_plan(gallery_file, {}, "9.9.9");
   EXPECT_THROW(enter_plan(folder.path(), other, true), InputError);
   EXPECT_THROW(enter_plan(folder.path(), plan, false), InputError);
   EXPECT_NO_THROW(enter_plan(folder.path(), plan, true));

@@ -16,7 +16,7 @@ namespace {
 using simulation::BlockStatus;
 using simulation::StageKind;
 
-RunResult sample() {
+RunResult sample_run() {
   RunResult run;
   run.key = "r0001-0123456789";
   run.realization = 1;
@@ -42,7 +42,7 @@ RunResult sample() {
 }
 
 TEST(RunJson, IsReadToTheLastBit) {
-  const RunResult run = sample();
+  const RunResult run = sample_run();
   const std::string text = run_json(run, "abc");
   const RunResult read = read_run_json(text, "abc");
   EXPECT_EQ(run_json(read, "abc"), text);
@@ -57,7 +57,7 @@ TEST(RunJson, IsReadToTheLastBit) {
 }
 
 TEST(RunJson, MapIsShort) {
-  RunResult run = sample();
+  RunResult run = sample_run();
   run.map.assign(1000000, BlockStatus::in_place);
   const std::string text = run_json(run, "");
   EXPECT_LT(text.size(), 3000U);
@@ -65,13 +65,13 @@ TEST(RunJson, MapIsShort) {
 }
 
 TEST(RunJson, EveryTruncationIsSeen) {
-  const std::string text = run_json(sample(), "abc");
+  const std::string text = run_json(sample_run(), "abc");
   for (std::size_t length = 0; length + 1 < text.size(); ++length)
     EXPECT_THROW(read_run_json(text.substr(0, length), "abc"), InputError) << length;
 }
 
 TEST(RunJson, EveryChangeIsSeen) {
-  const std::string text = run_json(sample(), "abc");
+  const std::string text = run_json(sample_run(), "abc");
   for (std::size_t k = 0; k + 1 < text.size(); ++k) {
     std::string changed = text;
     changed[k] = changed[k] == '7' ? '8' : '7';
@@ -80,7 +80,7 @@ TEST(RunJson, EveryChangeIsSeen) {
 }
 
 TEST(RunJson, OfAnotherStudy) {
-  EXPECT_THROW(read_run_json(run_json(sample(), "abc"), "abd"), InputError);
+  EXPECT_THROW(read_run_json(run_json(sample_run(), "abc"), "abd"), InputError);
 }
 
 }  // namespace
