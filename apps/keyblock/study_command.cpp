@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -24,8 +25,6 @@
 
 namespace keyblock::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t most_named = 20;  // runs that are named one by one
 
@@ -50,14 +49,14 @@ void tell(const study::CollectReport& report, const std::string& folder) {
   std::cout << "\nreport: " << folder << "/report.html" << std::endl;
 }
 
-struct RunArguments {
+struct StudyArguments {
   ScenarioArguments scenario;
   std::string folder;
   int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool resume = false;
 };
 
-void run_study(const RunArguments& arguments) {
+void run_study(const StudyArguments& arguments) {
   study::Plan plan =
       study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION);
   const auto lock = study::lock_study(arguments.folder);
@@ -74,7 +73,7 @@ void run_study(const RunArguments& arguments) {
   options.report = [&](const study::StudyProgress& progress) { display.show(progress); };
   const study::WorkerOutcome outcome = study::run_workers(arguments.folder, plan, files, options);
   display.end();
-  tell(study::collect(arguments.folder), arguments.folder);
+  tell(study::gather(arguments.folder, plan, std::move(files)), arguments.folder);
   if (outcome.interrupted)
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
   if (!outcome.failed.empty()) {
@@ -122,7 +121,7 @@ void run_task(const TaskArguments& arguments) {
 }
 
 void describe_run(CLI::App& study) {
-  auto arguments = std::make_shared<RunArguments>();
+  auto arguments = std::make_shared<StudyArguments>();
   CLI::App* command = study.add_subcommand("run", "All runs of a study on this machine, and its report");
   add_scenario_file(*command, arguments->scenario);
   add_study_folder(*command, arguments->folder);

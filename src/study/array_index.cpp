@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "core/error.h"
+#include "study/refusal.h"
 
 namespace keyblock::study {
 namespace {
@@ -20,14 +20,6 @@ std::optional<long> to_number(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-[[noreturn]] void refuse(std::string found, std::string expected) {
-  Diagnostic diagnostic;
-  diagnostic.key = "INDEX";
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  throw InputError(std::move(diagnostic));
 }
 
 }  // namespace
@@ -46,9 +38,10 @@ std::size_t array_index(const std::string& given, long first, std::size_t count)
   if (!number) {
     std::string names;
     for (const char* name : variables) names += std::string(names.empty() ? "" : ", ") + name;
-    refuse(source.empty() ? "nothing" : source, given.empty() ? range + ", or one of " + names : range);
+    refuse("INDEX", source.empty() ? "nothing" : source,
+           given.empty() ? range + ", or one of " + names : range);
   }
-  if (*number < first || *number - first >= static_cast<long>(count)) refuse(source, range);
+  if (*number < first || *number - first >= static_cast<long>(count)) refuse("INDEX", source, range);
   return static_cast<std::size_t>(*number - first);
 }
 

@@ -82,7 +82,10 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
 
 CollectReport collect(const fs::path& directory) {
   const Plan plan = read_plan(directory);
-  StudyFiles files = read_study_files(directory, plan);
+  return gather(directory, plan, read_study_files(directory, plan));
+}
+
+CollectReport gather(const fs::path& directory, const Plan& plan, StudyFiles files) {
   CollectReport report;
   report.enough = files.enough;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {

@@ -37,8 +37,11 @@ struct CollectReport {
 /// What readers need, by realization, then combination, then variant. Runs that failed are in it, with their error.
 StudyData study_data(const Plan& plan, StudyFiles files);
 
-/// Gathers the runs that are there: DIR/runs.csv, study.json, report.html (outputs.h). Throws InputError when DIR holds no
-/// plan, RunError when the files cannot be written.
+/// What there is to say of these files; writes DIR/runs.csv, study.json, report.html (outputs.h). Throws RunError when they
+/// cannot be written.
+CollectReport gather(const std::filesystem::path& directory, const Plan& plan, StudyFiles files);
+
+/// Gathers the runs that are there: reads DIR/plan.json and the results it names. Throws InputError when DIR holds no plan.
 CollectReport collect(const std::filesystem::path& directory);
 
 }  // namespace keyblock::study

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "scenario/parse.h"
 #include "study/plan_json.h"
+#include "study/refusal.h"
 #include "study/run_json.h"
 
 namespace keyblock::study {
@@ -25,20 +26,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_differences = 5;  // that are named
 
-[[noreturn]] void refuse(const fs::path& place, std::string found, std::string expected, std::string hint) {
-  Diagnostic diagnostic;
-  diagnostic.where.file = place.string();
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  diagnostic.hint = std::move(hint);
-  throw InputError(std::move(diagnostic));
-}
-
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error)) {
-    refuse(folder, error ? error.message() : "a file", "a folder, or a place where one can be made", "");
+    refuse(folder.string(), error ? error.message() : "a file", "a folder, or a place where one can be made");
   }
 }
 
@@ -54,12 +46,11 @@ std::vector<std::string> differences(const Plan& there, const Plan& here) {
     for (const std::string& line : scenario::differences(document(there), document(here)))
       found.push_back(line);
   }
-  std::map<fs::path, std::string> hashes;
-  for (const InputFile& file : there.files) hashes[fs::absolute(file.path).lexically_normal()] = file.hash;
+  std::map<std::string, std::string> hashes;
+  for (const InputFile& file : there.files) hashes[file.name] = file.hash;
   for (const InputFile& file : here.files) {
-    const auto known = hashes.find(fs::absolute(file.path).lexically_normal());
-    if (known != hashes.end() && known->second != file.hash)
-      found.push_back("the content of " + file.path.string());
+    const auto known = hashes.find(file.name);
+    if (known != hashes.end() && known->second != file.hash) found.push_back("the content of " + file.name);
   }
   return found;
 }
@@ -71,7 +62,7 @@ void check_same_study(const fs::path& directory, const Plan& there, const Plan& 
   for (std::size_t k = 0; k < std::min(found.size(), most_differences); ++k)
     text += (k == 0 ? "" : "; ") + found[k];
   if (found.size() > most_differences) text += fmt::format("; and {} more", found.size() - most_differences);
-  refuse(directory, text, "a study that differs in nothing but [study]", "take another folder");
+  refuse(directory.string(), text, "a study that differs in nothing but [study]", "take another folder");
 }
 
 std::string host_name() {
@@ -117,7 +108,7 @@ std::unique_ptr<FileLock> lock_study(const fs::path& directory) {
   make_folder(directory);
   auto lock = std::make_unique<FileLock>(directory / "lock");
   if (!lock->held()) {
-    refuse(directory, fmt::format("a study that {} is running", lock->holder()),
+    refuse(directory.string(), fmt::format("a study that {} is running", lock->holder()),
            "a folder that no other process works in", "wait until it has ended");
   }
   return lock;
@@ -128,12 +119,12 @@ void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
     const Plan there = read_plan(directory);
     check_same_study(directory, there, plan);
     if (!resume) {
-      refuse(directory, fmt::format("a study of {} runs", there.wanted()),
-             "a new folder, or --resume to go on with what is there", "");
+      refuse(directory.string(), fmt::format("a study of {} runs", there.wanted()),
+             "a new folder, or --resume to go on with what is there");
     }
     keep_places(there.runs, plan);
   } else if (fs::exists(directory / "result.h5")) {
-    refuse(directory, "the results of a run", "another folder", "");
+    refuse(directory.string(), "the results of a run", "another folder");
   }
   make_folder(directory / "runs");
   write_file_atomically(scenario_path(directory), plan.text);

@@ -68,7 +68,7 @@ std::vector<InputFile> files_of(const Plan& plan, const Scenario& base) {
     }
   }
   std::vector<InputFile> list;
-  for (const auto& [path, hash] : files) list.push_back({path, hash});
+  for (const auto& [path, hash] : files) list.push_back({input_name(plan.scenario, path), hash});
   return list;
 }
 
@@ -126,6 +126,13 @@ Box box_of_model(const Scenario& scenario) {
 }
 
 }  // namespace
+
+std::string input_name(const fs::path& scenario, const fs::path& file) {
+  return fs::absolute(file)
+      .lexically_normal()
+      .lexically_relative(fs::absolute(scenario).lexically_normal().parent_path())
+      .string();
+}
 
 std::string hash_text(std::string_view content) {
   Hash hash;

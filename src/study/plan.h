@@ -24,7 +24,7 @@ struct PlannedRun {
 
 /// A file that a scenario reads, as it was when the study was planned.
 struct InputFile {
-  std::filesystem::path path;
+  std::string name;  ///< path from the folder of the scenario
   std::string hash;
 };
 
@@ -83,6 +83,9 @@ MapGrid map_grid(const scenario::Scenario& scenario);
 /// Those of the scenario; by default 0.2, 2 and 10 % of the area of the openings fallen ("light", "moderate",
 /// "severe"), and without openings "any": a block has fallen.
 std::vector<DamageLevel> damage_levels(const scenario::Scenario& scenario);
+
+/// The name of a file in Plan::files.
+std::string input_name(const std::filesystem::path& scenario, const std::filesystem::path& file);
 
 /// Content hash, 16 hexadecimal digits.
 std::string hash_text(std::string_view content);

@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "study/folder.h"
+#include "study/refusal.h"
 
 namespace keyblock::study {
 namespace {
@@ -16,19 +17,9 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using scenario::Keep;
 
-constexpr int format = 1;
+constexpr int plan_format = 1;
 constexpr std::pair<Keep, const char*> keeps[] = {
     {Keep::all, "all"}, {Keep::report, "report"}, {Keep::measures, "measures"}};
-
-std::string relative_path(const fs::path& path, const fs::path& directory) {
-  const fs::path relative =
-      fs::absolute(path).lexically_normal().lexically_relative(fs::absolute(directory).lexically_normal());
-  return (relative.empty() ? fs::absolute(path) : relative).string();
-}
-
-fs::path resolved(const std::string& text, const fs::path& directory) {
-  return fs::path(text).is_absolute() ? fs::path(text) : (directory / text).lexically_normal();
-}
 
 ordered_json until_json(const scenario::UntilSpec& until) {
   ordered_json json{{"measure", until.measure}, {"minimum", until.minimum}, {"maximum", until.maximum}};
@@ -131,26 +122,20 @@ void read_description(const ordered_json& json, Plan& plan) {
   }
 }
 
-[[noreturn]] void refuse(const fs::path& path, std::string found, std::string expected) {
-  Diagnostic diagnostic;
-  diagnostic.where.file = path.string();
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  throw InputError(std::move(diagnostic));
-}
-
 }  // namespace
 
 std::string plan_json(const Plan& plan, const fs::path& directory) {
   ordered_json files = ordered_json::array();
-  for (const InputFile& file : plan.files)
-    files.push_back({{"path", relative_path(file.path, directory)}, {"hash", file.hash}});
-  ordered_json json{{"format", format},
-                    {"version", plan.version},
-                    {"scenario", relative_path(plan.scenario, directory)},
-                    {"overrides", plan.overrides},
-                    {"input", plan.input},
-                    {"files", files}};
+  for (const InputFile& file : plan.files) files.push_back({{"name", file.name}, {"hash", file.hash}});
+  const fs::path scenario = fs::absolute(plan.scenario).lexically_normal();
+  ordered_json json{
+      {"format", plan_format},
+      {"version", plan.version},
+      {"scenario", scenario.lexically_relative(fs::absolute(directory).lexically_normal()).string()},
+      {"scenario_path", scenario.string()},
+      {"overrides", plan.overrides},
+      {"input", plan.input},
+      {"files", files}};
   json.update(description_json(plan));
   // A line for each member, and one for each run: its place is its index.
   const auto dump = [](const ordered_json& value) {
@@ -167,25 +152,26 @@ std::string plan_json(const Plan& plan, const fs::path& directory) {
 Plan read_plan(const fs::path& directory) {
   const fs::path path = plan_path(directory);
   if (!fs::exists(path)) {
-    refuse(directory, "no plan.json", "the folder of a study, as keyblock study run makes it");
+    refuse(directory.string(), "no plan.json", "the folder of a study, as keyblock study run makes it");
   }
   Plan plan;
   try {
     const ordered_json json = ordered_json::parse(read_file(path));
-    if (json.at("format") != format)
-      refuse(path, "another format", fmt::format("format {} of the plan of a study", format));
+    if (json.at("format") != plan_format)
+      refuse(path.string(), "another format", fmt::format("format {} of the plan of a study", plan_format));
     json.at("version").get_to(plan.version);
-    plan.scenario = resolved(json.at("scenario").get<std::string>(), directory);
+    // Both may have been moved together, or the folder alone.
+    plan.scenario = (directory / json.at("scenario").get<std::string>()).lexically_normal();
+    if (!fs::exists(plan.scenario)) plan.scenario = json.at("scenario_path").get<std::string>();
     json.at("overrides").get_to(plan.overrides);
     json.at("input").get_to(plan.input);
     for (const auto& file : json.at("files")) {
-      plan.files.push_back(
-          {resolved(file.at("path").get<std::string>(), directory), file.at("hash").get<std::string>()});
+      plan.files.push_back({file.at("name").get<std::string>(), file.at("hash").get<std::string>()});
     }
     read_description(json, plan);
     read_runs(json.at("runs"), plan.runs);
   } catch (const nlohmann::json::exception& error) {
-    refuse(path, fmt::format("a damaged file ({})", error.what()), "the plan of a study");
+    refuse(path.string(), fmt::format("a damaged file ({})", error.what()), "the plan of a study");
   }
   plan.text = read_file(scenario_path(directory));
   return plan;

@@ -6,8 +6,8 @@
 
 namespace keyblock::study {
 
-/// DIR/plan.json, but for the text of the scenario, which is DIR/study.toml. Paths are relative to DIR where that is
-/// possible.
+/// DIR/plan.json: the plan but for the text of the scenario, which is DIR/study.toml. The scenario is named from DIR and by its
+/// full path.
 std::string plan_json(const Plan& plan, const std::filesystem::path& directory);
 
 /// Throws InputError when DIR holds no plan, or one that is damaged or of another format.

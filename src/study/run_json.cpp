@@ -7,6 +7,7 @@
 #include "results/record_json.h"
 #include "simulation/damage_fields.h"
 #include "study/plan.h"
+#include "study/refusal.h"
 
 namespace keyblock::study {
 namespace {
@@ -15,15 +16,8 @@ using nlohmann::ordered_json;
 using simulation::BlockStatus;
 using simulation::StageKind;
 
-constexpr int format = 1;
+constexpr int run_format = 1;
 const std::string checksum_mark = ",\"checksum\":\"";
-
-[[noreturn]] void refuse(std::string found, std::string expected) {
-  Diagnostic diagnostic;
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  throw InputError(std::move(diagnostic));
-}
 
 // JSON has no NaN; it is written as null.
 double number(const ordered_json& value) {
@@ -111,7 +105,7 @@ std::string run_json(const RunResult& run, const std::string& input) {
                       {"centroid", {block.centroid.x, block.centroid.y}},
                       {"area_m2", block.area}});
   }
-  const ordered_json json{{"format", format},
+  const ordered_json json{{"format", run_format},
                           {"input", input},
                           {"key", run.key},
                           {"realization", run.realization},
@@ -136,17 +130,17 @@ std::string run_json(const RunResult& run, const std::string& input) {
 RunResult read_run_json(const std::string& text, const std::string& input) {
   const std::string expected = "the measures of a run as keyblock wrote them";
   const std::size_t mark = text.rfind(checksum_mark);
-  if (mark == std::string::npos) refuse("a truncated file", expected);
+  if (mark == std::string::npos) refuse("", "a truncated file", expected);
   const std::string sum = text.substr(mark + checksum_mark.size());
   if (sum != hash_text(std::string_view(text).substr(0, mark)) + "\"}\n")
-    refuse("a file that was truncated or changed", expected);
+    refuse("", "a file that was truncated or changed", expected);
   try {
     const ordered_json json = ordered_json::parse(text);
-    if (json.at("format") != format) refuse("another format", "format " + std::to_string(format));
-    if (json.at("input") != input) refuse("the run of another study or version", "one of this study");
+    if (json.at("format") != run_format) refuse("", "another format", "format " + std::to_string(run_format));
+    if (json.at("input") != input) refuse("", "the run of another study or version", "one of this study");
     return read_result(json);
   } catch (const nlohmann::json::exception& error) {
-    refuse(error.what(), expected);
+    refuse("", error.what(), expected);
   }
 }
 

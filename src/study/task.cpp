@@ -33,7 +33,7 @@ constexpr double never = 1e9;  // s between records that nobody keeps
 
 void check_file(const Plan& plan, const fs::path& path) {
   for (const InputFile& file : plan.files) {
-    if (fs::absolute(file.path).lexically_normal() != fs::absolute(path).lexically_normal()) continue;
+    if (file.name != input_name(plan.scenario, path)) continue;
     if (hash_text(read_file(path)) == file.hash) return;
     Diagnostic diagnostic;
     diagnostic.where.file = path.string();

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int poll_milliseconds = 200;
+constexpr auto report_interval = std::chrono::milliseconds(100);
 constexpr std::size_t log_lines = 3;     // of a failed run that are told
 constexpr double settle_weight = 300.0;  // steps that a settling stage is taken for
 
@@ -63,7 +64,7 @@ class Workers {
       if (running_.empty()) break;
       wait();
       finish_runs();
-      report("", "");
+      if (Clock::now() - last_report_ >= report_interval) report("", "");
     }
     outcome_.interrupted = interrupted_;
     return std::move(outcome_);
@@ -168,6 +169,7 @@ class Workers {
   }
 
   void report(const std::string& finished, const std::string& failure) {
+    last_report_ = Clock::now();
     StudyProgress progress;
     progress.done = outcome_.before + outcome_.done;
     progress.failed = outcome_.failed.size();
@@ -199,7 +201,7 @@ class Workers {
   std::list<Running> running_;
   WorkerOutcome outcome_;
   bool interrupted_ = false;
-  Clock::time_point start_ = Clock::now();
+  Clock::time_point start_ = Clock::now(), last_report_;
 };
 
 }  // namespace

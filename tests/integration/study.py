@@ -173,7 +173,7 @@ class Runs(Study):
         before = self.done()
         self.run_study("until.toml", "--resume")
         self.assertEqual(self.done(), before)
-        self.assertIn("does not ask for it", self.study("task", "out", 2 * enough).stdout)
+        self.assertIn("does not ask for it", self.study("task", "one", 2 * enough).stdout)
         self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until.replace("0.75", "0.0001") + SCALES)
         self.assertIn("24 of 24 runs done\n", self.run_study("until.toml", "--resume").stdout)
 
@@ -302,6 +302,13 @@ class GoingOn(Study):
         self.scenario.with_name("small.toml").rename(self.folder / "moved/small.toml")
         self.study("task", "moved/out", "0")
         self.assertIn("6 of 6", self.study("collect", "moved/out").stdout)
+
+    def test_a_study_can_be_moved_alone(self):
+        self.run_study("small.toml")
+        self.run_file(self.keys()[0]).unlink()
+        (self.folder / "deep").mkdir()
+        self.out.rename(self.folder / "deep/out")
+        self.study("run", "small.toml", "-o", "deep/out", "--resume")
 
     def test_a_damaged_result_is_named_and_run_again(self):
         self.run_study("small.toml")

@@ -1,0 +1,189 @@
+#include "study/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "core/error.h"
+#include "study/folder.h"
+#include "study/plan_json.h"
+
+namespace keyblock::study {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::filesystem::path gallery_file = std::filesystem::path(KEYBLOCK_TEST_DATA) / "study/gallery.toml";
+
+/// A folder that is removed with what is in it.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("keyblock-plan-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+Plan plan_of(const std::vector<std::string>& overrides = {}) {
+  return make_plan(gallery_file, overrides, "1.2.3");
+}
+
+std::vector<std::string> keys_of(const Plan& plan) {
+  std::vector<std::string> keys;
+  for (const PlannedRun& run : plan.runs) keys.push_back(run.key);
+  return keys;
+}
+
+TEST(RunKey, IsStable) {
+  // These name folders of studies that exist: they never change.
+  EXPECT_EQ(run_key(7, {}, ""), "r0007-af63a24c86");
+  EXPECT_EQ(run_key(0, {"stage.shaken.scale=0.5"}, ""), "r0000-ac609476ab");
+  EXPECT_EQ(run_key(12345, {}, "").substr(0, 7), "r12345-");
+}
+
+TEST(RunKey, DependsOnWhatVariesAlone) {
+  const std::string key = run_key(1, {"rock.order=2", "stage.'a b'.scale=0.5"}, "");
+  EXPECT_EQ(run_key(1, {"stage.\"a b\".scale=0.5", "rock.order=2"}, ""), key);
+  EXPECT_EQ(run_key(1, {"stage.'a b'.scale = 0.50", "rock.order =2"}, ""), key);
+  EXPECT_NE(run_key(1, {"stage.'a b'.scale=0.6", "rock.order=2"}, ""), key);
+  EXPECT_NE(run_key(1, {"rock.order=2"}, ""), key);
+  EXPECT_NE(run_key(1, {"rock.order=2", "stage.'a b'.scale=0.5"}, "released"), key);
+}
+
+TEST(Plan, RunsByRealizationThenCombination) {
+  const Plan plan = plan_of({"study.realizations=2"});
+  ASSERT_EQ(plan.runs.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(plan.runs[k].realization, static_cast<int>(k / 2));
+    EXPECT_EQ(plan.runs[k].values[0][0], k % 2 == 0 ? "0.5" : "1.0");
+  }
+  EXPECT_EQ(plan.stage, "after");
+  EXPECT_EQ(plan.seed, 7U);
+  EXPECT_THAT(overrides_of(plan, plan.runs[1]), ElementsAre("stage.shaken.scale=1.0"));
+}
+
+TEST(Plan, TheFirstPartIsASmallerStudy) {
+  const auto few = keys_of(plan_of({"study.realizations=2"}));
+  const auto many = keys_of(plan_of({"study.realizations=5"}));
+  ASSERT_EQ(many.size(), 10U);
+  EXPECT_EQ(std::vector(many.begin(), many.begin() + 4), few);
+  EXPECT_EQ(std::set(many.begin(), many.end()).size(), many.size());
+}
+
+TEST(Plan, StudyIsNoPartOfItsIdentity) {
+  const Plan plan = plan_of();
+  EXPECT_EQ(plan_of({"study.realizations=9", "study.keep=all", "study.marginal={}"}).input, plan.input);
+  EXPECT_NE(plan_of({"rock.young=1e9"}).input, plan.input);
+  EXPECT_NE(plan_of({"seed=8"}).input, plan.input);
+}
+
+TEST(Plan, KeepsPlaces) {
+  const Plan before = plan_of();
+  Plan after = plan_of({"study.realizations=4", "study.vary[0].values=[2.0, 1.0]"});
+  keep_places(before.runs, after);
+  // Three realizations of 0.5, no longer wanted; three of 1.0 in their places; four of 2.0 and one of 1.0 are new.
+  ASSERT_EQ(after.runs.size(), 6U + 5U);
+  EXPECT_EQ(after.wanted(), 8U);
+  for (std::size_t k = 0; k < before.runs.size(); ++k) {
+    EXPECT_EQ(after.runs[k].key, before.runs[k].key);
+    EXPECT_EQ(after.runs[k].wanted, before.runs[k].values[0][0] == "1.0");
+  }
+}
+
+TEST(Plan, TooManyRuns) {
+  EXPECT_THROW(plan_of({"study.realizations=2000000"}), InputError);
+}
+
+TEST(Plan, VariantsMultiplyTheRuns) {
+  const Plan plan = plan_of({"study.marginal={}"});
+  ASSERT_EQ(plan.runs.size(), 3U * 2U * 4U);
+  EXPECT_EQ(plan.runs[3].variant, "released");
+  EXPECT_EQ(keys_of(plan)[0], keys_of(plan_of())[0]);  // the run itself is the same
+  EXPECT_NE(keys_of(plan)[1], keys_of(plan_of({"study.marginal.friction=5"}))[1]);
+  EXPECT_EQ(keys_of(plan)[3], keys_of(plan_of({"study.marginal.friction=5"}))[3]);
+}
+
+TEST(Plan, IsReadAsItWasWritten) {
+  const Folder folder;
+  Plan plan =
+      plan_of({"study.marginal={friction=2.5}", "study.map.cell=0.3",
+               "study.level=[{name='any', measure='fallen_blocks', threshold=0}]", "study.confidence=0.9"});
+  plan.runs[2].wanted = false;
+  plan.until = scenario::UntilSpec{"slip_max_m", 0.1, std::nullopt, 4, 50};
+  plan.files = {{"motions/a.smc", "0123"}};
+  std::ofstream(plan_path(folder.path())) << plan_json(plan, folder.path());
+  std::ofstream(scenario_path(folder.path())) << plan.text;
+  const Plan read = read_plan(folder.path());
+  EXPECT_EQ(plan_json(read, folder.path()), plan_json(plan, folder.path()));
+  EXPECT_EQ(read.text, plan.text);
+  EXPECT_EQ(read.runs[2].wanted, false);
+  EXPECT_EQ(read.scenario, plan.scenario.lexically_normal());
+  ASSERT_TRUE(read.until && read.until->half_width && !read.until->width);
+  EXPECT_EQ(read.levels[0].measure, "fallen_blocks");
+  EXPECT_EQ(read.grid.cell, 0.3);
+}
+
+TEST(EnterPlan, NamesWhatDiffers) {
+  const Folder folder;
+  Plan plan = plan_of();
+  enter_plan(folder.path(), plan, false);
+  Plan other = plan_of({"rock.young=1e9", "stage.after.duration=3"});
+  try {
+    enter_plan(folder.path(), other, true);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("rock.young: 2000000000.0 there, 1000000000.0 here"));
+    EXPECT_THAT(error.what(), HasSubstr("stage[3].duration: 0.2 there, 3 here"));
+  }
+  other = make_plan(gallery_file, {}, "9.9.9");
+  EXPECT_THROW(enter_plan(folder.path(), other, true), InputError);
+  EXPECT_THROW(enter_plan(folder.path(), plan, false), InputError);
+  EXPECT_NO_THROW(enter_plan(folder.path(), plan, true));
+}
+
+TEST(FileLock, IsHeldOnce) {
+  const Folder folder;
+  const auto lock = lock_study(folder.path());
+  EXPECT_TRUE(lock->held());
+  try {
+    lock_study(folder.path());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("process " + std::to_string(::getpid()) + " on "));
+  }
+}
+
+TEST(DamageLevels, AreSharesOfTheOpenings) {
+  const Plan plan = plan_of();
+  ASSERT_EQ(plan.levels.size(), 3U);
+  EXPECT_NEAR(plan.levels[2].threshold, 0.1 * 3.14, 0.002);
+  EXPECT_EQ(plan.levels[0].measure, "fallen_area_m2");
+}
+
+TEST(MapGrid, SurroundsTheOpening) {
+  MapGrid grid = plan_of().grid;
+  // The opening is 2 m wide: its box grown by 2 m is the whole domain.
+  EXPECT_EQ(grid.corner, (Vec2{-3.0, -3.0}));
+  EXPECT_DOUBLE_EQ(grid.cell, 0.05);
+  EXPECT_EQ(grid.columns, 120);
+  EXPECT_EQ(grid.rows, 120);
+  grid = plan_of({"excavation.gallery.center=[1.0, 0.5]", "excavation.gallery.diameter=1.0",
+                  "study.map.cell=0.3"})
+             .grid;
+  EXPECT_NEAR(grid.corner.x, -0.5, 1e-9);
+  EXPECT_NEAR(grid.corner.y, -1.0, 2e-3);  // of 96 chords
+  EXPECT_EQ(grid.columns, 10);
+  EXPECT_THROW(plan_of({"study.map.cell=1e-4"}), InputError);
+}
+
+}  // namespace
+}  // namespace keyblock::study
