@@ -1,9 +1,8 @@
 #include "statistics/distributions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "core/random.h"
 
 namespace keyblock::statistics {
 
@@ -11,29 +10,50 @@ double normal_cdf(double z) {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
-double student_t(double confidence, int degrees) {
-  const double n = degrees;
-  const double tails = 1.0 - confidence;
-  const double half_pi = 0.5 * std::numbers::pi;
-  if (degrees == 1) return 1.0 / std::tan(tails * half_pi);
-  if (degrees == 2) return std::sqrt(2.0 / (tails * (2.0 - tails)) - 2.0);
-  const double a = 1.0 / (n - 0.5);
-  const double b = 48.0 / (a * a);
-  double c = ((20700.0 * a / b - 98.0) * a - 16.0) * a + 96.36;
-  const double d = ((94.5 / (b + c) - 3.0) / b + 1.0) * std::sqrt(a * half_pi) * n;
-  double y = std::pow(d * tails, 2.0 / n);
-  if (y <= 0.05 + a) {
-    y = ((1.0 / (((n + 6.0) / (n * y) - 0.089 * d - 0.822) * (n + 2.0) * 3.0) + 0.5 / (n + 4.0)) * y - 1.0) *
-            (n + 1.0) / (n + 2.0) +
-        1.0 / y;
-    return std::sqrt(n * y);
+namespace {
+
+// Continued fraction of the incomplete beta function (Lentz), as in Numerical Recipes, 6.4.
+double beta_fraction(double a, double b, double x) {
+  constexpr double tiny = 1e-300, precision = 1e-15;
+  constexpr int most_terms = 500;
+  double c = 1.0, d = 1.0 / std::max(tiny, 1.0 - (a + b) * x / (a + 1.0)), h = d;
+  for (int m = 1; m < most_terms; ++m) {
+    const double even = m * (b - m) * x / ((a + 2 * m - 1.0) * (a + 2 * m));
+    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1.0));
+    double change = 1.0;
+    for (const double term : {even, odd}) {
+      d = 1.0 + term * d;
+      c = 1.0 + term / c;
+      if (std::abs(d) < tiny) d = tiny;
+      if (std::abs(c) < tiny) c = tiny;
+      d = 1.0 / d;
+      change = c * d;
+      h *= change;
+    }
+    if (std::abs(change - 1.0) < precision) break;
   }
-  const double x = inverse_normal_cdf(0.5 * tails);
-  y = x * x;
-  if (degrees < 5) c += 0.3 * (n - 4.5) * (x + 0.6);
-  c = (((0.05 * d * x - 5.0) * x - 7.0) * x - 2.0) * x + b + c;
-  y = (((((0.4 * y + 6.3) * y + 36.0) * y + 94.5) / c - y - 3.0) / b + 1.0) * x;
-  return std::sqrt(n * std::expm1(a * y * y));
+  return h;
+}
+
+double incomplete_beta(double a, double b, double x) {
+  if (x <= 0.0) return 0.0;
+  if (x >= 1.0) return 1.0;
+  const double front =
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+  return x < (a + 1.0) / (a + b + 2.0) ? front * beta_fraction(a, b, x) / a
+                                       : 1.0 - front * beta_fraction(b, a, 1.0 - x) / b;
+}
+
+}  // namespace
+
+double student_t(double confidence, int degrees) {
+  // P(|T| > t) = I_y(ν/2, 1/2) with y = ν/(ν + t²), which rises with y.
+  double low = 0.0, high = 1.0;
+  for (int k = 0; k < 200; ++k) {
+    const double y = 0.5 * (low + high);
+    (incomplete_beta(0.5 * degrees, 0.5, y) < 1.0 - confidence ? low : high) = y;
+  }
+  return low > 0.0 ? std::sqrt(degrees * (1.0 - low) / low) : HUGE_VAL;
 }
 
 }  // namespace keyblock::statistics

@@ -68,6 +68,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.levels = plan.levels;
   study.marginal = plan.marginal;
   study.confidence = plan.confidence;
+  if (plan.until) study.precision = Precision{plan.until->measure, plan.until->half_width, plan.until->width};
   study.grid = plan.grid;
   study.outlines = plan.outlines;
   for (const std::size_t k : sorted_places(plan)) {

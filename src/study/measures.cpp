@@ -1,28 +1,23 @@
 #include "study/measures.h"
 
 #include <array>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "simulation/damage_fields.h"
 
 namespace keyblock::study {
 
 namespace {
 
-using simulation::Damage;
-
-const std::array<Measure, 10> all_measures{{
-    {"fallen_blocks", "fallen blocks", "",
-     [](const Damage& d) { return static_cast<double>(d.fallen_blocks); }},
-    {"fallen_area_m2", "fallen area", "m²", [](const Damage& d) { return d.fallen_area; }},
-    {"opening_filled_ratio", "filled share of the opening", "",
-     [](const Damage& d) { return d.opening_filled_ratio; }},
-    {"loosened_area_m2", "loosened area", "m²", [](const Damage& d) { return d.loosened_area; }},
-    {"slip_max_m", "largest slip", "m", [](const Damage& d) { return d.slip_max; }},
-    {"slip_mean_m", "mean slip", "m", [](const Damage& d) { return d.slip_mean; }},
-    {"slipped_length_m", "slipped length", "m", [](const Damage& d) { return d.slipped_length; }},
-    {"opened_length_m", "opened length", "m", [](const Damage& d) { return d.opened_length; }},
-    {"closure_vertical_m", "vertical closure", "m", [](const Damage& d) { return d.closure_vertical; }},
-    {"closure_horizontal_m", "horizontal closure", "m", [](const Damage& d) { return d.closure_horizontal; }},
-}};
-static_assert(sizeof(Damage) == std::size(all_measures) * sizeof(double),
+/// Titles and units, in the order of the names.
+constexpr std::pair<const char*, const char*> titles[] = {
+    {"fallen blocks", ""},      {"fallen area", "m²"},  {"filled share of the opening", ""},
+    {"loosened area", "m²"},    {"largest slip", "m"},  {"mean slip", "m"},
+    {"slipped length", "m"},    {"opened length", "m"}, {"vertical closure", "m"},
+    {"horizontal closure", "m"}};
+static_assert(std::size(titles) == 1 + std::size(simulation::damage_fields),
               "a measure of the damage is missing");
 
 const std::array<Intensity, 3> all_intensities{
@@ -32,13 +27,25 @@ const std::array<Intensity, 3> all_intensities{
 
 }  // namespace
 
+double Measure::of(const simulation::Damage& damage) const {
+  return simulation::damage_value(damage, name);
+}
+
 std::span<const Measure> measures() {
-  return all_measures;
+  static const std::vector<Measure> all = [] {
+    std::vector<Measure> made;
+    for (const std::string& name : simulation::damage_names()) {
+      const auto [title, unit] = titles[made.size()];
+      made.push_back({name, title, unit});
+    }
+    return made;
+  }();
+  return all;
 }
 
 std::optional<std::size_t> find_measure(std::string_view name) {
-  for (std::size_t k = 0; k < all_measures.size(); ++k)
-    if (all_measures[k].name == name) return k;
+  for (std::size_t k = 0; k < measures().size(); ++k)
+    if (measures()[k].name == name) return k;
   return std::nullopt;
 }
 

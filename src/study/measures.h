@@ -14,7 +14,7 @@ struct Measure {
   std::string name;   ///< "fallen_area_m2"
   std::string title;  ///< "fallen area"
   std::string unit;   ///< "m²"; empty for counts and ratios
-  double (*of)(const simulation::Damage&);
+  [[nodiscard]] double of(const simulation::Damage& damage) const;
 };
 
 /// All measures, in the order of summary.json.

@@ -17,7 +17,4 @@ namespace keyblock::study {
 /// `results` are in the places of plan.runs; null: missing. Variants have no say.
 std::optional<int> enough_realizations(const Plan& plan, const std::vector<const RunResult*>& results);
 
-/// x with P(T ≤ x) = p for Student's distribution of `freedom` degrees of freedom.
-double student_quantile(double p, double freedom);
-
 }  // namespace keyblock::study

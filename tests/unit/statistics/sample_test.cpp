@@ -48,8 +48,13 @@ TEST(Distributions, StudentMatchesTables) {
   const std::vector<std::pair<int, double>> at_95{{1, 12.7062}, {2, 4.30265},  {3, 3.18245},  {4, 2.77645},
                                                   {5, 2.57058}, {10, 2.22814}, {30, 2.04227}, {120, 1.97993}};
   for (const auto& [n, t] : at_95) EXPECT_NEAR(student_t(0.95, n), t, 3e-5 * t) << n;
-  EXPECT_NEAR(student_t(0.99, 3), 5.84091, 5e-4);
-  EXPECT_NEAR(student_t(0.99, 20), 2.84534, 1e-4);
+  EXPECT_NEAR(student_t(0.95, 1), 12.7062047364, 1e-8);
+  EXPECT_NEAR(student_t(0.95, 2), 4.30265272975, 1e-9);
+  EXPECT_NEAR(student_t(0.90, 5), 2.01504837333, 1e-9);
+  EXPECT_NEAR(student_t(0.95, 9), 2.26215716280, 1e-9);
+  EXPECT_NEAR(student_t(0.99, 30), 2.74999565357, 1e-9);
+  EXPECT_NEAR(student_t(0.95, 1'000'000), 1.95996634, 1e-6);
+  EXPECT_NEAR(student_t(0.0, 3), 0.0, 1e-6);
 }
 
 // Brown, Cai & DasGupta's formula by hand: 1 of 10 at 95 %, and the ends.

@@ -4,19 +4,10 @@
 
 #include <cmath>
 
+#include "statistics/distributions.h"
+
 namespace keyblock::study {
 namespace {
-
-TEST(StudentQuantile, OfTables) {
-  EXPECT_NEAR(student_quantile(0.975, 1), 12.7062047364, 1e-8);
-  EXPECT_NEAR(student_quantile(0.975, 2), 4.30265272975, 1e-9);
-  EXPECT_NEAR(student_quantile(0.95, 5), 2.01504837333, 1e-9);
-  EXPECT_NEAR(student_quantile(0.975, 9), 2.26215716280, 1e-9);
-  EXPECT_NEAR(student_quantile(0.995, 30), 2.74999565357, 1e-9);
-  EXPECT_NEAR(student_quantile(0.975, 1e6), 1.95996634, 1e-6);
-  EXPECT_NEAR(student_quantile(0.5, 3), 0.0, 1e-6);
-  EXPECT_DOUBLE_EQ(student_quantile(0.025, 9), -student_quantile(0.975, 9));
-}
 
 /// A study of one axis with two values; the fallen area of every run.
 struct Sample {
@@ -48,7 +39,7 @@ Sample sample() {
 TEST(EnoughRealizations, FollowsTheIntervalOfTheMean) {
   Sample s = sample();
   for (int k = 0; k < 60; ++k) s.add(k, "1", 5.0 + (k % 2 == 0 ? 1.0 : -1.0));
-  const auto width = [](double n) { return 2.0 * student_quantile(0.975, n - 1.0) / std::sqrt(n - 1.0); };
+  const auto width = [](int n) { return 2.0 * statistics::student_t(0.95, n - 1) / std::sqrt(n - 1.0); };
   int expected = 2;
   while (width(expected) > 1.0) expected += 2;
   ASSERT_TRUE(s.enough());
