@@ -23,7 +23,7 @@ constexpr double room = 0.8;
 
 constexpr std::string_view style =
     "<style>.r{fill:#e4e1d8;stroke:#6b6f73}.x{fill:#d3d5d7;stroke:#6b6f73}.l{fill:#e69f00;stroke:#33373b}"
-    ".f{fill:#d55e00;stroke:#33373b}.o{fill:none;stroke:#c2185b;stroke-dasharray:6 4;stroke-width:2}"
+    ".f{fill:#d55e00;stroke:#33373b}.o{fill:none;stroke:#c2185b}"
     "@media (prefers-color-scheme:dark){.r{fill:#4a4d50;stroke:#16181b}.x{fill:#33373b;stroke:#16181b}"
     ".l,.f{stroke:#0d0e10}.o{stroke:#ff6fa8}}</style>";
 
@@ -83,7 +83,11 @@ class Drawing {
       std::vector<Unit> ring;
       for (const Vec2 p : outline) ring.push_back(unit(p, scale));
       add_ring(path, from, ring);
-      if (!path.empty()) svg += fmt::format("<path class=\"o\" d=\"{}\"/>", path);
+      if (!path.empty()) {
+        svg += fmt::format(
+            "<path class=\"o\" stroke-width=\"{:.2g}\" stroke-dasharray=\"{:.2g} {:.2g}\" d=\"{}\"/>",
+            resolution / 200.0, resolution / 66.0, resolution / 100.0, path);
+      }
     }
     return svg + "</svg>\n";
   }
