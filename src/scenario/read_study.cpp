@@ -144,6 +144,12 @@ void read_keys_of_study(TableReader& t, StudySpec& study) {
            [](TableReader& v, VarySpec& vary) { read_vary(v, vary); });
   t.reference("stage", study.stage, "stage",
               {.meaning = "At whose end the measures are compared.", .fallback = "the last stage"});
+  t.reference(
+      "since", study.since, "stage",
+      {.meaning =
+           "An earlier one, at whose end the measures begin: what an earthquake adds to what gravity alone "
+           "brought down.",
+       .fallback = "the first excavation"});
   t.number("confidence", study.confidence,
            {.meaning = "Confidence level of all intervals.", .above = 0.0, .below = 1.0});
   t.table("until",

@@ -41,6 +41,7 @@ struct StudySpec {
   int realizations = 1;
   std::vector<VarySpec> vary;
   std::string stage;  ///< at whose end measures are compared; empty: the last
+  std::string since;  ///< an earlier stage, at whose end they begin; empty: the first excavation
   double confidence = 0.95;
   std::optional<UntilSpec> until;
   std::vector<LevelSpec> levels;  ///< empty: defaults, see study::damage_levels

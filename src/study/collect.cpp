@@ -65,6 +65,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
       study.axes.back().values.push_back(axis.value_text(k));
   }
   study.stage = plan.stage;
+  study.since = plan.since;
   study.levels = plan.levels;
   study.marginal = plan.marginal;
   study.confidence = plan.confidence;

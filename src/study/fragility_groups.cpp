@@ -74,8 +74,7 @@ std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summa
         for (const std::size_t c : group.combinations) {
           for (const std::size_t r : summary.combinations[c].runs) {
             const Measured m = measured(study, study.runs[r]);
-            runs.push_back({m.intensity[i],
-                            measures()[*measure].of(m.stage->damage) > study.levels[l].threshold,
+            runs.push_back({m.intensity[i], measures()[*measure].of(*m.damage) > study.levels[l].threshold,
                             study.runs[r].realization});
           }
         }

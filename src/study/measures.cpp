@@ -1,5 +1,6 @@
 #include "study/measures.h"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <utility>
@@ -47,6 +48,24 @@ std::optional<std::size_t> find_measure(std::string_view name) {
   for (std::size_t k = 0; k < measures().size(); ++k)
     if (measures()[k].name == name) return k;
   return std::nullopt;
+}
+
+std::optional<simulation::Damage> damage_between(const RunResult& run, std::string_view since,
+                                                 std::string_view stage) {
+  if (!run.error.empty() || run.stages.empty()) return std::nullopt;
+  const auto named = [&](std::string_view name) {
+    return std::find_if(run.stages.begin(), run.stages.end(),
+                        [&](const StageMeasures& s) { return s.name == name; });
+  };
+  const auto end = stage.empty() ? run.stages.end() - 1 : named(stage);
+  if (end == run.stages.end()) return std::nullopt;
+  simulation::Damage damage = end->damage;
+  if (since.empty()) return damage;
+  const auto start = named(since);
+  if (start == run.stages.end()) return std::nullopt;
+  damage.fallen_blocks -= start->damage.fallen_blocks;
+  for (const auto& [name, member] : simulation::damage_fields) damage.*member -= start->damage.*member;
+  return damage;
 }
 
 std::span<const Intensity> intensities() {

@@ -23,6 +23,11 @@ std::span<const Measure> measures();
 /// Place of a measure in measures() by its name; none when there is no such measure.
 std::optional<std::size_t> find_measure(std::string_view name);
 
+/// What happened to a run until the end of `stage` (empty: its last), less what had happened by the end of `since` (empty:
+/// nothing). None when the run failed or did not get there.
+std::optional<simulation::Damage> damage_between(const RunResult& run, std::string_view since,
+                                                 std::string_view stage);
+
 /// Kinds of intensity of shaking.
 struct Intensity {
   std::string name;   ///< "pga_m_s2"

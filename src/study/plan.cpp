@@ -125,6 +125,18 @@ Box box_of_model(const Scenario& scenario) {
   return box;
 }
 
+/// Measures can only begin before they end.
+void check_order(const scenario::Scenario& scenario, const Plan& plan) {
+  if (plan.since.empty()) return;
+  for (const simulation::Stage& stage : scenario.stages) {
+    if (stage.name == plan.stage) {
+      throw InputError(Diagnostic{scenario.where("study.since"), "study.since", '"' + plan.since + '"',
+                                  "a stage before \"" + plan.stage + "\"", ""});
+    }
+    if (stage.name == plan.since) return;
+  }
+}
+
 }  // namespace
 
 std::string input_name(const fs::path& scenario, const fs::path& file) {
@@ -245,6 +257,8 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   plan.realizations = study.until ? study.until->maximum : study.realizations;
   plan.axes = study.vary;
   plan.stage = study.stage.empty() ? scenario.stages.back().name : study.stage;
+  plan.since = study.since;
+  check_order(scenario, plan);
   plan.levels = damage_levels(scenario);
   if (study.marginal) plan.marginal = MarginalCheck{study.marginal->friction, study.marginal->share};
   plan.confidence = study.confidence;
@@ -253,7 +267,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   for (const auto& spec : scenario.excavations) plan.outlines.push_back(scenario::excavation_outline(spec));
   plan.files = files_of(plan, scenario);
   const std::vector<std::string> variants =
-      plan.marginal ? variants_of(scenario, plan.stage) : std::vector<std::string>{""};
+      plan.marginal ? variants_of(scenario, {plan.stage, plan.since}) : std::vector<std::string>{""};
   check_count(plan, scenario, variants.size());
   list_runs(plan, variants);
   return plan;

@@ -42,6 +42,7 @@ struct Plan {
   int realizations = 1;  ///< with `until`, the most
   std::vector<scenario::VarySpec> axes;
   std::string stage;  ///< at whose end measures are compared
+  std::string since;  ///< at whose end they begin; empty: the first excavation
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;
   double confidence = 0.95;

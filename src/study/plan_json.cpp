@@ -74,6 +74,7 @@ ordered_json description_json(const Plan& plan) {
   ordered_json json{
       {"title", plan.title}, {"seed", plan.seed}, {"realizations", plan.realizations}, {"axes", axes},
       {"stage", plan.stage}, {"levels", levels},  {"confidence", plan.confidence}};
+  if (!plan.since.empty()) json["since"] = plan.since;
   if (plan.until) json["until"] = until_json(*plan.until);
   if (plan.marginal)
     json["marginal"] = {{"friction", plan.marginal->friction}, {"share", plan.marginal->share}};
@@ -98,6 +99,7 @@ void read_description(const ordered_json& json, Plan& plan) {
     axis.at("values").get_to(spec.values);
   }
   json.at("stage").get_to(plan.stage);
+  if (json.contains("since")) json.at("since").get_to(plan.since);
   for (const auto& level : json.at("levels")) {
     plan.levels.push_back({level.at("name").get<std::string>(), level.at("measure").get<std::string>(),
                            level.at("threshold").get<double>()});

@@ -91,6 +91,7 @@ struct StudyData {
   std::string version;
   std::vector<Axis> axes;
   std::string stage;  ///< at whose end the measures are compared: by default the last
+  std::string since;  ///< what they were at the end of this stage is taken off; empty: nothing is
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;  ///< given when variants are run
   double confidence = 0.95;

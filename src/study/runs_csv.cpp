@@ -76,7 +76,7 @@ class Table {
       if (a < run.values.size()) out_ += results::csv_field(plain_value(run.values[a]));
     }
     out_ += ',' + results::csv_field(run.variant);
-    out_ += measured(study_, run).stage != nullptr ? ",done" : ",failed";
+    out_ += measured(study_, run).damage ? ",done" : ",failed";
     out_ += ',' + results::csv_field(run.error);
     value(run.wall_time);
     value(run.steps);

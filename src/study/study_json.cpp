@@ -127,7 +127,7 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
 ordered_json failed_json(const StudyData& study) {
   ordered_json rows = ordered_json::array();
   for (const RunResult& run : study.runs) {
-    if (measured(study, run).stage != nullptr) continue;
+    if (measured(study, run).damage) continue;
     rows.push_back({{"key", run.key},
                     {"realization", run.realization},
                     {"values", texts(run.values)},
@@ -172,6 +172,7 @@ ordered_json head(const StudyData& study, const Summary& summary) {
       {"realizations", realizations},
       {"runs", {{"planned", study.planned}, {"done", summary.done}, {"failed", summary.failed}}},
       {"stage", study.stage},
+      {"since", study.since.empty() ? ordered_json() : ordered_json(study.since)},
       {"confidence", study.confidence},
       {"bootstrap_resamples", statistics::usual_resamples},
       {"axes", axes},

@@ -56,14 +56,13 @@ void add_runs(report::ArrayPack& arrays, const StudyData& study, const Summary& 
     const auto name = std::find(variants.begin(), variants.end(), run.variant);
     variant[r] = static_cast<std::uint8_t>(name - variants.begin());
     if (name == variants.end()) variants.push_back(run.variant);
-    const StageMeasures* stage = measured(study, run).stage;
-    done[r] = stage != nullptr ? 1 : 0;
+    const auto damage = measured(study, run).damage;
+    done[r] = damage ? 1 : 0;
     std::error_code none;
     has_report[r] = std::filesystem::exists(directory / "runs" / run.key / "report.html", none) ? 1 : 0;
     marginal[r] = static_cast<std::uint8_t>(summary.marginal[r]);
     wall_time[r] = static_cast<float>(run.wall_time);
-    for (const Measure& m : measures())
-      values.push_back(stage != nullptr ? m.of(stage->damage) : statistics::not_a_number);
+    for (const Measure& m : measures()) values.push_back(damage ? m.of(*damage) : statistics::not_a_number);
   }
   arrays.add("run.realization", realization);
   arrays.add("run.combination",

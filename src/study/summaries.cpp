@@ -40,7 +40,7 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
   if (c.runs.empty()) return;
   std::vector<std::size_t> order = c.runs;
   const auto rank = [&](std::size_t r) {
-    const simulation::Damage& d = measured(study, study.runs[r]).stage->damage;
+    const simulation::Damage d = *measured(study, study.runs[r]).damage;
     return std::tuple(d.fallen_area, d.loosened_area, d.slip_max, -study.runs[r].realization);
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
@@ -50,11 +50,11 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
 
 void describe_measures(const StudyData& study, ResampleStore& store, Combination& c) {
   const statistics::Resamples& resamples = store.of(c.runs.size());
-  std::vector<const simulation::Damage*> damages;
-  for (const std::size_t r : c.runs) damages.push_back(&measured(study, study.runs[r]).stage->damage);
+  std::vector<simulation::Damage> damages;
+  for (const std::size_t r : c.runs) damages.push_back(*measured(study, study.runs[r]).damage);
   for (const Measure& measure : measures()) {
     std::vector<double> values;
-    for (const simulation::Damage* d : damages) values.push_back(measure.of(*d));
+    for (const simulation::Damage& d : damages) values.push_back(measure.of(d));
     MeasureSummary summary;
     summary.running = statistics::running_mean(values, study.confidence);
     std::sort(values.begin(), values.end());
@@ -72,7 +72,7 @@ void count_levels(const StudyData& study, Combination& c) {
     if (measure) {
       n = c.runs.size();
       for (const std::size_t r : c.runs)
-        if (measures()[*measure].of(measured(study, study.runs[r]).stage->damage) > level.threshold)
+        if (measures()[*measure].of(*measured(study, study.runs[r]).damage) > level.threshold)
           ++summary.exceeded;
     }
     summary.probability = statistics::proportion(summary.exceeded, n, study.confidence);
@@ -137,16 +137,15 @@ std::vector<bool> shaking_axes(const StudyData& study, const std::vector<Combina
 
 Measured measured(const StudyData& study, const RunResult& run) {
   Measured result;
-  if (!run.error.empty() || run.stages.empty()) return result;
+  result.damage = damage_between(run, study.since, study.stage);
+  if (!result.damage) return result;
   for (const StageMeasures& stage : run.stages) {
     for (std::size_t k = 0; k < result.intensity.size(); ++k)
       result.intensity[k] = std::max(result.intensity[k], stage.*(intensities()[k].of));
-    if (study.stage.empty() ? &stage == &run.stages.back() : stage.name == study.stage) {
-      result.stage = &stage;
-      return result;
-    }
+    if (stage.name == study.since) result.intensity = {};
+    if (stage.name == study.stage) break;
   }
-  return {};
+  return result;
 }
 
 std::vector<Marginal> marginal_runs(const StudyData& study) {
@@ -155,15 +154,15 @@ std::vector<Marginal> marginal_runs(const StudyData& study) {
   std::map<std::pair<int, std::vector<std::string>>, std::size_t> own;
   for (std::size_t r = 0; r < study.runs.size(); ++r) {
     const RunResult& run = study.runs[r];
-    if (run.variant.empty() && measured(study, run).stage != nullptr) own[{run.realization, run.values}] = r;
+    if (run.variant.empty() && measured(study, run).damage) own[{run.realization, run.values}] = r;
   }
   for (const RunResult& run : study.runs) {
     if (run.variant.empty()) continue;
     const Measured variant = measured(study, run);
     const auto found = own.find({run.realization, run.values});
-    if (variant.stage == nullptr || found == own.end()) continue;
-    const double a = measured(study, study.runs[found->second]).stage->damage.fallen_area;
-    const double b = variant.stage->damage.fallen_area;
+    if (!variant.damage || found == own.end()) continue;
+    const double a = measured(study, study.runs[found->second]).damage->fallen_area;
+    const double b = variant.damage->fallen_area;
     const double change = std::abs(a - b);
     Marginal& verdict = result[found->second];
     if (change > study.marginal->share * std::max(a, b) && change > smallest_marginal_area)
@@ -199,7 +198,7 @@ Summary summarize(const StudyData& study) {
   for (std::size_t r = 0; r < study.runs.size(); ++r) {
     const RunResult& run = study.runs[r];
     groups[{places(study, run), run.values}].push_back(r);
-    const bool done = measured(study, run).stage != nullptr;
+    const bool done = measured(study, run).damage.has_value();
     ++(done ? summary.done : summary.failed);
   }
   ResampleStore store;
@@ -209,7 +208,7 @@ Summary summarize(const StudyData& study) {
     for (const std::size_t r : members) {
       summary.combination_of[r] = static_cast<int>(summary.combinations.size());
       if (!study.runs[r].variant.empty()) continue;
-      if (measured(study, study.runs[r]).stage != nullptr)
+      if (measured(study, study.runs[r]).damage)
         c.runs.push_back(r);
       else
         ++c.failed;

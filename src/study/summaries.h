@@ -18,11 +18,10 @@ inline constexpr std::array<double, 5> summary_quantiles{0.05, 0.25, 0.5, 0.75, 
 /// A run is marginal only where a variant changes its fallen area by more than this, m².
 inline constexpr double smallest_marginal_area = 0.01;
 
-/// The stage at whose end a run is measured (StudyData::stage, or its last), and the strongest shaking until then.
-/// Nullptr where the run failed or did not get there.
+/// What happened to a run between the ends of StudyData::since and StudyData::stage, and the strongest shaking.
 struct Measured {
-  const StageMeasures* stage = nullptr;
-  std::array<double, 3> intensity{};  ///< as intensities(): largest over the stages up to the measured one
+  std::optional<simulation::Damage> damage;  ///< none where the run failed or did not get there
+  std::array<double, 3> intensity{};         ///< as intensities(): largest over the stages between
 };
 Measured measured(const StudyData& study, const RunResult& run);
 

@@ -7,6 +7,7 @@
 
 #include "simulation/damage_fields.h"
 #include "statistics/distributions.h"
+#include "study/measures.h"
 
 namespace keyblock::study {
 namespace {
@@ -31,13 +32,11 @@ bool narrow(const Sums& s, const scenario::UntilSpec& until, double quantile) {
          (until.width && 2.0 * half <= *until.width);
 }
 
-// The measure at the end of the stage at which it is compared; nothing when the run did not come to it.
+// The measure as it is compared; nothing when the run did not come to it.
 std::optional<double> measured(const Plan& plan, const RunResult& run) {
-  if (!run.error.empty()) return std::nullopt;
-  for (const StageMeasures& stage : run.stages) {
-    if (stage.name == plan.stage) return simulation::damage_value(stage.damage, plan.until->measure);
-  }
-  return std::nullopt;
+  const auto damage = damage_between(run, plan.since, plan.stage);
+  if (!damage) return std::nullopt;
+  return simulation::damage_value(*damage, plan.until->measure);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 namespace keyblock::study {
@@ -47,12 +48,15 @@ void release(std::vector<Stage>& stages) {
 
 }  // namespace
 
-std::vector<std::string> variants_of(const scenario::Scenario& scenario, const std::string& stage) {
+std::vector<std::string> variants_of(const scenario::Scenario& scenario,
+                                     const std::vector<std::string>& compared) {
   std::vector<std::string> variants{"", "friction-", "friction+"};
   const auto [first, last] = settling_after_excavation(scenario.stages);
-  bool compared = false;
-  for (std::size_t k = first; k < last; ++k) compared = compared || scenario.stages[k].name == stage;
-  if (first < last && !compared) variants.emplace_back("released");
+  const auto left_out = std::span(scenario.stages).subspan(first, last - first);
+  const bool means_something = std::none_of(left_out.begin(), left_out.end(), [&](const Stage& stage) {
+    return std::find(compared.begin(), compared.end(), stage.name) != compared.end();
+  });
+  if (first < last && means_something) variants.emplace_back("released");
   return variants;
 }
 

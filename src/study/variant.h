@@ -14,9 +14,10 @@
 ///                          released at once.
 namespace keyblock::study {
 
-/// "" and the variants that mean something: "released" when a settling stage excavates, a dynamic one follows, and `stage`
-/// is not among those left out.
-std::vector<std::string> variants_of(const scenario::Scenario& scenario, const std::string& stage);
+/// "" and the variants that mean something: "released" when a settling stage excavates, a dynamic one follows, and none of
+/// `compared` is among those left out.
+std::vector<std::string> variants_of(const scenario::Scenario& scenario,
+                                     const std::vector<std::string>& compared);
 
 /// Makes the scenario its variant.
 void apply_variant(scenario::Scenario& scenario, const std::string& variant, const MarginalCheck& check);

@@ -99,6 +99,13 @@ TEST(Plan, KeepsPlaces) {
   }
 }
 
+TEST(Plan, MeasuresBeginBeforeTheyEnd) {
+  EXPECT_EQ(plan_of({"study.since=excavated"}).since, "excavated");
+  EXPECT_THROW(plan_of({"study.since=after"}), InputError);
+  EXPECT_THROW(plan_of({"study.since=after", "study.stage=shaken"}), InputError);
+  EXPECT_THROW(plan_of({"study.since=nowhere"}), InputError);
+}
+
 TEST(Plan, TooManyRuns) {
   EXPECT_THROW(plan_of({"study.realizations=2000000"}), InputError);
 }

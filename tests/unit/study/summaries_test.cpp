@@ -88,9 +88,25 @@ TEST(Summaries, TheStrongestShakingUpToTheMeasuredStageCounts) {
   EXPECT_EQ(measured(study, run).intensity[0], 2.0);
   study.stage = "";
   EXPECT_EQ(measured(study, run).intensity[0], 5.0);
-  EXPECT_EQ(measured(study, run).stage, &run.stages[2]);
   study.stage = "none such";
-  EXPECT_EQ(measured(study, run).stage, nullptr);
+  EXPECT_FALSE(measured(study, run).damage);
+}
+
+TEST(Summaries, MeasuresMayBeginLater) {
+  StudyData study = small();
+  RunResult& run = study.runs[0];  // nothing in the quiet, 4 m² in the quake
+  run.stages[0].damage.fallen_area = 1.5;
+  run.stages[0].damage.fallen_blocks = 2;
+  run.stages[1].damage.fallen_blocks = 3;
+  run.stages[0].pga = 7.0;  // before it counts
+  study.since = run.stages[0].name;
+  const Measured added = measured(study, run);
+  ASSERT_TRUE(added.damage);
+  EXPECT_DOUBLE_EQ(added.damage->fallen_area, 2.5);
+  EXPECT_EQ(added.damage->fallen_blocks, 1);
+  EXPECT_EQ(added.intensity[0], 2.0);
+  study.since = "none such";
+  EXPECT_FALSE(measured(study, run).damage);
 }
 
 // An axis is one of shaking by what it does, not only by its name; curves go through all others apart.

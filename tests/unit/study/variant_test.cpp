@@ -43,15 +43,15 @@ TEST(Variant, ReleasedAtOnce) {
 }
 
 TEST(Variant, OnlyThoseThatMeanSomething) {
-  EXPECT_THAT(variants_of(gallery(), "after"), ElementsAre("", "friction-", "friction+", "released"));
-  EXPECT_THAT(variants_of(gallery(), "excavated"), ElementsAre("", "friction-", "friction+"));
+  EXPECT_THAT(variants_of(gallery(), {"after"}), ElementsAre("", "friction-", "friction+", "released"));
+  EXPECT_THAT(variants_of(gallery(), {"after", "excavated"}), ElementsAre("", "friction-", "friction+"));
   // Excavated in a dynamic stage: released already.
   const scenario::Scenario dynamic =
       gallery({"stage.excavated.excavate=[]", "stage.shaken.excavate=['gallery']"});
-  EXPECT_THAT(variants_of(dynamic, "after"), ElementsAre("", "friction-", "friction+"));
+  EXPECT_THAT(variants_of(dynamic, {"after"}), ElementsAre("", "friction-", "friction+"));
   scenario::Scenario at_rest = gallery();
   at_rest.stages.resize(2);  // nothing dynamic follows
-  EXPECT_THAT(variants_of(at_rest, "in situ"), ElementsAre("", "friction-", "friction+"));
+  EXPECT_THAT(variants_of(at_rest, {"in situ"}), ElementsAre("", "friction-", "friction+"));
 }
 
 }  // namespace

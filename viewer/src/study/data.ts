@@ -71,6 +71,7 @@ export interface StudyJson {
   realizations: number;
   runs: { planned: number; done: number; failed: number };
   stage: string;
+  since: string | null;
   confidence: number;
   bootstrap_resamples: number;
   axes: { key: string; values: string[]; shaking: boolean }[];
