@@ -8,13 +8,13 @@ file(WRITE ${OUTPUT} "#include \"report/viewer_template.h\"
 namespace keyblock::report {
 
 namespace {
-constexpr unsigned char bytes[] = {
+constexpr unsigned char bytes_of_${FUNCTION}[] = {
 ${bytes}
 };
 }  // namespace
 
 std::string_view ${FUNCTION}() {
-  return {reinterpret_cast<const char*>(bytes), sizeof bytes};
+  return {reinterpret_cast<const char*>(bytes_of_${FUNCTION}), sizeof bytes_of_${FUNCTION}};
 }
 
 }  // namespace keyblock::report
