@@ -7,8 +7,8 @@
 
 /// write_samples DIR: one folder with a report.html for each kind of run that the browser test opens.
 int main(int argc, char** argv) {
-  using keyblock::testing::synthetic_run;
-  using keyblock::testing::SyntheticOptions;
+  using keyblock::made_up::synthetic_run;
+  using keyblock::made_up::SyntheticOptions;
   if (argc != 2) {
     std::fputs("usage: write_samples DIR\n", stderr);
     return 1;

@@ -7,7 +7,7 @@
 
 /// write_study_samples DIR: one folder with a study's outputs for each kind of study that the browser test opens.
 int main(int argc, char** argv) {
-  using keyblock::testing::SyntheticStudyOptions;
+  using keyblock::made_up::SyntheticStudyOptions;
   if (argc != 2) {
     std::fputs("usage: write_study_samples DIR\n", stderr);
     return 1;
@@ -15,8 +15,8 @@ int main(int argc, char** argv) {
   const auto write = [&](const std::string& name, const SyntheticStudyOptions& options) {
     const std::filesystem::path directory = std::filesystem::path(argv[1]) / name;
     std::filesystem::create_directories(directory);
-    const auto study = keyblock::testing::synthetic_study(options);
-    keyblock::testing::write_synthetic_pictures(directory, study, options);
+    const auto study = keyblock::made_up::synthetic_study(options);
+    keyblock::made_up::write_synthetic_pictures(directory, study, options);
     keyblock::study::write_outputs(directory, study);
   };
   write("study", {});

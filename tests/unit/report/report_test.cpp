@@ -30,12 +30,12 @@ TEST(ViewerTemplate, HoldsEachMarkOnceAndNoAddressOfTheNetwork) {
 }
 
 TEST(Report, IsTheSameForTheSameRun) {
-  const results::RunData run = testing::synthetic_run();
+  const results::RunData run = made_up::synthetic_run();
   EXPECT_EQ(render_report(run), render_report(run));
 }
 
 TEST(Report, TextOfTheUserCannotBecomeMarkup) {
-  const std::string page = render_report(testing::synthetic_run());
+  const std::string page = render_report(made_up::synthetic_run());
   EXPECT_THAT(page, HasSubstr("<title>Brick wall &lt;synthetic&gt; &amp; shaken</title>"));
   EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
   EXPECT_THAT(page, HasSubstr(R"(\u003c/script>\u003cb>)"));
@@ -43,13 +43,13 @@ TEST(Report, TextOfTheUserCannotBecomeMarkup) {
 }
 
 TEST(Report, TextThatIsNoUtf8IsShownAllTheSame) {
-  results::RunData run = testing::synthetic_run({.frames = false});
+  results::RunData run = made_up::synthetic_run({.frames = false});
   run.model.scenario = "# caf\xe9";
   EXPECT_THAT(render_report(run), HasSubstr("# caf\xef\xbf\xbd"));
 }
 
 TEST(Report, NumbersThatAreNoneBecomeNull) {
-  results::RunData run = testing::synthetic_run({.frames = false});
+  results::RunData run = made_up::synthetic_run({.frames = false});
   run.run.max_overlap = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(page_header(run, page_arrays(run)), HasSubstr("\"max_overlap_m\":null"));
 }
@@ -59,7 +59,7 @@ TEST(Report, OfAnEmptyRunCanBeWritten) {
 }
 
 TEST(Report, LargeModelsGetFewerFrames) {
-  results::RunData run = testing::synthetic_run({.frames_per_stage = 150});
+  results::RunData run = made_up::synthetic_run({.frames_per_stage = 150});
   const auto frames = [](const results::RunData& r) {
     const ArrayPack pack = page_arrays(r);
     for (const auto& entry : pack.entries())
@@ -72,9 +72,9 @@ TEST(Report, LargeModelsGetFewerFrames) {
 }
 
 TEST(Report, DisplacementsAreFinerThanAnyPixel) {
-  const results::RunData run = testing::synthetic_run();
+  const results::RunData run = made_up::synthetic_run();
   EXPECT_LE(displacement_quantum(run), 1e-7 * 17.0 * 1.000001);
-  results::RunData still = testing::synthetic_run({.frames_per_stage = 2});
+  results::RunData still = made_up::synthetic_run({.frames_per_stage = 2});
   for (auto& frame : still.frames)
     for (auto& u : frame.displacement) u = {u[0] * 1e-6F, u[1] * 1e-6F};
   double largest = 0.0;
@@ -89,7 +89,7 @@ TEST(Report, IsWrittenBesideNothingElse) {
       std::filesystem::temp_directory_path() / ("keyblock_report_" + std::to_string(::getpid()));
   std::filesystem::remove_all(directory);
   std::filesystem::create_directory(directory);
-  const results::RunData run = testing::synthetic_run({.frames_per_stage = 2});
+  const results::RunData run = made_up::synthetic_run({.frames_per_stage = 2});
   write_report(run, directory);
   EXPECT_EQ(read_file(directory / "report.html"), render_report(run));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory), {}), 1);

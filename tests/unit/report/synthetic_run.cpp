@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace keyblock::testing {
+namespace keyblock::made_up {
 
 namespace {
 
@@ -432,4 +432,4 @@ results::RunData synthetic_run(const SyntheticOptions& options) {
   return Wall(options).build();
 }
 
-}  // namespace keyblock::testing
+}  // namespace keyblock::made_up

@@ -1,7 +1,7 @@
 #pragma once
 #include "results/run_data.h"
 
-namespace keyblock::testing {
+namespace keyblock::made_up {
 
 /// A made-up run, of which every part of the report has something to show: a brick wall in a frame, an opening cut
 /// into it, blocks that fall on the invert, an earthquake, contacts, histories. No mechanics: motions are prescribed.
@@ -18,4 +18,4 @@ struct SyntheticOptions {
 
 results::RunData synthetic_run(const SyntheticOptions& options = {});
 
-}  // namespace keyblock::testing
+}  // namespace keyblock::made_up

@@ -67,7 +67,7 @@ std::size_t column(const std::vector<std::string>& header, const std::string& na
 }
 
 TEST_F(Outputs, RunsCsvHasARowPerRun) {
-  StudyData study = testing::synthetic_study({.realizations = 8});
+  StudyData study = made_up::synthetic_study({.realizations = 8});
   study.runs[0].values[1] = "\"stiff, soft\"";
   study.runs[1].error = "line one\nand \"two\"";
   study.runs[0].stages[1].damage.fallen_area = 0.1 + 0.2;
@@ -110,7 +110,7 @@ TEST_F(Outputs, RunsCsvHasARowPerRun) {
 }
 
 TEST_F(Outputs, StudyJsonSaysWhatTheStatisticsAre) {
-  const StudyData study = testing::synthetic_study();
+  const StudyData study = made_up::synthetic_study();
   const Summary summary = summarize(study);
   const auto json = nlohmann::json::parse(study_json(study, summary));
   EXPECT_EQ(json["title"], study.title);
@@ -140,7 +140,7 @@ TEST_F(Outputs, StudyJsonSaysWhatTheStatisticsAre) {
 }
 
 TEST_F(Outputs, SameStudySameBytes) {
-  const StudyData study = testing::synthetic_study({.realizations = 12});
+  const StudyData study = made_up::synthetic_study({.realizations = 12});
   write_outputs(directory, study);
   const std::string json = read_file(directory / "study.json"), page = read_file(directory / "report.html");
   write_outputs(directory, study);
@@ -157,15 +157,15 @@ TEST_F(Outputs, AnEmptyStudyIsWritten) {
 }
 
 TEST_F(Outputs, AFolderThatCannotBeWrittenIsARunError) {
-  EXPECT_THROW(write_outputs(directory / "missing", testing::synthetic_study({.realizations = 2})), RunError);
+  EXPECT_THROW(write_outputs(directory / "missing", made_up::synthetic_study({.realizations = 2})), RunError);
 }
 
 // 10,000 runs × 100 combinations; generous, as machines differ and the sanitizers are slow.
 TEST_F(Outputs, TenThousandRunsTakeSeconds) {
-  testing::SyntheticStudyOptions options{.realizations = 100, .variants = false, .failures = false};
+  made_up::SyntheticStudyOptions options{.realizations = 100, .variants = false, .failures = false};
   options.scales.clear();
   for (int k = 1; k <= 50; ++k) options.scales.push_back(std::to_string(0.02 * k));
-  const StudyData study = testing::synthetic_study(options);
+  const StudyData study = made_up::synthetic_study(options);
   ASSERT_EQ(study.runs.size(), 10'000U);
   const auto begin = std::chrono::steady_clock::now();
   write_outputs(directory, study);

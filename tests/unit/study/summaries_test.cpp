@@ -200,7 +200,7 @@ TEST(Summaries, MapsCountRunsByCell) {
 }
 
 TEST(Summaries, CombinationsFollowTheAxes) {
-  const StudyData study = testing::synthetic_study();
+  const StudyData study = made_up::synthetic_study();
   const Summary summary = summarize(study);
   ASSERT_EQ(summary.combinations.size(), 8U);
   EXPECT_EQ(summary.combinations[0].values, (std::vector<std::string>{"0.2", "1"}));

@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "study/outputs.h"
 
-namespace keyblock::testing {
+namespace keyblock::made_up {
 
 namespace {
 
@@ -208,4 +208,4 @@ void write_synthetic_pictures(const std::filesystem::path& directory, const stud
   }
 }
 
-}  // namespace keyblock::testing
+}  // namespace keyblock::made_up

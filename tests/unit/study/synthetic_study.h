@@ -7,7 +7,7 @@
 
 #include "study/run_result.h"
 
-namespace keyblock::testing {
+namespace keyblock::made_up {
 
 /// A made-up study of a round tunnel, of which every part of the study's report has something to show. No mechanics:
 /// which blocks fall is drawn by lot, more of them the stronger the shaking, fewer at order 2.
@@ -31,4 +31,4 @@ std::pair<simulation::ModelRecord, simulation::Frame> synthetic_tunnel(int reali
 void write_synthetic_pictures(const std::filesystem::path& directory, const study::StudyData& study,
                               const SyntheticStudyOptions& options);
 
-}  // namespace keyblock::testing
+}  // namespace keyblock::made_up

@@ -87,7 +87,7 @@ TEST(Thumbnail, NothingIsAPictureToo) {
 
 TEST(Thumbnail, OfATunnelOfEightHundredBlocksIsSmall) {
   for (int r = 0; r < 5; ++r) {
-    const auto [model, frame] = testing::synthetic_tunnel(r, 0.5);
+    const auto [model, frame] = made_up::synthetic_tunnel(r, 0.5);
     const std::string svg = thumbnail_svg(model, frame);
     EXPECT_LE(svg.size(), 12'000U);
     EXPECT_GE(svg.size(), 5'000U);
