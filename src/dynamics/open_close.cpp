@@ -7,7 +7,6 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr std::size_t worth_threads = 10'000;  // contacts
 constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
 constexpr double forcing = 0.003;     // of what is out of balance, likewise
 constexpr double rough_share =
@@ -98,7 +97,7 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
 /// What the direction of search does to every spring.
 void OpenClose::find_direction(const StepProblem& problem) {
   const auto& rows = problem.rows();
-  team_->for_range(rows.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Vec2 r = problem.relative(rows[c], direction_);
       springs_.dy[c] = -dot(rows[c].normal, r);
@@ -377,7 +376,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     if (problem.residual_ratio(gradient_) < options.tolerance) break;
     enough = options.tolerance;
   }
-  team.for_range(rows, worth_threads, [&](std::size_t begin, std::size_t end) {
+  team.for_range(rows, contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c)
       r_[c] = problem.relative(problem.rows()[c], d) + problem.rows()[c].moved;
   });

@@ -110,7 +110,6 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
                              std::span<const contact::Contact> contacts, ThreadTeam& team) {
-  constexpr std::size_t worth_threads = 10'000;  // contacts
   rows_.resize(contacts.size());
   std::size_t used = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -118,7 +117,7 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
     used += at(model_->blocks[at(contacts[k].block_a)].size + model_->blocks[at(contacts[k].block_b)].size);
   }
   phi_.resize(used);
-  team.for_range(contacts.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+  team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) build_row(drive, surface, contacts[k], rows_[k]);
   });
 }

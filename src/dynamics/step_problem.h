@@ -12,6 +12,9 @@
 
 namespace keyblock::dynamics {
 
+/// Contacts from which loops over them are worth the threads of a team.
+inline constexpr std::size_t contacts_worth_threads = 10'000;
+
 /// What drives one step.
 struct Drive {
   double step = 0.0;         ///< s, Δt

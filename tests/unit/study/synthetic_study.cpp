@@ -1,5 +1,7 @@
 #include "synthetic_study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -118,7 +120,7 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
         for (const std::string& variant : variants) {
           ++study.planned;
           study::RunResult run;
-          run.key = "r" + std::to_string(r) + "-s" + scale + "-o" + order + variant;
+          run.key = fmt::format("r{}-s{}-o{}{}", r, scale, order, variant);
           run.realization = r;
           run.values = {scale, order};
           run.variant = variant;
