@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "core/index.h"
 
@@ -12,11 +13,6 @@ double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = b - a;
   const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
   return norm(p - a - s * d);
-}
-
-Candidates::Key Candidates::key(const Candidate& c) {
-  const auto [low, high] = std::minmax(c.block_a, c.block_b);
-  return {low, high, c.vertex, c.edge};
 }
 
 bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list) {
@@ -50,7 +46,7 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     }
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
-  return any && look_at(surface, dirty, list);
+  return any && merge(collect(surface, dirty), dirty, list);
 }
 
 namespace {
@@ -139,8 +135,9 @@ class Grid {
 
 }  // namespace
 
-bool Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> dirty,
-                         CandidateList& list) const {
+/// Candidates of the blocks that are looked at anew, in order.
+std::vector<Candidate> Candidates::collect(const Surface& surface,
+                                           std::span<const std::uint8_t> dirty) const {
   std::vector<int> looking;
   for (int b = 0; b < surface.blocks(); ++b) {
     if (dirty[at(b)] && surface.present[at(b)]) looking.push_back(b);
@@ -169,8 +166,21 @@ bool Candidates::look_at(const Surface& surface, std::span<const std::uint8_t> d
       collect_pair(surface, b, a, found);
     }
   }
-  const auto before = [](const Candidate& x, const Candidate& y) { return key(x) < key(y); };
   std::sort(found.begin(), found.end(), before);
+  return found;
+}
+
+bool Candidates::before(const Candidate& x, const Candidate& y) {
+  const auto key = [](const Candidate& c) {
+    const auto [low, high] = std::minmax(c.block_a, c.block_b);
+    return std::tuple(low, high, c.vertex, c.edge);
+  };
+  return key(x) < key(y);
+}
+
+/// Puts what was found into the list, in the place of all candidates of the same blocks.
+bool Candidates::merge(std::span<const Candidate> found, std::span<const std::uint8_t> dirty,
+                       CandidateList& list) {
   const auto is_old = [&](const Candidate& c) {
     return dirty[at(c.block_a)] != 0 || dirty[at(c.block_b)] != 0;
   };

@@ -70,12 +70,11 @@ class Candidates {
   void invalidate() { looked_at_.clear(); }
 
  private:
-  struct Key {
-    int low, high, vertex, edge;
-    friend auto operator<=>(const Key&, const Key&) = default;
-  };
-  static Key key(const Candidate& c);
-  bool look_at(const Surface& surface, std::span<const std::uint8_t> dirty, CandidateList& list) const;
+  static bool before(const Candidate& x, const Candidate& y);
+  [[nodiscard]] std::vector<Candidate> collect(const Surface& surface,
+                                               std::span<const std::uint8_t> dirty) const;
+  static bool merge(std::span<const Candidate> found, std::span<const std::uint8_t> dirty,
+                    CandidateList& list);
   void collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const;
 
   Tolerances tolerances_;

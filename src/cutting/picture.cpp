@@ -11,6 +11,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/xml_text.h"
+
 namespace keyblock::cutting {
 
 namespace {
@@ -27,26 +29,6 @@ std::string_view joint_colour(std::size_t k) {
   constexpr std::array<std::string_view, 6> colours{"#0072b2", "#d55e00", "#009e73",
                                                     "#cc79a7", "#e69f00", "#56b4e9"};
   return colours[k % colours.size()];
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 /// One line of the legend, and how its lines are drawn.
@@ -219,7 +201,7 @@ class Picture {
       write("<path stroke=\"{}\" stroke-width=\"{:.2f}\" d=\"M{:.2f} {:.2f}h28\"/>\n", style.colour,
             std::max(1.5, style.width), x, y - 1.0);
       write("<text x=\"{:.2f}\" y=\"{:.2f}\" fill=\"{}\">{}</text>\n", x + 35.0, y + 4.0, ink,
-            escaped(style.name));
+            xml_text(style.name));
       x += width;
     }
     return std::max(y, top + 17.0) + margin;

@@ -4,85 +4,13 @@
 #include "core/index.h"
 #include "linalg/block_kernels.h"
 #include "linalg/block_solver.h"
+#include "linalg/partition.h"
 
 namespace keyblock::linalg {
 
 namespace {
 
 constexpr int most_iterations = 400;
-constexpr std::size_t parts = 8;            // into which a large system is cut
-constexpr std::size_t worth_parts = 4'000;  // blocks
-
-/// Order of the blocks: some parts that are not coupled with each other, and last the blocks between them. Parts are runs of levels
-/// of a breadth-first search, each ended by a level of the last kind. The order depends on the pattern alone.
-struct Partition {
-  std::vector<int> order;  ///< place → block
-  std::vector<std::size_t>
-      begin;  ///< first place of every part; then of the blocks between, which may be none; then n
-};
-
-/// Blocks in the order of a breadth-first search, and how far each is from where it began. Pieces that are not coupled follow each
-/// other, a level apart.
-struct Levels {
-  std::vector<int> order, level;
-};
-
-Levels breadth_first(const std::vector<std::vector<int>>& neighbours, int root) {
-  const std::size_t n = neighbours.size();
-  Levels found{{}, std::vector<int>(n, -1)};
-  const auto reach = [&](int block, int level) {
-    if (found.level[at(block)] >= 0) return;
-    found.level[at(block)] = level;
-    found.order.push_back(block);
-  };
-  reach(root, 0);
-  int unseen = 0;
-  for (std::size_t next = 0; next < n; ++next) {
-    if (next == found.order.size()) {
-      while (found.level[at(unseen)] >= 0) ++unseen;
-      reach(unseen, found.level[at(found.order.back())] + 1);
-    }
-    const int here = found.order[next];
-    for (const int k : neighbours[at(here)]) reach(k, found.level[at(here)] + 1);
-  }
-  return found;
-}
-
-Partition partition(std::size_t n, std::span<const std::pair<int, int>> pairs) {
-  Partition result;
-  if (n < worth_parts) {
-    for (std::size_t k = 0; k < n; ++k) result.order.push_back(static_cast<int>(k));
-    result.begin = {0, n, n};
-    return result;
-  }
-  std::vector<std::vector<int>> neighbours(n);
-  for (const auto& [i, j] : pairs) {
-    neighbours[at(i)].push_back(j);
-    neighbours[at(j)].push_back(i);
-  }
-  // A second search, from where the first ended, has more and narrower levels.
-  const Levels levels = breadth_first(neighbours, breadth_first(neighbours, 0).order.back());
-  const auto level_of = [&](std::size_t place) { return levels.level[at(levels.order[place])]; };
-  std::vector<int> between;
-  result.begin.push_back(0);
-  for (std::size_t first = 0, last = 0; first < n; first = last) {
-    while (last < n && level_of(last) == level_of(first)) ++last;
-    const bool ends_a_part = last < n && first >= result.begin.size() * n / parts;
-    std::vector<int>& target = ends_a_part ? between : result.order;
-    for (std::size_t k = first; k < last; ++k) target.push_back(levels.order[k]);
-    if (ends_a_part) result.begin.push_back(result.order.size());
-  }
-  result.begin.push_back(result.order.size());
-  // Within a part in the order of the caller's vectors.
-  const auto place = [&](std::size_t k) { return result.order.begin() + static_cast<std::ptrdiff_t>(k); };
-  for (std::size_t k = 0; k + 1 < result.begin.size(); ++k)
-    std::sort(place(result.begin[k]), place(result.begin[k + 1]));
-  std::sort(between.begin(), between.end());
-  result.order.insert(result.order.end(), between.begin(), between.end());
-  result.begin.push_back(n);
-  return result;
-}
-
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (L + 1 + Lᵀ) Cᵀ with
 /// L_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly below the diagonal. Preconditioned from both sides by (1 + L) it is
 ///
@@ -113,6 +41,8 @@ class BlockConjugateGradient final : public BlockSolver {
     std::size_t first, last;  ///< places
   };
 
+  void place_vectors(std::span<const int> sizes, std::span<const int> order);
+  std::vector<std::size_t> place_matrix(std::span<const std::pair<int, int>> pairs);
   template <typename Body>
   void for_parts(const Body& body) const;
   template <typename Body>
@@ -197,21 +127,32 @@ void BlockConjugateGradient::padded(Range range, const Body& body) const {
 }
 
 void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
-  const std::size_t n = sizes.size();
-  Partition found = partition(n, pairs);
+  Partition found = partition(sizes.size(), pairs);
   begin_ = std::move(found.begin);
   sums_.assign(begin_.size() - 1, 0.0);
-  place_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) place_[at(found.order[k])] = k;
-  std::vector<std::size_t> unknown(n + 1, 0);
-  for (std::size_t b = 0; b < n; ++b) unknown[b + 1] = unknown[b] + at(sizes[b]);
+  place_.resize(sizes.size());
+  for (std::size_t k = 0; k < sizes.size(); ++k) place_[at(found.order[k])] = k;
+  place_vectors(sizes, found.order);
+  const std::vector<std::size_t> values = place_matrix(pairs);
+  slots_.clear();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [i, j] = pairs[k];
+    const bool i_below = place_[at(i)] > place_[at(j)];
+    slots_.push_back(
+        {&matrix_[values[k]], padded_rows(sizes[at(i_below ? i : j)]), i_below ? i : j, i_below ? j : i});
+  }
+}
+
+void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span<const int> order) {
+  std::vector<std::size_t> unknown(sizes.size() + 1, 0);
+  for (std::size_t b = 0; b < sizes.size(); ++b) unknown[b + 1] = unknown[b] + at(sizes[b]);
   size_.clear();
   stride_.clear();
   offset_.clear();
   start_.clear();
   largest_ = 0;
-  std::size_t padded = 0, used = 0, lower = 0, inverse = 0;
-  for (const int block : found.order) {
+  std::size_t padded = 0;
+  for (const int block : order) {
     const int size = sizes[at(block)];
     size_.push_back(size);
     stride_.push_back(padded_rows(size));
@@ -220,6 +161,12 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
     padded += at(padded_rows(size));
     largest_ = std::max(largest_, padded_rows(size));
   }
+  for (Vector* v : {&t_, &z_, &r_, &p_, &q_, &wide_}) v->assign(padded, 0.0);
+}
+
+/// Where the block of every pair is in matrix_.
+std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const std::pair<int, int>> pairs) {
+  const std::size_t n = size_.size(), first_between = between().first;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> below(n);  // row, pair
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [low, high] = std::minmax(place_[at(pairs[k].first)], place_[at(pairs[k].second)]);
@@ -230,9 +177,9 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
   entries_.clear();
   entry_start_.assign(1, 0);
   between_start_.clear();
-  std::vector<std::size_t> places(pairs.size());
-  const std::size_t first_between = between().first;
+  std::vector<std::size_t> values(pairs.size());
   std::vector<std::vector<RowEntry>> rows(n - first_between);
+  std::size_t used = 0, lower = 0, inverse = 0;
   for (std::size_t j = 0; j < n; ++j) {
     diagonal_.push_back(used);
     inverse_start_.push_back(inverse);
@@ -247,7 +194,7 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
       } else {
         rows[row - first_between].push_back({j, lower});
       }
-      places[k] = used;
+      values[k] = used;
       used += at(stride_[row] * size_[j]);
       lower += at(stride_[row] * size_[j]);
     }
@@ -263,14 +210,7 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
   inverse_.assign(inverse, 0.0);
   lower_.assign(lower, 0.0F);
   stale_.assign(n, 1);
-  for (Vector* v : {&t_, &z_, &r_, &p_, &q_, &wide_}) v->assign(padded, 0.0);
-  slots_.clear();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [i, j] = pairs[k];
-    const bool i_below = place_[at(i)] > place_[at(j)];
-    slots_.push_back(
-        {&matrix_[places[k]], padded_rows(sizes[at(i_below ? i : j)]), i_below ? i : j, i_below ? j : i});
-  }
+  return values;
 }
 
 bool BlockConjugateGradient::factor() {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "core/xml_text.h"
 #include "loading/motion_measures.h"
 
 namespace keyblock::loading {
@@ -14,21 +15,6 @@ namespace {
 constexpr double width = 960.0, left = 70.0, right = 20.0, panel_height = 150.0, panel_gap = 34.0, top = 40.0,
                  bottom = 44.0;
 constexpr double plot_width = width - left - right;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (static_cast<unsigned char>(c) >= ' ')
-      out += c;
-  }
-  return out;
-}
 
 // A step of 1, 2 or 5 times a power of ten that divides `range` into at most `most` parts.
 double tick_step(double range, int most) {
@@ -98,7 +84,7 @@ std::string plot_motion_svg(const std::vector<MotionComponent>& components) {
   for (const MotionComponent& c : components) {
     const double zero = panel + panel_height / 2.0;
     svg += fmt::format("<text x=\"{}\" y=\"{}\" font-weight=\"bold\">{}</text>\n", left, panel - 7.0,
-                       escaped(title(c)));
+                       xml_text(title(c)));
     for (double t = std::ceil(t0 / time_step) * time_step; t <= t1 + 1e-9 * time_step; t += time_step) {
       const double x = left + (t - t0) / seconds_per_pixel;
       svg += fmt::format("<path d=\"M{0:.1f},{1}V{2}\" stroke=\"#ddd\"/>\n", x, panel, panel + panel_height);

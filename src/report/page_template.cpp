@@ -2,29 +2,11 @@
 
 #include <stdexcept>
 
+#include "core/xml_text.h"
+
 namespace keyblock::report {
 
 namespace {
-
-std::string html_text(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 /// Appends the template up to `mark` and then `content`; leaves in `rest` what follows the mark.
 void fill(std::string& page, std::string_view& rest, std::string_view mark, std::string_view content) {
@@ -41,7 +23,7 @@ std::string fill_page(std::string_view page_template, std::string_view title, st
   std::string page;
   std::string_view rest = page_template;
   page.reserve(rest.size() + header.size() + arrays.size());
-  fill(page, rest, "@@title@@", html_text(title));
+  fill(page, rest, "@@title@@", xml_text(title));
   fill(page, rest, "@@header@@", header);
   fill(page, rest, "@@arrays@@", arrays);
   page.append(rest);

@@ -1,5 +1,6 @@
 #pragma once
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,12 +33,13 @@ inline std::vector<std::string> damage_names() {
   return names;
 }
 
-/// The measure of this name; `fallen_blocks` for any that is none.
+/// The measure of this name. Throws std::invalid_argument where there is none.
 inline double damage_value(const Damage& damage, std::string_view measure) {
+  if (measure == "fallen_blocks") return damage.fallen_blocks;
   for (const auto& [name, member] : damage_fields) {
     if (measure == name) return damage.*member;
   }
-  return damage.fallen_blocks;
+  throw std::invalid_argument("no measure of damage '" + std::string(measure) + "'");
 }
 
 }  // namespace keyblock::simulation

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace keyblock::study {
 namespace {
 
@@ -15,8 +17,8 @@ std::vector<double> crossings(const simulation::ModelRecord& model,
   for (std::size_t r = 0; r + 1 < block.ring_start.size(); ++r) {
     const int begin = block.ring_start[r], end = block.ring_start[r + 1];
     for (int k = begin; k < end; ++k) {
-      const Vec2 a = model.vertices[static_cast<std::size_t>(k)];
-      const Vec2 b = model.vertices[static_cast<std::size_t>(k + 1 < end ? k + 1 : begin)];
+      const Vec2 a = model.vertices[at(k)];
+      const Vec2 b = model.vertices[at(k + 1 < end ? k + 1 : begin)];
       if ((a.y >= y) == (b.y >= y)) continue;
       x.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
     }
@@ -29,7 +31,7 @@ std::vector<double> crossings(const simulation::ModelRecord& model,
 
 std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRecord& model,
                                  std::size_t blocks) {
-  std::vector<int> cells(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), -1);
+  std::vector<int> cells(at(grid.columns) * at(grid.rows), -1);
   const Vec2 corner = grid.corner - model.origin;
   // The first cell whose centre lies at or beyond a coordinate, within 0 … count.
   const auto first_beyond = [&](double x, double start, int count) {
@@ -39,16 +41,14 @@ std::vector<int> blocks_of_cells(const MapGrid& grid, const simulation::ModelRec
   for (std::size_t b = 0; b < std::min(blocks, model.blocks.size()); ++b) {
     const auto& block = model.blocks[b];
     Box box;
-    for (int k = block.ring_start.front(); k < block.ring_start.back(); ++k)
-      box.add(model.vertices[static_cast<std::size_t>(k)]);
+    for (int k = block.ring_start.front(); k < block.ring_start.back(); ++k) box.add(model.vertices[at(k)]);
     const int top = first_beyond(box.max.y, corner.y, grid.rows);
     for (int row = first_beyond(box.min.y, corner.y, grid.rows); row < top; ++row) {
       const std::vector<double> x = crossings(model, block, corner.y + (row + 0.5) * grid.cell);
       for (std::size_t k = 0; k + 1 < x.size(); k += 2) {
         const int end = first_beyond(x[k + 1], corner.x, grid.columns);
         for (int column = first_beyond(x[k], corner.x, grid.columns); column < end; ++column) {
-          cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
-                static_cast<std::size_t>(column)] = static_cast<int>(b);
+          cells[at(row) * at(grid.columns) + at(column)] = static_cast<int>(b);
         }
       }
     }
@@ -87,7 +87,7 @@ void MeasureObserver::end(const simulation::RunRecord& run) {
         {static_cast<int>(b), block.name, fell_[b], block.centroid + model_.origin, block.area});
   }
   for (const int b : blocks_of_cells(grid_, model_, blocks_)) {
-    const auto k = static_cast<std::size_t>(b);
+    const auto k = at(b);
     result_.map.push_back(b < 0 || k >= last_.status.size() ? BlockStatus::in_place : last_.status[k]);
   }
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "study/folder.h"
 #include "study/process.h"
 #include "study/until.h"
@@ -216,8 +217,8 @@ ProgressPipe::ProgressPipe(int descriptor, const simulation::RunSetup& setup)
   for (const simulation::Stage& stage : setup.stages) {
     double steps = settle_weight;
     if (stage.kind != simulation::StageKind::settle) {
-      const double duration = stage.duration.value_or(
-          stage.motion < 0 ? 0.0 : setup.motions.at(static_cast<std::size_t>(stage.motion)).duration());
+      const double duration =
+          stage.duration.value_or(stage.motion < 0 ? 0.0 : setup.motions.at(at(stage.motion)).duration());
       steps = duration / setup.time_step;
     }
     weight_before_.push_back(weight_before_.back() + steps);
@@ -225,7 +226,7 @@ ProgressPipe::ProgressPipe(int descriptor, const simulation::RunSetup& setup)
 }
 
 void ProgressPipe::progress(const simulation::Progress& progress) {
-  const auto k = static_cast<std::size_t>(progress.stage);
+  const auto k = at(progress.stage);
   const double weight = weight_before_[k] + progress.fraction * (weight_before_[k + 1] - weight_before_[k]);
   const double fraction = weight / weight_before_.back();
   // A parent that does not read, or is no more, does not matter.

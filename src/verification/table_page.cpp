@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/xml_text.h"
 #include "verification/table_columns.h"
 
 namespace keyblock::verification {
@@ -28,32 +29,6 @@ td.ok { color: #1a7f37; } td.fail { color: #fff; background: #b42318; font-weigh
 td.note { white-space: normal; color: #b42318; text-align: left; }
 )";
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string html_row(const Row& row, const std::array<bool, table_columns.size()>& used) {
   const RowText text = row_text(row);
   std::string html = "<tr>";
@@ -62,12 +37,12 @@ std::string html_row(const Row& row, const std::array<bool, table_columns.size()
     const bool published =
         table_columns[c].cell == &RowText::published && !row.source.empty() && row.published;
     html += fmt::format("<td{}{}>{}</td>", table_columns[c].left ? " class=\"left\"" : "",
-                        published ? fmt::format(" title=\"{}\"", escaped(row.source)) : "",
-                        escaped(text.*table_columns[c].cell));
+                        published ? fmt::format(" title=\"{}\"", xml_text(row.source)) : "",
+                        xml_text(text.*table_columns[c].cell));
   }
   html += row.pass ? "<td class=\"ok\">holds</td></tr>\n" : "<td class=\"fail\">FAIL</td></tr>\n";
   if (!text.note.empty())
-    html += fmt::format("<tr><td class=\"note\" colspan=\"10\">{}</td></tr>\n", escaped(text.note));
+    html += fmt::format("<tr><td class=\"note\" colspan=\"10\">{}</td></tr>\n", xml_text(text.note));
   return html;
 }
 
@@ -81,8 +56,8 @@ std::string contents(const std::vector<CaseResult>& results) {
   for (const CaseResult& result : results) {
     if (result.rows.empty()) continue;
     html += fmt::format("<li{}><a href=\"#{}\">{}. {}</a>: {}</li>\n",
-                        result.failed() > 0 ? " class=\"fail\"" : "", escaped(result.file->name),
-                        result.file->number, escaped(result.file->title), verdict_of_case(result));
+                        result.failed() > 0 ? " class=\"fail\"" : "", xml_text(result.file->name),
+                        result.file->number, xml_text(result.file->title), verdict_of_case(result));
   }
   return html + "</ul>\n";
 }
@@ -92,7 +67,7 @@ std::string paragraphs(const std::string& text) {
   std::string html;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find("\n\n", begin), text.size());
-    html += fmt::format("<p class=\"about\">{}</p>\n", escaped(text.substr(begin, end - begin)));
+    html += fmt::format("<p class=\"about\">{}</p>\n", xml_text(text.substr(begin, end - begin)));
     begin = end + 2;
   }
   return html;
@@ -105,7 +80,7 @@ std::string html_case(const CaseResult& result) {
   std::string html = fmt::format(
       "<h2 id=\"{0}\">{1}. {2}</h2>\n{3}<details{4}><summary>{5}</summary><div "
       "class=\"wide\"><table>\n<tr>",
-      escaped(file.name), file.number, escaped(file.title), paragraphs(file.about), open ? " open" : "",
+      xml_text(file.name), file.number, xml_text(file.title), paragraphs(file.about), open ? " open" : "",
       verdict_of_case(result));
   for (std::size_t c = 0; c < table_columns.size(); ++c) {
     if (used[c])
@@ -124,7 +99,7 @@ std::string table_html(const std::vector<CaseResult>& results, const std::string
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>keyblock: problems with known "
       "answers</title>\n<style>{}</style></head><body>\n<h1>Problems with known answers</h1>\n<p>keyblock "
       "{}: {}.</p>\n",
-      style_sheet, escaped(version), verdict_text(results));
+      style_sheet, xml_text(version), verdict_text(results));
   html += contents(results);
   for (const CaseResult& result : results) {
     if (!result.rows.empty()) html += html_case(result);

@@ -1,23 +1,12 @@
 #!/usr/bin/env python3
-"""Studies from end to end: many runs, runs that are killed, studies that go on, folders that hold something else."""
+"""Studies from end to end: many runs, and studies that go on with what is there."""
 
-import contextlib
 import csv
 import json
-import os
-import resource
-import signal
-import subprocess
 import time
 import unittest
 
-from program import PROGRAM, ROOT, Scenario
-
-GALLERY = (ROOT / "tests/data/study/gallery.toml").read_text().split("[study]")[0]
-SCALES = '[[study.vary]]\nkey = "stage.shaken.scale"\nvalues = [0.5, 1.0]\n'
-SMALL = '[study]\nrealizations = 3\nkeep = "measures"\n' + SCALES
-# Of two runs of each realization, the second lasts some seconds.
-LONG = '[study]\nrealizations = 2\nkeep = "measures"\n[[study.vary]]\nkey = "stage.after.duration"\nvalues = [0.1, 120.0]\n'
+from study_case import GALLERY, SCALES, SMALL, Study
 
 
 def checksum(text):
@@ -26,63 +15,6 @@ def checksum(text):
     for byte in text.encode():
         value = ((value ^ byte) * 1099511628211) % 2**64
     return f"{value:016x}"
-
-
-def process_of(words):
-    """The id of a process whose command line contains these words, one after the other."""
-    wanted = "\0".join(words) + "\0"
-    for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        with contextlib.suppress(OSError), open(f"/proc/{entry}/cmdline") as file:
-            if wanted in file.read():
-                return int(entry)
-    return None
-
-
-class Study(Scenario):
-    def setUp(self):
-        super().setUp()
-        self.write("small.toml", GALLERY + SMALL)
-        self.out = self.folder / "out"
-
-    def study(self, *arguments, expect=0):
-        return self.keyblock("study", *arguments, expect=expect)
-
-    def run_study(self, scenario, *more, expect=0):
-        return self.study("run", scenario, "-o", "out", "--workers", "2", *more, expect=expect)
-
-    def plan(self, folder="out"):
-        return json.loads((self.folder / folder / "plan.json").read_text())
-
-    def keys(self):
-        return [run["key"] for run in self.plan()["runs"]]
-
-    def run_file(self, key, folder="out"):
-        return self.folder / folder / "runs" / key / "run.json"
-
-    def result(self, key, folder="out"):
-        return json.loads(self.run_file(key, folder).read_text())
-
-    def done(self):
-        """When the results of the runs that are done were written."""
-        return {path.parent.name: path.stat().st_mtime_ns for path in (self.out / "runs").glob("*/run.json")}
-
-    def files(self):
-        return {path: path.read_bytes() for path in self.out.iterdir() if path.is_file() and path.name != "lock"}
-
-    def hashes(self, folder="out"):
-        paths = sorted((self.folder / folder / "runs").glob("*/run.json"))
-        return {path.parent.name: json.loads(path.read_text())["state_hash"] for path in paths}
-
-    def wait_for(self, condition, what, seconds=30.0):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            found = condition()
-            if found:
-                return found
-            time.sleep(0.02)
-        self.fail(f"waited in vain: {what}")
 
 
 class Runs(Study):
@@ -178,74 +110,6 @@ class Runs(Study):
         self.assertIn("24 of 24 runs done\n", self.run_study("until.toml", "--resume").stdout)
 
 
-class Interruptions(Study):
-    def setUp(self):
-        super().setUp()
-        self.write("long.toml", GALLERY + LONG)
-
-    def start(self):
-        parent = subprocess.Popen([PROGRAM, "study", "run", "long.toml", "-o", "out", "--workers", "2"], cwd=self.folder,
-                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # fmt: skip
-        self.addCleanup(parent.stdout.close)
-        self.addCleanup(parent.stderr.close)
-        return parent
-
-    def task(self, index):
-        return self.wait_for(lambda: process_of(["study", "task", "out", str(index)]), f"run {index}")
-
-    def test_a_run_that_is_killed_costs_that_run_alone(self):
-        parent = self.start()
-        os.kill(self.task(1), signal.SIGKILL)
-        _, errors = parent.communicate(timeout=60)
-        keys = self.keys()
-        self.assertEqual(parent.returncode, 2)
-        self.assertRegex(errors, rf"{keys[1]} failed: killed by signal 9 \(SIGKILL\)")
-        self.assertEqual(set(self.done()), {keys[0], keys[2], keys[3]})
-        said = self.study("collect", "out").stdout
-        self.assertIn(f"failed: {keys[1]}: killed by signal 9", said)
-        self.assertIn("3 of 4 runs done, 1 failed\n", said)
-        before = self.done()
-        self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
-        self.assertEqual({key: self.done()[key] for key in before}, before)
-        self.assertFalse((self.out / "runs" / keys[1] / "failed.json").exists())
-
-    def test_killing_the_parent_ends_its_children_and_loses_nothing_done(self):
-        parent = self.start()
-        self.task(1)
-        self.wait_for(lambda: len(self.done()) >= 1, "the first run to be done")
-        before = self.done()
-        parent.kill()
-        parent.communicate()
-        self.wait_for(lambda: process_of(["study", "task", "out"]) is None, "the children to end")
-        self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
-        self.assertEqual({key: self.done()[key] for key in before}, before)
-        self.assertEqual(list(self.out.rglob("*.tmp")), [])
-
-    def test_interrupted(self):
-        parent = self.start()
-        self.task(1)
-        self.wait_for(lambda: len(self.done()) >= 1, "the first run to be done")
-        parent.send_signal(signal.SIGINT)
-        said, errors = parent.communicate(timeout=30)
-        self.assertEqual(parent.returncode, 2, errors)
-        self.assertIn("--resume", errors)
-        self.assertIn("missing", said)
-        self.assertNotIn("failed", said)
-        self.assertIsNone(process_of(["study", "task", "out"]))
-        self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
-
-    def test_two_in_one_folder(self):
-        parent = self.start()
-        self.task(0)
-        refused = self.run_study("long.toml", "--resume", expect=1)
-        self.assertIn(f"out: found a study that process {parent.pid} on ", refused.stderr)
-        child = self.task(1)
-        again = self.study("task", "out", "1", expect=2)
-        self.assertIn(f"process {child} on ", again.stderr)
-        parent.send_signal(signal.SIGINT)
-        parent.communicate(timeout=30)
-
-
 class GoingOn(Study):
     def test_more_realizations_and_more_values_use_the_runs_that_are_done(self):
         self.run_study("small.toml")
@@ -333,95 +197,6 @@ class GoingOn(Study):
         path = self.out / "plan.json"
         path.write_text(path.read_text()[:200])
         self.assertIn("out/plan.json: found a damaged file", self.study("collect", "out", expect=1).stderr)
-
-
-class WrongInput(Study):
-    def test_an_unknown_key_in_the_grid(self):
-        self.write("wrong.toml", GALLERY + SMALL.replace("stage.shaken.scale", "stage.shaken.scales"))
-        line = (GALLERY + SMALL).split("\n").index('key = "stage.shaken.scale"') + 2
-        errors = self.run_study("wrong.toml", expect=1).stderr
-        self.assertRegex(errors, rf"wrong\.toml:{line}:\d+: stage\.shaken\.scales: found an unknown key; .*'scale'")
-        self.assertFalse(self.out.exists())
-
-    def test_no_study_there(self):
-        self.assertIn("no plan.json", self.study("collect", ".", expect=1).stderr)
-        self.assertIn("no plan.json", self.study("task", "gone", "0", expect=1).stderr)
-
-    def test_indices_of_tasks(self):
-        self.study("submit", "small.toml", "-o", "out")
-        self.assertIn("from 0 to 5", self.study("task", "out", "6", expect=1).stderr)
-        self.assertIn("SLURM_ARRAY_TASK_ID", self.study("task", "out", expect=1).stderr)
-        for variable, value, more, index in (
-            ("SLURM_ARRAY_TASK_ID", "1", (), 1), ("SGE_TASK_ID", "3", ("--first", "1"), 2), ("PBS_ARRAY_INDEX", "3", (), 3),
-            ("PBS_ARRAYID", "4", (), 4), ("LSB_JOBINDEX", "6", ("--first", "1"), 5), ("JOB_COMPLETION_INDEX", "0", (), 0),
-        ):  # fmt: skip
-            environment = {**os.environ, variable: value}
-            done = subprocess.run([PROGRAM, "study", "task", "out", *more], cwd=self.folder, env=environment,
-                                  capture_output=True, text=True, timeout=60)  # fmt: skip
-            self.assertEqual(done.stdout, f"{self.keys()[index]}: done\n", done.stderr)
-        self.assertIn("done before", self.study("task", "out", "1").stdout)
-        self.assertIn("6 of 6 runs done\n", self.study("collect", "out").stdout)
-
-    def test_a_run_that_fails_says_why(self):
-        # Two excavations at once are right, each alone; here the second is no value of its own that could be refused before.
-        self.write("far.toml", GALLERY + '[[history]]\nname = "p"\npoint = [2.0, 2.0]\n[study]\nkeep = "report"\n'
-                   '[[study.vary]]\nkey = "history.p.point"\nvalues = [[2.0, 2.0], [20.0, 2.0]]\n')  # fmt: skip
-        done = self.run_study("far.toml", expect=2)
-        keys = self.keys()
-        self.assertRegex(done.stderr, rf"{keys[1]} failed: .*history.p.point: found \[20, 2\], outside")
-        self.assertEqual(set(self.done()), {keys[0]})
-
-    def test_submit_writes_scripts(self):
-        said = self.study("submit", "small.toml", "-o", "out", "--time", "10:00", "--mem", "1G", "--max-running", "4").stdout
-        self.assertIn("6 of 6 runs to be done", said)
-        script = (self.out / "array.sbatch").read_text()
-        for line in ("--array=0-5%4", "--time=10:00", "--mem=1G"):
-            self.assertIn(f"#SBATCH {line}\n", script)
-        # The script does what a task does.
-        subprocess.run(["bash", self.out / "array.sbatch"], env={**os.environ, "SLURM_ARRAY_TASK_ID": "3"}, check=True,
-                       capture_output=True, timeout=60)  # fmt: skip
-        self.assertEqual(set(self.done()), {self.keys()[3]})
-        self.study("submit", "small.toml", "-o", "out", "--resume", "--per-task", "4")
-        script = (self.out / "array.sbatch").read_text()
-        self.assertIn("#SBATCH --array=0-1\n", script)
-        subprocess.run(["bash", self.out / "array.sbatch"], env={**os.environ, "SLURM_ARRAY_TASK_ID": "1"}, check=True,
-                       capture_output=True, timeout=60)  # fmt: skip
-        self.assertEqual(set(self.done()), {self.keys()[k] for k in (3, 4, 5)})
-
-
-class FullDisk(Study):
-    def no_space(self, size):
-        """The study's folder becomes a small file system of its own, where that is allowed."""
-        self.out.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", self.out], capture_output=True)
-        if mounted.returncode != 0:
-            self.skipTest("no file system can be mounted here")
-        self.addCleanup(subprocess.run, ["umount", self.out], check=True)
-
-    def test_no_space_left(self):
-        self.no_space("800k")
-        self.write("kept.toml", GALLERY + SMALL.replace("measures", "report"))
-        errors = self.run_study("kept.toml", expect=2).stderr
-        self.assertIn("No space left on device", errors)
-        before = self.done()
-        self.assertGreater(len(before), 0)
-        subprocess.run(["mount", "-o", "remount,size=50m", self.out], check=True)
-        self.assertIn("6 of 6 runs done\n", self.run_study("kept.toml", "--resume").stdout)
-        self.assertEqual({key: self.done()[key] for key in before}, before)
-
-    def test_files_that_may_not_grow(self):
-        self.write("kept.toml", GALLERY + SMALL.replace("measures", "report"))
-
-        def limit():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
-
-        done = subprocess.run([PROGRAM, "study", "run", "kept.toml", "-o", "out"], cwd=self.folder, capture_output=True,
-                              text=True, timeout=60, preexec_fn=limit)  # fmt: skip
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertRegex(done.stderr, r"failed: .*report\.html: cannot write: File too large")
-        self.assertEqual(list(self.out.rglob("*.tmp")), [])
-        self.assertIn("6 of 6 runs done\n", self.run_study("kept.toml", "--resume").stdout)
 
 
 class Large(Study):

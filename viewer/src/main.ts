@@ -12,6 +12,7 @@ import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots
 import { Run } from "./run";
 import { cuttingFacts, damageTable, movingTable, qualityTable, runFacts, stageTable } from "./tables";
 import { findings } from "./verdict";
+import { start } from "./start";
 
 function head(header: Header): HTMLElement {
   const { model } = header;
@@ -185,18 +186,7 @@ function build(run: Run, main: HTMLElement): void {
   });
 }
 
-async function start(): Promise<void> {
-  const main = document.getElementById("report")!;
-  try {
-    const { header, arrays } = await readPage();
-    build(new Run(header, arrays), main);
-    document.documentElement.dataset.ready = "true";
-  } catch (error) {
-    main.replaceChildren(
-      h("p", { class: "error", role: "alert" }, `This report cannot be shown: ${String(error)}`),
-    );
-    throw error;
-  }
-}
-
-void start();
+void start(async (main) => {
+  const { header, arrays } = await readPage();
+  build(new Run(header, arrays), main);
+});

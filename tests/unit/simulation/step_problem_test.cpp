@@ -25,16 +25,21 @@ void analyse(const Model& model, StepProblem& problem, linalg::BlockSolver& solv
   solver.analyse(sizes, pairs);
 }
 
+/// Two blocks on a floor, of which one has an order, and a third of that order on both.
+simulation::Scene small_wall(double friction, int order) {
+  simulation::Scene scene(1e7, friction);
+  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5, 0.0, false, order);
+  scene.rectangle({1.0, 0.0}, 1.0, 0.5, 0.0, false, 1);
+  scene.rectangle({0.5, 0.5}, 1.0, 0.5, 0.0, false, order);
+  return scene;
+}
+
 class StepProblemOrder : public ::testing::TestWithParam<int> {};
 
 // The matrix that is assembled is the derivative of the gradient, and the gradient that of the forces, at every order.
 TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
-  simulation::Scene scene(1e7, 30.0);
-  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 0.0}, 1.0, 0.5, 0.0, false, GetParam());
-  scene.rectangle({1.0, 0.0}, 1.0, 0.5, 0.0, false, 1);
-  scene.rectangle({0.5, 0.5}, 1.0, 0.5, 0.0, false, GetParam());
-  simulation::Simulator s(scene);
+  simulation::Simulator s(small_wall(30.0, GetParam()));
   s.run(0.05, 0.005);
 
   StepProblem problem;
@@ -86,12 +91,7 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
 
 // The open-close iteration keeps its gradient up to date without the matrix; it must stay that of the problem.
 TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
-  simulation::Scene scene(1e7, 20.0);
-  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 0.0}, 1.0, 0.5, 0.0, false, GetParam());
-  scene.rectangle({1.0, 0.0}, 1.0, 0.5, 0.0, false, 1);
-  scene.rectangle({0.5, 0.5}, 1.0, 0.5, 0.0, false, GetParam());
-  simulation::Simulator s(scene);
+  simulation::Simulator s(small_wall(20.0, GetParam()));
   s.run(0.05, 0.005);
   // A blow to the upper block: contacts open and slide.
   s.state.velocity[s.model.blocks[3].first] += 0.5;

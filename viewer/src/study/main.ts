@@ -9,6 +9,7 @@ import { Extremes, Gallery, pictureNote } from "./pictures";
 import { Selection } from "./selection";
 import { failedTable, howComputed, MeasureTables, RunTable } from "./tables";
 import { studyFindings } from "./verdict";
+import { start } from "../start";
 
 function head(study: Study): HTMLElement {
   const { title, version, realizations, combinations } = study.json;
@@ -142,17 +143,4 @@ function build(study: Study, main: HTMLElement): void {
   main.replaceChildren(...parts.filter((p): p is Node => p instanceof Node));
 }
 
-async function start(): Promise<void> {
-  const main = document.getElementById("report")!;
-  try {
-    build(await readStudy(), main);
-    document.documentElement.dataset.ready = "true";
-  } catch (error) {
-    main.replaceChildren(
-      h("p", { class: "error", role: "alert" }, `This report cannot be shown: ${String(error)}`),
-    );
-    throw error;
-  }
-}
-
-void start();
+void start(async (main) => build(await readStudy(), main));
