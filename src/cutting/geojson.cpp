@@ -1,5 +1,6 @@
 #include "cutting/geojson.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -20,7 +21,7 @@ void write_ring(Output out, const Ring& ring, Vec2 origin) {
   fmt::format_to(out, "[");
   for (std::size_t k = 0; k <= ring.size(); ++k) {
     const Vec2 p = ring[k % ring.size()] + origin;
-    fmt::format_to(out, "{}[{},{}]", k > 0 ? "," : "", p.x, p.y);
+    fmt::format_to(out, FMT_COMPILE("{}[{},{}]"), k > 0 ? "," : "", p.x, p.y);
   }
   fmt::format_to(out, "]");
 }
@@ -28,7 +29,8 @@ void write_ring(Output out, const Ring& ring, Vec2 origin) {
 void write_labels(Output out, const std::vector<EdgeLabel>& labels) {
   fmt::format_to(out, "[");
   for (std::size_t k = 0; k < labels.size(); ++k) {
-    fmt::format_to(out, "{}[\"{}\",{}]", k > 0 ? "," : "", name_of(labels[k].kind), labels[k].index);
+    fmt::format_to(out, FMT_COMPILE("{}[\"{}\",{}]"), k > 0 ? "," : "", name_of(labels[k].kind),
+                   labels[k].index);
   }
   fmt::format_to(out, "]");
 }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <map>
-#include <set>
+#include <numeric>
 #include <string_view>
 #include <tuple>
 
@@ -37,6 +39,40 @@ struct Style {
   std::string_view colour;
   double width = 1.0;
 };
+
+struct LabelledEdge {
+  Vec2 a, b;
+  EdgeLabel label;
+};
+
+/// Of two blocks that share an edge, the first has it.
+std::vector<LabelledEdge> edges_drawn_once(const BlockSystem& system) {
+  std::vector<LabelledEdge> edges;
+  for (const CutBlock& block : system.blocks) {
+    for (std::size_t r = 0; r < block.labels.size(); ++r) {
+      const Ring& ring = block.polygon.ring(r);
+      for (std::size_t k = 0; k < ring.size(); ++k)
+        edges.push_back({ring[k], ring[(k + 1) % ring.size()], block.labels[r][k]});
+    }
+  }
+  using Ends = std::array<double, 4>;
+  std::vector<std::pair<Ends, std::size_t>> by_ends;
+  by_ends.reserve(edges.size());
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const auto [a, b, label] = edges[k];
+    by_ends.emplace_back(std::min(Ends{a.x, a.y, b.x, b.y}, Ends{b.x, b.y, a.x, a.y}), k);
+  }
+  std::sort(by_ends.begin(), by_ends.end());
+  std::vector<std::uint8_t> drawn(edges.size(), 1);
+  for (std::size_t i = 1; i < by_ends.size(); ++i) {
+    if (by_ends[i].first == by_ends[i - 1].first) drawn[by_ends[i].second] = 0;
+  }
+  std::vector<LabelledEdge> once;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    if (drawn[k] != 0) once.push_back(edges[k]);
+  }
+  return once;
+}
 
 class Picture {
  public:
@@ -83,8 +119,23 @@ class Picture {
   }
 
   void point(char command, Vec2 p) {
-    write("{}{:.2f} {:.2f}", command, left_ + scale_ * (p.x - box_.min.x),
-          bottom_ - scale_ * (p.y - box_.min.y));
+    body_ += command;
+    hundredths(left_ + scale_ * (p.x - box_.min.x));
+    body_ += ' ';
+    hundredths(bottom_ - scale_ * (p.y - box_.min.y));
+  }
+
+  /// As "{:.2f}" would: a picture of many blocks is nothing but millions of these.
+  void hundredths(double x) {
+    const long long all = std::llround(100.0 * std::abs(x));
+    std::array<char, 32> text;
+    char* end = text.data();
+    if (x < 0.0 && all > 0) *end++ = '-';
+    end = std::to_chars(end, text.data() + text.size(), all / 100).ptr;
+    *end++ = '.';
+    *end++ = static_cast<char>('0' + all / 10 % 10);
+    *end++ = static_cast<char>('0' + all % 10);
+    body_.append(text.data(), end);
   }
 
   void ring_path(const Ring& ring, Vec2 shift) {
@@ -121,19 +172,8 @@ class Picture {
   void joints() {
     using Key = std::tuple<EdgeKind, int>;
     std::map<Key, std::vector<std::array<Vec2, 2>>> edges;
-    std::set<std::tuple<double, double, double, double>> seen;
-    for (const CutBlock& block : system_.blocks) {
-      for (std::size_t r = 0; r < block.labels.size(); ++r) {
-        const Ring& ring = block.polygon.ring(r);
-        for (std::size_t k = 0; k < ring.size(); ++k) {
-          const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
-          if (seen.contains({b.x, b.y, a.x, a.y})) continue;
-          seen.emplace(a.x, a.y, b.x, b.y);
-          const EdgeLabel label = block.labels[r][k];
-          edges[{label.kind, label.kind == EdgeKind::domain ? 0 : label.index}].push_back({a, b});
-        }
-      }
-    }
+    for (const auto& [a, b, label] : edges_drawn_once(system_))
+      edges[{label.kind, label.kind == EdgeKind::domain ? 0 : label.index}].push_back({a, b});
     std::vector<Style> styles;
     for (const auto& [key, list] : edges) {
       const auto [kind, index] = key;
