@@ -184,13 +184,18 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
   const auto is_old = [&](const Candidate& c) {
     return dirty[at(c.block_a)] != 0 || dirty[at(c.block_b)] != 0;
   };
+  CandidateList::Finder memory_of(list, 0);
+  const auto is_bonded = [&](std::size_t k) {
+    const int memory = memory_of(k);
+    return memory >= 0 && list.memory[at(memory)].bonded;
+  };
   // A block that moves through the air, or shifts a little among its neighbours, leaves the list as it is.
   std::size_t same = 0;
   for (std::size_t k = 0; k < list.pairs.size() && same < found.size(); ++k) {
     Candidate& c = list.pairs[k];
     if (!is_old(c)) continue;
     if (found[same].vertex != c.vertex || found[same].edge != c.edge) break;
-    c.clearance = list.memory[k].bonded ? 0.0 : found[same].clearance;
+    c.clearance = is_bonded(k) ? 0.0 : found[same].clearance;
     ++same;
   }
   if (same == found.size() &&
@@ -199,24 +204,26 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
 
   CandidateList merged;
   merged.pairs.reserve(list.pairs.size() + found.size());
-  merged.memory.reserve(list.pairs.size() + found.size());
-  const auto add = [&](const Candidate& c, const Memory& memory) {
-    if (memory.tracked) merged.tracked.push_back(static_cast<int>(merged.pairs.size()));
+  memory_of = CandidateList::Finder(list, 0);
+  const auto add = [&](const Candidate& c, int memory) {
+    if (memory >= 0) {
+      merged.tracked.push_back(static_cast<int>(merged.pairs.size()));
+      merged.memory.push_back(list.memory[at(memory)]);
+    }
     merged.pairs.push_back(c);
-    merged.memory.push_back(memory);
-    if (memory.bonded) merged.pairs.back().clearance = 0.0;
+    if (memory >= 0 && list.memory[at(memory)].bonded) merged.pairs.back().clearance = 0.0;
   };
   std::size_t k = 0;
   for (const Candidate& c : found) {
     for (; k < list.pairs.size() && before(list.pairs[k], c); ++k) {
-      if (!is_old(list.pairs[k])) add(list.pairs[k], list.memory[k]);
+      if (!is_old(list.pairs[k])) add(list.pairs[k], memory_of(k));
     }
     const bool known = k < list.pairs.size() && !before(c, list.pairs[k]);
-    add(c, known ? list.memory[k] : Memory{});
+    add(c, known ? memory_of(k) : -1);
     if (known) ++k;
   }
   for (; k < list.pairs.size(); ++k) {
-    if (!is_old(list.pairs[k])) add(list.pairs[k], list.memory[k]);
+    if (!is_old(list.pairs[k])) add(list.pairs[k], memory_of(k));
   }
   list = std::move(merged);
   return true;

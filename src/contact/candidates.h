@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,11 +11,10 @@ namespace keyblock::contact {
 
 enum class State : std::uint8_t { open = 0, sliding = 1, locked = 2 };
 
-/// What a contact remembers from step to step; of one that took no part in the last step, the slip alone.
+/// What a contact remembers from step to step.
 struct Memory {
   State state = State::open;
-  bool tracked = false;  ///< took part in the last step
-  bool bonded = false;   ///< in place, with cohesion and tension not yet broken
+  bool bonded = false;  ///< in place, with cohesion and tension not yet broken
   double offset =
       0.0;  ///< m, subtracted from the penetration: a contact born penetrated does not push that out;
             ///< negative: the closure of a joint that carries in-situ stress
@@ -27,7 +27,6 @@ struct Memory {
   double multiplier = 0.0;  ///< m, augmented Lagrangian: normal force over stiffness, in place of penetration
   double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
   double stored = 0.0;      ///< J per thickness, elastic energy of the springs
-  double slip = 0.0;        ///< m, shear displacement since the slip was last set to zero
 };
 
 /// A vertex of block a near an edge of block b.
@@ -39,11 +38,32 @@ struct Candidate {
   double clearance = 0.0;
 };
 
-/// Candidates in the order (smaller block, larger block, vertex, edge), and what each remembers.
+/// Candidates in the order (smaller block, larger block, vertex, edge), and what those remember that were contacts in the last
+/// step.
 struct CandidateList {
   std::vector<Candidate> pairs;
-  std::vector<Memory> memory;  ///< as many
-  std::vector<int> tracked;    ///< those whose memory is tracked, ascending
+  std::vector<int> tracked;    ///< contacts of the last step, into pairs; ascending
+  std::vector<Memory> memory;  ///< of each of them
+
+  /// Walks over the candidates in their order: where the memory of each is.
+  class Finder {
+   public:
+    Finder(const CandidateList& list, std::size_t first)
+        : tracked_(list.tracked),
+          next_(static_cast<std::size_t>(
+              std::lower_bound(tracked_.begin(), tracked_.end(), static_cast<int>(first)) -
+              tracked_.begin())) {}
+    /// Into `memory`; −1: none. No candidate before the last one that was asked for.
+    int operator()(std::size_t candidate) {
+      const int wanted = static_cast<int>(candidate);
+      while (next_ < tracked_.size() && tracked_[next_] < wanted) ++next_;
+      return next_ < tracked_.size() && tracked_[next_] == wanted ? static_cast<int>(next_) : -1;
+    }
+
+   private:
+    std::span<const int> tracked_;
+    std::size_t next_;
+  };
 };
 
 /// Clearance of a candidate with vertices at `position`: 0 where it is, or may at once be, a contact. Detection::passes says

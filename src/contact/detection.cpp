@@ -44,15 +44,15 @@ void Detection::measure_edges(const Surface& surface, ThreadTeam& team) {
   });
 }
 
-bool Detection::passes(const Surface& surface, std::span<const double> reach, const Candidate& c,
-                       const Memory& memory, Found& found) const {
+bool Detection::passes(const Surface& surface, std::span<const double> reach, const Candidate& c, bool bonded,
+                       Found& found) const {
   const Vec2 a = surface.position[at(c.edge)], v = surface.position[at(c.vertex)];
   const Line& line = lines_[at(c.edge)];
   const Vec2 normal = line.normal();
   const double gap = dot(normal, v - a), along = dot(line.tangent, v - a), length = line.length;
   const int block_a = c.block_a, block_b = c.block_b;
   const double motion = reach[at(block_a)] + reach[at(block_b)];
-  if (!memory.bonded && gap > tolerances_.activation + motion) return false;
+  if (!bonded && gap > tolerances_.activation + motion) return false;
   const double deepest =
       std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
   if (gap < -deepest) return false;
@@ -65,12 +65,10 @@ bool Detection::passes(const Surface& surface, std::span<const double> reach, co
       !outside(surface, v, surface.next[at(c.vertex)], normal))
     return false;
 
-  found.vertex = c.vertex;
-  found.edge = c.edge;
   found.gap = gap;
   found.along = along;
   found.inside = std::min(along, length - along);
-  found.low = found.high = found.holder = -1;
+  found.low = found.high = -1;
   found.dropped = false;
   const int corner = along < 0.5 * length ? c.edge : end;
   if (found.inside < zone && !surface.reflex[at(corner)])
@@ -108,29 +106,36 @@ void Detection::sort_corners(const Surface& surface) {
 void Detection::look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
                      const CandidateList& candidates, ThreadTeam& team) {
   const std::size_t n = candidates.pairs.size(), pieces = (n + piece - 1) / piece;
-  found_in_.resize(pieces);
+  room_.resize(n);
+  std::vector<std::size_t> passed(pieces, 0);
+  const auto look_at_piece = [&](std::size_t p) {
+    const std::size_t first = p * piece, last = std::min(n, first + piece);
+    CandidateList::Finder memory_of(candidates, first);
+    for (std::size_t k = first; k < last; ++k) {
+      const Candidate& c = candidates.pairs[k];
+      if (away[at(c.block_a)] + away[at(c.block_b)] < c.clearance) continue;
+      const int memory = memory_of(k);
+      Found& next = room_[first + passed[p]];
+      if (!passes(surface, reach, c, memory >= 0 && candidates.memory[at(memory)].bonded, next)) continue;
+      next.candidate = static_cast<int>(k);
+      next.memory = memory;
+      ++passed[p];
+    }
+  };
   team.for_range(pieces, std::max<std::size_t>(2, worth_threads / piece),
                  [&](std::size_t begin, std::size_t end) {
-                   for (std::size_t p = begin; p < end; ++p) {
-                     std::vector<Found>& found = found_in_[p];
-                     found.clear();
-                     Found next{};
-                     for (std::size_t k = p * piece; k < std::min(n, (p + 1) * piece); ++k) {
-                       const Candidate& c = candidates.pairs[k];
-                       if (away[at(c.block_a)] + away[at(c.block_b)] < c.clearance) continue;
-                       if (!passes(surface, reach, c, candidates.memory[k], next)) continue;
-                       next.candidate = static_cast<int>(k);
-                       found.push_back(next);
-                     }
-                   }
+                   for (std::size_t p = begin; p < end; ++p) look_at_piece(p);
                  });
-  found_.clear();
-  for (const std::vector<Found>& some : found_in_) found_.insert(found_.end(), some.begin(), some.end());
+  std::size_t total = 0;
+  for (std::size_t p = 0; p < pieces; ++p) {
+    if (p > 0) std::copy_n(&room_[p * piece], passed[p], &room_[total]);
+    total += passed[p];
+  }
+  found_ = std::span(room_).first(total);
 }
 
 void Detection::find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
                      const CandidateList& candidates, ThreadTeam& team, std::vector<Contact>& contacts) {
-  const std::span<const Memory> memory = candidates.memory;
   measure_edges(surface, team);
   look(surface, reach, away, candidates, team);
   sort_corners(surface);
@@ -140,7 +145,7 @@ void Detection::find(const Surface& surface, std::span<const double> reach, std:
     while (last < members_.size() && found_[at(members_[last])].low == f.low &&
            found_[at(members_[last])].high == f.high)
       ++last;
-    compete(std::span(members_).subspan(first, last - first), memory);
+    compete(std::span(members_).subspan(first, last - first), candidates);
     first = last;
   }
   kept_.clear();
@@ -149,24 +154,25 @@ void Detection::find(const Surface& surface, std::span<const double> reach, std:
   }
   contacts.resize(kept_.size());
   team.for_range(kept_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) add(surface, found_[at(kept_[k])], memory, contacts[k]);
+    for (std::size_t k = begin; k < end; ++k) add(surface, found_[at(kept_[k])], candidates, contacts[k]);
   });
 }
 
 /// Which of the candidates for one pair of corners is the contact.
-void Detection::compete(std::span<const int> members, std::span<const Memory> memories) {
-  const auto memory = [&](const Found& f) -> const Memory& { return memories[at(f.candidate)]; };
-  const auto turned = [&](const Found& f, const Found& g) {
-    return std::abs(cross(lines_[at(f.edge)].tangent, lines_[at(g.edge)].tangent)) >=
-           Tolerances::sine_parallel;
+void Detection::compete(std::span<const int> members, const CandidateList& candidates) {
+  const auto tangent = [&](const Found& f) {
+    return lines_[at(candidates.pairs[at(f.candidate)].edge)].tangent;
   };
+  const auto turned = [&](const Found& f, const Found& g) {
+    return std::abs(cross(tangent(f), tangent(g))) >= Tolerances::sine_parallel;
+  };
+  const auto force = [&](const Found& f) { return candidates.memory[at(f.memory)].normal_force; };
   bool parallel = true;
   const Found* holder = nullptr;  // the one that was in contact; the strongest, should there be several
   for (const int m : members) {
     const Found& f = found_[at(m)];
     parallel = parallel && !turned(f, found_[at(members[0])]);
-    if (memory(f).tracked && (holder == nullptr || memory(f).normal_force > memory(*holder).normal_force))
-      holder = &f;
+    if (f.memory >= 0 && (holder == nullptr || force(f) > force(*holder))) holder = &f;
   }
   Found* winner = nullptr;
   if (parallel) {
@@ -191,8 +197,9 @@ void Detection::compete(std::span<const int> members, std::span<const Memory> me
     if (best > -tolerances_.corner_depth && best - second < tolerances_.corner_tie) winner = nullptr;
   }
   for (const int m : members) found_[at(m)].dropped = &found_[at(m)] != winner;
-  if (winner != nullptr && holder != nullptr && winner != holder && parallel)
-    winner->holder = holder->candidate;
+  // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
+  // tangents of the two lines run against each other, and normal and tangent turn together.
+  if (winner != nullptr && holder != nullptr && parallel) winner->memory = holder->memory;
 }
 
 namespace {
@@ -215,38 +222,32 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 
 }  // namespace
 
-void Detection::add(const Surface& surface, const Found& found, std::span<const Memory> memories,
+void Detection::add(const Surface& surface, const Found& found, const CandidateList& candidates,
                     Contact& contact) const {
-  const Line& line = lines_[at(found.edge)];
-  const Vec2 a = surface.position[at(found.edge)], v = surface.position[at(found.vertex)],
+  const Candidate& candidate = candidates.pairs[at(found.candidate)];
+  const Line& line = lines_[at(candidate.edge)];
+  const Vec2 a = surface.position[at(candidate.edge)], v = surface.position[at(candidate.vertex)],
              normal = line.normal();
   contact.candidate = found.candidate;
-  contact.block_a = surface.block[at(found.vertex)];
-  contact.block_b = surface.block[at(found.edge)];
-  contact.vertex = found.vertex;
-  contact.edge = found.edge;
+  contact.block_a = candidate.block_a;
+  contact.block_b = candidate.block_b;
+  contact.vertex = candidate.vertex;
+  contact.edge = candidate.edge;
   contact.normal = normal;
-  contact.tangent = line.tangent;
   contact.position = found.along / line.length;
   contact.gap = found.gap;
-  contact.length =
-      0.5 *
-      (shared_length(surface, v, surface.previous[at(found.vertex)], a, normal, line.tangent, line.length) +
-       shared_length(surface, v, surface.next[at(found.vertex)], a, normal, line.tangent, line.length));
+  contact.length = 0.5 * (shared_length(surface, v, surface.previous[at(candidate.vertex)], a, normal,
+                                        line.tangent, line.length) +
+                          shared_length(surface, v, surface.next[at(candidate.vertex)], a, normal,
+                                        line.tangent, line.length));
 
-  Memory& memory = contact.memory = memories[at(found.candidate)];
-  if (found.holder >= 0) {
-    // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides,
-    // the tangents of the two lines run against each other, and normal and tangent turn together.
-    const double slip = memory.slip;
-    memory = memories[at(found.holder)];
-    memory.slip += slip;
-  }
-  if (!memory.tracked) {
-    memory.tracked = true;
+  Memory& memory = contact.memory;
+  if (found.memory < 0) {
+    memory = {};
     memory.offset = std::max(0.0, -found.gap);
-  } else if (memory.offset > 0.0) {
-    memory.offset = std::min(memory.offset, std::max(0.0, -found.gap));
+  } else {
+    memory = candidates.memory[at(found.memory)];
+    if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -found.gap));
   }
 
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
@@ -264,16 +265,11 @@ void Detection::add(const Surface& surface, const Found& found, std::span<const 
 }
 
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates) {
-  for (const int k : candidates.tracked) {
-    Memory& memory = candidates.memory[at(k)];
-    const double slip = memory.slip;
-    memory = {};
-    memory.slip = slip;
-  }
   candidates.tracked.clear();
+  candidates.memory.clear();
   for (const Contact& c : contacts) {
-    candidates.memory[at(c.candidate)] = c.memory;
     candidates.tracked.push_back(c.candidate);
+    candidates.memory.push_back(c.memory);
     if (c.memory.bonded)
       candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
   }

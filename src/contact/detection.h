@@ -8,6 +8,11 @@
 
 namespace keyblock::contact {
 
+/// Direction of an edge from its outward normal.
+inline Vec2 tangent_of(Vec2 normal) {
+  return {-normal.y, normal.x};
+}
+
 /// A contact of this step: vertex V of block a against edge AB of block b, linear in the displacements of both.
 ///
 ///     gap  g = n · (V − A),     g(D) = gap + n · r,     r = D_a(V) − D_b(P),   P = (1 − s) A + s B
@@ -18,7 +23,7 @@ struct Contact {
   int candidate = 0;  ///< where its memory is
   int block_a = 0, block_b = 0;
   int vertex = 0, edge = 0;
-  Vec2 normal, tangent;
+  Vec2 normal;
   double position = 0.0;  ///< s, 0 at A, 1 at B; a little outside near the ends
   double gap = 0.0;       ///< m, of the geometry
   double length = 0.0;    ///< m of joint that belongs to it: half of what each facing pair of edges shares
@@ -28,6 +33,8 @@ struct Contact {
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
   bool fused = false;
   Memory memory;  ///< of the last step, to be brought up to date at the end of this one
+
+  [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
 };
 
 /// Takes the memory of the contacts of a step over into the candidates; the others forget all but their slip.
@@ -65,31 +72,31 @@ class Detection {
   };
   /// A candidate that passes the geometry.
   struct Found {
-    int candidate, vertex, edge;
+    int candidate;
+    int memory;         ///< of the list, that it goes on with; −1: none
     int low, high;      ///< the two corners that meet; −1: the vertex is not near an end of the edge
     double gap, along;  ///< m
     double inside;      ///< m by which the vertex lies over the edge; negative: beyond the end
     bool dropped;
-    int holder;  ///< candidate whose memory it takes over; −1: its own
   };
   void measure_edges(const Surface& surface, ThreadTeam& team);
   void look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
             const CandidateList& candidates, ThreadTeam& team);
-  bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, const Memory& memory,
+  bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, bool bonded,
               Found& found) const;
   void sort_corners(const Surface& surface);
-  void compete(std::span<const int> members, std::span<const Memory> memories);
-  void add(const Surface& surface, const Found& found, std::span<const Memory> memories,
+  void compete(std::span<const int> members, const CandidateList& candidates);
+  void add(const Surface& surface, const Found& found, const CandidateList& candidates,
            Contact& contact) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
-  std::vector<Line> lines_;                   ///< per edge
-  std::vector<Found> found_;                  ///< in the order of the candidates
-  std::vector<std::vector<Found>> found_in_;  ///< the same, piece by piece of the candidates
-  std::vector<int> kept_;                     ///< into found_: not dropped
+  std::vector<Line> lines_;        ///< per edge
+  std::vector<Found> room_;        ///< for all candidates to pass
+  std::span<Found> found_;         ///< its beginning: those that pass, in the order of the candidates
+  std::vector<int> kept_;          ///< into found_: not dropped
   std::vector<int> corner_begin_;  ///< per vertex: those of which it is the lower corner, into members_
   std::vector<int> members_;       ///< into found_, by (low, high, place)
 };

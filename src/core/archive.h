@@ -9,17 +9,37 @@
 #include <utility>
 #include <vector>
 
+#include "core/atomic_file.h"
+
 namespace keyblock {
 
-/// Writes values one after the other as bytes of this machine: for checkpoints, read again by the same program.
+/// FNV-1a over bytes, 64 bit.
+class Hash {
+ public:
+  void add(const void* bytes, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k) {
+      value_ ^= static_cast<const unsigned char*>(bytes)[k];
+      value_ *= 1099511628211ULL;
+    }
+  }
+  template <typename T>
+  requires std::is_arithmetic_v<T>
+  void add(const std::vector<T>& values) { add(values.data(), values.size() * sizeof(T)); }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+/// Writes values one after the other as bytes of this machine, and their hash in the end: for checkpoints, read again by the
+/// same program.
 class ArchiveWriter {
  public:
+  explicit ArchiveWriter(AtomicFile& file) : file_(file) {}
+
   template <typename T>
   requires std::is_trivially_copyable_v<T>
-  void operator()(const T& value) {
-    const auto* bytes = reinterpret_cast<const char*>(&value);
-    data_.append(bytes, sizeof(T));
-  }
+  void operator()(const T& value) { append(&value, sizeof(T)); }
   template <typename A, typename B>
   void operator()(const std::pair<A, B>& pair) {
     (*this)(pair.first);
@@ -27,17 +47,35 @@ class ArchiveWriter {
   }
   void operator()(const std::string& text) {
     (*this)(static_cast<std::uint64_t>(text.size()));
-    data_ += text;
+    append(text.data(), text.size());
   }
   template <typename T>
   void operator()(const std::vector<T>& values) {
     (*this)(static_cast<std::uint64_t>(values.size()));
     for (const T& value : values) (*this)(value);
   }
-  [[nodiscard]] const std::string& data() const { return data_; }
+  /// The hash of all before it; nothing may follow.
+  void finish() {
+    flush();
+    (*this)(hash_.value());
+    flush();
+  }
 
  private:
-  std::string data_;
+  static constexpr std::size_t piece = 1 << 16;  ///< bytes kept before they are written
+  void append(const void* bytes, std::size_t size) {
+    buffer_.append(static_cast<const char*>(bytes), size);
+    if (buffer_.size() >= piece) flush();
+  }
+  void flush() {
+    hash_.add(buffer_.data(), buffer_.size());
+    file_.write(buffer_);
+    buffer_.clear();
+  }
+
+  AtomicFile& file_;
+  Hash hash_;
+  std::string buffer_;
 };
 
 /// Reads what ArchiveWriter wrote. Throws std::out_of_range at a premature end.
@@ -78,24 +116,6 @@ class ArchiveReader {
     return start;
   }
   std::string_view data_;
-};
-
-/// FNV-1a over bytes, 64 bit.
-class Hash {
- public:
-  void add(const void* bytes, std::size_t size) {
-    for (std::size_t k = 0; k < size; ++k) {
-      value_ ^= static_cast<const unsigned char*>(bytes)[k];
-      value_ *= 1099511628211ULL;
-    }
-  }
-  template <typename T>
-  requires std::is_arithmetic_v<T>
-  void add(const std::vector<T>& values) { add(values.data(), values.size() * sizeof(T)); }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
 };
 
 }  // namespace keyblock

@@ -4,9 +4,27 @@
 
 namespace keyblock {
 
-/// Writes `content` to a temporary file beside `path` and renames it, so that no reader ever sees half a
-/// file. Throws RunError when the disk is full or the folder cannot be written; `path` is then as it was
-/// before.
+/// A file that is written piece by piece under a temporary name beside `path`, and renamed when it is complete, so that no
+/// reader ever sees half a file. Every member throws RunError when the disk is full or the folder cannot be written;
+/// `path` is then as it was before, as it is when the object goes before `commit`.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::string_view bytes);
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path path_, temporary_;
+  int descriptor_ = -1;
+};
+
+/// AtomicFile of a content that is there already.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 /// The whole file as bytes. Throws InputError when it cannot be read.

@@ -19,10 +19,16 @@ constexpr double least_share = 0.25;  // of the way to a new bound
 void OpenClose::start(const StepProblem& problem, std::span<const contact::Contact> contacts) {
   const auto& rows = problem.rows();
   springs_.resize(rows.size());
+  friction_.resize(rows.size());
+  cohesion_.resize(rows.size());
+  any_bond_ = false;
   for (std::size_t c = 0; c < rows.size(); ++c) {
     const StepProblem::Row& row = rows[c];
     const contact::Spring& s = row.spring;
     springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
+    friction_[c] = contacts[c].fused ? -1.0 : contacts[c].friction_coefficient;
+    cohesion_[c] = contacts[c].cohesion;
+    any_bond_ = any_bond_ || (contacts[c].memory.bonded && !contacts[c].fused);
     Shear assumed = Shear::none;
     if (s.bound() > 0.0) {
       if (contacts[c].memory.state == contact::State::locked) {
@@ -42,7 +48,7 @@ void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force
                           std::span<double> out) {
   if (force.is_zero()) return;
   const StepProblem::Row& row = problem.rows()[c];
-  problem.add_contact_force(row, scale * (force.shear * row.tangent - force.normal * row.normal), out);
+  problem.add_contact_force(row, scale * (force.shear * row.tangent() - force.normal * row.normal), out);
 }
 
 /// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
@@ -101,7 +107,7 @@ void OpenClose::find_direction(const StepProblem& problem) {
     for (std::size_t c = begin; c < end; ++c) {
       const Vec2 r = problem.relative(rows[c], direction_);
       springs_.dy[c] = -dot(rows[c].normal, r);
-      springs_.dw[c] = dot(rows[c].tangent, r);
+      springs_.dw[c] = dot(rows[c].tangent(), r);
     }
   });
 }
@@ -243,16 +249,14 @@ void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
   add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
 }
 
-bool OpenClose::update_bounds(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
+bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   auto& rows = problem.rows();
   double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
-    const double normal = std::max(0.0, springs_.force(c).normal);
-    return contacts[c].friction_coefficient * normal +
-           (contacts[c].memory.bonded ? contacts[c].cohesion : 0.0);
+    return friction_[c] * std::max(0.0, springs_.force(c).normal) + cohesion_[c];
   };
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    if (contacts[c].fused) continue;
+    if (friction_[c] < 0.0) continue;
     // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
     const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
     const double change = std::clamp(elastic, -wanted, wanted) - springs_.force(c).shear;
@@ -266,7 +270,7 @@ bool OpenClose::update_bounds(StepProblem& problem, std::span<contact::Contact> 
   const bool first = bound_steps_.empty();
   bound_steps_.resize(rows.size());
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    if (contacts[c].fused) continue;
+    if (friction_[c] < 0.0) continue;
     const double missing = bound(c) - springs_.bound[c];
     const double gained = bound_steps_[c].missing - missing;
     double share = 1.0;
@@ -316,6 +320,7 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
 }
 
 bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> contacts) {
+  if (!any_bond_) return false;
   bool any = false;
   auto& rows = problem.rows();
   for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -324,6 +329,7 @@ bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> co
     const double normal = springs_.force(c).normal;
     if (-normal <= contacts[c].tension && s.locked(springs_.w[c])) continue;
     contacts[c].memory.bonded = false;
+    cohesion_[c] = 0.0;
     s.break_bond();
     s.set_bound(contacts[c].friction_coefficient * std::max(0.0, normal));
     set_law(problem, c);
@@ -368,7 +374,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     }
     const double tolerance =
         result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
-    if (result.bound_updates < options.max_bound_updates && update_bounds(problem, contacts, tolerance)) {
+    if (result.bound_updates < options.max_bound_updates && update_bounds(problem, tolerance)) {
       ++result.bound_updates;
       enough = std::max(options.tolerance, rough_share * problem.residual_ratio(gradient_));
       continue;

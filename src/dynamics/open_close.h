@@ -68,13 +68,16 @@ class OpenClose {
   static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                         std::span<double> out);
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
-  bool update_bounds(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
+  bool update_bounds(StepProblem& problem, double tolerance);
   bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
   bool break_bonds(StepProblem& problem, std::span<contact::Contact> contacts);
 
   ThreadTeam* team_ = nullptr;
   Profile* profile_ = nullptr;
   SpringArray springs_;
+  std::vector<double> friction_;    ///< per contact, μ; −1: the bound is not Coulomb's
+  std::vector<double> cohesion_;    ///< N per thickness, per contact: of bonds
+  bool any_bond_ = false;           ///< that may break in this step
   std::vector<Piece> factored_;     ///< per contact: what the matrix at hand was made with
   bool assembled_ = false;          ///< in this step
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search

@@ -35,6 +35,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       iterative_{linalg::make_block_conjugate_gradient(&team)},
       reach_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
+      speed_(model.blocks.size(), 0.0),
       spin_(model.blocks.size(), 0.0),
       rule_(model.blocks.size()),
       in_impact_(model.blocks.size(), 0),
@@ -90,7 +91,7 @@ void Stepper::start(State& state) {
     const Vec2 traction{s.xx * c.normal.x + s.xy * c.normal.y, s.xy * c.normal.x + s.yy * c.normal.y};
     const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
     const double bound = law.fused ? HUGE_VAL : law.friction_coefficient * normal + law.cohesion * c.length;
-    const double shear = std::clamp(dot(traction, c.tangent) * c.length, -bound, bound);
+    const double shear = std::clamp(dot(traction, c.tangent()) * c.length, -bound, bound);
     memory.normal_force = memory.bounding_force = normal;
     memory.offset = -c.gap - normal / c.normal_stiffness;
     memory.shear = shear / c.shear_stiffness;
@@ -147,7 +148,8 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
       fastest = std::max(fastest, squared_norm(map_point(&model_.surface.phi[model_.surface.phi_begin[v]],
                                                          block.size, &state.velocity[block.first])));
     }
-    reach_[b] = 2.0 * std::sqrt(fastest) * drive.step + 2.0 * acceleration;
+    speed_[b] = std::sqrt(fastest);
+    reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
   }
   for (const PrescribedMotion& motion : model_.motions)
     reach_[at(motion.block)] = norm(drive.prescribed[at(motion.block)]);
@@ -214,7 +216,7 @@ bool Stepper::turned_too_far() const {
     const Vec2 r = open_close_.relative()[c];
     const double missed = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
                                  spin_[b] * spin_[b] * model_.blocks[b].radius) +
-                          std::abs(spin_[b] * dot(row.tangent, r));
+                          std::abs(spin_[b] * dot(row.tangent(), r));
     if (missed <= tolerances_.turn) continue;
     if (row.spring.normal_force(row.depth(r)) > 0.0 || contacts_[c].gap + dot(row.normal, r) < missed)
       return true;
@@ -242,9 +244,11 @@ bool Stepper::moved_too_far() {
   return any;
 }
 
-/// Contact memory for the next step.
+/// Contact memory for the next step, and where the energy of contacts went.
 void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
+  // What was stored in contacts that have ended, a vertex that left its edge, is lost.
+  state.ledger.numerical += contact_energy_;
   contact_energy_ = 0.0;
   const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -253,7 +257,11 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
     contact::Memory& memory = contacts_[c].memory;
     const Vec2 r = open_close_.relative()[c];
     const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
-    memory.stored = augmented ? 0.0 : s.balance(depth, shear).stored;
+    const contact::Spring::Balance balance =
+        augmented ? s.rigid_balance(depth, shear, dot(row.normal, r), dot(row.tangent(), r))
+                  : s.balance(depth, shear);
+    account_contact(state.ledger, memory, row, r, balance);
+    memory.stored = balance.stored;
     contact_energy_ += memory.stored;
     const double change = std::max(0.0, normal_force) - memory.normal_force;
     memory.normal_force = std::max(0.0, normal_force);
@@ -261,7 +269,6 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
     memory.bounding_force =
         std::max(0.0, memory.normal_force + (slides && !drive.is_static && !augmented ? change : 0.0));
     memory.shear = s.closed(depth) ? s.elastic_shear(shear) : 0.0;
-    memory.slip += dot(row.tangent, r);
     memory.state = !s.closed(depth)  ? contact::State::open
                    : s.locked(shear) ? contact::State::locked
                                      : contact::State::sliding;
@@ -280,7 +287,7 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
     } else {
       memory.multiplier = 0.0;
     }
-    memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent, r) : 0.0;
+    memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
   }
   contact::keep_memory(contacts_, state.contacts);
   report.contact_energy = contact_energy();

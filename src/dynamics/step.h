@@ -105,6 +105,8 @@ class Stepper {
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
+  static void account_contact(EnergyLedger& ledger, const contact::Memory& before,
+                              const StepProblem::Row& row, Vec2 r, const contact::Spring::Balance& balance);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
@@ -129,6 +131,7 @@ class Stepper {
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
   bool has_places_ = false;             ///< pair_of_candidate_ is that of the pattern
   std::vector<double> reach_, increment_;
+  std::vector<double> speed_;            ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;             ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;         ///< per block, of the last attempt
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt

@@ -8,7 +8,7 @@ namespace keyblock::dynamics {
 
 double Stepper::stored_energy(const State& state) {
   double sum = 0.0;
-  for (const int k : state.contacts.tracked) sum += state.contacts.memory[at(k)].stored;
+  for (const contact::Memory& memory : state.contacts.memory) sum += memory.stored;
   return sum;
 }
 
@@ -71,23 +71,17 @@ void Stepper::account(State& state, const Drive& drive) {
     // elastic_loss has taken ½ k moved² for a ground that stands still.
     ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
   }
-  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
-  // What is stored in contacts that have ended, a vertex that left its edge, is lost.
-  ledger.numerical += contact_energy_;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    ledger.numerical -= contacts_[c].memory.stored;
-    const StepProblem::Row& row = problem_.rows()[c];
-    const Vec2 r = open_close_.relative()[c];
-    const contact::Spring::Balance balance =
-        augmented
-            ? row.spring.rigid_balance(row.depth(r), row.shear(r), dot(row.normal, r), dot(row.tangent, r))
-            : row.spring.balance(row.depth(r), row.shear(r));
-    ledger.friction += balance.friction;
-    const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
-    ledger.input -= dot(normal * row.normal - shear * row.tangent, row.moved);
-    ledger.damping += balance.damping;
-    ledger.numerical += balance.numerical;
-  }
+}
+
+/// Of a contact that pushed with `balance` while its blocks moved by r.
+void Stepper::account_contact(EnergyLedger& ledger, const contact::Memory& before,
+                              const StepProblem::Row& row, Vec2 r, const contact::Spring::Balance& balance) {
+  ledger.numerical -= before.stored;
+  ledger.friction += balance.friction;
+  const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
+  ledger.input -= dot(normal * row.normal - shear * row.tangent(), row.moved);
+  ledger.damping += balance.damping;
+  ledger.numerical += balance.numerical;
 }
 
 double Stepper::kinetic_energy(const State& state) const {

@@ -111,10 +111,11 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
                              std::span<const contact::Contact> contacts, ThreadTeam& team) {
   rows_.resize(contacts.size());
-  std::size_t used = 0;
+  std::uint32_t used = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     rows_[k].phi = used;
-    used += at(model_->blocks[at(contacts[k].block_a)].size + model_->blocks[at(contacts[k].block_b)].size);
+    used += static_cast<std::uint32_t>(model_->blocks[at(contacts[k].block_a)].size +
+                                       model_->blocks[at(contacts[k].block_b)].size);
   }
   phi_.resize(used);
   team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -127,8 +128,8 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
   const Block& a = model_->blocks[at(c.block_a)];
   const Block& b = model_->blocks[at(c.block_b)];
   const contact::Memory& memory = c.memory;
-  row.first_a = a.first;
-  row.first_b = b.first;
+  row.first_a = static_cast<std::uint32_t>(a.first);
+  row.first_b = static_cast<std::uint32_t>(b.first);
   row.size_a = a.fixed ? 0 : a.size;
   row.size_b = b.fixed ? 0 : b.size;
   row.unknown_a = a.unknown;
@@ -139,7 +140,6 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
   const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(c.edge)])]];
   for (int i = 0; i < row.size_b; ++i) phi_b[i] = (1.0 - c.position) * from[i] + c.position * to[i];
   row.normal = c.normal;
-  row.tangent = c.tangent;
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
   const double mass = reduced_mass(c);
@@ -206,7 +206,7 @@ void StepProblem::gradient(std::span<const double> d, std::span<const Vec2> r, s
     const double normal = row.spring.normal_force(row.depth(r[c]));
     const double shear = row.spring.shear_force(row.shear(r[c]));
     if (normal == 0.0 && shear == 0.0) continue;
-    add_contact_force(row, shear * row.tangent - normal * row.normal, g);
+    add_contact_force(row, shear * row.tangent() - normal * row.normal, g);
   }
 }
 
@@ -287,7 +287,7 @@ void StepProblem::assemble(linalg::BlockSolver& solver) const {
 }
 
 void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const {
-  const Vec2 n = row.normal, t = row.tangent;
+  const Vec2 n = row.normal, t = row.tangent();
   const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
                     kn * n.y * n.y + ks * t.y * t.y};
   const double *phi_a = &phi_[row.phi], *phi_b = phi_a + row.size_a;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -38,18 +39,19 @@ class StepProblem {
  public:
   /// r_c = φ_V · D_a − φ_P · D_b + moved; a fixed block contributes what it is moved by, nothing else.
   struct Row {
-    std::size_t first_a, first_b;  ///< of the block's coefficients
-    int size_a, size_b;            ///< N; 0: fixed
+    std::uint32_t first_a, first_b;  ///< of the block's coefficients
+    std::uint32_t phi;   ///< into phi_: N values of a at its vertex, N of b at the point of its edge
+    int size_a, size_b;  ///< N; 0: fixed
     int unknown_a, unknown_b;
-    int pair = -1;    ///< of the solver's pattern; −1: one block is fixed
-    std::size_t phi;  ///< into phi_: N values of a at its vertex, N of b at the point of its edge
-    Vec2 normal, tangent;
+    int pair = -1;  ///< of the solver's pattern; −1: one block is fixed
+    Vec2 normal;
     double inertia = 0.0;  ///< N/m per thickness, of the two blocks against each other in this step
     Vec2 moved;            ///< m, known part of r: prescribed displacement of a less that of b
     contact::Spring spring;
 
+    [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
     [[nodiscard]] double depth(Vec2 r) const { return spring.depth() - dot(normal, r); }
-    [[nodiscard]] double shear(Vec2 r) const { return spring.shear() + dot(tangent, r); }
+    [[nodiscard]] double shear(Vec2 r) const { return spring.shear() + dot(tangent(), r); }
   };
 
   void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,

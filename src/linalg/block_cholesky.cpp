@@ -334,6 +334,8 @@ void BlockCholesky::solve_columns(std::span<double> x) {
   for (std::size_t j = 0; j < n; ++j) {
     const int size_j = size<equal>(j), rows = stride<equal>(j);
     double* y = &work_[work_start_[j]];
+    if (std::all_of(y, y + size_j, [](double v) { return v == 0.0; }))
+      continue;  // as where a step has settled
     multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
     for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {

@@ -11,7 +11,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0005;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0006;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -62,8 +62,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.acceleration_known);
   archive(s.mechanics.moved);
   archive(s.mechanics.contacts.pairs);
-  archive(s.mechanics.contacts.memory);
   archive(s.mechanics.contacts.tracked);
+  archive(s.mechanics.contacts.memory);
   archive(s.mechanics.pattern);
   archive(s.mechanics.ledger);
   archive(s.present);
@@ -96,16 +96,15 @@ std::filesystem::path checkpoint_path(const std::filesystem::path& directory) {
 }
 
 void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state) {
-  ArchiveWriter archive;
+  AtomicFile file(checkpoint_path(directory));
+  ArchiveWriter archive(file);
   archive(format);
   archive(fingerprint(setup));
   transfer(archive, state);
   archive(static_cast<std::uint64_t>(state.record.stages.size()));
   for (const StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
-  Hash hash;
-  hash.add(archive.data().data(), archive.data().size());
-  archive(hash.value());
-  write_file_atomically(checkpoint_path(directory), archive.data());
+  archive.finish();
+  file.commit();
 }
 
 RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup& setup) {
@@ -144,9 +143,9 @@ std::string state_hash(const dynamics::State& state) {
   Hash hash;
   hash.add(state.position);
   hash.add(state.velocity);
-  for (const int k : state.contacts.tracked) {
-    const contact::Candidate& c = state.contacts.pairs[at(k)];
-    const contact::Memory& memory = state.contacts.memory[at(k)];
+  for (std::size_t k = 0; k < state.contacts.tracked.size(); ++k) {
+    const contact::Candidate& c = state.contacts.pairs[at(state.contacts.tracked[k])];
+    const contact::Memory& memory = state.contacts.memory[k];
     const double numbers[] = {
         static_cast<double>(c.vertex), static_cast<double>(c.edge),      memory.offset, memory.shear,
         memory.normal_force,           static_cast<double>(memory.state)};

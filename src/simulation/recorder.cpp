@@ -127,7 +127,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
     ContactRecord row;
     row.block_a = c.block_a;
     row.block_b = c.block_b;
-    row.state = static_cast<ContactState>(state.contacts.memory[at(c.candidate)].state);
+    row.state = static_cast<ContactState>(c.memory.state);
     row.position = surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 
@@ -56,12 +57,33 @@ TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
   CandidateList list;
   const std::vector<double> reach(static_cast<std::size_t>(surface.blocks()), 0.0);
   candidates.update(surface, reach, list);
-  for (std::size_t k = 0; k < list.memory.size(); ++k) list.memory[k].slip = static_cast<double>(k + 1);
+  for (int k = 0; k < static_cast<int>(list.pairs.size()); k += 3) {
+    list.tracked.push_back(k);
+    list.memory.emplace_back().shear = k + 1.0;
+  }
   const CandidateList before = list;
+  const auto expect_kept = [&] {
+    for (std::size_t k = 0; k < before.tracked.size(); ++k) {
+      const Candidate& c = before.pairs[static_cast<std::size_t>(before.tracked[k])];
+      const auto now = std::find_if(list.pairs.begin(), list.pairs.end(), [&](const Candidate& other) {
+        return other.vertex == c.vertex && other.edge == c.edge;
+      });
+      ASSERT_NE(now, list.pairs.end());
+      const int place = CandidateList::Finder(list, 0)(static_cast<std::size_t>(now - list.pairs.begin()));
+      ASSERT_GE(place, 0);
+      EXPECT_EQ(list.memory[static_cast<std::size_t>(place)].shear, before.memory[k].shear);
+    }
+  };
   candidates.invalidate();
   EXPECT_FALSE(candidates.update(surface, reach, list));  // the same
   ASSERT_EQ(list.pairs.size(), before.pairs.size());
-  for (std::size_t k = 0; k < list.memory.size(); ++k) EXPECT_EQ(list.memory[k].slip, before.memory[k].slip);
+  expect_kept();
+  std::vector<double> faster = reach;
+  faster[1] = 0.5;  // sees more of its neighbours
+  EXPECT_TRUE(candidates.update(surface, faster, list));
+  EXPECT_GT(list.pairs.size(), before.pairs.size());
+  EXPECT_EQ(list.memory.size(), before.memory.size());
+  expect_kept();
 }
 
 TEST(Candidates, IgnoreAbsentAndPairsOfFixedBlocks) {
