@@ -67,11 +67,9 @@ bool Detection::passes(const Surface& surface, std::span<const double> reach, co
 
   found.gap = gap;
   found.along = along;
-  found.inside = std::min(along, length - along);
   found.low = found.high = -1;
-  found.dropped = false;
   const int corner = along < 0.5 * length ? c.edge : end;
-  if (found.inside < zone && !surface.reflex[at(corner)])
+  if (inside(along, length) < zone && !surface.reflex[at(corner)])
     std::tie(found.low, found.high) = std::minmax(c.vertex, corner);
   return true;
 }
@@ -139,6 +137,7 @@ void Detection::find(const Surface& surface, std::span<const double> reach, std:
   measure_edges(surface, team);
   look(surface, reach, away, candidates, team);
   sort_corners(surface);
+  dropped_.assign(found_.size(), 0);
   for (std::size_t first = 0; first < members_.size();) {
     const Found& f = found_[at(members_[first])];
     std::size_t last = first + 1;
@@ -150,7 +149,7 @@ void Detection::find(const Surface& surface, std::span<const double> reach, std:
   }
   kept_.clear();
   for (std::size_t k = 0; k < found_.size(); ++k) {
-    if (!found_[k].dropped) kept_.push_back(static_cast<int>(k));
+    if (dropped_[k] == 0) kept_.push_back(static_cast<int>(k));
   }
   contacts.resize(kept_.size());
   team.for_range(kept_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -160,11 +159,12 @@ void Detection::find(const Surface& surface, std::span<const double> reach, std:
 
 /// Which of the candidates for one pair of corners is the contact.
 void Detection::compete(std::span<const int> members, const CandidateList& candidates) {
-  const auto tangent = [&](const Found& f) {
-    return lines_[at(candidates.pairs[at(f.candidate)].edge)].tangent;
+  const auto line = [&](const Found& f) -> const Line& {
+    return lines_[at(candidates.pairs[at(f.candidate)].edge)];
   };
+  const auto over = [&](const Found& f) { return inside(f.along, line(f).length); };
   const auto turned = [&](const Found& f, const Found& g) {
-    return std::abs(cross(tangent(f), tangent(g))) >= Tolerances::sine_parallel;
+    return std::abs(cross(line(f).tangent, line(g).tangent)) >= Tolerances::sine_parallel;
   };
   const auto force = [&](const Found& f) { return candidates.memory[at(f.memory)].normal_force; };
   bool parallel = true;
@@ -177,12 +177,12 @@ void Detection::compete(std::span<const int> members, const CandidateList& candi
   Found* winner = nullptr;
   if (parallel) {
     for (const int m : members) {
-      if (winner == nullptr || found_[at(m)].inside > winner->inside) winner = &found_[at(m)];
+      if (winner == nullptr || over(found_[at(m)]) > over(*winner)) winner = &found_[at(m)];
     }
     const double leave = -0.5 * tolerances_.end_zone;
-    if (holder != nullptr && (holder->inside > leave || winner->inside < -tolerances_.rounding)) {
+    if (holder != nullptr && (over(*holder) > leave || over(*winner) < -tolerances_.rounding)) {
       winner = &found_[at(static_cast<int>(holder - found_.data()))];
-    } else if (holder == nullptr && winner->inside < -tolerances_.rounding) {
+    } else if (holder == nullptr && over(*winner) < -tolerances_.rounding) {
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {
@@ -196,7 +196,7 @@ void Detection::compete(std::span<const int> members, const CandidateList& candi
     const double best = winner->gap;
     if (best > -tolerances_.corner_depth && best - second < tolerances_.corner_tie) winner = nullptr;
   }
-  for (const int m : members) found_[at(m)].dropped = &found_[at(m)] != winner;
+  for (const int m : members) dropped_[at(m)] = &found_[at(m)] != winner;
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.
   if (winner != nullptr && holder != nullptr && parallel) winner->memory = holder->memory;

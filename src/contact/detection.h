@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -76,14 +78,14 @@ class Detection {
     int memory;         ///< of the list, that it goes on with; −1: none
     int low, high;      ///< the two corners that meet; −1: the vertex is not near an end of the edge
     double gap, along;  ///< m
-    double inside;      ///< m by which the vertex lies over the edge; negative: beyond the end
-    bool dropped;
   };
   void measure_edges(const Surface& surface, ThreadTeam& team);
   void look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
             const CandidateList& candidates, ThreadTeam& team);
   bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, bool bonded,
               Found& found) const;
+  /// m by which the vertex lies over the edge; negative: beyond the end.
+  [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
   void sort_corners(const Surface& surface);
   void compete(std::span<const int> members, const CandidateList& candidates);
   void add(const Surface& surface, const Found& found, const CandidateList& candidates,
@@ -93,12 +95,13 @@ class Detection {
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
-  std::vector<Line> lines_;        ///< per edge
-  std::vector<Found> room_;        ///< for all candidates to pass
-  std::span<Found> found_;         ///< its beginning: those that pass, in the order of the candidates
-  std::vector<int> kept_;          ///< into found_: not dropped
-  std::vector<int> corner_begin_;  ///< per vertex: those of which it is the lower corner, into members_
-  std::vector<int> members_;       ///< into found_, by (low, high, place)
+  std::vector<Line> lines_;            ///< per edge
+  std::vector<Found> room_;            ///< for all candidates to pass
+  std::span<Found> found_;             ///< its beginning: those that pass, in the order of the candidates
+  std::vector<std::uint8_t> dropped_;  ///< of found_: lost to another of the same corners
+  std::vector<int> kept_;              ///< into found_: not dropped
+  std::vector<int> corner_begin_;      ///< per vertex: those of which it is the lower corner, into members_
+  std::vector<int> members_;           ///< into found_, by (low, high, place)
 };
 
 }  // namespace keyblock::contact

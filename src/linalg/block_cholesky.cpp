@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/huge_pages.h"
 #include "core/index.h"
 #include "linalg/block_kernels.h"
 #include "linalg/block_solver.h"
@@ -89,7 +90,7 @@ class BlockCholesky final : public BlockSolver {
   };
   std::vector<std::size_t> update_start_;  ///< per column, into updates_
   std::vector<Update> updates_;
-  std::vector<double> values_;       ///< diagonal blocks are L_jj⁻¹
+  HugePageVector<double> values_;    ///< diagonal blocks are L_jj⁻¹
   std::vector<std::size_t> offset_;  ///< per column: start of its unknowns in x, as the caller orders them
   std::vector<std::size_t> work_start_;        ///< per column: start in work_, padded
   std::vector<double> work_, solved_, scale_;  ///< scratch; the last two of one block
@@ -99,7 +100,7 @@ class BlockCholesky final : public BlockSolver {
     std::size_t from, to;  ///< into matrix_ and values_
     std::size_t count;
   };
-  std::vector<double> matrix_;
+  HugePageVector<double> matrix_;
   std::vector<std::size_t> diagonal_;      ///< per block, into matrix_
   std::vector<Source> sources_;            ///< by column
   std::vector<std::size_t> source_start_;  ///< per column, into sources_

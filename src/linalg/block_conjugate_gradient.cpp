@@ -1,6 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
 
+#include "core/huge_pages.h"
 #include "core/index.h"
 #include "linalg/block_kernels.h"
 #include "linalg/block_solver.h"
@@ -36,7 +40,7 @@ class BlockConjugateGradient final : public BlockSolver {
   [[nodiscard]] bool solved() const override { return solved_; }
 
  private:
-  using Vector = std::vector<double>;
+  using Vector = HugePageVector<double>;
   struct Range {
     std::size_t first, last;  ///< places
   };
@@ -61,9 +65,9 @@ class BlockConjugateGradient final : public BlockSolver {
   void subtract_product(std::span<const double> x, std::span<double> residual);
 
   struct Entry {
-    std::size_t row;     ///< > column
-    std::size_t values;  ///< into matrix_
-    std::size_t lower;   ///< into lower_
+    std::uint32_t row;     ///< > column
+    std::uint32_t values;  ///< into matrix_
+    std::uint32_t lower;   ///< into lower_
   };
   // Everything is by place in the order of the partition, but for the slots.
   ThreadTeam* team_;
@@ -84,9 +88,9 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<std::size_t> diagonal_;       ///< into matrix_
   std::vector<std::size_t> inverse_start_;  ///< into inverse_
   std::vector<BlockSlot> slots_;
-  Vector matrix_;             ///< A
-  Vector inverse_;            ///< C_j⁻¹
-  std::vector<float> lower_;  ///< L
+  Vector matrix_;                ///< A
+  Vector inverse_;               ///< C_j⁻¹
+  HugePageVector<float> lower_;  ///< L
   std::vector<std::uint8_t> stale_;
   int largest_ = 0;                  ///< stride of a block
   Vector t_, z_, r_, p_, q_, wide_;  ///< padded
@@ -188,7 +192,8 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     std::sort(below[j].begin(), below[j].end());
     between_start_.push_back(entries_.size());
     for (const auto& [row, k] : below[j]) {
-      entries_.push_back({row, used, lower});
+      entries_.push_back({static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(used),
+                          static_cast<std::uint32_t>(lower)});
       if (row < first_between) {
         between_start_[j] = entries_.size();
       } else {
@@ -206,6 +211,8 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     row_entries_.insert(row_entries_.end(), row.begin(), row.end());
     row_start_.push_back(row_entries_.size());
   }
+  if (used > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("a matrix of more than four thousand million numbers");
   matrix_.assign(used, 0.0);
   inverse_.assign(inverse, 0.0);
   lower_.assign(lower, 0.0F);
