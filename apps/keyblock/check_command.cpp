@@ -8,6 +8,7 @@
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario_arguments.h"
+#include "study/plan.h"
 
 namespace keyblock::app {
 namespace {
@@ -24,9 +25,18 @@ void check_scenario(const ScenarioArguments& arguments) {
   const auto count = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
-  std::cout << fmt::format(
-      "{}: ok: {}, {}, {}\n", arguments.file, count(blocks.system.blocks.size(), "block"),
-      count(blocks.traces.size(), "joint trace"), count(scenario.stages.size(), "stage"));
+  std::string text =
+      fmt::format("{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
+                  count(blocks.traces.size(), "joint trace"), count(scenario.stages.size(), "stage"));
+  if (scenario.study) {
+    // Every value of every axis is looked at here.
+    const study::Plan plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
+    const auto realizations = static_cast<std::size_t>(plan.realizations);
+    text += fmt::format("; a study of {}{}: {}, {} of each", plan.until ? "at most " : "",
+                        count(plan.runs.size(), "run"), count(realizations, "realization"),
+                        plan.runs.size() / realizations);
+  }
+  std::cout << text << '\n';
 }
 
 }  // namespace

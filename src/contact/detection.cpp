@@ -1,6 +1,7 @@
 #include "contact/detection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -74,50 +75,58 @@ bool Detection::passes(const Surface& surface, std::span<const double> reach, co
   return true;
 }
 
-/// Orders those near corners by their two corners.
-void Detection::sort_corners(const Surface& surface) {
-  corner_begin_.assign(surface.position.size() + 1, 0);
-  for (const Found& f : found_) {
-    if (f.low >= 0) ++corner_begin_[at(f.low) + 1];
+/// The contacts among the candidates [first, last) of one pair of blocks, into `found`, which has room for all of them. Returns
+/// their number.
+std::size_t Detection::look_at_pair(const Surface& surface, std::span<const double> reach,
+                                    const CandidateList& candidates, std::size_t first, std::size_t last,
+                                    CandidateList::Finder& memory_of, Found* found) const {
+  std::size_t count = 0;
+  for (std::size_t k = first; k < last; ++k) {
+    const Candidate& c = candidates.pairs[k];
+    if (away_[at(c.block_a)] + away_[at(c.block_b)] < c.clearance) continue;
+    const int memory = memory_of(k);
+    if (!passes(surface, reach, c, memory >= 0 && candidates.memory[at(memory)].bonded, found[count]))
+      continue;
+    found[count].candidate = static_cast<int>(k);
+    found[count].memory = memory;
+    ++count;
   }
-  for (std::size_t v = 1; v < corner_begin_.size(); ++v) corner_begin_[v] += corner_begin_[v - 1];
-  members_.resize(at(corner_begin_.back()));
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    if (found_[k].low >= 0) members_[at(corner_begin_[at(found_[k].low)]++)] = static_cast<int>(k);
-  }
-  // corner_begin_ has moved on by one. A corner has few others near it: insertion keeps their order.
-  int begin = 0;
-  for (std::size_t v = 0; v + 1 < corner_begin_.size(); ++v) {
-    const int end = corner_begin_[v];
-    for (int k = begin + 1; k < end; ++k) {
-      const int member = members_[at(k)], high = found_[at(member)].high;
-      int place = k;
-      for (; place > begin && found_[at(members_[at(place - 1)])].high > high; --place)
-        members_[at(place)] = members_[at(place - 1)];
-      members_[at(place)] = member;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (found[i].candidate < 0 || found[i].low < 0) continue;
+    std::array<Found*, 4> rivals;  // two edges end in each corner
+    std::size_t size = 0;
+    for (std::size_t k = i; k < count && size < rivals.size(); ++k) {
+      if (found[k].low == found[i].low && found[k].high == found[i].high) rivals[size++] = &found[k];
     }
-    begin = end;
+    compete(std::span(rivals).first(size), candidates);
   }
+  const Found* end = std::remove_if(found, found + count, [](const Found& f) { return f.candidate < 0; });
+  return static_cast<std::size_t>(end - found);
 }
 
-/// The candidates that pass, piece by piece, so that their order is the same whoever finds them.
-void Detection::look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
-                     const CandidateList& candidates, ThreadTeam& team) {
-  const std::size_t n = candidates.pairs.size(), pieces = (n + piece - 1) / piece;
+/// Piece by piece of the candidates, so that the order of what is found is the same whoever finds it.
+void Detection::look(const Surface& surface, std::span<const double> reach, const CandidateList& candidates,
+                     ThreadTeam& team) {
+  const std::vector<Candidate>& pairs = candidates.pairs;
+  const std::size_t n = pairs.size(), pieces = (n + piece - 1) / piece;
+  const auto same_blocks = [&](std::size_t k, std::size_t l) {
+    const Candidate &x = pairs[k], &y = pairs[l];
+    return std::minmax(x.block_a, x.block_b) == std::minmax(y.block_a, y.block_b);
+  };
+  const auto end_of_pair = [&](std::size_t k) {
+    while (k < n && same_blocks(k - 1, k)) ++k;
+    return k;
+  };
+  const auto begin_of_piece = [&](std::size_t p) { return p == 0 ? 0 : end_of_pair(std::min(n, p * piece)); };
   room_.resize(n);
-  std::vector<std::size_t> passed(pieces, 0);
+  std::vector<std::size_t> count(pieces, 0);
   const auto look_at_piece = [&](std::size_t p) {
-    const std::size_t first = p * piece, last = std::min(n, first + piece);
-    CandidateList::Finder memory_of(candidates, first);
-    for (std::size_t k = first; k < last; ++k) {
-      const Candidate& c = candidates.pairs[k];
-      if (away[at(c.block_a)] + away[at(c.block_b)] < c.clearance) continue;
-      const int memory = memory_of(k);
-      Found& next = room_[first + passed[p]];
-      if (!passes(surface, reach, c, memory >= 0 && candidates.memory[at(memory)].bonded, next)) continue;
-      next.candidate = static_cast<int>(k);
-      next.memory = memory;
-      ++passed[p];
+    const std::size_t begin = begin_of_piece(p), end = begin_of_piece(p + 1);
+    CandidateList::Finder memory_of(candidates, begin);
+    for (std::size_t first = begin; first < end;) {
+      const std::size_t last = end_of_pair(first + 1);
+      count[p] += look_at_pair(surface, reach, candidates, first, last, memory_of, &room_[begin + count[p]]);
+      first = last;
     }
   };
   team.for_range(pieces, std::max<std::size_t>(2, worth_threads / piece),
@@ -126,39 +135,25 @@ void Detection::look(const Surface& surface, std::span<const double> reach, std:
                  });
   std::size_t total = 0;
   for (std::size_t p = 0; p < pieces; ++p) {
-    if (p > 0) std::copy_n(&room_[p * piece], passed[p], &room_[total]);
-    total += passed[p];
+    if (p > 0) std::copy_n(&room_[begin_of_piece(p)], count[p], &room_[total]);
+    total += count[p];
   }
   found_ = std::span(room_).first(total);
 }
 
 void Detection::find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
                      const CandidateList& candidates, ThreadTeam& team, std::vector<Contact>& contacts) {
+  away_ = away;
   measure_edges(surface, team);
-  look(surface, reach, away, candidates, team);
-  sort_corners(surface);
-  dropped_.assign(found_.size(), 0);
-  for (std::size_t first = 0; first < members_.size();) {
-    const Found& f = found_[at(members_[first])];
-    std::size_t last = first + 1;
-    while (last < members_.size() && found_[at(members_[last])].low == f.low &&
-           found_[at(members_[last])].high == f.high)
-      ++last;
-    compete(std::span(members_).subspan(first, last - first), candidates);
-    first = last;
-  }
-  kept_.clear();
-  for (std::size_t k = 0; k < found_.size(); ++k) {
-    if (dropped_[k] == 0) kept_.push_back(static_cast<int>(k));
-  }
-  contacts.resize(kept_.size());
-  team.for_range(kept_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) add(surface, found_[at(kept_[k])], candidates, contacts[k]);
+  look(surface, reach, candidates, team);
+  contacts.resize(found_.size());
+  team.for_range(found_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) add(surface, found_[k], candidates, contacts[k]);
   });
 }
 
 /// Which of the candidates for one pair of corners is the contact.
-void Detection::compete(std::span<const int> members, const CandidateList& candidates) {
+void Detection::compete(std::span<Found* const> rivals, const CandidateList& candidates) const {
   const auto line = [&](const Found& f) -> const Line& {
     return lines_[at(candidates.pairs[at(f.candidate)].edge)];
   };
@@ -168,38 +163,40 @@ void Detection::compete(std::span<const int> members, const CandidateList& candi
   };
   const auto force = [&](const Found& f) { return candidates.memory[at(f.memory)].normal_force; };
   bool parallel = true;
-  const Found* holder = nullptr;  // the one that was in contact; the strongest, should there be several
-  for (const int m : members) {
-    const Found& f = found_[at(m)];
-    parallel = parallel && !turned(f, found_[at(members[0])]);
-    if (f.memory >= 0 && (holder == nullptr || force(f) > force(*holder))) holder = &f;
+  Found* holder = nullptr;  // the one that was in contact; the strongest, should there be several
+  for (Found* f : rivals) {
+    parallel = parallel && !turned(*f, *rivals[0]);
+    if (f->memory >= 0 && (holder == nullptr || force(*f) > force(*holder))) holder = f;
   }
   Found* winner = nullptr;
   if (parallel) {
-    for (const int m : members) {
-      if (winner == nullptr || over(found_[at(m)]) > over(*winner)) winner = &found_[at(m)];
+    for (Found* f : rivals) {
+      if (winner == nullptr || over(*f) > over(*winner)) winner = f;
     }
     const double leave = -0.5 * tolerances_.end_zone;
     if (holder != nullptr && (over(*holder) > leave || over(*winner) < -tolerances_.rounding)) {
-      winner = &found_[at(static_cast<int>(holder - found_.data()))];
+      winner = holder;
     } else if (holder == nullptr && over(*winner) < -tolerances_.rounding) {
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {
-    for (const int m : members) {
-      if (winner == nullptr || found_[at(m)].gap > winner->gap) winner = &found_[at(m)];
+    for (Found* f : rivals) {
+      if (winner == nullptr || f->gap > winner->gap) winner = f;
     }
     double second = -HUGE_VAL;
-    for (const int m : members) {
-      if (turned(found_[at(m)], *winner)) second = std::max(second, found_[at(m)].gap);
+    for (const Found* f : rivals) {
+      if (turned(*f, *winner)) second = std::max(second, f->gap);
     }
     const double best = winner->gap;
     if (best > -tolerances_.corner_depth && best - second < tolerances_.corner_tie) winner = nullptr;
   }
-  for (const int m : members) dropped_[at(m)] = &found_[at(m)] != winner;
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.
   if (winner != nullptr && holder != nullptr && parallel) winner->memory = holder->memory;
+  for (Found* f : rivals) {
+    f->low = f->high = -1;
+    if (f != winner) f->candidate = -1;
+  }
 }
 
 namespace {

@@ -74,20 +74,22 @@ class Detection {
   };
   /// A candidate that passes the geometry.
   struct Found {
-    int candidate;
+    int candidate;      ///< −1: has lost to another of the same two corners
     int memory;         ///< of the list, that it goes on with; −1: none
     int low, high;      ///< the two corners that meet; −1: the vertex is not near an end of the edge
     double gap, along;  ///< m
   };
   void measure_edges(const Surface& surface, ThreadTeam& team);
-  void look(const Surface& surface, std::span<const double> reach, std::span<const double> away,
-            const CandidateList& candidates, ThreadTeam& team);
+  void look(const Surface& surface, std::span<const double> reach, const CandidateList& candidates,
+            ThreadTeam& team);
+  std::size_t look_at_pair(const Surface& surface, std::span<const double> reach,
+                           const CandidateList& candidates, std::size_t first, std::size_t last,
+                           CandidateList::Finder& memory_of, Found* found) const;
   bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, bool bonded,
               Found& found) const;
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
-  void sort_corners(const Surface& surface);
-  void compete(std::span<const int> members, const CandidateList& candidates);
+  void compete(std::span<Found* const> rivals, const CandidateList& candidates) const;
   void add(const Surface& surface, const Found& found, const CandidateList& candidates,
            Contact& contact) const;
 
@@ -95,13 +97,10 @@ class Detection {
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
-  std::vector<Line> lines_;            ///< per edge
-  std::vector<Found> room_;            ///< for all candidates to pass
-  std::span<Found> found_;             ///< its beginning: those that pass, in the order of the candidates
-  std::vector<std::uint8_t> dropped_;  ///< of found_: lost to another of the same corners
-  std::vector<int> kept_;              ///< into found_: not dropped
-  std::vector<int> corner_begin_;      ///< per vertex: those of which it is the lower corner, into members_
-  std::vector<int> members_;           ///< into found_, by (low, high, place)
+  std::vector<Line> lines_;       ///< per edge
+  std::span<const double> away_;  ///< of the step
+  std::vector<Found> room_;       ///< for all candidates to pass
+  std::span<Found> found_;        ///< its beginning: the contacts, in the order of the candidates
 };
 
 }  // namespace keyblock::contact

@@ -1,6 +1,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -10,15 +11,33 @@
 
 namespace keyblock {
 
+namespace {
+
+/// Waits for a while for what is about to happen: the loops of a step follow each other within microseconds, and to wake a
+/// thread takes longer than many of them. False when it did not.
+template <typename Condition>
+bool happens_soon(const Condition& condition) {
+  constexpr int looks = 2'000;  // some 50 µs
+  for (int k = 0; k < looks; ++k) {
+    if (condition()) return true;
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
+  return false;
+}
+
+}  // namespace
+
 struct ThreadTeam::Shared {
-  std::mutex mutex;
+  std::mutex mutex;  // of those that sleep
   std::condition_variable wake, done;
   std::vector<std::thread> workers;
   const std::function<void(std::size_t, std::size_t)>* body = nullptr;
   std::size_t n = 0;
-  unsigned long generation = 0;
-  int running = 0;
-  bool quit = false;
+  std::atomic<unsigned long> generation = 0;  // of loops; body and n are there before it is raised
+  std::atomic<int> running = 0;
+  std::atomic<bool> quit = false;
   std::vector<std::exception_ptr> errors;
 
   void piece(int rank, int size) {
@@ -32,16 +51,18 @@ struct ThreadTeam::Shared {
 
   void work(int rank, int size) {
     unsigned long seen = 0;
+    const auto is_called = [&] { return quit || generation != seen; };
     for (;;) {
-      {
+      if (!happens_soon(is_called)) {
         std::unique_lock lock(mutex);
-        wake.wait(lock, [&] { return quit || generation != seen; });
-        if (quit) return;
-        seen = generation;
+        wake.wait(lock, is_called);
       }
+      if (quit) return;
+      seen = generation;
       piece(rank, size);
+      if (--running > 0) continue;
       std::lock_guard lock(mutex);
-      if (--running == 0) done.notify_one();
+      done.notify_one();
     }
   }
 };
@@ -71,17 +92,20 @@ void ThreadTeam::for_range(std::size_t n, std::size_t grain,
     if (n > 0) body(0, n);
     return;
   }
+  shared_->body = &body;
+  shared_->n = n;
+  shared_->running = size_ - 1;
   {
     std::lock_guard lock(shared_->mutex);
-    shared_->body = &body;
-    shared_->n = n;
-    shared_->running = size_ - 1;
     ++shared_->generation;
   }
   shared_->wake.notify_all();
   shared_->piece(0, size_);
-  std::unique_lock lock(shared_->mutex);
-  shared_->done.wait(lock, [&] { return shared_->running == 0; });
+  const auto is_done = [&] { return shared_->running == 0; };
+  if (!happens_soon(is_done)) {
+    std::unique_lock lock(shared_->mutex);
+    shared_->done.wait(lock, is_done);
+  }
   for (std::exception_ptr& error : shared_->errors) {
     if (error) std::rethrow_exception(std::exchange(error, nullptr));
   }

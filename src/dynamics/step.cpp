@@ -164,7 +164,7 @@ void Stepper::detect(State& state) {
 
 void Stepper::build_problem(const State& state, const Drive& drive) {
   const Profile::Scope scope(profile_, Phase::terms);
-  problem_.build(model_, state, drive, model_.surface, contacts_, team_);
+  problem_.build(model_, state, drive, model_.surface, contacts_, pair_of_candidate_, team_);
 }
 
 bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
@@ -177,8 +177,6 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   for (int look = 1; look <= looks;) {
     detect(state);
     build_problem(state, drive);
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      problem_.rows()[c].pair = pair_of_candidate_[at(contacts_[c].candidate)];
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     if (chosen.is_iterative()) guess(state, drive);
     const OpenCloseResult result =
@@ -210,6 +208,13 @@ void Stepper::measure_spin(const State& state) {
 /// the straight way by ½ w² r, and the line of a turning edge moves away from a vertex that slides along it. That matters
 /// where a contact presses, and where it would come to press by that alone.
 bool Stepper::turned_too_far() const {
+  double turn = 0.0, radius = 0.0, moved = 0.0;
+  for (std::size_t b = 0; b < spin_.size(); ++b) {
+    turn = std::max(turn, std::abs(spin_[b]));
+    if (spin_[b] != 0.0) radius = std::max(radius, model_.blocks[b].radius);
+  }
+  for (const Vec2 r : open_close_.relative()) moved = std::max(moved, squared_norm(r));
+  if (turn * (turn * radius + std::sqrt(moved)) <= tolerances_.turn) return false;  // as in most steps
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
     const StepProblem::Row& row = problem_.rows()[c];

@@ -18,7 +18,7 @@ constexpr double geometric_floor = 0.05;
 
 void StepProblem::build(const Model& model, const State& state, const Drive& drive,
                         const contact::Surface& surface, std::span<const contact::Contact> contacts,
-                        ThreadTeam& team) {
+                        std::span<const int> pairs, ThreadTeam& team) {
   if (model_ != &model) {
     model_ = &model;
     h_first_.clear();
@@ -35,7 +35,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   }
   build_blocks(state, drive, team);
   add_supports(state, drive);
-  build_rows(drive, surface, contacts, team);
+  build_rows(drive, surface, contacts, pairs, team);
 }
 
 void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
@@ -109,7 +109,8 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 }
 
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
-                             std::span<const contact::Contact> contacts, ThreadTeam& team) {
+                             std::span<const contact::Contact> contacts, std::span<const int> pairs,
+                             ThreadTeam& team) {
   rows_.resize(contacts.size());
   std::uint32_t used = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -119,7 +120,10 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
   }
   phi_.resize(used);
   team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) build_row(drive, surface, contacts[k], rows_[k]);
+    for (std::size_t k = begin; k < end; ++k) {
+      build_row(drive, surface, contacts[k], rows_[k]);
+      rows_[k].pair = pairs[at(contacts[k].candidate)];
+    }
   });
 }
 

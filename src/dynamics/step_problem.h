@@ -54,8 +54,9 @@ class StepProblem {
     [[nodiscard]] double shear(Vec2 r) const { return spring.shear() + dot(tangent(), r); }
   };
 
+  /// pairs: of every candidate of contact, its pair of blocks in the solver's pattern, −1 with a fixed block.
   void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,
-             std::span<const contact::Contact> contacts, ThreadTeam& team);
+             std::span<const contact::Contact> contacts, std::span<const int> pairs, ThreadTeam& team);
 
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
@@ -110,7 +111,7 @@ class StepProblem {
   void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
-                  std::span<const contact::Contact> contacts, ThreadTeam& team);
+                  std::span<const contact::Contact> contacts, std::span<const int> pairs, ThreadTeam& team);
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
 
   const Model* model_ = nullptr;

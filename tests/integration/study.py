@@ -81,6 +81,11 @@ class Runs(Study):
         self.run_study("linked.toml")
         self.assertEqual([self.result(key)["values"] for key in self.keys()], [["0.5, 0.1"], ["1, 0.2"]])
 
+    def test_check_says_how_many_runs_it_is(self):
+        self.assertIn("; a study of 6 runs: 3 realizations, 2 of each\n", self.keyblock("check", "small.toml").stdout)
+        self.write("wrong.toml", GALLERY + SMALL.replace("[0.5, 1.0]", '[0.5, "strong"]'))
+        self.assertIn('wrong.toml:', self.keyblock("check", "wrong.toml", expect=1).stderr)
+
     def test_variants_of_the_check_for_marginal_results(self):
         self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nmarginal = {}\n')
         self.run_study("marginal.toml")

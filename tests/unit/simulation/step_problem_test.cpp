@@ -37,6 +37,13 @@ simulation::Scene small_wall(double friction, int order) {
 
 class StepProblemOrder : public ::testing::TestWithParam<int> {};
 
+/// `analyse` says which they are.
+std::vector<int> no_pairs(std::span<const contact::Contact> contacts) {
+  int most = -1;
+  for (const contact::Contact& c : contacts) most = std::max(most, c.candidate);
+  return std::vector<int>(static_cast<std::size_t>(most + 1), -1);
+}
+
 // The matrix that is assembled is the derivative of the gradient, and the gradient that of the forces, at every order.
 TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   simulation::Simulator s(small_wall(30.0, GetParam()));
@@ -49,7 +56,7 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   const std::vector<Integrator> rule(s.model.blocks.size());
   drive.rule = rule;
   const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-  problem.build(s.model, s.state, drive, s.model.surface, contacts, s.team);
+  problem.build(s.model, s.state, drive, s.model.surface, contacts, no_pairs(contacts), s.team);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<double> d(s.model.coefficients, 0.0), direction(d.size(), 0.0);
@@ -104,7 +111,7 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     const std::vector<Integrator> rule(s.model.blocks.size());
     drive.rule = rule;
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-    problem.build(s.model, s.state, drive, s.model.surface, contacts, s.team);
+    problem.build(s.model, s.state, drive, s.model.surface, contacts, no_pairs(contacts), s.team);
     const auto solver =
         iterative ? linalg::make_block_conjugate_gradient(&s.team) : linalg::make_block_cholesky();
     analyse(s.model, problem, *solver);
