@@ -14,11 +14,11 @@ namespace {
 constexpr std::size_t worth_threads = 10'000;  // vertices, candidates or contacts
 constexpr std::size_t piece = 4'096;           // candidates
 
-/// Whether the edge from v to `other` lies outside the line, up to the angle tolerance.
-bool outside(const Surface& surface, Vec2 v, int other, Vec2 normal) {
+/// Whether the edge from v to `other` lies outside the line, up to an angle.
+bool outside(const Surface& surface, Vec2 v, int other, Vec2 normal, double sine) {
   const Vec2 u = surface.position[at(other)] - v;
   const double along = dot(normal, u);
-  return along >= 0.0 || along * along <= Tolerances::sine_inside * Tolerances::sine_inside * squared_norm(u);
+  return along >= 0.0 || along * along <= sine * sine * squared_norm(u);
 }
 
 /// Length over [0, edge_length] that the edge of the vertex towards `other` shares with an edge it faces.
@@ -45,14 +45,13 @@ void Detection::measure_edges(const Surface& surface, ThreadTeam& team) {
   });
 }
 
-bool Detection::passes(const Surface& surface, std::span<const double> reach, const Candidate& c, bool bonded,
-                       Found& found) const {
+bool Detection::passes(const Surface& surface, const Candidate& c, bool bonded, Found& found) const {
   const Vec2 a = surface.position[at(c.edge)], v = surface.position[at(c.vertex)];
   const Line& line = lines_[at(c.edge)];
   const Vec2 normal = line.normal();
   const double gap = dot(normal, v - a), along = dot(line.tangent, v - a), length = line.length;
   const int block_a = c.block_a, block_b = c.block_b;
-  const double motion = reach[at(block_a)] + reach[at(block_b)];
+  const double motion = motion_.reach[at(block_a)] + motion_.reach[at(block_b)];
   if (!bonded && gap > tolerances_.activation + motion) return false;
   const double deepest =
       std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
@@ -62,8 +61,11 @@ bool Detection::passes(const Surface& surface, std::span<const double> reach, co
   const double before = surface.reflex[at(c.edge)] ? std::max(deepest, zone) : zone;
   const double after = surface.reflex[at(end)] ? std::max(deepest, zone) : zone;
   if (along < -before || along > length + after) return false;
-  if (!outside(surface, v, surface.previous[at(c.vertex)], normal) ||
-      !outside(surface, v, surface.next[at(c.vertex)], normal))
+  // The corner of a block that spins may pass the one that is nearest now.
+  const double turn = gap > 0.0 ? motion_.turn[at(block_a)] + motion_.turn[at(block_b)] : 0.0;
+  const double sine = std::min(1.0, Tolerances::sine_inside + turn);
+  if (!outside(surface, v, surface.previous[at(c.vertex)], normal, sine) ||
+      !outside(surface, v, surface.next[at(c.vertex)], normal, sine))
     return false;
 
   found.gap = gap;
@@ -77,16 +79,15 @@ bool Detection::passes(const Surface& surface, std::span<const double> reach, co
 
 /// The contacts among the candidates [first, last) of one pair of blocks, into `found`, which has room for all of them. Returns
 /// their number.
-std::size_t Detection::look_at_pair(const Surface& surface, std::span<const double> reach,
-                                    const CandidateList& candidates, std::size_t first, std::size_t last,
-                                    CandidateList::Finder& memory_of, Found* found) const {
+std::size_t Detection::look_at_pair(const Surface& surface, const CandidateList& candidates,
+                                    std::size_t first, std::size_t last, CandidateList::Finder& memory_of,
+                                    Found* found) const {
   std::size_t count = 0;
   for (std::size_t k = first; k < last; ++k) {
     const Candidate& c = candidates.pairs[k];
-    if (away_[at(c.block_a)] + away_[at(c.block_b)] < c.clearance) continue;
+    if (motion_.away[at(c.block_a)] + motion_.away[at(c.block_b)] < c.clearance) continue;
     const int memory = memory_of(k);
-    if (!passes(surface, reach, c, memory >= 0 && candidates.memory[at(memory)].bonded, found[count]))
-      continue;
+    if (!passes(surface, c, memory >= 0 && candidates.memory[at(memory)].bonded, found[count])) continue;
     found[count].candidate = static_cast<int>(k);
     found[count].memory = memory;
     ++count;
@@ -105,8 +106,7 @@ std::size_t Detection::look_at_pair(const Surface& surface, std::span<const doub
 }
 
 /// Piece by piece of the candidates, so that the order of what is found is the same whoever finds it.
-void Detection::look(const Surface& surface, std::span<const double> reach, const CandidateList& candidates,
-                     ThreadTeam& team) {
+void Detection::look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team) {
   const std::vector<Candidate>& pairs = candidates.pairs;
   const std::size_t n = pairs.size(), pieces = (n + piece - 1) / piece;
   const auto same_blocks = [&](std::size_t k, std::size_t l) {
@@ -125,7 +125,7 @@ void Detection::look(const Surface& surface, std::span<const double> reach, cons
     CandidateList::Finder memory_of(candidates, begin);
     for (std::size_t first = begin; first < end;) {
       const std::size_t last = end_of_pair(first + 1);
-      count[p] += look_at_pair(surface, reach, candidates, first, last, memory_of, &room_[begin + count[p]]);
+      count[p] += look_at_pair(surface, candidates, first, last, memory_of, &room_[begin + count[p]]);
       first = last;
     }
   };
@@ -141,11 +141,11 @@ void Detection::look(const Surface& surface, std::span<const double> reach, cons
   found_ = std::span(room_).first(total);
 }
 
-void Detection::find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
-                     const CandidateList& candidates, ThreadTeam& team, std::vector<Contact>& contacts) {
-  away_ = away;
+void Detection::find(const Surface& surface, const Motion& motion, const CandidateList& candidates,
+                     ThreadTeam& team, std::vector<Contact>& contacts) {
+  motion_ = motion;
   measure_edges(surface, team);
-  look(surface, reach, candidates, team);
+  look(surface, candidates, team);
   contacts.resize(found_.size());
   team.for_range(found_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) add(surface, found_[k], candidates, contacts[k]);

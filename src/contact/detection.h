@@ -45,7 +45,7 @@ void keep_memory(std::span<const Contact> contacts, CandidateList& candidates);
 /// Geometry of candidates turned into the contacts of a step.
 ///
 /// A candidate takes part when its vertex lies over the edge (or within a zone of its ends), not deeper than the depth
-/// limit, and both edges of the vertex lie outside. Where two corners meet, up to four candidates describe the same
+/// limit, and both edges of the vertex lie outside, or may come to in the step by the turn of the blocks. Where two corners meet, up to four candidates describe the same
 /// corner pair; they compete, so that one contact remains (vertex-vertex contact with a unique entrance line):
 ///   - all lines parallel: the end of an edge-edge contact. The vertex that lies over the other's edge; the one that
 ///     already was in contact stays until it has clearly left, and then hands its memory over.
@@ -57,10 +57,16 @@ class Detection {
   Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
 
-  /// Contacts of the step in the order of the candidates. reach[b]: m, bound on the motion of block b in the step; away[b]:
-  /// Candidates::away.
-  void find(const Surface& surface, std::span<const double> reach, std::span<const double> away,
-            const CandidateList& candidates, ThreadTeam& team, std::vector<Contact>& contacts);
+  /// Of every block.
+  struct Motion {
+    std::span<const double> reach;  ///< m, bound on how far it moves in the step
+    std::span<const double>
+        turn;  ///< rad, on how far it turns; at most `reach` over half the block's diameter
+    std::span<const double> away;  ///< m, Candidates::away
+  };
+  /// Contacts of the step in the order of the candidates.
+  void find(const Surface& surface, const Motion& motion, const CandidateList& candidates, ThreadTeam& team,
+            std::vector<Contact>& contacts);
 
   [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
   [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
@@ -80,13 +86,10 @@ class Detection {
     double gap, along;  ///< m
   };
   void measure_edges(const Surface& surface, ThreadTeam& team);
-  void look(const Surface& surface, std::span<const double> reach, const CandidateList& candidates,
-            ThreadTeam& team);
-  std::size_t look_at_pair(const Surface& surface, std::span<const double> reach,
-                           const CandidateList& candidates, std::size_t first, std::size_t last,
-                           CandidateList::Finder& memory_of, Found* found) const;
-  bool passes(const Surface& surface, std::span<const double> reach, const Candidate& c, bool bonded,
-              Found& found) const;
+  void look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team);
+  std::size_t look_at_pair(const Surface& surface, const CandidateList& candidates, std::size_t first,
+                           std::size_t last, CandidateList::Finder& memory_of, Found* found) const;
+  bool passes(const Surface& surface, const Candidate& c, bool bonded, Found& found) const;
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
   void compete(std::span<Found* const> rivals, const CandidateList& candidates) const;
@@ -97,10 +100,10 @@ class Detection {
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
-  std::vector<Line> lines_;       ///< per edge
-  std::span<const double> away_;  ///< of the step
-  std::vector<Found> room_;       ///< for all candidates to pass
-  std::span<Found> found_;        ///< its beginning: the contacts, in the order of the candidates
+  std::vector<Line> lines_;  ///< per edge
+  Motion motion_;            ///< in the step
+  std::vector<Found> room_;  ///< for all candidates to pass
+  std::span<Found> found_;   ///< its beginning: the contacts, in the order of the candidates
 };
 
 }  // namespace keyblock::contact

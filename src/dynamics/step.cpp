@@ -34,6 +34,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
                                                           : linalg::make_block_cholesky()},
       iterative_{linalg::make_block_conjugate_gradient(&team)},
       reach_(model.blocks.size(), 0.0),
+      turn_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       speed_(model.blocks.size(), 0.0),
       spin_(model.blocks.size(), 0.0),
@@ -75,8 +76,9 @@ void Stepper::start(State& state) {
   place(state);
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   std::fill(reach_.begin(), reach_.end(), 0.0);
+  std::fill(turn_.begin(), turn_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
-  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, team_, contacts_);
+  detection_.find(model_.surface, {reach_, turn_, candidates_.away()}, state.contacts, team_, contacts_);
   for (contact::Contact& c : contacts_) {
     contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
@@ -120,7 +122,7 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
   contact::CandidateList list = state.contacts;
   candidates.update(model_.surface, still, list);
   std::vector<contact::Contact> contacts;
-  detection_.find(model_.surface, still, candidates.away(), list, team_, contacts);
+  detection_.find(model_.surface, {still, still, candidates.away()}, list, team_, contacts);
   return contacts;
 }
 
@@ -133,16 +135,17 @@ void Stepper::remove_absent(State& state) {
   state.pattern.clear();
 }
 
-/// Bound on how far each block moves in the step: twice what its velocity and the body force make of it.
+/// Bound on how far each block moves and turns in the step: twice what its velocity and the body force make of it.
 void Stepper::predict_reach(const State& state, const Drive& drive) {
   const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
+    const Block& block = model_.blocks[b];
     if (drive.is_static) {
       reach_[b] = 2.0 * state.moved[b];
+      turn_[b] = reach_[b] / block.radius;
       continue;
     }
-    const Block& block = model_.blocks[b];
     double fastest = 0.0;
     for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
       fastest = std::max(fastest, squared_norm(map_point(&model_.surface.phi[model_.surface.phi_begin[v]],
@@ -150,6 +153,8 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
     }
     speed_[b] = std::sqrt(fastest);
     reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
+    const double spin = block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
+    turn_[b] = std::min(2.0 * std::abs(spin) * drive.step, reach_[b] / block.radius);
   }
   for (const PrescribedMotion& motion : model_.motions)
     reach_[at(motion.block)] = norm(drive.prescribed[at(motion.block)]);
@@ -158,7 +163,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
 void Stepper::detect(State& state) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
-  detection_.find(model_.surface, reach_, candidates_.away(), state.contacts, team_, contacts_);
+  detection_.find(model_.surface, {reach_, turn_, candidates_.away()}, state.contacts, team_, contacts_);
   ensure_pattern(state, changed);
 }
 
@@ -229,7 +234,7 @@ bool Stepper::turned_too_far() const {
   return false;
 }
 
-/// Whether a block moved beyond the reach within which its contacts were looked for; the reach is then raised.
+/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised.
 bool Stepper::moved_too_far() {
   bool any = false;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
@@ -243,6 +248,11 @@ bool Stepper::moved_too_far() {
     moved = std::sqrt(moved);
     if (moved > reach_[b] + 0.5 * tolerances_.activation) {
       reach_[b] = 1.5 * moved;
+      any = true;
+    }
+    if (std::abs(spin_[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside) {
+      turn_[b] = 1.5 * std::abs(spin_[b]);
+      reach_[b] = std::max(reach_[b], turn_[b] * block.radius);
       any = true;
     }
   }

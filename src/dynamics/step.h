@@ -130,7 +130,8 @@ class Stepper {
   std::vector<int> unknown_sizes_;
   std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
   bool has_places_ = false;             ///< pair_of_candidate_ is that of the pattern
-  std::vector<double> reach_, increment_;
+  std::vector<double> reach_, turn_;    ///< m and rad, per block: Detection::Motion
+  std::vector<double> increment_;
   std::vector<double> speed_;            ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;             ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;         ///< per block, of the last attempt

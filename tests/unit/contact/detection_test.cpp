@@ -22,7 +22,7 @@ std::vector<Contact> find(const Surface& surface, CandidateList& list) {
                       std::vector<double>(static_cast<std::size_t>(surface.blocks()), 1e9));
   std::vector<Contact> contacts;
   ThreadTeam alone(1);
-  detection.find(surface, still, candidates.away(), list, alone, contacts);
+  detection.find(surface, {still, still, candidates.away()}, list, alone, contacts);
   keep_memory(contacts, list);
   return contacts;
 }
@@ -131,6 +131,8 @@ TEST(Detection, ClearanceHidesNoContact) {
   for (int step = 0; step < 200; ++step) {
     std::vector<double> reach(64, 0.0);
     for (double& r : reach) r = 1e-4 * std::abs(uniform(random));
+    std::vector<double> turns;  // half the diameter of the blocks is 0.7 m
+    for (const double r : reach) turns.push_back(r / 0.7);
     candidates.update(surface, reach, list);
     CandidateList all = list;
     for (Candidate& c : all.pairs) {
@@ -138,8 +140,8 @@ TEST(Detection, ClearanceHidesNoContact) {
       c.clearance = 0.0;
     }
     std::vector<Contact> fast, slow;
-    detection.find(surface, reach, candidates.away(), list, alone, fast);
-    detection.find(surface, reach, candidates.away(), all, alone, slow);
+    detection.find(surface, {reach, turns, candidates.away()}, list, alone, fast);
+    detection.find(surface, {reach, turns, candidates.away()}, all, alone, slow);
     ASSERT_EQ(fast.size(), slow.size()) << step;
     for (std::size_t k = 0; k < fast.size(); ++k) {
       EXPECT_EQ(fast[k].candidate, slow[k].candidate);
