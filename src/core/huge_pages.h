@@ -12,7 +12,7 @@ namespace keyblock {
 template <typename T>
 class HugePageAllocator {
  public:
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard asks for this name
   HugePageAllocator() = default;
   template <typename U>
   explicit HugePageAllocator(const HugePageAllocator<U>& /*other*/) {}

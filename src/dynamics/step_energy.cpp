@@ -73,7 +73,7 @@ void Stepper::account(State& state, const Drive& drive) {
   }
 }
 
-/// Of a contact that pushed with `balance` while its blocks moved by r.
+/// Where the energy of a contact went while its blocks moved by r against each other.
 void Stepper::account_contact(EnergyLedger& ledger, const contact::Memory& before,
                               const StepProblem::Row& row, Vec2 r, const contact::Spring::Balance& balance) {
   ledger.numerical -= before.stored;
