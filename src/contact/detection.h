@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,7 +21,7 @@ inline Vec2 tangent_of(Vec2 normal) {
 ///
 /// n is the outward unit normal of the edge, t its direction (A to B).
 struct Contact {
-  int candidate = 0;  ///< where its memory is
+  int candidate = 0;  ///< of the list
   int block_a = 0, block_b = 0;
   int vertex = 0, edge = 0;
   Vec2 normal;
@@ -39,7 +38,7 @@ struct Contact {
   [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
 };
 
-/// Takes the memory of the contacts of a step over into the candidates; the others forget all but their slip.
+/// Takes what the contacts of a step remember over into the list. Candidates that were no contacts remember nothing.
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates);
 
 /// Geometry of candidates turned into the contacts of a step.
@@ -57,12 +56,11 @@ class Detection {
   Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
 
-  /// Of every block.
+  /// How far every block may move. `turn` is at most `reach` over the radius of the block: clearances count on it.
   struct Motion {
-    std::span<const double> reach;  ///< m, bound on how far it moves in the step
-    std::span<const double>
-        turn;  ///< rad, on how far it turns; at most `reach` over half the block's diameter
-    std::span<const double> away;  ///< m, Candidates::away
+    std::span<const double> reach;  ///< m, in the step
+    std::span<const double> turn;   ///< rad, in the step
+    std::span<const double> away;   ///< m, Candidates::away
   };
   /// Contacts of the step in the order of the candidates.
   void find(const Surface& surface, const Motion& motion, const CandidateList& candidates, ThreadTeam& team,

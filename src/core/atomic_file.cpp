@@ -21,8 +21,8 @@ AtomicFile::AtomicFile(std::filesystem::path path)
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ < 0) return;
-  ::close(descriptor_);
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (committed_) return;
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
 }
@@ -41,9 +41,9 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::commit() {
-  if (::fsync(descriptor_) != 0) fail("write");
+  if (::fsync(descriptor_) != 0 || ::close(std::exchange(descriptor_, -1)) != 0) fail("write");
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename");
-  ::close(std::exchange(descriptor_, -1));
+  committed_ = true;
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view content) {

@@ -22,6 +22,7 @@ class AtomicFile {
 
   std::filesystem::path path_, temporary_;
   int descriptor_ = -1;
+  bool committed_ = false;
 };
 
 /// AtomicFile of a content that is there already.

@@ -15,6 +15,7 @@ namespace keyblock::linalg {
 namespace {
 
 constexpr int most_iterations = 400;
+
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (L + 1 + Lᵀ) Cᵀ with
 /// L_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly below the diagonal. Preconditioned from both sides by (1 + L) it is
 ///

@@ -5,6 +5,7 @@
 #include "core/archive.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/index.h"
 
 namespace keyblock::simulation {

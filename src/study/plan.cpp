@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/archive.h"
 #include "core/atomic_file.h"
+#include "core/hash.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/override.h"

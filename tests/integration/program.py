@@ -1,9 +1,11 @@
 """Runs the program as a user does. The path of the program is in the environment variable KEYBLOCK."""
 
+import contextlib
 import json
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -45,6 +47,29 @@ name = "slide"
 kind = "rest"
 duration = 0.5
 """
+
+
+def wait_for(condition, what, seconds=30.0):
+    """What the condition returns, once that is true. Throws TimeoutError."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found = condition()
+        if found:
+            return found
+        time.sleep(0.02)
+    raise TimeoutError(f"waited in vain: {what}")
+
+
+def process_of(words):
+    """The id of a process whose command line contains these words, one after the other."""
+    wanted = "\0".join(words) + "\0"
+    for entry in os.listdir("/proc"):
+        if not entry.isdigit():
+            continue
+        with contextlib.suppress(OSError), open(f"/proc/{entry}/cmdline", errors="replace") as file:
+            if wanted in file.read():
+                return int(entry)
+    return None
 
 
 class Scenario(unittest.TestCase):

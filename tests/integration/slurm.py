@@ -14,11 +14,10 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
-from program import PROGRAM, ROOT
+from program import PROGRAM, ROOT, process_of, wait_for
 
 SKIPPED = 77
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "sinfo")
@@ -65,16 +64,6 @@ def free_port():
         return probe.getsockname()[1]
 
 
-def wait_for(condition, seconds, what):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found = condition()
-        if found:
-            return found
-        time.sleep(0.1)
-    raise TimeoutError(what)
-
-
 class Cluster:
     """A Slurm of one node."""
 
@@ -101,10 +90,10 @@ class Cluster:
         self.daemon("munged", "-F", "--force", f"--key-file={key}", f"--socket={self.folder}/munge.socket",
                     f"--pid-file={self.folder}/munged.pid", f"--log-file={self.folder}/munged.log",
                     f"--seed-file={self.folder}/munged.seed")  # fmt: skip
-        wait_for((self.folder / "munge.socket").exists, 10, "munged made no socket")
+        wait_for((self.folder / "munge.socket").exists, "the socket of munged", 10)
         self.daemon("slurmctld", "-D")
         self.daemon("slurmd", "-D")
-        wait_for(lambda: "idle" in self.run("sinfo", "-h", "-o", "%t", check=False), 30, "the node did not become idle")
+        wait_for(lambda: "idle" in self.run("sinfo", "-h", "-o", "%t", check=False), "the node to become idle")
 
     def daemon(self, name, *arguments):
         with open(self.folder / f"{name}.out", "w") as out:
@@ -138,20 +127,6 @@ class Cluster:
         )
 
 
-def process_of(words):
-    """The id of the process whose command line ends with these words."""
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
-        try:
-            line = (entry / "cmdline").read_bytes().decode(errors="replace").split("\0")[:-1]
-        except OSError:
-            continue
-        if line[-len(words) :] == words:
-            return int(entry.name)
-    return None
-
-
 class Study(unittest.TestCase):
     cluster = None
 
@@ -182,8 +157,8 @@ class Study(unittest.TestCase):
         self.assertRegex(said, r"job \d+: array 0-2\n")
         keys = self.keys()
         words = ["study", "task", str(self.folder / "out"), "1"]
-        os.kill(wait_for(lambda: process_of(words), 30, "the task to be killed did not start"), signal.SIGKILL)
-        wait_for(lambda: not self.jobs(), 60, "the jobs did not end")
+        os.kill(wait_for(lambda: process_of(words), "the task to be killed"), signal.SIGKILL)
+        wait_for(lambda: not self.jobs(), "the jobs to end", 60)
         # The job that collects ran after them, and named what is missing.
         collect = re.search(r"job (\d+): collects", said)[1]
         log = (self.folder / f"out/slurm/{collect}.log").read_text()
@@ -194,7 +169,7 @@ class Study(unittest.TestCase):
 
         said = self.keyblock("submit", "gallery.toml", "-o", "out", "--now", "--resume")
         self.assertRegex(said, r"1 of 3 runs to be done\njob \d+: array 1\n")
-        wait_for(lambda: not self.jobs(), 120, "the jobs did not end")
+        wait_for(lambda: not self.jobs(), "the jobs to end", 120)
         after = self.results()
         self.assertEqual(set(after), set(keys))
         self.assertEqual({key: after[key] for key in before}, before)

@@ -1,7 +1,6 @@
 """What the tests of studies share: a gallery in blocky rock that is run in a moment, and the files of a study."""
 
 import json
-import time
 
 from program import ROOT, Scenario
 
@@ -44,12 +43,3 @@ class Study(Scenario):
     def hashes(self, folder="out"):
         paths = sorted((self.folder / folder / "runs").glob("*/run.json"))
         return {path.parent.name: json.loads(path.read_text())["state_hash"] for path in paths}
-
-    def wait_for(self, condition, what, seconds=30.0):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            found = condition()
-            if found:
-                return found
-            time.sleep(0.02)
-        self.fail(f"waited in vain: {what}")

@@ -1,30 +1,17 @@
 #!/usr/bin/env python3
 """Studies in trouble: runs and studies that are killed, wrong input, folders that another process has, full disks."""
 
-import contextlib
 import os
 import resource
 import signal
 import subprocess
 import unittest
 
-from program import PROGRAM
+from program import PROGRAM, process_of, wait_for
 from study_case import GALLERY, SMALL, Study
 
 # Of two runs of each realization, the second lasts some seconds.
 LONG = '[study]\nrealizations = 2\nkeep = "measures"\n[[study.vary]]\nkey = "stage.after.duration"\nvalues = [0.1, 120.0]\n'
-
-
-def process_of(words):
-    """The id of a process whose command line contains these words, one after the other."""
-    wanted = "\0".join(words) + "\0"
-    for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        with contextlib.suppress(OSError), open(f"/proc/{entry}/cmdline") as file:
-            if wanted in file.read():
-                return int(entry)
-    return None
 
 
 class Interruptions(Study):
@@ -40,7 +27,7 @@ class Interruptions(Study):
         return parent
 
     def task(self, index):
-        return self.wait_for(lambda: process_of(["study", "task", "out", str(index)]), f"run {index}")
+        return wait_for(lambda: process_of(["study", "task", "out", str(index)]), f"run {index}")
 
     def test_a_run_that_is_killed_costs_that_run_alone(self):
         parent = self.start()
@@ -61,11 +48,11 @@ class Interruptions(Study):
     def test_killing_the_parent_ends_its_children_and_loses_nothing_done(self):
         parent = self.start()
         self.task(1)
-        self.wait_for(lambda: len(self.done()) >= 1, "the first run to be done")
+        wait_for(lambda: len(self.done()) >= 1, "the first run to be done")
         before = self.done()
         parent.kill()
         parent.communicate()
-        self.wait_for(lambda: process_of(["study", "task", "out"]) is None, "the children to end")
+        wait_for(lambda: process_of(["study", "task", "out"]) is None, "the children to end")
         self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
         self.assertEqual({key: self.done()[key] for key in before}, before)
         self.assertEqual(list(self.out.rglob("*.tmp")), [])
@@ -73,7 +60,7 @@ class Interruptions(Study):
     def test_interrupted(self):
         parent = self.start()
         self.task(1)
-        self.wait_for(lambda: len(self.done()) >= 1, "the first run to be done")
+        wait_for(lambda: len(self.done()) >= 1, "the first run to be done")
         parent.send_signal(signal.SIGINT)
         said, errors = parent.communicate(timeout=30)
         self.assertEqual(parent.returncode, 2, errors)
