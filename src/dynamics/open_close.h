@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/profile.h"
+#include "dynamics/corrections.h"
 #include "dynamics/options.h"
 #include "dynamics/spring_array.h"
 #include "dynamics/step_problem.h"
@@ -25,8 +26,9 @@ struct OpenCloseResult {
 /// Open-close iteration: a Newton method with an exact line search on the convex, piecewise quadratic Π(D) of a step.
 ///
 ///     1. solve with the springs that acted in the last step; if the same springs act at the solution, that is it;
-///     2. otherwise repeat: solve ∇²Π p = −∇Π with the springs acting at D, and go to the minimum of Π(D + αp), which
-///        is the root of a piecewise linear function of α;
+///     2. correct that for the springs that act otherwise, a few of thousands, with the same factor (Corrections), until no others
+///        do. Where the solver has no factor, or they are many, repeat: solve ∇²Π p = −∇Π with the springs acting at D, and go to
+///        the minimum of Π(D + αp), which is the root of a piecewise linear function of α;
 ///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
 ///        (a new contact has no friction otherwise, in its first step);
 ///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
@@ -59,8 +61,15 @@ class OpenClose {
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
   bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                    std::span<double> d, OpenCloseResult& result);
+  void solve_base(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                  OpenCloseResult& result);
+  void place(const StepProblem& problem, std::span<const double> d);
+  int correct_bends(const StepProblem& problem, linalg::HalfSolver& halves);
+  bool find_corrections(const StepProblem& problem);
+  bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
+               OpenCloseResult& result);
   void find_direction(const StepProblem& problem);
-  [[nodiscard]] double line_search();
+  [[nodiscard]] double search_line();
   void find_bends(double alpha);
   [[nodiscard]] double slope(double alpha) const;
   void go(const StepProblem& problem, double alpha, std::span<double> d);
@@ -81,6 +90,17 @@ class OpenClose {
   std::vector<Piece> factored_;     ///< per contact: what the matrix at hand was made with
   bool assembled_ = false;          ///< in this step
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
+  /// The normal or the shear spring of a contact.
+  struct Corrected {
+    std::size_t contact;
+    bool normal;
+    friend bool operator==(Corrected, Corrected) = default;
+  };
+  Corrections corrections_;  ///< to the matrix at hand
+  std::vector<Corrected> corrected_, wanted_;
+  std::vector<Corrections::Law> laws_;
+  std::vector<double> stretch_, part_a_, part_b_;
+  std::vector<double> base_;  ///< D₀ of the corrections
   std::vector<Vec2> r_;
   std::vector<Vec2> shift_;  ///< m, of springs: normal, shear
   double worst_ = 0.0;       ///< m, largest penetration or drift at the last update of multipliers

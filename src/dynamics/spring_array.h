@@ -35,17 +35,17 @@ class SpringArray {
   };
 
   void resize(std::size_t n) {
-    for (std::vector<double>* v : {&kn, &ks, &bound, &floor, &y, &w, &dy, &dw}) v->resize(n);
+    for (std::vector<double>* v : {&kn, &ks, &bound, &floor, &y0, &w0, &y, &w, &dy, &dw}) v->resize(n);
     piece.resize(n);
   }
   [[nodiscard]] std::size_t size() const { return kn.size(); }
 
-  /// Takes over a spring at penetration y and shear displacement w.
+  /// Takes over a spring at penetration y and shear displacement w for D = 0, and stays there.
   void set(std::size_t c, const contact::Spring& spring, double penetration, double shear) {
     kn[c] = spring.normal_stiffness();
     ks[c] = spring.shear_stiffness();
-    y[c] = penetration;
-    w[c] = shear;
+    y0[c] = y[c] = penetration;
+    w0[c] = w[c] = shear;
     set_law(c, spring);
   }
   /// What changes in the course of a step: bound and bond.
@@ -54,6 +54,13 @@ class SpringArray {
     floor[c] = spring.tensile() ? -HUGE_VAL : 0.0;
   }
 
+  /// Adds what belongs to no displacement.
+  void shift(std::size_t c, double penetration, double shear) {
+    y0[c] += penetration;
+    w0[c] += shear;
+    y[c] += penetration;
+    w[c] += shear;
+  }
   /// Goes on along the direction of search; `piece` stays that of where it was.
   void go(double alpha) {
     for (std::size_t c = 0; c < y.size(); ++c) {
@@ -89,6 +96,7 @@ class SpringArray {
 
   std::vector<double> kn, ks;        ///< N/m per thickness
   std::vector<double> bound, floor;  ///< N per thickness; m
+  std::vector<double> y0, w0;        ///< m, at D = 0
   std::vector<double> y, w;          ///< m, now
   std::vector<double> dy, dw;        ///< m, of the direction of search
   std::vector<Piece> piece;          ///< of (y, w)

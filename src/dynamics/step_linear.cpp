@@ -63,7 +63,7 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
 linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool must_be_direct) {
   // Block products that a solution by conjugate gradients is worth, for each pair of blocks (docs/performance.md). Static steps
   // have little inertia, and need many more iterations.
-  constexpr double dynamic_worth = 40.0, static_worth = 150.0;
+  constexpr double dynamic_worth = 80.0, static_worth = 150.0;
   constexpr std::size_t never_factored = 30'000;  // blocks; not even the order of elimination is looked for
   const Profile::Scope scope(profile_, Phase::assembly);
   const LinearSolver wanted = model_.solver.linear;

@@ -181,6 +181,15 @@ void StepProblem::add_contact_force(const Row& row, Vec2 force, std::span<double
   add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
 }
 
+void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
+                             std::vector<double>& b) const {
+  const double* phi = &phi_[row.phi];
+  a.assign(2 * at(row.size_a), 0.0);
+  b.assign(2 * at(row.size_b), 0.0);
+  add_scaled(phi, row.size_a, direction, a.data());
+  add_scaled(phi + row.size_a, row.size_b, -1.0 * direction, b.data());
+}
+
 void StepProblem::multiply(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     const Block& block = model_->blocks[i];

@@ -79,6 +79,8 @@ class StepProblem {
   void assemble(linalg::BlockSolver& solver) const;
   /// Adds springs of stiffness kn and ks (N/m per thickness; negative: takes away) at a contact.
   void add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const;
+  /// (∂r/∂D)ᵀ direction: the parts of the two blocks, as long as their coefficients.
+  void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.
   void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const;
 

@@ -37,7 +37,7 @@ std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int
   return order;
 }
 
-class BlockCholesky final : public BlockSolver {
+class BlockCholesky final : public BlockSolver, public HalfSolver {
  public:
   void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
   void clear() override {
@@ -49,8 +49,14 @@ class BlockCholesky final : public BlockSolver {
   void touch(int block) override { stale_[position_[at(block)]] = 1; }
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
+  HalfSolver* halves() override { return this; }
+  void half_solve(Part a, Part b, HalfSolution& half) override;
+  [[nodiscard]] double product(const HalfSolution& x, const HalfSolution& y) const override;
+  void finish(std::span<const HalfSolution> halves, std::span<const double> factor,
+              std::span<double> x) override;
 
  private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
   void find_structure(std::span<const std::pair<int, int>> pairs);
   void place_values();
   void place_matrix(std::span<const std::pair<int, int>> pairs);
@@ -71,15 +77,26 @@ class BlockCholesky final : public BlockSolver {
   template <int equal, int columns>
   int gather(std::size_t j, int c);
   template <int equal, int columns>
-  int finish(std::size_t j, int c);
+  int divide(std::size_t j, int c);
   template <int equal>
-  void solve_columns(std::span<double> x);
+  void forward();
+  template <int equal>
+  void backward();
+  template <int equal>
+  void half_forward(HalfSolution& half);
+  void take(std::span<const double> x);
+  void give(std::span<double> x) const;
+  template <typename Do>
+  void for_equal_size(const Do& what) const;
 
   // Column j of the factor has its diagonal block first, then rows_[row_start_[j] … row_start_[j+1]),
   // ascending.
-  std::vector<std::size_t> position_;   ///< block → column
-  int equal_size_ = 0;                  ///< of all columns; 0: they differ
-  std::vector<int> size_, stride_;      ///< per column
+  std::vector<std::size_t> position_;  ///< block → column
+  int equal_size_ = 0;                 ///< of all columns; 0: they differ
+  std::vector<int> size_, stride_;     ///< per column
+  std::vector<std::size_t> parent_;    ///< per column, in the elimination tree; none: a root
+  std::vector<std::size_t>
+      above_;  ///< per column: padded unknowns of the columns from the root to its parent
   std::vector<std::size_t> row_start_;  ///< per column, into rows_ and row_value_
   std::vector<std::size_t> rows_;
   std::vector<std::size_t> row_value_;     ///< per row entry, into values_
@@ -185,6 +202,7 @@ void BlockCholesky::find_structure(std::span<const std::pair<int, int>> pairs) {
     const auto [low, high] = std::minmax(position_[at(i)], position_[at(j)]);
     below[low].push_back(high);
   }
+  parent_.assign(n, none);
   row_start_.assign(1, 0);
   rows_.clear();
   std::vector<std::size_t> seen(n, n);
@@ -201,9 +219,14 @@ void BlockCholesky::find_structure(std::span<const std::pair<int, int>> pairs) {
       for (std::size_t e = row_start_[child]; e < row_start_[child + 1]; ++e) add(rows_[e]);
     }
     std::sort(rows.begin(), rows.end());
-    if (!rows.empty()) children[rows.front()].push_back(j);
+    parent_[j] = rows.empty() ? none : rows.front();
+    if (parent_[j] != none) children[parent_[j]].push_back(j);
     rows_.insert(rows_.end(), rows.begin(), rows.end());
     row_start_.push_back(rows_.size());
+  }
+  above_.assign(n, 0);
+  for (std::size_t j = n; j-- > 0;) {
+    if (parent_[j] != none) above_[j] = above_[parent_[j]] + at(stride_[parent_[j]]);
   }
   std::vector<std::size_t> count(n + 1, 0);
   for (const std::size_t row : rows_) ++count[row + 1];
@@ -276,7 +299,7 @@ bool BlockCholesky::factor_columns() {
   for (std::size_t j = 0; j < size_.size(); ++j) {
     if (stale_[j] == 0) continue;
     // What is eliminated later depends on this column through its parent in the elimination tree.
-    if (row_start_[j] < row_start_[j + 1]) stale_[rows_[row_start_[j]]] = 1;
+    if (parent_[j] != none) stale_[parent_[j]] = 1;
     load_column(j);
     update_column<equal>(j);
     double* inverse = &values_[column_value_[j]];
@@ -294,10 +317,22 @@ bool BlockCholesky::factor_columns() {
   return true;
 }
 
+/// Calls what.template operator()<equal>().
+template <typename Do>
+void BlockCholesky::for_equal_size(const Do& what) const {
+  if (equal_size_ == 6) {
+    what.template operator()<6>();
+  } else if (equal_size_ == 12) {
+    what.template operator()<12>();
+  } else {
+    what.template operator()<0>();
+  }
+}
+
 bool BlockCholesky::factor() {
-  return equal_size_ == 6    ? factor_columns<6>()
-         : equal_size_ == 12 ? factor_columns<12>()
-                             : factor_columns<0>();
+  bool positive = false;
+  for_equal_size([&]<int equal>() { positive = factor_columns<equal>(); });
+  return positive;
 }
 
 /// y − Σ_i L_ijᵀ x_i for some unknowns of column j, from c on, into solved_. Returns their number.
@@ -317,7 +352,7 @@ int BlockCholesky::gather(std::size_t j, int c) {
 
 /// L_jj⁻ᵀ y likewise.
 template <int equal, int columns>
-int BlockCholesky::finish(std::size_t j, int c) {
+int BlockCholesky::divide(std::size_t j, int c) {
   Lanes t[columns]{};
   const int rows = stride<equal>(j);
   add_lane_products(rows / row_padding, &values_[column_value_[j] + at(c * rows)], solved_.data(), t);
@@ -326,13 +361,20 @@ int BlockCholesky::finish(std::size_t j, int c) {
   return columns;
 }
 
+/// Brings x into the order of elimination.
+void BlockCholesky::take(std::span<const double> x) {
+  for (std::size_t j = 0; j < size_.size(); ++j)
+    std::copy_n(&x[offset_[j]], size_[j], &work_[work_start_[j]]);
+}
+
+void BlockCholesky::give(std::span<double> x) const {
+  for (std::size_t j = 0; j < size_.size(); ++j)
+    std::copy_n(&work_[work_start_[j]], size_[j], &x[offset_[j]]);
+}
+
 template <int equal>
-void BlockCholesky::solve_columns(std::span<double> x) {
-  const std::size_t n = size_.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    for (int k = 0; k < size<equal>(j); ++k) work_[work_start_[j] + at(k)] = x[offset_[j] + at(k)];
-  }
-  for (std::size_t j = 0; j < n; ++j) {
+void BlockCholesky::forward() {
+  for (std::size_t j = 0; j < size_.size(); ++j) {
     const int size_j = size<equal>(j), rows = stride<equal>(j);
     double* y = &work_[work_start_[j]];
     if (std::all_of(y, y + size_j, [](double v) { return v == 0.0; }))
@@ -345,26 +387,81 @@ void BlockCholesky::solve_columns(std::span<double> x) {
                      &work_[work_start_[i]]);
     }
   }
+}
+
+template <int equal>
+void BlockCholesky::backward() {
   std::fill(solved_.begin(), solved_.end(), 0.0);
-  for (std::size_t j = n; j-- > 0;) {
+  for (std::size_t j = size_.size(); j-- > 0;) {
     const int size_j = size<equal>(j);
     for (int c = 0; c < size_j;) c += size_j - c >= 6 ? gather<equal, 6>(j, c) : gather<equal, 1>(j, c);
-    for (int c = 0; c < size_j;) c += size_j - c >= 6 ? finish<equal, 6>(j, c) : finish<equal, 1>(j, c);
-  }
-  for (std::size_t j = 0; j < n; ++j) {
-    for (int k = 0; k < size<equal>(j); ++k) x[offset_[j] + at(k)] = work_[work_start_[j] + at(k)];
+    for (int c = 0; c < size_j;) c += size_j - c >= 6 ? divide<equal, 6>(j, c) : divide<equal, 1>(j, c);
   }
 }
 
 void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/) {
   std::fill(residual.begin(), residual.end(), 0.0);
-  if (equal_size_ == 6) {
-    solve_columns<6>(x);
-  } else if (equal_size_ == 12) {
-    solve_columns<12>(x);
-  } else {
-    solve_columns<0>(x);
+  take(x);
+  for_equal_size([&]<int equal>() {
+    forward<equal>();
+    backward<equal>();
+  });
+  give(x);
+}
+
+template <int equal>
+void BlockCholesky::half_forward(HalfSolution& half) {
+  for (std::size_t j = at(half.column); j != none; j = parent_[j]) {
+    const int size_j = size<equal>(j), rows = stride<equal>(j);
+    double* y = &half.values[above_[j]];
+    multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
+    for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
+    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+      const std::size_t i = rows_[e];
+      subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y,
+                     &half.values[above_[i]]);
+    }
   }
+}
+
+void BlockCholesky::half_solve(Part a, Part b, HalfSolution& half) {
+  std::size_t first = none;
+  for (const Part& part : {a, b}) {
+    if (part.block >= 0) first = std::min(first, position_[at(part.block)]);
+  }
+  half.column = static_cast<int>(first);
+  half.values.assign(above_[first] + at(stride_[first]), 0.0);
+  for (const Part& part : {a, b}) {
+    if (part.block >= 0)
+      std::copy(part.values.begin(), part.values.end(), &half.values[above_[position_[at(part.block)]]]);
+  }
+  for_equal_size([&]<int equal>() { half_forward<equal>(half); });
+}
+
+double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) const {
+  // The ways have all in common from where they meet.
+  std::size_t i = at(x.column), j = at(y.column);
+  while (i != j && i != none && j != none) (i < j ? i : j) = parent_[std::min(i, j)];
+  if (i != j || i == none) return 0.0;
+  Lanes t{};
+  for (std::size_t k = 0; k < above_[i] + at(stride_[i]); k += row_padding)
+    t = add_product(load(&x.values[k]), load(&y.values[k]), t);
+  return sum(t);
+}
+
+void BlockCholesky::finish(std::span<const HalfSolution> halves, std::span<const double> factor,
+                           std::span<double> x) {
+  std::fill(work_.begin(), work_.end(), 0.0);
+  for (std::size_t k = 0; k < halves.size(); ++k) {
+    for (std::size_t j = at(halves[k].column); j != none; j = parent_[j]) {
+      double* y = &work_[work_start_[j]];
+      for (int l = 0; l < stride_[j]; l += row_padding)
+        store(y + l,
+              add_product(broadcast(factor[k]), load(&halves[k].values[above_[j] + at(l)]), load(y + l)));
+    }
+  }
+  for_equal_size([&]<int equal>() { backward<equal>(); });
+  give(x);
 }
 
 }  // namespace

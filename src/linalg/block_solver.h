@@ -24,6 +24,31 @@ struct BlockSlot {
   int column = 0;
 };
 
+/// L⁻¹ b, with A = L Lᵀ, of a b that belongs to one block or to two that have a pair: zero but for the columns on the way from the
+/// first of the two that is eliminated to the root of the elimination tree.
+struct HalfSolution {
+  int column = -1;             ///< where the way begins
+  std::vector<double> values;  ///< of the columns on the way, those of the root first
+};
+
+/// Halves of solutions with a factor, to correct others by: with w = L⁻¹ a, a change of A along a aᵀ needs no more than products of
+/// such w with each other and one L⁻ᵀ.
+class HalfSolver {
+ public:
+  virtual ~HalfSolver() = default;
+  /// The part of b of each block, as long as its unknowns; block −1: no part.
+  struct Part {
+    int block = -1;
+    std::span<const double> values;
+  };
+  virtual void half_solve(Part a, Part b, HalfSolution& half) = 0;
+  /// xᵀ y, for x = L⁻¹ a and y = L⁻¹ b that is aᵀ A⁻¹ b.
+  [[nodiscard]] virtual double product(const HalfSolution& x, const HalfSolution& y) const = 0;
+  /// x = L⁻ᵀ Σ factor_k half_k.
+  virtual void finish(std::span<const HalfSolution> halves, std::span<const double> factor,
+                      std::span<double> x) = 0;
+};
+
 /// A symmetric positive definite matrix of dense blocks, of sizes that may differ, and its factorization.
 ///
 ///     analyse(sizes, pairs)   once per pattern
@@ -52,6 +77,8 @@ class BlockSolver {
   /// what is missing in `residual`: the x given less A times the x returned. A direct one leaves zeros there.
   virtual void solve(std::span<double> x, std::span<double> residual, const Excess& excess) = 0;
   [[nodiscard]] virtual bool is_iterative() const { return false; }
+  /// Null where this solver has none.
+  [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }
   /// False when the last solve() gave up before its residual was small enough.
   [[nodiscard]] virtual bool solved() const { return true; }
 };

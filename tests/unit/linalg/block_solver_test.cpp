@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -153,6 +154,61 @@ TEST(BlockSolver, AgreesWithDenseSolutionForEqualAndMixedBlocks) {
           EXPECT_LT((solve(*solver, p) - expected).norm() / expected.norm(), 1e-12) << n << ' ' << choice[0];
         }
       }
+    }
+  }
+}
+
+// Halves of solutions multiply to aᵀ A⁻¹ b, and are finished to A⁻¹ b, for vectors of one block and of two with a pair.
+TEST(BlockSolver, HalvesAreThoseOfTheSolutions) {
+  unsigned seed = 40;
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12}, {12}, {6, 12, 20, 30}}) {
+    // Few pairs leave parts that nothing couples.
+    for (const std::size_t pairs : {std::size_t{8}, std::size_t{60}}) {
+      Problem p = random_problem(++seed, 25, choice);
+      for (std::size_t k = pairs; k < p.pairs.size(); ++k) {
+        const auto range = [&](int i) {
+          const int first = std::accumulate(p.sizes.begin(), p.sizes.begin() + i, 0);
+          return Eigen::seqN(first, p.sizes[static_cast<std::size_t>(i)]);
+        };
+        p.dense(range(p.pairs[k].first), range(p.pairs[k].second)).setZero();
+        p.dense(range(p.pairs[k].second), range(p.pairs[k].first)).setZero();
+      }
+      if (pairs < p.pairs.size()) p.pairs.resize(pairs);
+      const auto solver = make_block_cholesky();
+      solver->analyse(p.sizes, p.pairs);
+      solve(*solver, p);
+      HalfSolver& halves = *solver->halves();
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+      std::vector<HalfSolution> half;
+      Eigen::MatrixXd vectors = Eigen::MatrixXd::Zero(p.dense.rows(), 12);
+      std::vector<double> factor;
+      for (int k = 0; k < 12; ++k) {
+        const auto [i, j] = p.pairs[random() % p.pairs.size()];
+        std::vector<double> values[2];
+        for (int side = 0; side < (k % 3 == 0 ? 1 : 2); ++side) {
+          const int block = side == 0 ? i : j;
+          const int first = std::accumulate(p.sizes.begin(), p.sizes.begin() + block, 0);
+          for (int u = 0; u < p.sizes[static_cast<std::size_t>(block)]; ++u) {
+            values[side].push_back(uniform(random));
+            vectors(first + u, k) = values[side].back();
+          }
+        }
+        half.emplace_back();
+        halves.half_solve({i, values[0]}, {values[1].empty() ? -1 : j, values[1]}, half.back());
+        factor.push_back(uniform(random));
+      }
+      const Eigen::MatrixXd solved = p.dense.ldlt().solve(vectors), product = vectors.transpose() * solved;
+      for (std::size_t k = 0; k < half.size(); ++k) {
+        for (std::size_t l = 0; l < half.size(); ++l)
+          EXPECT_NEAR(halves.product(half[k], half[l]),
+                      product(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)), 1e-14);
+      }
+      std::vector<double> x(static_cast<std::size_t>(p.dense.rows()));
+      halves.finish(half, factor, x);
+      const Eigen::VectorXd expected = solved * Eigen::Map<Eigen::VectorXd>(factor.data(), 12);
+      for (std::size_t k = 0; k < x.size(); ++k)
+        EXPECT_NEAR(x[k], expected[static_cast<Eigen::Index>(k)], 1e-14);
     }
   }
 }

@@ -199,6 +199,7 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
   const auto run = [](dynamics::LinearSolver linear) {
     Scene scene(1e9, 35.0);
     scene.setup.solver.linear = linear;
+    settle_bounds(scene.setup.solver);
     scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)

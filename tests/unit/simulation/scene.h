@@ -48,6 +48,12 @@ struct Scene {
   double young_, density_;
 };
 
+/// Has the bounds of friction found to the last digits in every step, so that any way to them ends at the same.
+inline void settle_bounds(dynamics::SolverOptions& options) {
+  options.bound_tolerance = options.bound_accuracy = 1e-10;
+  options.max_bound_updates = 100;
+}
+
 /// Stops a run after a step.
 struct Stopper final : RunObserver {
   explicit Stopper(long after_step) : after(after_step) {}

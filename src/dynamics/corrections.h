@@ -1,0 +1,60 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "linalg/block_solver.h"
+
+namespace keyblock::dynamics {
+
+/// The few springs of a step that act otherwise than the factored matrix has them, taken into account without factoring anew.
+///
+/// With the others on the straight lines of the matrix A, and D₀ its solution, the increment is
+///
+///     D = D₀ − A⁻¹ Σ_s a_s φ_s,     φ_s = β_s(e_s),     e = e⁰ − C φ,     C_st = a_sᵀ A⁻¹ a_t = (L⁻¹ a_s)ᵀ (L⁻¹ a_t)
+///
+/// where e_s is the stretch of spring s, a_s = ∂e_s/∂D, and β_s by how much its force differs from its straight line (Woodbury's
+/// formula, with springs that may change their state). φ minimizes ½ φᵀ C φ + Σ ∫β_s de: as many unknowns as springs.
+class Corrections {
+ public:
+  /// Force of a spring clamp(k e, low, high), and the straight line f₀ + k₀ e that the matrix has in its place; k₀ is 0 or k.
+  struct Law {
+    double stiffness = 0.0, low = 0.0, high = 0.0;
+    double line_stiffness = 0.0, line_force = 0.0;
+
+    [[nodiscard]] double bend(double stretch) const;
+    [[nodiscard]] double bend_stiffness(double stretch) const;
+    /// −1, 1: at `low`, at `high`; 0: the spring acts.
+    [[nodiscard]] int piece(double stretch) const;
+  };
+
+  void clear() { size_ = 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Adds a spring; a and b: the parts of a_s.
+  void add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, linalg::HalfSolver::Part b);
+  /// φ, given the law of every spring and its stretch at D₀. False when it is not found.
+  [[nodiscard]] bool solve(std::span<const Law> laws, std::span<const double> stretch);
+  [[nodiscard]] std::span<const double> forces() const { return force_; }
+  /// d += D − D₀.
+  void add_to(linalg::HalfSolver& solver, std::span<double> d);
+
+ private:
+  [[nodiscard]] double compliance(std::size_t s, std::size_t t) const {
+    return s < t ? compliance_[t * (t + 1) / 2 + s] : compliance_[s * (s + 1) / 2 + t];
+  }
+  [[nodiscard]] double compliance_times(std::size_t s, std::span<const double> x) const;
+  [[nodiscard]] bool find_direction();
+
+  std::size_t size_ = 0;
+  std::vector<linalg::HalfSolution> half_;  ///< L⁻¹ a_s; of the first size_
+  std::vector<double> compliance_;          ///< lower triangle by rows
+  std::vector<double> force_;               ///< φ
+  // Scratch.
+  std::vector<double> stretch_, stiffness_, missing_;  ///< e; ∂β/∂e; β − φ
+  std::vector<int> piece_;
+  std::vector<double> direction_, step_;  ///< of φ; what it takes off e
+  std::vector<std::size_t> bent_;         ///< springs with ∂β/∂e ≠ 0
+  std::vector<double> triangle_, right_;
+  std::vector<double> scaled_, change_;
+};
+
+}  // namespace keyblock::dynamics
