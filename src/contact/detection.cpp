@@ -15,10 +15,11 @@ constexpr std::size_t worth_threads = 10'000;  // vertices, candidates or contac
 constexpr std::size_t piece = 4'096;           // candidates
 
 /// Whether the edge from v to `other` lies outside the line, up to an angle.
-bool outside(const Surface& surface, Vec2 v, int other, Vec2 normal, double sine) {
+int outside(const Surface& surface, Vec2 v, int other, Vec2 normal, double sine) {
   const Vec2 u = surface.position[at(other)] - v;
   const double along = dot(normal, u);
-  return along >= 0.0 || along * along <= sine * sine * squared_norm(u);
+  // Which of the two holds is a matter of chance where edges lie on each other: no branch.
+  return static_cast<int>(along >= 0.0) | static_cast<int>(along * along <= sine * sine * squared_norm(u));
 }
 
 /// Length over [0, edge_length] that the edge of the vertex towards `other` shares with an edge it faces.
@@ -45,27 +46,23 @@ void Detection::measure_edges(const Surface& surface, ThreadTeam& team) {
   });
 }
 
-bool Detection::passes(const Surface& surface, const Candidate& c, bool bonded, Found& found) const {
+bool Detection::passes(const Surface& surface, const Candidate& c, const PairMotion& pair, bool bonded,
+                       Found& found) const {
   const Vec2 a = surface.position[at(c.edge)], v = surface.position[at(c.vertex)];
   const Line& line = lines_[at(c.edge)];
   const Vec2 normal = line.normal();
   const double gap = dot(normal, v - a), along = dot(line.tangent, v - a), length = line.length;
-  const int block_a = c.block_a, block_b = c.block_b;
-  const double motion = motion_.reach[at(block_a)] + motion_.reach[at(block_b)];
-  if (!bonded && gap > tolerances_.activation + motion) return false;
-  const double deepest =
-      std::min({tolerances_.depth_limit, surface.thickness[at(block_a)], surface.thickness[at(block_b)]});
-  if (gap < -deepest) return false;
+  if (!bonded && gap > tolerances_.activation + pair.reach) return false;
+  if (gap < -pair.deepest) return false;
   const int end = surface.next[at(c.edge)];
-  const double zone = std::min(tolerances_.end_zone + motion, 0.5 * length);
-  const double before = surface.reflex[at(c.edge)] ? std::max(deepest, zone) : zone;
-  const double after = surface.reflex[at(end)] ? std::max(deepest, zone) : zone;
+  const double zone = std::min(tolerances_.end_zone + pair.reach, 0.5 * length);
+  const double before = surface.reflex[at(c.edge)] ? std::max(pair.deepest, zone) : zone;
+  const double after = surface.reflex[at(end)] ? std::max(pair.deepest, zone) : zone;
   if (along < -before || along > length + after) return false;
   // The corner of a block that spins may pass the one that is nearest now.
-  const double turn = gap > 0.0 ? motion_.turn[at(block_a)] + motion_.turn[at(block_b)] : 0.0;
-  const double sine = std::min(1.0, Tolerances::sine_inside + turn);
-  if (!outside(surface, v, surface.previous[at(c.vertex)], normal, sine) ||
-      !outside(surface, v, surface.next[at(c.vertex)], normal, sine))
+  const double sine = std::min(1.0, Tolerances::sine_inside + (gap > 0.0 ? pair.turn : 0.0));
+  if ((outside(surface, v, surface.previous[at(c.vertex)], normal, sine) &
+       outside(surface, v, surface.next[at(c.vertex)], normal, sine)) == 0)
     return false;
 
   found.gap = gap;
@@ -83,11 +80,15 @@ std::size_t Detection::look_at_pair(const Surface& surface, const CandidateList&
                                     std::size_t first, std::size_t last, CandidateList::Finder& memory_of,
                                     Found* found) const {
   std::size_t count = 0;
+  const std::size_t a = at(candidates.pairs[first].block_a), b = at(candidates.pairs[first].block_b);
+  const PairMotion pair{motion_.reach[a] + motion_.reach[b], motion_.turn[a] + motion_.turn[b],
+                        std::min({tolerances_.depth_limit, surface.thickness[a], surface.thickness[b]})};
+  const double away = motion_.away[a] + motion_.away[b];
   for (std::size_t k = first; k < last; ++k) {
     const Candidate& c = candidates.pairs[k];
-    if (motion_.away[at(c.block_a)] + motion_.away[at(c.block_b)] < c.clearance) continue;
+    if (away < c.clearance) continue;
     const int memory = memory_of(k);
-    if (!passes(surface, c, memory >= 0 && candidates.memory[at(memory)].bonded, found[count])) continue;
+    if (!passes(surface, c, pair, memory >= 0 && candidates.memory[at(memory)].bonded, found[count])) continue;
     found[count].candidate = static_cast<int>(k);
     found[count].memory = memory;
     ++count;
@@ -111,7 +112,8 @@ void Detection::look(const Surface& surface, const CandidateList& candidates, Th
   const std::size_t n = pairs.size(), pieces = (n + piece - 1) / piece;
   const auto same_blocks = [&](std::size_t k, std::size_t l) {
     const Candidate &x = pairs[k], &y = pairs[l];
-    return std::minmax(x.block_a, x.block_b) == std::minmax(y.block_a, y.block_b);
+    return (x.block_a == y.block_a && x.block_b == y.block_b) ||
+           (x.block_a == y.block_b && x.block_b == y.block_a);
   };
   const auto end_of_pair = [&](std::size_t k) {
     while (k < n && same_blocks(k - 1, k)) ++k;

@@ -87,7 +87,13 @@ class Detection {
   void look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team);
   std::size_t look_at_pair(const Surface& surface, const CandidateList& candidates, std::size_t first,
                            std::size_t last, CandidateList::Finder& memory_of, Found* found) const;
-  bool passes(const Surface& surface, const Candidate& c, bool bonded, Found& found) const;
+  /// Of two blocks together.
+  struct PairMotion {
+    double reach, turn;  ///< Motion
+    double deepest;      ///< m, depth up to which they may be in contact
+  };
+  bool passes(const Surface& surface, const Candidate& c, const PairMotion& pair, bool bonded,
+              Found& found) const;
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
   void compete(std::span<Found* const> rivals, const CandidateList& candidates) const;
