@@ -96,15 +96,18 @@ class OpenClose {
     bool normal;
     friend bool operator==(Corrected, Corrected) = default;
   };
-  Corrections corrections_;  ///< to the matrix at hand
-  std::vector<Corrected> corrected_, wanted_;
+  static constexpr std::size_t most_corrected = 64;  ///< springs, beyond which a factorization takes less
+  Corrections corrections_;                          ///< to the matrix at hand
+  std::vector<Corrected> corrected_;                 ///< the springs of these
+  std::vector<Corrected> wanted_;                    ///< scratch
   std::vector<Corrections::Law> laws_;
   std::vector<double> stretch_, part_a_, part_b_;
   std::vector<double> base_;  ///< D₀ of the corrections
   std::vector<Vec2> r_;
-  std::vector<Vec2> shift_;  ///< m, of springs: normal, shear
-  double worst_ = 0.0;       ///< m, largest penetration or drift at the last update of multipliers
-  int stalls_ = 0;           ///< updates in a row that did not make it smaller
+  bool knows_relative_ = false;  ///< r_ is that of the springs
+  std::vector<Vec2> shift_;      ///< m, of springs: normal, shear
+  double worst_ = 0.0;           ///< m, largest penetration or drift at the last update of multipliers
+  int stalls_ = 0;               ///< updates in a row that did not make it smaller
   /// Of a bound, N per thickness: by how much it was wrong, and the change it got for it.
   struct BoundStep {
     double missing = 0.0, taken = 0.0;
