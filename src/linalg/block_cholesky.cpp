@@ -258,7 +258,7 @@ void BlockCholesky::place_values() {
   const std::size_t largest = n == 0 ? 0 : at(*std::max_element(stride_.begin(), stride_.end()));
   solved_.assign(largest, 0.0);
   scale_.assign(largest, 0.0);
-  work_.assign(work, 0.0);
+  work_.assign(work + row_padding, 0.0);  // the last numbers of a column are read as a whole register
   target_.assign(n, nullptr);
 }
 
@@ -346,7 +346,11 @@ int BlockCholesky::gather(std::size_t j, int c) {
   }
   const double* y = &work_[work_start_[j] + at(c)];
   double* out = &solved_[at(c)];
-  for (int k = 0; k < columns; ++k) out[k] = y[k] - sum(t[k]);
+  if constexpr (columns == 1) {
+    out[0] = y[0] - sum(t[0]);
+  } else {
+    store_first<columns>(out, stride<equal>(j) - c, load(y) - sums(t));
+  }
   return columns;
 }
 
@@ -357,7 +361,11 @@ int BlockCholesky::divide(std::size_t j, int c) {
   const int rows = stride<equal>(j);
   add_lane_products(rows / row_padding, &values_[column_value_[j] + at(c * rows)], solved_.data(), t);
   double* out = &work_[work_start_[j] + at(c)];
-  for (int k = 0; k < columns; ++k) out[k] = sum(t[k]);
+  if constexpr (columns == 1) {
+    out[0] = sum(t[0]);
+  } else {
+    store_first<columns>(out, stride<equal>(j) - c, sums(t));
+  }
   return columns;
 }
 

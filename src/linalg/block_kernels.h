@@ -52,6 +52,32 @@ inline double sum(Lanes v) {
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
+/// The sum of each of up to eight vectors, as sum() forms it.
+template <int count>
+Lanes sums(const Lanes (&t)[count]) {
+  static_assert(count <= row_padding);
+  const auto at = [&](int k) { return k < count ? t[k] : Lanes{}; };
+  const auto pairs = [](Lanes a, Lanes b) {
+    return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  };
+  const auto fours = [](Lanes a, Lanes b) {
+    return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
+           __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  };
+  const Lanes low = fours(pairs(at(0), at(1)), pairs(at(2), at(3))),
+              high = fours(pairs(at(4), at(5)), pairs(at(6), at(7)));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+/// The first `count` numbers of v to `out`, where `room` numbers may be overwritten.
+template <int count>
+void store_first(double* out, int room, Lanes v) {
+  if (room >= row_padding) return store(out, v);
+  for (int k = 0; k < count; ++k) out[k] = v[k];
+}
+
 /// C −= A Bᵀ for `lanes` registers of rows and `columns` columns of C, all held in registers; A: rows × k, B: columns × k.
 template <int lanes, int columns>
 void subtract_tile(int k, const double* a, int a_stride, const double* b, int b_stride, double* c,
