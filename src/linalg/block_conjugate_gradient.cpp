@@ -297,11 +297,7 @@ void BlockConjugateGradient::backward(Vector& v, Range range) const {
       add_lane_products(rows / row_padding, &lower_[entry.lower + at(c * rows)], &v[start_[entry.row]], t);
     }
     double* y = &v[start_[j] + at(c)];
-    if constexpr (width == 1) {
-      y[0] -= sum(t[0]);
-    } else {
-      store_first<width>(y, stride_[j] - c, load(y) - sums(t));
-    }
+    for (int k = 0; k < width; ++k) y[k] -= sum(t[k]);
     return width;
   };
   for (std::size_t j = range.last; j-- > range.first;) {
