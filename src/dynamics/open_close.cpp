@@ -87,8 +87,7 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
     assembled_ = true;
     if (!any) return true;
   }
-  corrections_.clear();
-  corrected_.clear();
+  forget_corrections();
   ++result.factorizations;
   const Profile::Scope scope(*profile_, Phase::factorization);
   return solver.factor();

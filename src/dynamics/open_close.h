@@ -66,6 +66,7 @@ class OpenClose {
   void place(const StepProblem& problem, std::span<const double> d);
   int correct_bends(const StepProblem& problem, linalg::HalfSolver& halves);
   bool find_corrections(const StepProblem& problem);
+  void forget_corrections();
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
                OpenCloseResult& result);
   void find_direction(const StepProblem& problem);

@@ -82,8 +82,14 @@ bool OpenClose::find_corrections(const StepProblem& problem) {
   return corrections_.solve(laws_, stretch_);
 }
 
+void OpenClose::forget_corrections() {
+  corrections_.clear();
+  corrected_.clear();
+}
+
 /// Goes to the minimum with the factor at hand, correcting the springs that act otherwise. They become more until no other does, so
-/// that this ends. False when they are too many; D and the gradient are then those of the corrections so far.
+/// that this ends. False when they are too many, or their forces are not found; D and the gradient are then those of the corrections
+/// so far, or of none.
 bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                         std::span<double> d, OpenCloseResult& result) {
   linalg::HalfSolver& halves = *solver.halves();
@@ -92,7 +98,11 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
   for (;;) {
     std::copy(base_.begin(), base_.end(), d.begin());
     if (corrections_.size() > 0) {
-      if (!find_corrections(problem)) break;
+      if (!find_corrections(problem)) {
+        forget_corrections();
+        place(problem, d);
+        break;
+      }
       ++result.iterations;
       const Profile::Scope scope(*profile_, Phase::solution);
       corrections_.add_to(halves, d);

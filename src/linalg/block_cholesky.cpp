@@ -78,6 +78,8 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   int gather(std::size_t j, int c);
   template <int equal, int columns>
   int divide(std::size_t j, int c);
+  template <int equal, typename OfRow>
+  void eliminate(std::size_t j, double* y, const OfRow& of_row);
   template <int equal>
   void forward();
   template <int equal>
@@ -91,12 +93,11 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
 
   // Column j of the factor has its diagonal block first, then rows_[row_start_[j] … row_start_[j+1]),
   // ascending.
-  std::vector<std::size_t> position_;  ///< block → column
-  int equal_size_ = 0;                 ///< of all columns; 0: they differ
-  std::vector<int> size_, stride_;     ///< per column
-  std::vector<std::size_t> parent_;    ///< per column, in the elimination tree; none: a root
-  std::vector<std::size_t>
-      above_;  ///< per column: padded unknowns of the columns from the root to its parent
+  std::vector<std::size_t> position_;   ///< block → column
+  int equal_size_ = 0;                  ///< of all columns; 0: they differ
+  std::vector<int> size_, stride_;      ///< per column
+  std::vector<std::size_t> parent_;     ///< per column, in the elimination tree; none: a root
+  std::vector<std::size_t> above_;      ///< per column: padded unknowns of all columns above it in that tree
   std::vector<std::size_t> row_start_;  ///< per column, into rows_ and row_value_
   std::vector<std::size_t> rows_;
   std::vector<std::size_t> row_value_;     ///< per row entry, into values_
@@ -380,20 +381,26 @@ void BlockCholesky::give(std::span<double> x) const {
     std::copy_n(&work_[work_start_[j]], size_[j], &x[offset_[j]]);
 }
 
+/// y ← L_jj⁻¹ y for column j, and what the rows i below, at of_row(i), lose by it.
+template <int equal, typename OfRow>
+void BlockCholesky::eliminate(std::size_t j, double* y, const OfRow& of_row) {
+  const int size_j = size<equal>(j), rows = stride<equal>(j);
+  multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
+  for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
+  for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
+    const std::size_t i = rows_[e];
+    subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y, of_row(i));
+  }
+}
+
 template <int equal>
 void BlockCholesky::forward() {
+  const auto of_row = [&](std::size_t i) { return &work_[work_start_[i]]; };
   for (std::size_t j = 0; j < size_.size(); ++j) {
-    const int size_j = size<equal>(j), rows = stride<equal>(j);
-    double* y = &work_[work_start_[j]];
-    if (std::all_of(y, y + size_j, [](double v) { return v == 0.0; }))
-      continue;  // as where a step has settled
-    multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
-    for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
-    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-      const std::size_t i = rows_[e];
-      subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y,
-                     &work_[work_start_[i]]);
-    }
+    double* y = of_row(j);
+    // Zero, as where a step has settled.
+    if (std::all_of(y, y + size<equal>(j), [](double v) { return v == 0.0; })) continue;
+    eliminate<equal>(j, y, of_row);
   }
 }
 
@@ -419,17 +426,8 @@ void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const
 
 template <int equal>
 void BlockCholesky::half_forward(HalfSolution& half) {
-  for (std::size_t j = at(half.column); j != none; j = parent_[j]) {
-    const int size_j = size<equal>(j), rows = stride<equal>(j);
-    double* y = &half.values[above_[j]];
-    multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
-    for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
-    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-      const std::size_t i = rows_[e];
-      subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y,
-                     &half.values[above_[i]]);
-    }
-  }
+  const auto of_row = [&](std::size_t i) { return &half.values[above_[i]]; };
+  for (std::size_t j = at(half.column); j != none; j = parent_[j]) eliminate<equal>(j, of_row(j), of_row);
 }
 
 void BlockCholesky::half_solve(Part a, Part b, HalfSolution& half) {

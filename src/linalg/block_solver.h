@@ -31,16 +31,17 @@ struct HalfSolution {
   std::vector<double> values;  ///< of the columns on the way, those of the root first
 };
 
-/// Halves of solutions with a factor, to correct others by: with w = L⁻¹ a, a change of A along a aᵀ needs no more than products of
-/// such w with each other and one L⁻ᵀ.
+/// Halves of solutions with the last factor, to correct others by: with w = L⁻¹ a, a change of A along a aᵀ needs no more than
+/// products of such w with each other and one L⁻ᵀ.
 class HalfSolver {
  public:
   virtual ~HalfSolver() = default;
-  /// The part of b of each block, as long as its unknowns; block −1: no part.
+  /// What belongs to a block, as long as its unknowns; block −1: nothing.
   struct Part {
     int block = -1;
     std::span<const double> values;
   };
+  /// half = L⁻¹ (a + b). The two blocks have a pair, or one of them is −1.
   virtual void half_solve(Part a, Part b, HalfSolution& half) = 0;
   /// xᵀ y, for x = L⁻¹ a and y = L⁻¹ b that is aᵀ A⁻¹ b.
   [[nodiscard]] virtual double product(const HalfSolution& x, const HalfSolution& y) const = 0;
