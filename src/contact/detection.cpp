@@ -88,7 +88,8 @@ std::size_t Detection::look_at_pair(const Surface& surface, const CandidateList&
     const Candidate& c = candidates.pairs[k];
     if (away < c.clearance) continue;
     const int memory = memory_of(k);
-    if (!passes(surface, c, pair, memory >= 0 && candidates.memory[at(memory)].bonded, found[count])) continue;
+    if (!passes(surface, c, pair, memory >= 0 && candidates.memory[at(memory)].bonded, found[count]))
+      continue;
     found[count].candidate = static_cast<int>(k);
     found[count].memory = memory;
     ++count;
