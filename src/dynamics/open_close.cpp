@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numeric>
 #include <utility>
 
 #include "dynamics/line_search.h"
@@ -196,41 +194,49 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
   for (const std::size_t c : bends_) springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
 }
 
+/// From D along a Newton direction to the minimum. False when the linear system has no solution.
+bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                            std::span<double> d, OpenCloseResult& result) {
+  ++result.iterations;
+  if (!factor(problem, solver, result)) return false;
+  for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
+  if (!solve_linear(problem, solver, tolerance)) return false;
+  find_direction(problem);
+  go(problem, search_line(), d);
+  return true;
+}
+
+/// Contacts that are not on the straight lines of the factored matrix.
+std::size_t OpenClose::bent_contacts() const {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < springs_.size(); ++c) count += springs_.piece[c] != factored_[c] ? 1 : 0;
+  return count;
+}
+
+/// With corrections where the solver has halves, and Newton's method where they are too many.
 bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver,
                          const SolverOptions& options, bool warm, double enough, std::span<double> d,
                          OpenCloseResult& result) {
+  constexpr int most_tries = 4;
   const int limit = result.iterations + options.max_iterations;
   const bool corrects = solver.halves() != nullptr;
-  const auto same_springs = [&] {
-    return std::equal(springs_.piece.begin(), springs_.piece.end(), factored_.begin(),
-                      [](Piece p, Piece q) { return p.same_springs(q); });
-  };
+  const auto settled = [&] { return problem.residual_ratio(gradient_) < options.tolerance; };
   if (!warm && corrects) {
     if (!factor(problem, solver, result)) return false;
   } else if (!warm) {
     if (!first_solve(problem, solver, options.tolerance, d, result)) return false;
     // The same springs act; what may still differ is the direction in which a contact slides.
-    if (same_springs() && problem.residual_ratio(gradient_) < options.tolerance) return true;
+    const bool same = std::equal(springs_.piece.begin(), springs_.piece.end(), factored_.begin(),
+                                 [](Piece p, Piece q) { return p.same_springs(q); });
+    if (same && settled()) return true;
   }
-  const auto few_bend = [&] {
-    return std::inner_product(springs_.piece.begin(), springs_.piece.end(), factored_.begin(), std::size_t{0},
-                              std::plus<>(), std::not_equal_to<>()) <= most_corrected / 3;
-  };
-  // Before the first correction there is no D to go on from; later it is worth trying where few springs differ from the matrix.
-  for (int tries = corrects ? 4 : 0; result.iterations < limit;) {
-    if (tries > 0 && (result.iterations == 0 || few_bend())) {
+  for (int tries = corrects ? most_tries : 0; result.iterations < limit;) {
+    // Before the first correction there is no D to go on from; later it is worth trying where few springs differ from the matrix.
+    if (tries > 0 && (result.iterations == 0 || bent_contacts() <= most_corrected / 3)) {
       --tries;
-      if (correct(problem, solver, options.tolerance, d, result) &&
-          problem.residual_ratio(gradient_) < options.tolerance)
-        return true;
+      if (correct(problem, solver, options.tolerance, d, result) && settled()) return true;
     }
-    ++result.iterations;
-    if (!factor(problem, solver, result)) return false;
-    for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
-    if (!solve_linear(problem, solver, options.tolerance)) return false;
-    find_direction(problem);
-    const double alpha = search_line();
-    go(problem, alpha, d);
+    if (!newton_step(problem, solver, options.tolerance, d, result)) return false;
     if (problem.residual_ratio(gradient_) < enough) return true;
   }
   return false;

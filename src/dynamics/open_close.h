@@ -69,6 +69,9 @@ class OpenClose {
   void forget_corrections();
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
                OpenCloseResult& result);
+  bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                   std::span<double> d, OpenCloseResult& result);
+  [[nodiscard]] std::size_t bent_contacts() const;
   void find_direction(const StepProblem& problem);
   [[nodiscard]] double search_line();
   void find_bends(double alpha);

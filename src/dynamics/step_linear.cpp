@@ -5,6 +5,7 @@
 
 #include "core/index.h"
 #include "dynamics/step.h"
+#include "linalg/minimum_degree.h"
 
 namespace keyblock::dynamics {
 
@@ -72,9 +73,11 @@ linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool mu
   bool iterative = may_iterate && wanted == LinearSolver::iterative;
   if (may_iterate && wanted == LinearSolver::automatic) {
     if (!products_) {
-      products_ = unknown_sizes_.size() > never_factored
-                      ? HUGE_VAL
-                      : linalg::cholesky_products(static_cast<int>(unknown_sizes_.size()), state.pattern);
+      products_ =
+          unknown_sizes_.size() > never_factored
+              ? HUGE_VAL
+              : linalg::approximate_minimum_degree(static_cast<int>(unknown_sizes_.size()), state.pattern)
+                    .products;
     }
     iterative =
         *products_ > (is_static ? static_worth : dynamic_worth) * static_cast<double>(state.pattern.size());

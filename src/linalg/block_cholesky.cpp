@@ -1,41 +1,14 @@
-#include <amd.h>
-
 #include <algorithm>
-#include <stdexcept>
 
 #include "core/huge_pages.h"
 #include "core/index.h"
 #include "linalg/block_kernels.h"
 #include "linalg/block_solver.h"
+#include "linalg/minimum_degree.h"
 
 namespace keyblock::linalg {
 
 namespace {
-
-/// Order of elimination of the graph of blocks: order[k] is the block eliminated as k-th. `products`: block products of the
-/// factorization.
-std::vector<int> approximate_minimum_degree(int n, std::span<const std::pair<int, int>> pairs,
-                                            double* products = nullptr) {
-  std::vector<int> start(at(n) + 1, 0), neighbour(2 * pairs.size() + 1);
-  for (const auto& [i, j] : pairs) {
-    ++start[at(i) + 1];
-    ++start[at(j) + 1];
-  }
-  for (std::size_t k = 0; k < at(n); ++k) start[k + 1] += start[k];
-  std::vector<int> next(start.begin(), start.end() - 1);
-  for (const auto& [i, j] : pairs) {
-    neighbour[at(next[static_cast<std::size_t>(i)]++)] = j;
-    neighbour[at(next[static_cast<std::size_t>(j)]++)] = i;
-  }
-  std::vector<int> order(at(n));
-  double control[AMD_CONTROL], info[AMD_INFO];
-  amd_defaults(control);
-  if (n > 0 && amd_order(n, start.data(), neighbour.data(), order.data(), control, info) < 0) {
-    throw std::logic_error("amd_order refused the pattern");
-  }
-  if (products != nullptr) *products = n > 0 ? info[AMD_NMULTSUBS_LDL] : 0.0;
-  return order;
-}
 
 class BlockCholesky final : public BlockSolver, public HalfSolver {
  public:
@@ -128,7 +101,7 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
 
 void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = sizes.size();
-  const std::vector<int> order = approximate_minimum_degree(static_cast<int>(n), pairs);
+  const std::vector<int> order = approximate_minimum_degree(static_cast<int>(n), pairs).order;
   position_.assign(n, 0);
   size_.assign(n, 0);
   stride_.assign(n, 0);
@@ -471,12 +444,6 @@ void BlockCholesky::finish(std::span<const HalfSolution> halves, std::span<const
 }
 
 }  // namespace
-
-double cholesky_products(int blocks, std::span<const std::pair<int, int>> pairs) {
-  double products = 0.0;
-  approximate_minimum_degree(blocks, pairs, &products);
-  return products;
-}
 
 std::unique_ptr<BlockSolver> make_block_cholesky() {
   return std::make_unique<BlockCholesky>();

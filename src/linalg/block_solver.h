@@ -87,8 +87,6 @@ class BlockSolver {
 /// The block Cholesky factorization of this project: left-looking by block columns, ordered by AMD on the
 /// graph of blocks.
 std::unique_ptr<BlockSolver> make_block_cholesky();
-/// What it would cost for blocks of equal size with these pairs.
-double cholesky_products(int blocks, std::span<const std::pair<int, int>> pairs);
 
 /// Conjugate gradients with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat
 /// 1981). In a dynamic step inertia bounds the condition of the matrix, so that the iterations do not grow with the model.
