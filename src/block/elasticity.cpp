@@ -3,6 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "core/index.h"
+#include "core/known_size.h"
+
 namespace keyblock::block {
 
 Stress in_situ_at(const std::optional<InSituStress>& in_situ, Vec2 point) {
@@ -27,16 +30,23 @@ Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material
   // A linear S₀ times the quadratic E has degree 2(n − 1) + 1, above 4(n − 1) only at n = 1.
   const int degree = std::max(4 * (basis.order() - 1), in_situ ? 2 * (basis.order() - 1) + 1 : 0);
   for (const WeightedPoint& w : thinned_rule(polygon_rule(region, degree), degree)) {
-    weight_.push_back(w.weight);
-    initial_.push_back(in_situ_at(in_situ, w.point));
+    points_.push_back({w.weight, in_situ_at(in_situ, w.point)});
     gradient_.resize(gradient_.size() + static_cast<std::size_t>(size_));
     basis.gradients(w.point, gradient_.data() + gradient_.size() - size_);
   }
 }
 
-Elasticity::Gradient2 Elasticity::deformation(const double* a, const Vec2* gradients) const {
+template <typename Do>
+void Elasticity::at_points(const Do& what) const {
+  with_known_size(size_, [&](auto size) {
+    for (std::size_t q = 0; q < points_.size(); ++q) what(size, points_[q], &gradient_[q * at(size)]);
+  });
+}
+
+template <typename Size>
+Elasticity::Gradient2 Elasticity::deformation(Size size, const double* a, const Vec2* gradients) {
   Gradient2 f{0.0, 0.0, 0.0, 0.0};
-  for (int k = 1; k < size_; ++k) {
+  for (int k = 1; k < size; ++k) {
     f.xx += a[2 * k] * gradients[k].x;
     f.xy += a[2 * k] * gradients[k].y;
     f.yx += a[2 * k + 1] * gradients[k].x;
@@ -63,27 +73,25 @@ double Elasticity::density(const Gradient2& f, const Stress& initial) const {
 
 double Elasticity::energy(const double* a) const {
   double sum = 0.0;
-  for (std::size_t q = 0; q < weight_.size(); ++q) {
-    sum += weight_[q] * density(deformation(a, &gradient_[q * static_cast<std::size_t>(size_)]), initial_[q]);
-  }
+  at_points([&](auto size, const Point& point, const Vec2* g) {
+    sum += point.weight * density(deformation(size, a, g), point.initial);
+  });
   return sum;
 }
 
 void Elasticity::add_force(const double* a, double* force) const {
-  for (std::size_t q = 0; q < weight_.size(); ++q) {
-    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
-    const Gradient2 f = deformation(a, g);
-    const Stress s = second_piola(f, initial_[q]);
+  at_points([&](auto size, const Point& point, const Vec2* g) {
+    const Gradient2 f = deformation(size, a, g);
+    const Stress s = second_piola(f, point.initial);
     // P = F S
-    const double pxx = weight_[q] * (f.xx * s.xx + f.xy * s.xy),
-                 pxy = weight_[q] * (f.xx * s.xy + f.xy * s.yy);
-    const double pyx = weight_[q] * (f.yx * s.xx + f.yy * s.xy),
-                 pyy = weight_[q] * (f.yx * s.xy + f.yy * s.yy);
-    for (int k = 1; k < size_; ++k) {
+    const double w = point.weight;
+    const double pxx = w * (f.xx * s.xx + f.xy * s.xy), pxy = w * (f.xx * s.xy + f.xy * s.yy);
+    const double pyx = w * (f.yx * s.xx + f.yy * s.xy), pyy = w * (f.yx * s.xy + f.yy * s.yy);
+    for (int k = 1; k < size; ++k) {
       force[2 * k] += pxx * g[k].x + pxy * g[k].y;
       force[2 * k + 1] += pyx * g[k].x + pyy * g[k].y;
     }
-  }
+  });
 }
 
 namespace {
@@ -101,6 +109,19 @@ bool is_positive_definite(const double* g, int n, double shift) {
     }
   }
   return true;
+}
+
+/// Raises the eigenvalues of a symmetric 2 × 2 matrix (lower triangle, by columns) to at least −floor.
+void floor_eigenvalues(double* g, double floor) {
+  const double mean = 0.5 * (g[0] + g[3]), half = 0.5 * (g[0] - g[3]);
+  const double radius = std::sqrt(half * half + g[1] * g[1]);
+  if (mean - radius >= -floor) return;
+  const double high = std::max(mean + radius, -floor);
+  // What differs from a multiple of 1 keeps its directions.
+  const double scale = radius > 0.0 ? 0.5 * (high + floor) / radius : 0.0, middle = 0.5 * (high - floor);
+  g[0] = middle + scale * half;
+  g[3] = middle - scale * half;
+  g[1] *= scale;
 }
 
 /// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor; does nothing when a
@@ -133,25 +154,25 @@ void Elasticity::add_tangent(const double* a, double viscous, double floor, doub
                              int stride) const {
   // Order 1 has room here; higher orders are worth an allocation.
   constexpr std::size_t few = 3;
-  const auto size = static_cast<std::size_t>(size_), m = size - 1;
+  const std::size_t count = at(size_), m = count - 1;
   std::array<std::array<double, 6>, few> few_b;
   std::array<double, (few - 1) * (few - 1)> few_geometric{};
-  std::vector<std::array<double, 6>> many_b(size > few ? size : 0);
-  std::vector<double> many_geometric(size > few ? m * m : 0, 0.0);
-  std::array<double, 6>* b = size > few ? many_b.data() : few_b.data();  // B_k, columns x and y of three rows
-  double* geometric = size > few ? many_geometric.data() : few_geometric.data();  // (N − 1)², lower triangle
-  for (std::size_t q = 0; q < weight_.size(); ++q) {
-    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
-    const Gradient2 f = deformation(a, g);
-    const Stress s = second_piola(f, initial_[q]);
-    const double weight = (1.0 + viscous) * weight_[q];
-    for (int k = 1; k < size_; ++k) {
+  std::vector<std::array<double, 6>> many_b(count > few ? count : 0);
+  std::vector<double> many_geometric(count > few ? m * m : 0, 0.0);
+  std::array<double, 6>* b =
+      count > few ? many_b.data() : few_b.data();  // B_k, columns x and y of three rows
+  double* geometric = count > few ? many_geometric.data() : few_geometric.data();  // (N − 1)², lower triangle
+  at_points([&](auto size, const Point& point, const Vec2* g) {
+    const Gradient2 f = deformation(size, a, g);
+    const Stress s = second_piola(f, point.initial);
+    const double weight = (1.0 + viscous) * point.weight;
+    for (int k = 1; k < size; ++k) {
       b[k] = {f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x,
               f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x};
     }
-    for (int l = 1; l < size_; ++l) {
-      const Vec2 sg{weight_[q] * (s.xx * g[l].x + s.xy * g[l].y),
-                    weight_[q] * (s.xy * g[l].x + s.yy * g[l].y)};
+    for (int l = 1; l < size; ++l) {
+      const Vec2 sg{point.weight * (s.xx * g[l].x + s.xy * g[l].y),
+                    point.weight * (s.xy * g[l].x + s.yy * g[l].y)};
       const auto& bl = b[l];
       std::array<double, 6> cb;
       for (std::size_t c = 0; c < 6; c += 3) {
@@ -161,49 +182,53 @@ void Elasticity::add_tangent(const double* a, double viscous, double floor, doub
       }
       double* column_x = tangent + static_cast<std::ptrdiff_t>(2 * l) * stride;
       double* column_y = column_x + stride;
-      for (int k = l; k < size_; ++k) {
+      for (int k = l; k < size; ++k) {
         const auto& bk = b[k];
-        geometric[static_cast<std::size_t>(l - 1) * m + static_cast<std::size_t>(k - 1)] += dot(g[k], sg);
+        geometric[(l - 1) * (size - 1) + k - 1] += dot(g[k], sg);
         column_x[2 * k] += bk[0] * cb[0] + bk[1] * cb[1] + bk[2] * cb[2];
         column_x[2 * k + 1] += bk[3] * cb[0] + bk[4] * cb[1] + bk[5] * cb[2];
         column_y[2 * k + 1] += bk[3] * cb[3] + bk[4] * cb[4] + bk[5] * cb[5];
         if (k > l) column_y[2 * k] += bk[0] * cb[3] + bk[1] * cb[4] + bk[2] * cb[5];
       }
     }
+  });
+  if (m == 2) {
+    floor_eigenvalues(geometric, floor);
+  } else {
+    floor_eigenvalues(geometric, size_ - 1, floor);
   }
-  floor_eigenvalues(geometric, size_ - 1, floor);
-  for (int l = 1; l < size_; ++l) {
-    for (int k = l; k < size_; ++k) {
-      const double value = geometric[static_cast<std::size_t>(l - 1) * m + static_cast<std::size_t>(k - 1)];
-      tangent[static_cast<std::ptrdiff_t>(2 * l) * stride + 2 * k] += value;
-      tangent[static_cast<std::ptrdiff_t>(2 * l + 1) * stride + 2 * k + 1] += value;
+  with_known_size(size_, [&](auto size) {
+    for (int l = 1; l < size; ++l) {
+      for (int k = l; k < size; ++k) {
+        const double value = geometric[(l - 1) * (size - 1) + k - 1];
+        tangent[static_cast<std::ptrdiff_t>(2 * l) * stride + 2 * k] += value;
+        tangent[static_cast<std::ptrdiff_t>(2 * l + 1) * stride + 2 * k + 1] += value;
+      }
     }
-  }
+  });
 }
 
 double Elasticity::material_work(const double* a, const double* d) const {
   double sum = 0.0;
-  for (std::size_t q = 0; q < weight_.size(); ++q) {
-    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
-    const Gradient2 f = deformation(a, g), h = deformation(d, g);
+  at_points([&](auto size, const Point& point, const Vec2* g) {
+    const Gradient2 f = deformation(size, a, g), h = deformation(size, d, g);
     const double xx = f.xx * h.xx + f.yx * h.yx, yy = f.xy * h.xy + f.yy * h.yy;
     const double two_xy = f.xx * h.xy + f.xy * h.xx + f.yx * h.yy + f.yy * h.yx;
-    sum += weight_[q] * (c11_ * (xx * xx + yy * yy) + 2.0 * c12_ * xx * yy + c33_ * two_xy * two_xy);
-  }
+    sum += point.weight * (c11_ * (xx * xx + yy * yy) + 2.0 * c12_ * xx * yy + c33_ * two_xy * two_xy);
+  });
   return sum;
 }
 
 double Elasticity::squared_stress(const double* a, const double* b) const {
   double sum = 0.0;
-  for (std::size_t q = 0; q < weight_.size(); ++q) {
-    const Vec2* g = &gradient_[q * static_cast<std::size_t>(size_)];
-    Stress s = second_piola(deformation(a, g), initial_[q]);
+  at_points([&](auto size, const Point& point, const Vec2* g) {
+    Stress s = second_piola(deformation(size, a, g), point.initial);
     if (b != nullptr) {
-      const Stress other = second_piola(deformation(b, g), initial_[q]);
+      const Stress other = second_piola(deformation(size, b, g), point.initial);
       s = {s.xx - other.xx, s.yy - other.yy, s.xy - other.xy};
     }
-    sum += weight_[q] * (s.xx * s.xx + s.yy * s.yy + 2.0 * s.xy * s.xy);
-  }
+    sum += point.weight * (s.xx * s.xx + s.yy * s.yy + 2.0 * s.xy * s.xy);
+  });
   return sum;
 }
 
@@ -219,21 +244,21 @@ Stress push_forward(double fxx, double fxy, double fyx, double fyy, const Stress
 Stress Elasticity::cauchy(const double* a, const Basis& basis, Vec2 point) const {
   std::vector<Vec2> g(static_cast<std::size_t>(size_));
   basis.gradients(point, g.data());
-  const Gradient2 f = deformation(a, g.data());
+  const Gradient2 f = deformation(size_, a, g.data());
   return push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, in_situ_at(in_situ_, point)));
 }
 
 Stress Elasticity::mean_cauchy(const double* a) const {
   Stress mean;
   double total = 0.0;
-  for (std::size_t q = 0; q < weight_.size(); ++q) {
-    const Gradient2 f = deformation(a, &gradient_[q * static_cast<std::size_t>(size_)]);
-    const Stress s = push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, initial_[q]));
-    mean.xx += weight_[q] * s.xx;
-    mean.yy += weight_[q] * s.yy;
-    mean.xy += weight_[q] * s.xy;
-    total += weight_[q];
-  }
+  at_points([&](auto size, const Point& point, const Vec2* g) {
+    const Gradient2 f = deformation(size, a, g);
+    const Stress s = push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, point.initial));
+    mean.xx += point.weight * s.xx;
+    mean.yy += point.weight * s.yy;
+    mean.xy += point.weight * s.xy;
+    total += point.weight;
+  });
   return {mean.xx / total, mean.yy / total, mean.xy / total};
 }
 

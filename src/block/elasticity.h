@@ -51,16 +51,24 @@ class Elasticity {
   struct Gradient2 {
     double xx, xy, yx, yy;  ///< F_ij
   };
-  [[nodiscard]] Gradient2 deformation(const double* a, const Vec2* gradients) const;
+  /// A point of the rule.
+  struct Point {
+    double weight = 0.0;  ///< m²
+    Stress initial;       ///< S₀
+  };
+  /// Calls what(N, point, ∇φ at it) for all points.
+  template <typename Do>
+  void at_points(const Do& what) const;
+  template <typename Size>
+  static Gradient2 deformation(Size size, const double* a, const Vec2* gradients);
   [[nodiscard]] Stress second_piola(const Gradient2& f, const Stress& initial) const;
   [[nodiscard]] double density(const Gradient2& f, const Stress& initial) const;
 
   int size_;
   double c11_, c12_, c33_;  ///< plane elasticity matrix; c22 = c11
   std::optional<InSituStress> in_situ_;
-  std::vector<double> weight_;   ///< m², per point of the rule
-  std::vector<Vec2> gradient_;   ///< ∇φ_k at point q: gradient_[q N + k]
-  std::vector<Stress> initial_;  ///< S₀ per point
+  std::vector<Point> points_;
+  std::vector<Vec2> gradient_;  ///< ∇φ_k at point q: gradient_[q N + k]
 };
 
 }  // namespace keyblock::block

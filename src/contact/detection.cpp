@@ -14,14 +14,6 @@ namespace {
 constexpr std::size_t worth_threads = 10'000;  // vertices, candidates or contacts
 constexpr std::size_t piece = 4'096;           // candidates
 
-/// Whether the edge from v to `other` lies outside the line, up to an angle.
-int outside(const Surface& surface, Vec2 v, int other, Vec2 normal, double sine) {
-  const Vec2 u = surface.position[at(other)] - v;
-  const double along = dot(normal, u);
-  // Which of the two holds is a matter of chance where edges lie on each other: no branch.
-  return static_cast<int>(along >= 0.0) | static_cast<int>(along * along <= sine * sine * squared_norm(u));
-}
-
 /// Length over [0, edge_length] that the edge of the vertex towards `other` shares with an edge it faces.
 double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 normal, Vec2 tangent,
                      double edge_length) {
@@ -35,43 +27,44 @@ double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 nor
 
 }  // namespace
 
-void Detection::measure_edges(const Surface& surface, ThreadTeam& team) {
-  lines_.resize(surface.position.size());
-  team.for_range(lines_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
+  corners_.resize(surface.position.size());
+  team.for_range(corners_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      const Vec2 along = surface.position[at(surface.next[e])] - surface.position[e];
-      const double length = norm(along);
-      lines_[e] = {along / length, length};
+      const std::size_t next = at(surface.next[e]);
+      const Vec2 along = surface.position[next] - surface.position[e];
+      Corner& corner = corners_[e];
+      corner.position = surface.position[e];
+      corner.length = norm(along);
+      corner.tangent = corners_[next].before = along / corner.length;
+      corner.reflex = surface.reflex[e] != 0;
+      corner.reflex_end = surface.reflex[next] != 0;
     }
   });
 }
 
-bool Detection::passes(const Surface& surface, const Candidate& c, const PairMotion& pair, bool bonded,
-                       Found& found) const {
-  const Vec2 a = surface.position[at(c.edge)], v = surface.position[at(c.vertex)];
-  const Line& line = lines_[at(c.edge)];
-  const Vec2 normal = line.normal();
-  const double gap = dot(normal, v - a), along = dot(line.tangent, v - a), length = line.length;
-  if (!bonded && gap > tolerances_.activation + pair.reach) return false;
-  if (gap < -pair.deepest) return false;
-  const int end = surface.next[at(c.edge)];
-  const double zone = std::min(tolerances_.end_zone + pair.reach, 0.5 * length);
-  const double before = surface.reflex[at(c.edge)] ? std::max(pair.deepest, zone) : zone;
-  const double after = surface.reflex[at(end)] ? std::max(pair.deepest, zone) : zone;
-  if (along < -before || along > length + after) return false;
+/// Whether a candidate is a contact, but for others of the same two corners. Without branches: which of the conditions fails is a
+/// matter of chance.
+bool Detection::passes(const Candidate& c, const PairMotion& pair, bool bonded, Found& found) const {
+  const Corner &edge = corners_[at(c.edge)], &vertex = corners_[at(c.vertex)];
+  const Vec2 normal = edge.normal(), from_start = vertex.position - edge.position;
+  const double gap = dot(normal, from_start), along = dot(edge.tangent, from_start);
+  const double zone = std::min(tolerances_.end_zone + pair.reach, 0.5 * edge.length);
+  const double deep_zone = std::max(pair.deepest, zone);
+  const double before = edge.reflex ? deep_zone : zone, after = edge.reflex_end ? deep_zone : zone;
   // The corner of a block that spins may pass the one that is nearest now.
   const double sine = std::min(1.0, Tolerances::sine_inside + (gap > 0.0 ? pair.turn : 0.0));
-  if ((outside(surface, v, surface.previous[at(c.vertex)], normal, sine) &
-       outside(surface, v, surface.next[at(c.vertex)], normal, sine)) == 0)
-    return false;
-
+  // Whether an edge of the vertex lies outside the line, up to an angle.
+  const auto outside = [&](Vec2 tangent) {
+    const double across = dot(normal, tangent);
+    return (across >= 0.0) | (across * across <= sine * sine);
+  };
   found.gap = gap;
   found.along = along;
-  found.low = found.high = -1;
-  const int corner = along < 0.5 * length ? c.edge : end;
-  if (inside(along, length) < zone && !surface.reflex[at(corner)])
-    std::tie(found.low, found.high) = std::minmax(c.vertex, corner);
-  return true;
+  found.near_end = inside(along, edge.length) < zone;
+  return (bonded | (gap <= tolerances_.activation + pair.reach)) & (gap >= -pair.deepest) &
+         (along >= -before) & (along <= edge.length + after) &
+         outside(vertex.tangent) & outside(-1.0 * vertex.before);
 }
 
 /// The contacts among the candidates [first, last) of one pair of blocks, into `found`, which has room for all of them. Returns
@@ -84,15 +77,27 @@ std::size_t Detection::look_at_pair(const Surface& surface, const CandidateList&
   const PairMotion pair{motion_.reach[a] + motion_.reach[b], motion_.turn[a] + motion_.turn[b],
                         std::min({tolerances_.depth_limit, surface.thickness[a], surface.thickness[b]})};
   const double away = motion_.away[a] + motion_.away[b];
+  CandidateList::Finder bond_of = memory_of;
+  const auto is_bonded = [&](std::size_t k) {
+    const int memory = bond_of(k);
+    return memory >= 0 && candidates.memory[at(memory)].bonded;
+  };
   for (std::size_t k = first; k < last; ++k) {
     const Candidate& c = candidates.pairs[k];
     if (away < c.clearance) continue;
-    const int memory = memory_of(k);
-    if (!passes(surface, c, pair, memory >= 0 && candidates.memory[at(memory)].bonded, found[count]))
-      continue;
     found[count].candidate = static_cast<int>(k);
-    found[count].memory = memory;
-    ++count;
+    count += passes(c, pair, may_bond_ && is_bonded(k), found[count]) ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Found& f = found[i];
+    f.memory = memory_of(at(f.candidate));
+    f.low = f.high = -1;
+    if (!f.near_end) continue;
+    const Candidate& c = candidates.pairs[at(f.candidate)];
+    const Corner& edge = corners_[at(c.edge)];
+    const bool first_half = f.along < 0.5 * edge.length;
+    if (first_half ? edge.reflex : edge.reflex_end) continue;
+    std::tie(f.low, f.high) = std::minmax(c.vertex, first_half ? c.edge : surface.next[at(c.edge)]);
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (found[i].candidate < 0 || found[i].low < 0) continue;
@@ -147,7 +152,8 @@ void Detection::look(const Surface& surface, const CandidateList& candidates, Th
 void Detection::find(const Surface& surface, const Motion& motion, const CandidateList& candidates,
                      ThreadTeam& team, std::vector<Contact>& contacts) {
   motion_ = motion;
-  measure_edges(surface, team);
+  measure_corners(surface, team);
+  may_bond_ = std::any_of(laws_.begin(), laws_.end(), [](const JointLaw& law) { return law.may_bond(); });
   look(surface, candidates, team);
   contacts.resize(found_.size());
   team.for_range(found_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -157,8 +163,8 @@ void Detection::find(const Surface& surface, const Motion& motion, const Candida
 
 /// Which of the candidates for one pair of corners is the contact.
 void Detection::compete(std::span<Found* const> rivals, const CandidateList& candidates) const {
-  const auto line = [&](const Found& f) -> const Line& {
-    return lines_[at(candidates.pairs[at(f.candidate)].edge)];
+  const auto line = [&](const Found& f) -> const Corner& {
+    return corners_[at(candidates.pairs[at(f.candidate)].edge)];
   };
   const auto over = [&](const Found& f) { return inside(f.along, line(f).length); };
   const auto turned = [&](const Found& f, const Found& g) {
@@ -225,7 +231,7 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 void Detection::add(const Surface& surface, const Found& found, const CandidateList& candidates,
                     Contact& contact) const {
   const Candidate& candidate = candidates.pairs[at(found.candidate)];
-  const Line& line = lines_[at(candidate.edge)];
+  const Corner& line = corners_[at(candidate.edge)];
   const Vec2 a = surface.position[at(candidate.edge)], v = surface.position[at(candidate.vertex)],
              normal = line.normal();
   contact.candidate = found.candidate;

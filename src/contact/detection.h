@@ -70,10 +70,12 @@ class Detection {
   [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
 
  private:
-  /// Direction and length of an edge.
-  struct Line {
-    Vec2 tangent;
-    double length = 0.0;
+  /// A vertex, and the edge that begins there.
+  struct Corner {
+    Vec2 position;
+    Vec2 tangent, before;                     ///< directions of the edge and of the one that ends here
+    double length = 0.0;                      ///< m, of the edge
+    bool reflex = false, reflex_end = false;  ///< Surface::reflex here and at the end of the edge
     [[nodiscard]] Vec2 normal() const { return {tangent.y, -tangent.x}; }
   };
   /// A candidate that passes the geometry.
@@ -82,8 +84,9 @@ class Detection {
     int memory;         ///< of the list, that it goes on with; −1: none
     int low, high;      ///< the two corners that meet; −1: the vertex is not near an end of the edge
     double gap, along;  ///< m
+    bool near_end;      ///< of the edge
   };
-  void measure_edges(const Surface& surface, ThreadTeam& team);
+  void measure_corners(const Surface& surface, ThreadTeam& team);
   void look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team);
   std::size_t look_at_pair(const Surface& surface, const CandidateList& candidates, std::size_t first,
                            std::size_t last, CandidateList::Finder& memory_of, Found* found) const;
@@ -92,8 +95,7 @@ class Detection {
     double reach, turn;  ///< Motion
     double deepest;      ///< m, depth up to which they may be in contact
   };
-  bool passes(const Surface& surface, const Candidate& c, const PairMotion& pair, bool bonded,
-              Found& found) const;
+  bool passes(const Candidate& c, const PairMotion& pair, bool bonded, Found& found) const;
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
   void compete(std::span<Found* const> rivals, const CandidateList& candidates) const;
@@ -104,10 +106,11 @@ class Detection {
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
-  std::vector<Line> lines_;  ///< per edge
-  Motion motion_;            ///< in the step
-  std::vector<Found> room_;  ///< for all candidates to pass
-  std::span<Found> found_;   ///< its beginning: the contacts, in the order of the candidates
+  std::vector<Corner> corners_;  ///< per vertex
+  bool may_bond_ = false;        ///< whether there is a law with bonds
+  Motion motion_;                ///< in the step
+  std::vector<Found> room_;      ///< for all candidates to pass
+  std::span<Found> found_;       ///< its beginning: the contacts, in the order of the candidates
 };
 
 }  // namespace keyblock::contact

@@ -34,6 +34,9 @@ struct JointLaw {
   double normal_stiffness = 0.0;  ///< Pa/m; 0: 20 E per metre of the softer of the two blocks
   double stiffness_ratio = 0.4;   ///< shear over normal
   bool fused = false;             ///< an outline of an excavation not yet opened: rock on both sides is one
+
+  /// Whether contacts in place are bonded.
+  [[nodiscard]] bool may_bond() const { return fused || cohesion > 0.0 || tension > 0.0; }
 };
 
 }  // namespace keyblock::contact

@@ -83,7 +83,7 @@ void Stepper::start(State& state) {
     contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
     const contact::JointLaw& law = model_.laws[at(model_.surface.joint[at(c.edge)])];
-    memory.bonded = law.fused || law.cohesion > 0.0 || law.tension > 0.0;
+    memory.bonded = law.may_bond();
     if (!model_.in_situ) continue;
     // The joint carries the stress of the rock from the start: traction on block a is −σ n.
     const int end = model_.surface.next[at(c.edge)];

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/index.h"
+#include "core/known_size.h"
 #include "linalg/block_kernels.h"
 
 namespace keyblock::dynamics {
@@ -38,36 +39,43 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   build_rows(drive, surface, contacts, pairs, team);
 }
 
+template <typename Size>
+void StepProblem::build_block(Size size, std::size_t i, const State& state, const Drive& drive,
+                              Vec2 acceleration) {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  double* b = &b_[block.first];
+  std::fill(b, b + n, 0.0);
+  if (!model_->moves(i)) return;
+  const double* a = &state.position[block.first];
+  const double* v = &state.velocity[block.first];
+  double* h = &h_[h_first_[i]];
+  std::fill(h, h + stride * n, 0.0);
+  inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
+                (drive.is_static ? drive.inertia_scale[i] : 1.0);
+  block.elasticity.add_force(a, b);
+  for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+  if (!drive.is_static && !state.acceleration.empty()) {
+    const double c_a = drive.rule[i].acceleration() * block.material.density,
+                 c_f = drive.rule[i].force() * block.material.density;
+    for (std::size_t k = 0; k < at(n); ++k)
+      b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
+  }
+  b[0] += block.body_force() * acceleration.x;
+  b[1] += block.body_force() * acceleration.y;
+  const double frequency =
+      std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
+  viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
+  block.elasticity.add_tangent(a, viscous_[i], geometric_floor * inertia_[i], h, stride);
+  for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
+}
+
 void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
   const Vec2 acceleration = model_->gravity - drive.ground_acceleration;
   team.for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Block& block = model_->blocks[i];
-      const int n = 2 * block.size, stride = linalg::padded_rows(n);
-      double* b = &b_[block.first];
-      std::fill(b, b + n, 0.0);
-      if (!model_->moves(i)) continue;
-      const double* a = &state.position[block.first];
-      const double* v = &state.velocity[block.first];
-      double* h = &h_[h_first_[i]];
-      std::fill(h, h + stride * n, 0.0);
-      inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
-                    (drive.is_static ? drive.inertia_scale[i] : 1.0);
-      block.elasticity.add_force(a, b);
-      for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
-      if (!drive.is_static && !state.acceleration.empty()) {
-        const double c_a = drive.rule[i].acceleration() * block.material.density,
-                     c_f = drive.rule[i].force() * block.material.density;
-        for (std::size_t k = 0; k < at(n); ++k)
-          b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
-      }
-      b[0] += block.body_force() * acceleration.x;
-      b[1] += block.body_force() * acceleration.y;
-      const double frequency =
-          std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
-      viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
-      block.elasticity.add_tangent(a, viscous_[i], geometric_floor * inertia_[i], h, stride);
-      for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
+      with_known_size(block.size, [&](auto size) { build_block(size, i, state, drive, acceleration); });
     }
   });
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
@@ -190,24 +198,33 @@ void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>
   add_scaled(phi + row.size_a, row.size_b, -1.0 * direction, b.data());
 }
 
+namespace {
+
+/// y = H x of one block, H by its lower triangle.
+template <typename Size>
+void multiply_block(Size size, const double* h, const double* x, double* y) {
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  std::fill(y, y + n, 0.0);
+  for (int c = 0; c < n; ++c) {
+    const double* column = h + c * stride;
+    double sum = column[c] * x[c];
+    for (int r = c + 1; r < n; ++r) {
+      y[r] += column[r] * x[c];
+      sum += column[r] * x[r];
+    }
+    y[c] += sum;
+  }
+}
+
+}  // namespace
+
 void StepProblem::multiply(std::span<const double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     const Block& block = model_->blocks[i];
-    const int n = 2 * block.size, stride = linalg::padded_rows(n);
-    double* out = &y[block.first];
-    std::fill(out, out + n, 0.0);
-    if (!model_->moves(i)) continue;
-    const double* h = &h_[h_first_[i]];
-    const double* in = &x[block.first];
-    for (int c = 0; c < n; ++c) {
-      const double* column = h + c * stride;
-      double sum = column[c] * in[c];
-      for (int r = c + 1; r < n; ++r) {
-        out[r] += column[r] * in[c];
-        sum += column[r] * in[r];
-      }
-      out[c] += sum;
-    }
+    with_known_size(block.size, [&](auto size) {
+      if (model_->moves(i)) return multiply_block(size, &h_[h_first_[i]], &x[block.first], &y[block.first]);
+      std::fill_n(&y[block.first], 2 * size, 0.0);
+    });
   }
 }
 
@@ -325,8 +342,10 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
     const Block& block = model_->blocks[i];
     if (!model_->moves(i) || weight_[i] <= 0.0) continue;
     double largest = 0.0;
-    for (std::size_t k = 0; k < 2 * at(block.size); ++k)
-      largest = std::max(largest, std::abs(g[block.first + k]));
+    with_known_size(block.size, [&](auto size) {
+      const double* of_block = &g[block.first];
+      for (int k = 0; k < 2 * size; ++k) largest = std::max(largest, std::abs(of_block[k]));
+    });
     worst = std::max(worst, largest / weight_[i]);
   }
   return worst;
@@ -334,36 +353,32 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
 
 StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d,
                                                    std::span<const double> spin) {
+  ElasticLoss loss;
   turn_.assign(d.size(), 0.0);
   product_.resize(d.size());
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
-    const Block& block = model_->blocks[i];
-    for (std::size_t k = block.first + 2; k < block.first + 2 * at(block.size); k += 2) {
-      turn_[k] = -spin[i] * state.position[k + 1];
-      turn_[k + 1] = spin[i] * state.position[k];
-    }
-  }
-  ElasticLoss loss;
-  /// Σ x_k (H y)_k over the coefficients of a block, without inertia.
-  const auto stiffness = [&](std::size_t i, std::span<const double> x, std::span<const double> y) {
-    const Block& block = model_->blocks[i];
-    double sum = 0.0;
-    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
-      sum += x[k] * (product_[k] - inertia_[i] * y[k]);
-    return sum;
-  };
-  multiply(d, product_);
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
     if (!model_->moves(i)) continue;
     const Block& block = model_->blocks[i];
-    const double damping =
-        viscous_[i] * block.elasticity.material_work(&state.position[block.first], &d[block.first]);
+    const double *of_block = &d[block.first], *position = &state.position[block.first], *h = &h_[h_first_[i]];
+    double *turn = &turn_[block.first], *product = &product_[block.first];
+    const double damping = viscous_[i] * block.elasticity.material_work(position, of_block);
     loss.damping += damping;
-    loss.numerical += 0.5 * (stiffness(i, d, d) - damping);
-  }
-  multiply(turn_, product_);
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
-    if (model_->moves(i)) loss.numerical += stiffness(i, d, turn_) - 0.5 * stiffness(i, turn_, turn_);
+    with_known_size(block.size, [&](auto size) {
+      /// xᵀ H y without inertia, with H y in product.
+      const auto stiffness = [&](const double* x, const double* y) {
+        double sum = 0.0;
+        for (int k = 0; k < 2 * size; ++k) sum += x[k] * (product[k] - inertia_[i] * y[k]);
+        return sum;
+      };
+      multiply_block(size, h, of_block, product);
+      loss.numerical += 0.5 * (stiffness(of_block, of_block) - damping);
+      for (int k = 1; k < size; ++k) {
+        turn[2 * k] = -spin[i] * position[2 * k + 1];
+        turn[2 * k + 1] = spin[i] * position[2 * k];
+      }
+      multiply_block(size, h, turn, product);
+      loss.numerical += stiffness(of_block, turn) - 0.5 * stiffness(turn, turn);
+    });
   }
   for (const GroundSpring& spring :
        model_->springs) {  // linear in D: no part of what the pose update takes out

@@ -110,6 +110,8 @@ class StepProblem {
     for (int k = 0; k < size; ++k) u += phi[k] * Vec2{d[2 * k], d[2 * k + 1]};
     return u;
   }
+  template <typename Size>
+  void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);
   void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,

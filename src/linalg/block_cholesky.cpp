@@ -262,8 +262,12 @@ void BlockCholesky::update_column(std::size_t j) {
     const double* l_jk = &values_[row_value_[first]];
     for (std::size_t e = first; e < row_start_[k + 1]; ++e) {
       const std::size_t i = rows_[e];
-      subtract_block_product(stride<equal>(i) / row_padding, size<equal>(j), size<equal>(k),
-                             &values_[row_value_[e]], l_jk, stride<equal>(j), target_[i]);
+      if constexpr (equal > 0) {
+        subtract_block_product<equal>(&values_[row_value_[e]], l_jk, target_[i]);
+      } else {
+        subtract_block_product(stride_[i] / row_padding, size_[j], size_[k], &values_[row_value_[e]], l_jk,
+                               stride_[j], target_[i]);
+      }
     }
   }
 }
@@ -277,7 +281,11 @@ bool BlockCholesky::factor_columns() {
     load_column(j);
     update_column<equal>(j);
     double* inverse = &values_[column_value_[j]];
-    if (!invert_factor(size<equal>(j), inverse, scale_.data())) return false;
+    if constexpr (equal > 0) {
+      if (!invert_factor<equal>(inverse)) return false;
+    } else {
+      if (!invert_factor(size<equal>(j), inverse, scale_.data())) return false;
+    }
     for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
       double* x = &values_[row_value_[e]];
       if constexpr (equal > 0) {

@@ -128,6 +128,34 @@ inline void subtract_block_product(int lanes, int columns, int k, const double* 
   if (j < columns) rows.template operator()<1>(j);
 }
 
+/// The same for blocks of n rows and columns, n a multiple of 6.
+template <int n>
+void subtract_block_product(const double* a, const double* b, double* c) {
+  constexpr int stride = padded_rows(n), lanes = stride / row_padding, columns = 6;
+  for (int j = 0; j < n; j += columns) {
+    Lanes t[columns][lanes];
+#pragma GCC unroll 6
+    for (int i = 0; i < columns; ++i) {
+#pragma GCC unroll 2
+      for (int l = 0; l < lanes; ++l) t[i][l] = load(c + (j + i) * stride + l * row_padding);
+    }
+#pragma GCC unroll 12
+    for (int q = 0; q < n; ++q) {
+#pragma GCC unroll 2
+      for (int l = 0; l < lanes; ++l) {
+        const Lanes x = -load(a + q * stride + l * row_padding);
+#pragma GCC unroll 6
+        for (int i = 0; i < columns; ++i) t[i][l] = add_product(x, broadcast(b[q * stride + j + i]), t[i][l]);
+      }
+    }
+#pragma GCC unroll 6
+    for (int i = 0; i < columns; ++i) {
+#pragma GCC unroll 2
+      for (int l = 0; l < lanes; ++l) store(c + (j + i) * stride + l * row_padding, t[i][l]);
+    }
+  }
+}
+
 /// Replaces a symmetric positive definite block A = L Lᵀ (lower triangle) by L⁻¹ (its upper triangle zero). False when a pivot is
 /// not positive. By A = U D Uᵀ, U with a diagonal of ones: then no root is waited for.
 inline bool invert_factor(int n, double* a, double* scale) {
@@ -165,6 +193,61 @@ inline bool invert_factor(int n, double* a, double* scale) {
   for (int i = 0; i < n; ++i) scale[i] = std::sqrt(scale[i]);
   for (int j = 0; j < n; ++j) {
     for (int i = j; i < n; ++i) a[j * stride + i] *= scale[i];
+  }
+  return true;
+}
+
+/// The same for blocks of n unknowns, held in registers.
+template <int n>
+bool invert_factor(double* a) {
+  constexpr int stride = padded_rows(n), lanes = stride / row_padding;
+  const Lanes first{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
+  Lanes column[n][lanes], scale[lanes]{};
+#pragma GCC unroll 12
+  for (int j = 0; j < n; ++j) {
+#pragma GCC unroll 2
+    for (int l = 0; l < lanes; ++l) column[j][l] = load(a + j * stride + l * row_padding);
+  }
+  const auto entry = [&](int row, int j) { return column[j][row / row_padding][row % row_padding]; };
+#pragma GCC unroll 12
+  for (int j = 0; j < n; ++j) {
+    const double pivot = entry(j, j);
+    if (!(pivot > 0.0)) return false;
+    const double inverse = 1.0 / pivot;
+    scale[j / row_padding][j % row_padding] = inverse;
+#pragma GCC unroll 12
+    for (int q = j + 1; q < n; ++q) {
+      const Lanes factor = broadcast(entry(q, j) * inverse);
+#pragma GCC unroll 2
+      for (int l = q / row_padding; l < lanes; ++l)
+        column[q][l] = subtract_product(column[j][l], factor, column[q][l]);
+    }
+  }
+#pragma GCC unroll 12
+  for (int j = 0; j < n; ++j) {
+    const Lanes factor = broadcast(scale[j / row_padding][j % row_padding]);
+#pragma GCC unroll 2
+    for (int l = 0; l < lanes; ++l) {
+      const Lanes row = first + broadcast(l * row_padding - j);
+      column[j][l] = row > 0.0 ? column[j][l] * factor : row == 0.0 ? broadcast(1.0) : Lanes{};
+    }
+  }
+#pragma GCC unroll 12
+  for (int j = n - 1; j >= 0; --j) {
+#pragma GCC unroll 12
+    for (int q = n - 1; q > j; --q) {
+      const Lanes factor = broadcast(entry(q, j));
+      column[j][q / row_padding][q % row_padding] = 0.0;
+#pragma GCC unroll 2
+      for (int l = q / row_padding; l < lanes; ++l)
+        column[j][l] = subtract_product(column[q][l], factor, column[j][l]);
+    }
+  }
+#pragma GCC unroll 2
+  for (int l = 0; l < lanes; ++l) {
+    for (int k = 0; k < row_padding; ++k) scale[l][k] = std::sqrt(scale[l][k]);
+#pragma GCC unroll 12
+    for (int j = 0; j < n; ++j) store(a + j * stride + l * row_padding, column[j][l] * scale[l]);
   }
   return true;
 }
