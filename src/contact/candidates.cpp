@@ -15,6 +15,21 @@ double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
   return norm(p - a - s * d);
 }
 
+namespace {
+
+void find_block_pairs(CandidateList& list) {
+  const auto blocks = [&](std::size_t k) {
+    return std::minmax(list.pairs[k].block_a, list.pairs[k].block_b);
+  };
+  list.block_pairs.clear();
+  for (std::size_t k = 0; k < list.pairs.size(); ++k) {
+    if (k == 0 || blocks(k) != blocks(k - 1)) list.block_pairs.push_back(k);
+  }
+  list.block_pairs.push_back(list.pairs.size());
+}
+
+}  // namespace
+
 bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list) {
   const auto blocks = at(surface.blocks());
   std::vector<std::uint8_t> dirty(blocks, looked_at_.empty());
@@ -46,7 +61,9 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     }
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
-  return any && merge(collect(surface, dirty), dirty, list);
+  const bool changed = any && merge(collect(surface, dirty), dirty, list);
+  if (changed || list.block_pairs.empty()) find_block_pairs(list);
+  return changed;
 }
 
 namespace {

@@ -12,7 +12,7 @@ namespace keyblock::contact {
 namespace {
 
 constexpr std::size_t worth_threads = 10'000;  // vertices, candidates or contacts
-constexpr std::size_t piece = 4'096;           // candidates
+constexpr std::size_t piece = 1'024;           // pairs of blocks
 
 /// Length over [0, edge_length] that the edge of the vertex towards `other` shares with an edge it faces.
 double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 normal, Vec2 tangent,
@@ -37,73 +37,110 @@ void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
       corner.position = surface.position[e];
       corner.length = norm(along);
       corner.tangent = corners_[next].before = along / corner.length;
-      corner.reflex = surface.reflex[e] != 0;
-      corner.reflex_end = surface.reflex[next] != 0;
+      corner.reflex = surface.reflex[e] + 2.0 * surface.reflex[next];
     }
   });
 }
 
-/// Whether a candidate is a contact, but for others of the same two corners. Without branches: which of the conditions fails is a
-/// matter of chance.
-bool Detection::passes(const Candidate& c, const PairMotion& pair, bool bonded, Found& found) const {
-  const Corner &edge = corners_[at(c.edge)], &vertex = corners_[at(c.vertex)];
-  const Vec2 normal = edge.normal(), from_start = vertex.position - edge.position;
-  const double gap = dot(normal, from_start), along = dot(edge.tangent, from_start);
-  const double zone = std::min(tolerances_.end_zone + pair.reach, 0.5 * edge.length);
-  const double deep_zone = std::max(pair.deepest, zone);
-  const double before = edge.reflex ? deep_zone : zone, after = edge.reflex_end ? deep_zone : zone;
+/// Those of a group that are contacts, but for others of the same two corners, to `found`. Returns their number. All at once and
+/// without branches: which of the conditions fails is a matter of chance.
+std::size_t Detection::pass(const CandidateList& candidates, const Group& group, Found* found) const {
+  static_assert(sizeof(Corner) == sizeof(Lanes));
+  Lanes edge[lane_count], vertex[lane_count];
+  for (std::size_t i = 0; i < lane_count; ++i) {
+    const Candidate& c = candidates.pairs[at(group.candidate[i < group.size ? i : 0])];
+    edge[i] = load(&corners_[at(c.edge)].position.x);
+    vertex[i] = load(&corners_[at(c.vertex)].position.x);
+  }
+  transpose(edge);
+  transpose(vertex);
+  const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6], reflex = edge[7];
+  const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
+  const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
+  const auto least = [](Lanes a, Lanes b) { return b < a ? b : a; };
+  const Lanes reach = load(group.reach.data()), deepest = load(group.deepest.data());
+  const Lanes zone = least(tolerances_.end_zone + reach, 0.5 * length);
+  const Lanes deep_zone = zone < deepest ? deepest : zone;
+  const Lanes before = (reflex == 1.0) | (reflex == 3.0) ? deep_zone : zone,
+              after = reflex >= 2.0 ? deep_zone : zone;
   // The corner of a block that spins may pass the one that is nearest now.
-  const double sine = std::min(1.0, Tolerances::sine_inside + (gap > 0.0 ? pair.turn : 0.0));
+  const Lanes straight = broadcast(Tolerances::sine_inside);
+  const Lanes sine = gap > 0.0 ? least(broadcast(1.0), straight + load(group.turn.data())) : straight;
   // Whether an edge of the vertex lies outside the line, up to an angle.
-  const auto outside = [&](Vec2 tangent) {
-    const double across = dot(normal, tangent);
+  const auto outside = [&](Lanes x, Lanes y) {
+    const Lanes across = nx * x + ny * y;
     return (across >= 0.0) | (across * across <= sine * sine);
   };
-  found.gap = gap;
-  found.along = along;
-  found.near_end = inside(along, edge.length) < zone;
-  return (bonded | (gap <= tolerances_.activation + pair.reach)) & (gap >= -pair.deepest) &
-         (along >= -before) & (along <= edge.length + after) &
-         outside(vertex.tangent) & outside(-1.0 * vertex.before);
+  const auto passes = ((load(group.bonded.data()) > 0.0) | (gap <= tolerances_.activation + reach)) &
+                      (gap >= -deepest) & (along >= -before) & (along <= length + after) &
+                      outside(vertex[2], vertex[3]) & outside(-vertex[4], -vertex[5]);
+  // Near an end, a convex one: there others of the same two corners may be the contact.
+  const auto first_half = along < 0.5 * length;
+  const auto disputed = (least(along, length - along) < zone) &
+                        ~(first_half ? (reflex == 1.0) | (reflex == 3.0) : reflex >= 2.0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < group.size; ++i) {
+    found[count].candidate = group.candidate[i];
+    found[count].pair = group.pair[i];
+    found[count].gap = gap[i];
+    found[count].along = along[i];
+    found[count].first_half = first_half[i] != 0;
+    found[count].disputed = disputed[i] != 0;
+    count += passes[i] != 0 ? 1 : 0;
+  }
+  return count;
 }
 
-/// The contacts among the candidates [first, last) of one pair of blocks, into `found`, which has room for all of them. Returns
-/// their number.
-std::size_t Detection::look_at_pair(const Surface& surface, const CandidateList& candidates,
-                                    std::size_t first, std::size_t last, CandidateList::Finder& memory_of,
-                                    Found* found) const {
-  std::size_t count = 0;
-  const std::size_t a = at(candidates.pairs[first].block_a), b = at(candidates.pairs[first].block_b);
-  const PairMotion pair{motion_.reach[a] + motion_.reach[b], motion_.turn[a] + motion_.turn[b],
-                        std::min({tolerances_.depth_limit, surface.thickness[a], surface.thickness[b]})};
-  const double away = motion_.away[a] + motion_.away[b];
-  CandidateList::Finder bond_of = memory_of;
+/// The contacts among the candidates of pairs of blocks [first, last), into `found`, which has room for all of them. Returns their
+/// number.
+std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList& candidates,
+                                     std::size_t first, std::size_t last, Found* found) const {
+  CandidateList::Finder bond_of(candidates, candidates.block_pairs[first]);
   const auto is_bonded = [&](std::size_t k) {
     const int memory = bond_of(k);
     return memory >= 0 && candidates.memory[at(memory)].bonded;
   };
-  for (std::size_t k = first; k < last; ++k) {
-    const Candidate& c = candidates.pairs[k];
-    if (away < c.clearance) continue;
-    found[count].candidate = static_cast<int>(k);
-    count += passes(c, pair, may_bond_ && is_bonded(k), found[count]) ? 1 : 0;
+  std::size_t count = 0;
+  Group group;
+  group.bonded.fill(0.0);
+  const auto take = [&] {
+    if (group.size > 0) count += pass(candidates, group, found + count);
+    group.size = 0;
+  };
+  for (std::size_t p = first; p < last; ++p) {
+    const std::size_t begin = candidates.block_pairs[p], end = candidates.block_pairs[p + 1];
+    const std::size_t a = at(candidates.pairs[begin].block_a), b = at(candidates.pairs[begin].block_b);
+    const double reach = motion_.reach[a] + motion_.reach[b], turn = motion_.turn[a] + motion_.turn[b],
+                 away = motion_.away[a] + motion_.away[b],
+                 deepest = std::min({tolerances_.depth_limit, surface.thickness[a], surface.thickness[b]});
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = group.size;
+      group.candidate[i] = static_cast<int>(k);
+      group.pair[i] = static_cast<int>(p);
+      group.reach[i] = reach;
+      group.turn[i] = turn;
+      group.deepest[i] = deepest;
+      if (any_bond_) group.bonded[i] = is_bonded(k) ? 1.0 : 0.0;
+      group.size += away < candidates.pairs[k].clearance ? 0 : 1;
+      if (group.size == lane_count) take();
+    }
   }
+  take();
+
+  CandidateList::Finder memory_of(candidates, candidates.block_pairs[first]);
   for (std::size_t i = 0; i < count; ++i) {
     Found& f = found[i];
     f.memory = memory_of(at(f.candidate));
-    f.low = f.high = -1;
-    if (!f.near_end) continue;
     const Candidate& c = candidates.pairs[at(f.candidate)];
-    const Corner& edge = corners_[at(c.edge)];
-    const bool first_half = f.along < 0.5 * edge.length;
-    if (first_half ? edge.reflex : edge.reflex_end) continue;
-    std::tie(f.low, f.high) = std::minmax(c.vertex, first_half ? c.edge : surface.next[at(c.edge)]);
+    const int corner = f.first_half ? c.edge : surface.next[at(c.edge)];
+    f.low = f.disputed ? std::min(c.vertex, corner) : -1;
+    f.high = f.disputed ? std::max(c.vertex, corner) : -1;
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (found[i].candidate < 0 || found[i].low < 0) continue;
     std::array<Found*, 4> rivals;  // two edges end in each corner
     std::size_t size = 0;
-    for (std::size_t k = i; k < count && size < rivals.size(); ++k) {
+    for (std::size_t k = i; k < count && found[k].pair == found[i].pair && size < rivals.size(); ++k) {
       if (found[k].low == found[i].low && found[k].high == found[i].high) rivals[size++] = &found[k];
     }
     compete(std::span(rivals).first(size), candidates);
@@ -112,38 +149,22 @@ std::size_t Detection::look_at_pair(const Surface& surface, const CandidateList&
   return static_cast<std::size_t>(end - found);
 }
 
-/// Piece by piece of the candidates, so that the order of what is found is the same whoever finds it.
+/// Piece by piece of the pairs of blocks, so that the order of what is found is the same whoever finds it.
 void Detection::look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team) {
-  const std::vector<Candidate>& pairs = candidates.pairs;
-  const std::size_t n = pairs.size(), pieces = (n + piece - 1) / piece;
-  const auto same_blocks = [&](std::size_t k, std::size_t l) {
-    const Candidate &x = pairs[k], &y = pairs[l];
-    return (x.block_a == y.block_a && x.block_b == y.block_b) ||
-           (x.block_a == y.block_b && x.block_b == y.block_a);
-  };
-  const auto end_of_pair = [&](std::size_t k) {
-    while (k < n && same_blocks(k - 1, k)) ++k;
-    return k;
-  };
-  const auto begin_of_piece = [&](std::size_t p) { return p == 0 ? 0 : end_of_pair(std::min(n, p * piece)); };
-  room_.resize(n);
+  const std::vector<std::size_t>& begins = candidates.block_pairs;
+  const std::size_t n = begins.size() - 1, pieces = (n + piece - 1) / piece;
+  room_.resize(candidates.pairs.size());
   std::vector<std::size_t> count(pieces, 0);
   const auto look_at_piece = [&](std::size_t p) {
-    const std::size_t begin = begin_of_piece(p), end = begin_of_piece(p + 1);
-    CandidateList::Finder memory_of(candidates, begin);
-    for (std::size_t first = begin; first < end;) {
-      const std::size_t last = end_of_pair(first + 1);
-      count[p] += look_at_pair(surface, candidates, first, last, memory_of, &room_[begin + count[p]]);
-      first = last;
-    }
+    count[p] = look_at_pairs(surface, candidates, p * piece, std::min(n, (p + 1) * piece),
+                             &room_[begins[p * piece]]);
   };
-  team.for_range(pieces, std::max<std::size_t>(2, worth_threads / piece),
-                 [&](std::size_t begin, std::size_t end) {
-                   for (std::size_t p = begin; p < end; ++p) look_at_piece(p);
-                 });
+  team.for_range(pieces, 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) look_at_piece(p);
+  });
   std::size_t total = 0;
   for (std::size_t p = 0; p < pieces; ++p) {
-    if (p > 0) std::copy_n(&room_[begin_of_piece(p)], count[p], &room_[total]);
+    if (p > 0) std::copy_n(&room_[begins[p * piece]], count[p], &room_[total]);
     total += count[p];
   }
   found_ = std::span(room_).first(total);
@@ -153,7 +174,8 @@ void Detection::find(const Surface& surface, const Motion& motion, const Candida
                      ThreadTeam& team, std::vector<Contact>& contacts) {
   motion_ = motion;
   measure_corners(surface, team);
-  may_bond_ = std::any_of(laws_.begin(), laws_.end(), [](const JointLaw& law) { return law.may_bond(); });
+  any_bond_ = std::any_of(candidates.memory.begin(), candidates.memory.end(),
+                          [](const Memory& memory) { return memory.bonded; });
   look(surface, candidates, team);
   contacts.resize(found_.size());
   team.for_range(found_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {

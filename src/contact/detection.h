@@ -1,10 +1,12 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
 #include "contact/candidates.h"
 #include "contact/surface.h"
+#include "core/lanes.h"
 #include "core/parallel.h"
 
 namespace keyblock::contact {
@@ -70,32 +72,37 @@ class Detection {
   [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
 
  private:
-  /// A vertex, and the edge that begins there.
+  /// A vertex, and the edge that begins there: eight numbers, to be read at once.
   struct Corner {
     Vec2 position;
-    Vec2 tangent, before;                     ///< directions of the edge and of the one that ends here
-    double length = 0.0;                      ///< m, of the edge
-    bool reflex = false, reflex_end = false;  ///< Surface::reflex here and at the end of the edge
+    Vec2 tangent, before;  ///< directions of the edge and of the one that ends here
+    double length = 0.0;   ///< m, of the edge
+    double reflex = 0.0;   ///< Surface::reflex here, and twice that at the end of the edge
     [[nodiscard]] Vec2 normal() const { return {tangent.y, -tangent.x}; }
   };
   /// A candidate that passes the geometry.
   struct Found {
     int candidate;      ///< −1: has lost to another of the same two corners
+    int pair;           ///< of blocks
     int memory;         ///< of the list, that it goes on with; −1: none
-    int low, high;      ///< the two corners that meet; −1: the vertex is not near an end of the edge
+    int low, high;      ///< the two corners that meet; −1: none
+    bool first_half;    ///< of the edge is where the vertex is
+    bool disputed;      ///< the vertex is near an end of the edge, so that two corners meet
     double gap, along;  ///< m
-    bool near_end;      ///< of the edge
   };
   void measure_corners(const Surface& surface, ThreadTeam& team);
   void look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team);
-  std::size_t look_at_pair(const Surface& surface, const CandidateList& candidates, std::size_t first,
-                           std::size_t last, CandidateList::Finder& memory_of, Found* found) const;
-  /// Of two blocks together.
-  struct PairMotion {
-    double reach, turn;  ///< Motion
-    double deepest;      ///< m, depth up to which they may be in contact
+  std::size_t look_at_pairs(const Surface& surface, const CandidateList& candidates, std::size_t first,
+                            std::size_t last, Found* found) const;
+  /// Up to as many candidates as there are lanes, and what their two blocks together may do (Motion).
+  struct Group {
+    std::size_t size = 0;
+    std::array<int, lane_count> candidate, pair;
+    std::array<double, lane_count> reach, turn;
+    std::array<double, lane_count> deepest;  ///< m, depth up to which they may be in contact
+    std::array<double, lane_count> bonded;   ///< 1 or 0
   };
-  bool passes(const Candidate& c, const PairMotion& pair, bool bonded, Found& found) const;
+  std::size_t pass(const CandidateList& candidates, const Group& group, Found* found) const;
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
   void compete(std::span<Found* const> rivals, const CandidateList& candidates) const;
@@ -107,7 +114,7 @@ class Detection {
   std::vector<double> penalty_;
   // Scratch.
   std::vector<Corner> corners_;  ///< per vertex
-  bool may_bond_ = false;        ///< whether there is a law with bonds
+  bool any_bond_ = false;        ///< whether a contact of the last step is bonded
   Motion motion_;                ///< in the step
   std::vector<Found> room_;      ///< for all candidates to pass
   std::span<Found> found_;       ///< its beginning: the contacts, in the order of the candidates

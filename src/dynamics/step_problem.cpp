@@ -266,7 +266,6 @@ void add_outer(const double* phi_r, int rows, const double* phi_c, int columns, 
 /// The same between two blocks of N basis functions, a column at once.
 template <int size>
 void add_outer(const double* phi_r, const double* phi_c, Stiffness k, double scale, double* target) {
-  using linalg::Lanes, linalg::load, linalg::store;
   constexpr int stride = linalg::padded_rows(2 * size), lanes = stride / linalg::row_padding;
   const auto phi = [&](int r) { return r < size ? phi_r[r] : 0.0; };
   Lanes rows[lanes];
@@ -279,7 +278,7 @@ void add_outer(const double* phi_r, const double* phi_c, Stiffness k, double sca
       ky{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, k.xy, k.yy};
 #pragma GCC unroll 6
   for (int c = 0; c < size; ++c) {
-    const Lanes f = linalg::broadcast(scale * phi_c[c]), fx = f * kx, fy = f * ky;
+    const Lanes f = broadcast(scale * phi_c[c]), fx = f * kx, fy = f * ky;
     double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
     double* y = x + stride;
 #pragma GCC unroll 2

@@ -6,27 +6,20 @@
 #include <immintrin.h>
 #endif
 
+#include "core/lanes.h"
 #include "linalg/block_solver.h"
 
 /// Dense kernels on blocks stored by columns with padded rows, the padding zero. Every lane is computed on its own, sums run in
 /// a fixed order and products are fused with sums by name, so that any instruction set gives the same bits.
 namespace keyblock::linalg {
 
-using Lanes = double __attribute__((vector_size(row_padding * sizeof(double)), aligned(8)));
+static_assert(row_padding == lane_count);
 
-inline Lanes load(const double* p) {
-  return *reinterpret_cast<const Lanes*>(p);
-}
 inline Lanes load(const float* p) {
   using Narrow = float __attribute__((vector_size(row_padding * sizeof(float)), aligned(4)));
   return __builtin_convertvector(*reinterpret_cast<const Narrow*>(p), Lanes);
 }
-inline void store(double* p, Lanes v) {
-  *reinterpret_cast<Lanes*>(p) = v;
-}
-inline Lanes broadcast(double x) {
-  return Lanes{x, x, x, x, x, x, x, x};
-}
+using keyblock::load;
 
 /// c + a b, rounded once.
 inline Lanes add_product(Lanes a, Lanes b, Lanes c) {

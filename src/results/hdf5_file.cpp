@@ -12,7 +12,7 @@
 namespace keyblock::results::hdf5 {
 namespace {
 
-constexpr unsigned deflate_level = 4;
+constexpr unsigned deflate_level = 1;
 // Chunks hold whole rows, about this many bytes of them.
 constexpr std::size_t chunk_bytes = 65536;
 

@@ -1,0 +1,42 @@
+#pragma once
+
+namespace keyblock {
+
+/// Numbers that are computed at once: each lane on its own, so that any instruction set gives the same bits.
+inline constexpr int lane_count = 8;
+using Lanes = double __attribute__((vector_size(lane_count * sizeof(double)), aligned(8)));
+
+inline Lanes load(const double* p) {
+  return *reinterpret_cast<const Lanes*>(p);
+}
+inline void store(double* p, Lanes v) {
+  *reinterpret_cast<Lanes*>(p) = v;
+}
+inline Lanes broadcast(double x) {
+  return Lanes{x, x, x, x, x, x, x, x};
+}
+
+/// Rows become columns.
+inline void transpose(Lanes (&m)[lane_count]) {
+  Lanes pairs[lane_count], fours[lane_count];
+#pragma GCC unroll 4
+  for (int r = 0; r < 8; r += 2) {  // [r]: columns 0 2 4 6 of rows r and r + 1, [r + 1]: columns 1 3 5 7
+    pairs[r] = __builtin_shufflevector(m[r], m[r + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pairs[r + 1] = __builtin_shufflevector(m[r], m[r + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+#pragma GCC unroll 2
+  for (int r = 0; r < 8; r += 4) {  // [r + c]: columns c and c + 4 of rows r … r + 3
+#pragma GCC unroll 2
+    for (int c = 0; c < 2; ++c) {
+      fours[r + c] = __builtin_shufflevector(pairs[r + c], pairs[r + c + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[r + c + 2] = __builtin_shufflevector(pairs[r + c], pairs[r + c + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  }
+#pragma GCC unroll 4
+  for (int c = 0; c < 4; ++c) {
+    m[c] = __builtin_shufflevector(fours[c], fours[c + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    m[c + 4] = __builtin_shufflevector(fours[c], fours[c + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+}  // namespace keyblock
