@@ -78,7 +78,8 @@ bool Corrections::find_direction() {
   return true;
 }
 
-bool Corrections::solve(std::span<const Law> laws, std::span<const double> stretch) {
+bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double> half,
+                        std::span<const Law> laws, std::span<const double> stretch) {
   constexpr int most_iterations = 60;
   constexpr double rounding = 1e-13;
   stretch_.resize(size_);
@@ -86,7 +87,8 @@ bool Corrections::solve(std::span<const Law> laws, std::span<const double> stret
   missing_.resize(size_);
   piece_.resize(size_);
   step_.resize(size_);
-  for (std::size_t s = 0; s < size_; ++s) stretch_[s] = stretch[s] - compliance_times(s, force_);
+  for (std::size_t s = 0; s < size_; ++s)
+    stretch_[s] = stretch[s] + solver.product(half_[s], half) - compliance_times(s, force_);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     double largest = 0.0, missing = 0.0;
     for (std::size_t s = 0; s < size_; ++s) {
@@ -122,12 +124,10 @@ bool Corrections::solve(std::span<const Law> laws, std::span<const double> stret
   return false;
 }
 
-void Corrections::add_to(linalg::HalfSolver& solver, std::span<double> d) {
+void Corrections::finish(linalg::HalfSolver& solver, std::span<const double> half, std::span<double> d) {
   scaled_.resize(size_);
-  change_.resize(d.size());
   for (std::size_t s = 0; s < size_; ++s) scaled_[s] = -force_[s];
-  solver.finish(std::span(half_).first(size_), scaled_, change_);
-  for (std::size_t k = 0; k < d.size(); ++k) d[k] += change_[k];
+  solver.finish(half, std::span(half_).first(size_), scaled_, d);
 }
 
 }  // namespace keyblock::dynamics

@@ -12,7 +12,7 @@ namespace keyblock::dynamics {
 ///
 ///     D = D₀ − A⁻¹ Σ_s a_s φ_s,     φ_s = β_s(e_s),     e = e⁰ − C φ,     C_st = a_sᵀ A⁻¹ a_t = (L⁻¹ a_s)ᵀ (L⁻¹ a_t)
 ///
-/// where e_s is the stretch of spring s, a_s = ∂e_s/∂D, and β_s by how much its force differs from its straight line (Woodbury's
+/// where e_s is the stretch of spring s, e⁰ that at D₀, a_s = ∂e_s/∂D, and β_s by how much its force differs from its straight line (Woodbury's
 /// formula, with springs that may change their state). φ minimizes ½ φᵀ C φ + Σ ∫β_s de: as many unknowns as springs.
 class Corrections {
  public:
@@ -31,11 +31,12 @@ class Corrections {
   [[nodiscard]] std::size_t size() const { return size_; }
   /// Adds a spring; a and b: the parts of a_s.
   void add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, linalg::HalfSolver::Part b);
-  /// φ, given the law of every spring and its stretch at D₀. False when it is not found.
-  [[nodiscard]] bool solve(std::span<const Law> laws, std::span<const double> stretch);
+  /// φ, given half of D₀, the law of every spring and its stretch at D = 0. False when it is not found.
+  [[nodiscard]] bool solve(const linalg::HalfSolver& solver, std::span<const double> half,
+                           std::span<const Law> laws, std::span<const double> stretch);
   [[nodiscard]] std::span<const double> forces() const { return force_; }
-  /// d += D − D₀.
-  void add_to(linalg::HalfSolver& solver, std::span<double> d);
+  /// D, given half of D₀.
+  void finish(linalg::HalfSolver& solver, std::span<const double> half, std::span<double> d);
 
  private:
   [[nodiscard]] double compliance(std::size_t s, std::size_t t) const {
@@ -54,7 +55,7 @@ class Corrections {
   std::vector<double> direction_, step_;  ///< of φ; what it takes off e
   std::vector<std::size_t> bent_;         ///< springs with ∂β/∂e ≠ 0
   std::vector<double> triangle_, right_;
-  std::vector<double> scaled_, change_;
+  std::vector<double> scaled_;
 };
 
 }  // namespace keyblock::dynamics

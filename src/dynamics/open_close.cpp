@@ -10,11 +10,16 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
-constexpr double forcing = 0.003;     // of what is out of balance, likewise
+constexpr double forcing = 0.003;  // of what is out of balance, likewise
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
+/// Vertex and edge.
+std::pair<int, int> key_of(const contact::Contact& contact) {
+  return {contact.vertex, contact.edge};
+}
+
+constexpr int longest_wait = 32;  // steps without a kept factor after failures
 
 }  // namespace
 
@@ -46,6 +51,13 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
   bound_steps_.clear();
 }
 
+/// Whether the factor of an earlier step is near enough to that of this one to be tried.
+bool OpenClose::can_keep_factor(const StepProblem& problem, linalg::BlockSolver& solver) const {
+  return factor_.solver == &solver && problem.has_weights() &&
+         std::ranges::equal(factor_.contacts, contacts_, {}, {}, key_of) &&
+         std::ranges::equal(factor_.inertia, problem.inertias());
+}
+
 /// out += scale · ∂ψ/∂D for a contact whose springs push with `force`.
 void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                           std::span<double> out) {
@@ -68,13 +80,22 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
     if (!assembled_) {
       problem.assemble(solver);
       factored_.assign(rows.size(), Piece{});
+      factor_.solver = &solver;
+      free_.clear();
+      factor_.contacts.resize(rows.size());
+      std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
+      factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
+      factor_.normal_stiffness.assign(rows.size(), 0.0);
+      factor_.shear_stiffness.assign(rows.size(), 0.0);
+      kept_ = false;
     }
     bool any = !assembled_;
     for (std::size_t c = 0; c < rows.size(); ++c) {
       const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
       if (from.same_springs(to)) continue;
-      const double kn = springs_.normal_stiffness(c, to) - springs_.normal_stiffness(c, from),
-                   ks = springs_.shear_stiffness(c, to) - springs_.shear_stiffness(c, from);
+      const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
+                   kn = normal - std::exchange(factor_.normal_stiffness[c], normal),
+                   ks = shear - std::exchange(factor_.shear_stiffness[c], shear);
       if (kn == 0.0 && ks == 0.0) continue;
       problem.add_springs(rows[c], kn, ks, solver);
       any = true;
@@ -222,7 +243,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   const bool corrects = solver.halves() != nullptr;
   const auto settled = [&] { return problem.residual_ratio(gradient_) < options.tolerance; };
   if (!warm && corrects) {
-    if (!factor(problem, solver, result)) return false;
+    if (!kept_ && !factor(problem, solver, result)) return false;
   } else if (!warm) {
     if (!first_solve(problem, solver, options.tolerance, d, result)) return false;
     // The same springs act; what may still differ is the direction in which a contact slides.
@@ -235,6 +256,11 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
     if (tries > 0 && (result.iterations == 0 || bent_contacts() <= most_corrected / 3)) {
       --tries;
       if (correct(problem, solver, options.tolerance, d, result) && settled()) return true;
+      if (kept_) {
+        if (!factor(problem, solver, result)) return false;
+        ++tries;
+        continue;
+      }
     }
     if (!newton_step(problem, solver, options.tolerance, d, result)) return false;
     if (problem.residual_ratio(gradient_) < enough) return true;
@@ -342,6 +368,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
                                  linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
                                  Profile& profile, std::span<double> d) {
   team_ = &team;
+  contacts_ = contacts;
   profile_ = &profile;
   const Profile::Scope scope(profile, Phase::search);
   const std::size_t rows = problem.rows().size();
@@ -350,6 +377,18 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   direction_.resize(d.size());
   residual_.assign(d.size(), 0.0);
   start(problem, contacts);
+  kept_ = wait_ == 0 && solver.halves() != nullptr && can_keep_factor(problem, solver);
+  wait_ = std::max(0, wait_ - 1);
+  const bool tried = kept_;
+  const std::size_t corrected = kept_ ? corrections_.size() : 0;
+  free_.clear();
+  if (kept_) {
+    // Pieces on which the same springs act have the same matrix.
+    for (std::size_t c = 0; c < rows; ++c) {
+      if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
+    }
+    find_free_blocks(problem);
+  }
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
   worst_ = HUGE_VAL;
@@ -389,6 +428,13 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     });
   }
   result.residual_ratio = problem.residual_ratio(gradient_);
+  // The next step is expected to correct as many more springs as this one did.
+  const bool few = 2 * corrections_.size() <= most_kept + corrected;
+  if (!result.converged || result.refinements >= most_refinements || !few) factor_.solver = nullptr;
+  if (tried) {
+    wait_ = kept_ ? 0 : next_wait_;
+    next_wait_ = kept_ ? 1 : std::min(2 * next_wait_, longest_wait);
+  }
   return result;
 }
 

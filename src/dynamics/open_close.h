@@ -1,5 +1,7 @@
 #pragma once
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/profile.h"
@@ -18,6 +20,7 @@ struct OpenCloseResult {
   bool bond_broken = false;    ///< some contact lost its cohesion and tension on the way
   int iterations = 0;          ///< linear solves
   int factorizations = 0;
+  int refinements = 0;          ///< corrections of what the factor of an earlier step gets wrong
   int multiplier_updates = 0;   ///< of an augmented Lagrangian
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
   double residual_ratio = 0.0;  ///< at the end
@@ -29,6 +32,8 @@ struct OpenCloseResult {
 ///     2. correct that for the springs that act otherwise, a few of thousands, with the same factor (Corrections), until no others
 ///        do. Where the solver has no factor, or they are many, repeat: solve ∇²Π p = −∇Π with the springs acting at D, and go to
 ///        the minimum of Π(D + αp), which is the root of a piecewise linear function of α;
+///        The factor may be that of an earlier step with the same contacts and inertia: what its matrix, some micrometres old, gets
+///        wrong shows in the exact gradient, and is refined away or, where that does not do, ends it;
 ///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
 ///        (a new contact has no friction otherwise, in its first step);
 ///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
@@ -48,6 +53,12 @@ class OpenClose {
   /// r of every row at the solution.
   [[nodiscard]] std::span<const Vec2> relative() const { return r_; }
   [[nodiscard]] std::span<const double> gradient() const { return gradient_; }
+  /// Makes the next step factor its matrix, as it does after a restart or when the pattern has changed.
+  void forget_factor() {
+    factor_.solver = nullptr;
+    wait_ = 0;
+    next_wait_ = 1;
+  }
 
  private:
   using Piece = SpringArray::Piece;
@@ -55,18 +66,20 @@ class OpenClose {
   using Force = SpringArray::Force;
 
   void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
+  [[nodiscard]] bool can_keep_factor(const StepProblem& problem, linalg::BlockSolver& solver) const;
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
   bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                    std::span<double> d, OpenCloseResult& result);
-  void solve_base(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                  OpenCloseResult& result);
+  void solve_base(const StepProblem& problem, linalg::HalfSolver& halves);
   void place(const StepProblem& problem, std::span<const double> d);
   int correct_bends(const StepProblem& problem, linalg::HalfSolver& halves);
-  bool find_corrections(const StepProblem& problem);
+  bool find_corrections(const linalg::HalfSolver& halves);
   void forget_corrections();
+  void find_free_blocks(const StepProblem& problem);
+  void find_gradient(const StepProblem& problem, std::span<const double> d);
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
                OpenCloseResult& result);
   bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
@@ -88,11 +101,25 @@ class OpenClose {
   ThreadTeam* team_ = nullptr;
   Profile* profile_ = nullptr;
   SpringArray springs_;
-  std::vector<double> friction_;    ///< per contact, μ; −1: the bound is not Coulomb's
-  std::vector<double> cohesion_;    ///< N per thickness, per contact: of bonds
-  bool any_bond_ = false;           ///< that may break in this step
-  std::vector<Piece> factored_;     ///< per contact: what the matrix at hand was made with
-  bool assembled_ = false;          ///< in this step
+  std::vector<double> friction_;                ///< per contact, μ; −1: the bound is not Coulomb's
+  std::vector<double> cohesion_;                ///< N per thickness, per contact: of bonds
+  bool any_bond_ = false;                       ///< that may break in this step
+  std::vector<Piece> factored_;                 ///< per contact: what the matrix at hand was made with
+  bool assembled_ = false;                      ///< in this step
+  std::span<const contact::Contact> contacts_;  ///< of this step
+  /// What the factor at hand was made for.
+  struct Factor {
+    const linalg::BlockSolver* solver = nullptr;  ///< that has it; null: there is none
+    std::vector<std::pair<int, int>> contacts;    ///< vertex and edge of each
+    std::vector<double> inertia;                  ///< per block
+    std::vector<double> normal_stiffness,
+        shear_stiffness;  ///< N/m per thickness, per contact: of springs in the matrix; else 0
+  };
+  Factor factor_;
+  bool kept_ = false;              ///< it is that of an earlier step
+  int wait_ = 0, next_wait_ = 1;   ///< steps until a factor is kept again; after the next failure
+  std::vector<std::size_t> free_;  ///< blocks that nothing holds
+  std::vector<std::uint8_t> held_;
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.
   struct Corrected {
@@ -100,13 +127,19 @@ class OpenClose {
     bool normal;
     friend bool operator==(Corrected, Corrected) = default;
   };
+  static constexpr double linear_share =
+      0.3;  ///< of the tolerance of a step, what its linear systems may leave over
   static constexpr std::size_t most_corrected = 64;  ///< springs, beyond which a factorization takes less
-  Corrections corrections_;                          ///< to the matrix at hand
-  std::vector<Corrected> corrected_;                 ///< the springs of these
-  std::vector<Corrected> wanted_;                    ///< scratch
+  static constexpr std::size_t most_kept =
+      32;  ///< as many as are expected in the next step, with which a factor is worth keeping
+  static constexpr int most_refinements = 2;  ///< more of them take what a factorization does
+  Corrections corrections_;                   ///< to the matrix at hand
+  std::vector<Corrected> corrected_;          ///< the springs of these
+  std::vector<Corrected> wanted_;             ///< scratch
   std::vector<Corrections::Law> laws_;
   std::vector<double> stretch_, part_a_, part_b_;
-  std::vector<double> base_;  ///< D₀ of the corrections
+  std::vector<double> base_;        ///< half of D₀ of the corrections
+  std::vector<double> refinement_;  ///< scratch: half of what is taken off D₀
   std::vector<Vec2> r_;
   bool knows_relative_ = false;  ///< r_ is that of the springs
   std::vector<Vec2> shift_;      ///< m, of springs: normal, shear

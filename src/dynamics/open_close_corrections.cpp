@@ -2,20 +2,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "dynamics/open_close.h"
 
 namespace keyblock::dynamics {
 
-/// D₀, where all springs are on the straight lines of the factored matrix.
-void OpenClose::solve_base(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                           OpenCloseResult& result) {
-  ++result.iterations;
+/// Half of D₀, where all springs are on the straight lines of the factored matrix.
+void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halves) {
   std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
   for (std::size_t c = 0; c < springs_.size(); ++c)
     add_force(problem, c, springs_.force_on(c, factored_[c], springs_.y0[c], springs_.w0[c]), -1.0,
               direction_);
-  solve_linear(problem, solver, tolerance);
-  base_ = direction_;
+  const Profile::Scope scope(*profile_, Phase::solution);
+  halves.half_solve(std::span(direction_).first(problem.unknowns()), base_);
 }
 
 /// Springs and their pieces at D, and in bends_ the contacts that are not on the straight lines of the matrix.
@@ -55,31 +54,34 @@ int OpenClose::correct_bends(const StepProblem& problem, linalg::HalfSolver& hal
     problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), part_a_, part_b_);
     corrections_.add(halves, {row.unknown_a, part_a_}, {row.unknown_b, part_b_});
     corrected_.push_back(spring);
+    std::erase_if(free_, [&](std::size_t b) {
+      return problem.unknown(b) == row.unknown_a || problem.unknown(b) == row.unknown_b;
+    });
   }
   return static_cast<int>(wanted_.size());
 }
 
 /// The forces of the springs that are corrected. False when they are not found.
-bool OpenClose::find_corrections(const StepProblem& problem) {
+bool OpenClose::find_corrections(const linalg::HalfSolver& halves) {
   laws_.clear();
   stretch_.clear();
   for (const Corrected spring : corrected_) {
     const std::size_t c = spring.contact;
-    const StepProblem::Row& row = problem.rows()[c];
-    const Vec2 r = problem.relative(row, base_);
     const Piece line = factored_[c];
     const Force constant = springs_.force_on(c, line, 0.0, 0.0);
+    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D = 0 is right.
+    const double in_matrix = spring.normal ? factor_.normal_stiffness[c] : factor_.shear_stiffness[c];
+    const double now = spring.normal ? springs_.kn[c] : springs_.ks[c];
+    const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
     if (spring.normal) {
-      laws_.push_back(
-          {springs_.kn[c], springs_.floor[c], HUGE_VAL, springs_.normal_stiffness(c, line), constant.normal});
-      stretch_.push_back(springs_.y0[c] - dot(row.normal, r));
+      laws_.push_back({stiffness, springs_.floor[c], HUGE_VAL, in_matrix, constant.normal});
+      stretch_.push_back(scale * springs_.y0[c]);
     } else {
-      laws_.push_back({springs_.ks[c], -springs_.bound[c], springs_.bound[c],
-                       springs_.shear_stiffness(c, line), constant.shear});
-      stretch_.push_back(springs_.w0[c] + dot(row.tangent(), r));
+      laws_.push_back({stiffness, -springs_.bound[c], springs_.bound[c], in_matrix, constant.shear});
+      stretch_.push_back(scale * springs_.w0[c]);
     }
   }
-  return corrections_.solve(laws_, stretch_);
+  return corrections_.solve(halves, base_, laws_, stretch_);
 }
 
 void OpenClose::forget_corrections() {
@@ -87,30 +89,68 @@ void OpenClose::forget_corrections() {
   corrected_.clear();
 }
 
+/// Blocks that no spring of the matrix holds, nor any that is corrected. They may turn fast, which the factor of an earlier step
+/// knows nothing of, and are solved alone.
+void OpenClose::find_free_blocks(const StepProblem& problem) {
+  held_.assign(problem.inertias().size(), 0);  // by unknown
+  const auto hold = [&](std::size_t c) {
+    const StepProblem::Row& row = problem.rows()[c];
+    if (row.unknown_a >= 0) held_[at(row.unknown_a)] = 1;
+    if (row.unknown_b >= 0) held_[at(row.unknown_b)] = 1;
+  };
+  for (std::size_t c = 0; c < springs_.size(); ++c) {
+    if (factor_.normal_stiffness[c] > 0.0 || factor_.shear_stiffness[c] > 0.0) hold(c);
+  }
+  for (const Corrected spring : corrected_) hold(spring.contact);
+  free_.clear();
+  for (std::size_t b = 0; b < held_.size(); ++b) {
+    if (problem.moves(b) && held_[at(problem.unknown(b))] == 0) free_.push_back(b);
+  }
+}
+
+/// ∇Π at D, where the springs are.
+void OpenClose::find_gradient(const StepProblem& problem, std::span<const double> d) {
+  problem.multiply(d, gradient_);
+  for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] -= problem.right()[k];
+  for (std::size_t c = 0; c < springs_.size(); ++c) add_force(problem, c, springs_.force(c), 1.0, gradient_);
+}
+
 /// Goes to the minimum with the factor at hand, correcting the springs that act otherwise. They become more until no other does, so
 /// that this ends. False when they are too many, or their forces are not found; D and the gradient are then those of the corrections
-/// so far, or of none.
+/// so far, or of none; and when the factor of an earlier step will not do.
 bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                         std::span<double> d, OpenCloseResult& result) {
   linalg::HalfSolver& halves = *solver.halves();
-  solve_base(problem, solver, tolerance, result);
+  const std::span<double> unknown = d.first(problem.unknowns());
+  const auto finish = [&] {
+    ++result.iterations;
+    const Profile::Scope scope(*profile_, Phase::solution);
+    corrections_.finish(halves, base_, unknown);
+    for (const std::size_t b : free_) problem.solve_alone(b, unknown);
+  };
+  solve_base(problem, halves);
+  std::fill(d.begin(), d.end(), 0.0);
   bool done = false;
-  for (;;) {
-    std::copy(base_.begin(), base_.end(), d.begin());
-    if (corrections_.size() > 0) {
-      if (!find_corrections(problem)) {
-        forget_corrections();
-        place(problem, d);
-        break;
-      }
-      ++result.iterations;
-      const Profile::Scope scope(*profile_, Phase::solution);
-      corrections_.add_to(halves, d);
+  for (int refinements = 0;;) {
+    if (corrections_.size() > 0 && !find_corrections(halves)) {
+      forget_corrections();
+      finish();
+      place(problem, d);
+      break;
     }
+    finish();
     place(problem, d);
     const int added = correct_bends(problem, halves);
+    if (added > 0) continue;
     done = added == 0;
-    if (added <= 0) break;
+    if (!done || !kept_) break;
+    find_gradient(problem, d);
+    if (problem.residual_ratio(gradient_) <= linear_share * tolerance) return true;
+    if (refinements++ == most_refinements) return false;
+    ++result.refinements;
+    const Profile::Scope scope(*profile_, Phase::solution);
+    halves.half_solve(std::span(gradient_).first(problem.unknowns()), refinement_);
+    for (std::size_t k = 0; k < base_.size(); ++k) base_[k] -= refinement_[k];
   }
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
   for (const std::size_t c : bends_) {

@@ -46,9 +46,12 @@ class Stepper {
   void start(State& state);
   /// Brings everything derived to a state read from a checkpoint.
   void resume(State& state);
-  /// Makes the next step look at all blocks anew, as it does after a restart: with that at every checkpoint, a run that is
-  /// resumed gives the same bits as one that is not.
-  void forget_candidates() { candidates_.invalidate(); }
+  /// Makes the next step look at all blocks and factor its matrix anew, as it does after a restart: with that at every
+  /// checkpoint, a run that is resumed gives the same bits as one that is not.
+  void forget_history() {
+    candidates_.invalidate();
+    open_close_.forget_factor();
+  }
   /// The contacts of the state as it is, found anew.
   [[nodiscard]] std::vector<contact::Contact> find_contacts(const State& state);
   /// After excavation: forgets the contacts of blocks that are gone.

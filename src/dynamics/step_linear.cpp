@@ -83,7 +83,10 @@ linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool mu
         *products_ > (is_static ? static_worth : dynamic_worth) * static_cast<double>(state.pattern.size());
   }
   Linear& linear = iterative ? iterative_ : direct_;
-  if (!linear.analysed) linear.solver->analyse(unknown_sizes_, state.pattern);
+  if (!linear.analysed) {
+    linear.solver->analyse(unknown_sizes_, state.pattern);
+    open_close_.forget_factor();
+  }
   linear.analysed = true;
   return *linear.solver;
 }

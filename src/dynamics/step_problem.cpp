@@ -172,23 +172,6 @@ double StepProblem::reduced_mass(const contact::Contact& c) const {
   return a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
 }
 
-namespace {
-
-void add_scaled(const double* phi, int size, Vec2 force, double* out) {
-  for (int k = 0; k < size; ++k) {
-    out[2 * k] += phi[k] * force.x;
-    out[2 * k + 1] += phi[k] * force.y;
-  }
-}
-
-}  // namespace
-
-void StepProblem::add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
-  const double* phi = &phi_[row.phi];
-  add_scaled(phi, row.size_a, force, &out[row.first_a]);
-  add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
-}
-
 void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
                              std::vector<double>& b) const {
   const double* phi = &phi_[row.phi];
@@ -225,6 +208,22 @@ void StepProblem::multiply(std::span<const double> x, std::span<double> y) const
       if (model_->moves(i)) return multiply_block(size, &h_[h_first_[i]], &x[block.first], &y[block.first]);
       std::fill_n(&y[block.first], 2 * size, 0.0);
     });
+  }
+}
+
+void StepProblem::solve_alone(std::size_t i, std::span<double> d) const {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * block.size, stride = linalg::padded_rows(n);
+  std::vector<double> inverse(&h_[h_first_[i]], &h_[h_first_[i]] + at(stride * n)), half(at(n)), scale(at(n));
+  // H holds inertia, and is positive definite.
+  if (!linalg::invert_factor(n, inverse.data(), scale.data())) return;
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c <= r; ++c) half[at(r)] += inverse[at(c * stride + r)] * b_[block.first + at(c)];
+  }
+  for (int c = 0; c < n; ++c) {
+    double& x = d[block.first + at(c)];
+    x = 0.0;
+    for (int r = c; r < n; ++r) x += inverse[at(c * stride + r)] * half[at(r)];
   }
 }
 

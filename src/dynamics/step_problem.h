@@ -73,6 +73,8 @@ class StepProblem {
   }
   /// g = ∇Π(D), given r of every contact; the open-close iteration updates g instead.
   void gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const;
+  /// The increment of a block on which no contact acts, into d.
+  void solve_alone(std::size_t block, std::span<double> d) const;
   /// y = H x.
   void multiply(std::span<const double> x, std::span<double> y) const;
   /// Sets the solver's matrix to H. With add_springs for all that act at r it becomes ∇²Π there.
@@ -82,14 +84,23 @@ class StepProblem {
   /// (∂r/∂D)ᵀ direction: the parts of the two blocks, as long as their coefficients.
   void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.
-  void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const;
+  void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
+    const double* phi = &phi_[row.phi];
+    add_scaled(phi, row.size_a, force, &out[row.first_a]);
+    add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
+  }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
   /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
+  [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
+  [[nodiscard]] int unknown(std::size_t block) const { return model_->blocks[block].unknown; }
   [[nodiscard]] double block_size() const { return model_->block_size; }
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
+  /// Whether there is anything to measure residuals by: not without gravity, loads and shaking.
+  [[nodiscard]] bool has_weights() const { return !weight_.empty() && weight_.front() > 0.0; }
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
+  [[nodiscard]] std::span<const double> inertias() const { return inertia_; }  ///< of all blocks
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
   /// `spin`: what the forces at the end of the step lose against the potential.
   struct ElasticLoss {
@@ -109,6 +120,20 @@ class StepProblem {
     Vec2 u;
     for (int k = 0; k < size; ++k) u += phi[k] * Vec2{d[2 * k], d[2 * k + 1]};
     return u;
+  }
+  /// out_k += φ_k force.
+  static void add_scaled(const double* phi, int size, Vec2 force, double* out) {
+    const auto add = [&](int k) {
+      out[2 * k] += phi[k] * force.x;
+      out[2 * k + 1] += phi[k] * force.y;
+    };
+    if (size == 3) {
+      add(0);
+      add(1);
+      add(2);
+      return;
+    }
+    for (int k = 0; k < size; ++k) add(k);
   }
   template <typename Size>
   void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);

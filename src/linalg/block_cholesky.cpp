@@ -24,9 +24,11 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
   HalfSolver* halves() override { return this; }
   void half_solve(Part a, Part b, HalfSolution& half) override;
+  void half_solve(std::span<const double> b, std::vector<double>& half) override;
   [[nodiscard]] double product(const HalfSolution& x, const HalfSolution& y) const override;
-  void finish(std::span<const HalfSolution> halves, std::span<const double> factor,
-              std::span<double> x) override;
+  [[nodiscard]] double product(const HalfSolution& x, std::span<const double> y) const override;
+  void finish(std::span<const double> half, std::span<const HalfSolution> halves,
+              std::span<const double> factor, std::span<double> x) override;
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -436,9 +438,24 @@ double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) cons
   return sum(t);
 }
 
-void BlockCholesky::finish(std::span<const HalfSolution> halves, std::span<const double> factor,
-                           std::span<double> x) {
-  std::fill(work_.begin(), work_.end(), 0.0);
+double BlockCholesky::product(const HalfSolution& x, std::span<const double> y) const {
+  Lanes t{};
+  for (std::size_t j = at(x.column); j != none; j = parent_[j]) {
+    for (std::size_t l = 0; l < at(stride_[j]); l += row_padding)
+      t = add_product(load(&x.values[above_[j] + l]), load(&y[work_start_[j] + l]), t);
+  }
+  return sum(t);
+}
+
+void BlockCholesky::half_solve(std::span<const double> b, std::vector<double>& half) {
+  take(b);
+  for_equal_size([&]<int equal>() { forward<equal>(); });
+  half = work_;
+}
+
+void BlockCholesky::finish(std::span<const double> half, std::span<const HalfSolution> halves,
+                           std::span<const double> factor, std::span<double> x) {
+  std::copy(half.begin(), half.end(), work_.begin());
   for (std::size_t k = 0; k < halves.size(); ++k) {
     for (std::size_t j = at(halves[k].column); j != none; j = parent_[j]) {
       double* y = &work_[work_start_[j]];

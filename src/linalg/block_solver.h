@@ -43,11 +43,14 @@ class HalfSolver {
   };
   /// half = L⁻¹ (a + b). The two blocks have a pair, or one of them is −1.
   virtual void half_solve(Part a, Part b, HalfSolution& half) = 0;
+  /// half = L⁻¹ b, of all columns, for a b of all blocks.
+  virtual void half_solve(std::span<const double> b, std::vector<double>& half) = 0;
   /// xᵀ y, for x = L⁻¹ a and y = L⁻¹ b that is aᵀ A⁻¹ b.
   [[nodiscard]] virtual double product(const HalfSolution& x, const HalfSolution& y) const = 0;
-  /// x = L⁻ᵀ Σ factor_k half_k.
-  virtual void finish(std::span<const HalfSolution> halves, std::span<const double> factor,
-                      std::span<double> x) = 0;
+  [[nodiscard]] virtual double product(const HalfSolution& x, std::span<const double> y) const = 0;
+  /// x = L⁻ᵀ (half + Σ factor_k halves_k).
+  virtual void finish(std::span<const double> half, std::span<const HalfSolution> halves,
+                      std::span<const double> factor, std::span<double> x) = 0;
 };
 
 /// A symmetric positive definite matrix of dense blocks, of sizes that may differ, and its factorization.

@@ -183,7 +183,7 @@ void Runner::check_overlap() {
 }
 
 void Runner::checkpoint() {
-  stepper_->forget_candidates();
+  stepper_->forget_history();
   if (options_.directory.empty()) return;
   if (settler_) now_.settler = settler_->memory();
   now_.orders = orders_.memory();

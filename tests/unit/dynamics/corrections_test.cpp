@@ -95,18 +95,20 @@ TEST(Corrections, ReachTheMinimum) {
     Eigen::VectorXd right = Eigen::VectorXd::NullaryExpr(unknowns, [&] { return 20.0 * uniform(random); });
     for (const Spring& s : springs)
       right -= s.derivative() * (s.law.line_force + s.law.line_stiffness * s.rest);
-    const Eigen::VectorXd base = chain.dense.ldlt().solve(right);
 
+    linalg::HalfSolver& halves = *chain.solver->halves();
+    std::vector<double> base;
+    halves.half_solve(std::span(right.data(), unknowns), base);
     Corrections corrections;
     std::vector<Corrections::Law> laws;
-    std::vector<double> stretch, d(base.data(), base.data() + unknowns);
+    std::vector<double> stretch, d(unknowns);
     for (const Spring& s : springs) {
-      corrections.add(*chain.solver->halves(), {s.block, s.a}, {s.block + 1, s.b});
+      corrections.add(halves, {s.block, s.a}, {s.block + 1, s.b});
       laws.push_back(s.law);
-      stretch.push_back(s.rest + s.derivative().dot(base));
+      stretch.push_back(s.rest);
     }
-    ASSERT_TRUE(corrections.solve(laws, stretch)) << trial;
-    corrections.add_to(*chain.solver->halves(), d);
+    ASSERT_TRUE(corrections.solve(halves, base, laws, stretch)) << trial;
+    corrections.finish(halves, base, d);
     const Eigen::VectorXd x = Eigen::Map<Eigen::VectorXd>(d.data(), unknowns);
     Eigen::VectorXd gradient = chain.dense * x - right;
     for (const Spring& s : springs) gradient += s.derivative() * s.law.bend(s.rest + s.derivative().dot(x));

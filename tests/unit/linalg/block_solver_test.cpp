@@ -158,7 +158,7 @@ TEST(BlockSolver, AgreesWithDenseSolutionForEqualAndMixedBlocks) {
   }
 }
 
-// Halves of solutions multiply to aᵀ A⁻¹ b, and are finished to A⁻¹ b, for vectors of one block and of two with a pair.
+// Halves of solutions multiply to aᵀ A⁻¹ b, and are finished to A⁻¹ b, for vectors of one block, of two with a pair, and of all.
 TEST(BlockSolver, HalvesAreThoseOfTheSolutions) {
   unsigned seed = 40;
   for (const std::vector<int>& choice : {std::vector{6}, {6, 12}, {12}, {6, 12, 20, 30}}) {
@@ -204,9 +204,17 @@ TEST(BlockSolver, HalvesAreThoseOfTheSolutions) {
           EXPECT_NEAR(halves.product(half[k], half[l]),
                       product(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)), 1e-14);
       }
+      const Eigen::VectorXd whole =
+          Eigen::VectorXd::NullaryExpr(p.dense.rows(), [&] { return uniform(random); });
+      const Eigen::VectorXd whole_solved = p.dense.ldlt().solve(whole);
+      std::vector<double> whole_half;
+      halves.half_solve(std::span(whole.data(), static_cast<std::size_t>(whole.size())), whole_half);
+      for (std::size_t k = 0; k < half.size(); ++k)
+        EXPECT_NEAR(halves.product(half[k], whole_half), whole.dot(solved.col(static_cast<Eigen::Index>(k))),
+                    1e-14);
       std::vector<double> x(static_cast<std::size_t>(p.dense.rows()));
-      halves.finish(half, factor, x);
-      const Eigen::VectorXd expected = solved * Eigen::Map<Eigen::VectorXd>(factor.data(), 12);
+      halves.finish(whole_half, half, factor, x);
+      const Eigen::VectorXd expected = whole_solved + solved * Eigen::Map<Eigen::VectorXd>(factor.data(), 12);
       for (std::size_t k = 0; k < x.size(); ++k)
         EXPECT_NEAR(x[k], expected[static_cast<Eigen::Index>(k)], 1e-14);
     }

@@ -153,7 +153,7 @@ TEST(Run, GoldenStateHash) {
   two.threads = 2;
   const RunRecord record = run(shaken_wall(), {}, nobody);
   EXPECT_EQ(record.open_close.unconverged_steps, 0);
-  EXPECT_EQ(record.state_hash, "81b93b86c9b1cf92");
+  EXPECT_EQ(record.state_hash, "189bc1a9abc7f568");
   EXPECT_EQ(run(shaken_wall(), two, nobody).state_hash, record.state_hash);
   EXPECT_LT(record.max_overlap, 1e-3);
 }
