@@ -127,8 +127,6 @@ class OpenClose {
     bool normal;
     friend bool operator==(Corrected, Corrected) = default;
   };
-  static constexpr double linear_share =
-      0.3;  ///< of the tolerance of a step, what its linear systems may leave over
   static constexpr std::size_t most_corrected = 64;  ///< springs, beyond which a factorization takes less
   static constexpr std::size_t most_kept =
       32;  ///< as many as are expected in the next step, with which a factor is worth keeping

@@ -7,6 +7,14 @@
 
 namespace keyblock::dynamics {
 
+namespace {
+
+// Of the tolerance of a step, what the factor of an earlier step may leave over: next to nothing, as one refinement
+// takes three digits.
+constexpr double kept_share = 0.003;
+
+}  // namespace
+
 /// Half of D₀, where all springs are on the straight lines of the factored matrix.
 void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halves) {
   std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
@@ -145,7 +153,7 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
     done = added == 0;
     if (!done || !kept_) break;
     find_gradient(problem, d);
-    if (problem.residual_ratio(gradient_) <= linear_share * tolerance) return true;
+    if (problem.residual_ratio(gradient_) <= kept_share * tolerance) return true;
     if (refinements++ == most_refinements) return false;
     ++result.refinements;
     const Profile::Scope scope(*profile_, Phase::solution);

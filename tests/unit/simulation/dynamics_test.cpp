@@ -200,7 +200,6 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
     Scene scene(1e9, 35.0);
     scene.setup.solver.linear = linear;
     settle_bounds(scene.setup.solver);
-    scene.setup.solver.tolerance = 1e-10;  // what the factor of an earlier step leaves over is then nothing
     scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)
@@ -220,10 +219,9 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
 // motion is that of factors made in every step.
 TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
   constexpr int steps = 150;
-  const auto run = [](bool keep, double tolerance) {
+  const auto run = [](bool keep) {
     Scene scene(1e9, 35.0);
     settle_bounds(scene.setup.solver);
-    scene.setup.solver.tolerance = tolerance;
     scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)
@@ -240,16 +238,11 @@ TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
     EXPECT_EQ(s.unconverged, 0);
     return std::pair(s.state.position, s.profile[Phase::factorization].count);
   };
-  const auto [exact, many] = run(false, 1e-10);
-  const auto [settled, few] = run(true, 1e-10);
-  const auto [usual, fewest] = run(true, 1e-4);
+  const auto [made, many] = run(false);
+  const auto [kept, few] = run(true);
   EXPECT_GE(many, steps);
-  EXPECT_LT(few, many);
-  EXPECT_LT(fewest, many / 2);
-  for (std::size_t k = 0; k < exact.size(); ++k) {
-    EXPECT_NEAR(settled[k], exact[k], 1e-9) << k;
-    EXPECT_NEAR(usual[k], exact[k], 1e-6) << k;
-  }
+  EXPECT_LT(few, 2 * many / 3);
+  for (std::size_t k = 0; k < made.size(); ++k) EXPECT_NEAR(kept[k], made[k], 1e-8) << k;
 }
 
 }  // namespace
