@@ -42,8 +42,8 @@ struct Candidate {
 /// step.
 struct CandidateList {
   std::vector<Candidate> pairs;
-  std::vector<std::size_t>
-      block_pairs;             ///< where in `pairs` those of each pair of blocks begin, and the end; derived
+  /// Where in `pairs` those of each pair of blocks begin, and the end. Derived; Candidates::update sees to it.
+  std::vector<std::size_t> block_pairs;
   std::vector<int> tracked;    ///< contacts of the last step, into pairs; ascending
   std::vector<Memory> memory;  ///< of each of them
 

@@ -102,7 +102,6 @@ std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList
   };
   std::size_t count = 0;
   Group group;
-  group.bonded.fill(0.0);
   const auto take = [&] {
     if (group.size > 0) count += pass(candidates, group, found + count);
     group.size = 0;
@@ -152,7 +151,7 @@ std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList
 /// Piece by piece of the pairs of blocks, so that the order of what is found is the same whoever finds it.
 void Detection::look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team) {
   const std::vector<std::size_t>& begins = candidates.block_pairs;
-  const std::size_t n = begins.size() - 1, pieces = (n + piece - 1) / piece;
+  const std::size_t n = begins.empty() ? 0 : begins.size() - 1, pieces = (n + piece - 1) / piece;
   room_.resize(candidates.pairs.size());
   std::vector<std::size_t> count(pieces, 0);
   const auto look_at_piece = [&](std::size_t p) {

@@ -97,10 +97,10 @@ class Detection {
   /// Up to as many candidates as there are lanes, and what their two blocks together may do (Motion).
   struct Group {
     std::size_t size = 0;
-    std::array<int, lane_count> candidate, pair;
-    std::array<double, lane_count> reach, turn;
-    std::array<double, lane_count> deepest;  ///< m, depth up to which they may be in contact
-    std::array<double, lane_count> bonded;   ///< 1 or 0
+    std::array<int, lane_count> candidate{}, pair{};
+    std::array<double, lane_count> reach{}, turn{};
+    std::array<double, lane_count> deepest{};  ///< m, depth up to which they may be in contact
+    std::array<double, lane_count> bonded{};   ///< 1 or 0
   };
   std::size_t pass(const CandidateList& candidates, const Group& group, Found* found) const;
   /// m by which the vertex lies over the edge; negative: beyond the end.
