@@ -20,7 +20,8 @@ void legendre_1d(double t, int n, double* p, double* dp) {
   }
 }
 
-std::size_t at(int i, int j, int n) {
+/// Of an n × n matrix, by rows.
+std::size_t entry(int i, int j, int n) {
   return static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j);
 }
 
@@ -33,7 +34,7 @@ Basis::Basis(const Polygon& region, int order) : order_(order), size_(basis_size
   centre_ = 0.5 * (box.min + box.max);
   half_size_ = 0.5 * box.size();
   coefficient_.assign(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_), 0.0);
-  for (int i = 0; i < size_; ++i) coefficient_[at(i, i, size_)] = 1.0;
+  for (int i = 0; i < size_; ++i) coefficient_[entry(i, i, size_)] = 1.0;
   const std::vector<WeightedPoint> rule = polygon_rule(region, 2 * order);
   orthonormalize(rule);
   orthonormalize(rule);
@@ -67,22 +68,23 @@ void Basis::orthonormalize(const std::vector<WeightedPoint>& rule) {
     evaluate(w.point, phi.data());
     for (int i = 0; i < size_; ++i) {
       const double weighted = w.weight * phi[static_cast<std::size_t>(i)];
-      for (int j = 0; j <= i; ++j) gram[at(i, j, size_)] += weighted * phi[static_cast<std::size_t>(j)];
+      for (int j = 0; j <= i; ++j) gram[entry(i, j, size_)] += weighted * phi[static_cast<std::size_t>(j)];
     }
   }
   for (int i = 0; i < size_; ++i) {
     for (int j = 0; j <= i; ++j) {
-      double sum = gram[at(i, j, size_)];
-      for (int k = 0; k < j; ++k) sum -= gram[at(i, k, size_)] * gram[at(j, k, size_)];
-      gram[at(i, j, size_)] = i == j ? std::sqrt(sum) : sum / gram[at(j, j, size_)];
+      double sum = gram[entry(i, j, size_)];
+      for (int k = 0; k < j; ++k) sum -= gram[entry(i, k, size_)] * gram[entry(j, k, size_)];
+      gram[entry(i, j, size_)] = i == j ? std::sqrt(sum) : sum / gram[entry(j, j, size_)];
     }
   }
   // Forward substitution, row by row: coefficient ← R⁻¹ coefficient.
   for (int i = 0; i < size_; ++i) {
     for (int column = 0; column <= i; ++column) {
-      double sum = coefficient_[at(i, column, size_)];
-      for (int k = column; k < i; ++k) sum -= gram[at(i, k, size_)] * coefficient_[at(k, column, size_)];
-      coefficient_[at(i, column, size_)] = sum / gram[at(i, i, size_)];
+      double sum = coefficient_[entry(i, column, size_)];
+      for (int k = column; k < i; ++k)
+        sum -= gram[entry(i, k, size_)] * coefficient_[entry(k, column, size_)];
+      coefficient_[entry(i, column, size_)] = sum / gram[entry(i, i, size_)];
     }
   }
 }
@@ -92,7 +94,7 @@ void Basis::evaluate(Vec2 point, double* phi) const {
   legendre(point, p.data(), nullptr);
   for (int i = 0; i < size_; ++i) {
     double sum = 0.0;
-    for (int j = 0; j <= i; ++j) sum += coefficient_[at(i, j, size_)] * p[static_cast<std::size_t>(j)];
+    for (int j = 0; j <= i; ++j) sum += coefficient_[entry(i, j, size_)] * p[static_cast<std::size_t>(j)];
     phi[i] = sum;
   }
 }
@@ -102,7 +104,7 @@ void Basis::gradients(Vec2 point, Vec2* gradient) const {
   legendre(point, nullptr, p.data());
   for (int i = 0; i < size_; ++i) {
     Vec2 sum;
-    for (int j = 0; j <= i; ++j) sum += coefficient_[at(i, j, size_)] * p[static_cast<std::size_t>(j)];
+    for (int j = 0; j <= i; ++j) sum += coefficient_[entry(i, j, size_)] * p[static_cast<std::size_t>(j)];
     gradient[i] = sum;
   }
 }

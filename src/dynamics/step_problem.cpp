@@ -7,6 +7,7 @@
 #include "core/index.h"
 #include "core/known_size.h"
 #include "linalg/block_kernels.h"
+#include "linalg/dense_block.h"
 
 namespace keyblock::dynamics {
 
@@ -213,18 +214,9 @@ void StepProblem::multiply(std::span<const double> x, std::span<double> y) const
 
 void StepProblem::solve_alone(std::size_t i, std::span<double> d) const {
   const Block& block = model_->blocks[i];
-  const int n = 2 * block.size, stride = linalg::padded_rows(n);
-  std::vector<double> inverse(&h_[h_first_[i]], &h_[h_first_[i]] + at(stride * n)), half(at(n)), scale(at(n));
-  // H holds inertia, and is positive definite.
-  if (!linalg::invert_factor(n, inverse.data(), scale.data())) return;
-  for (int r = 0; r < n; ++r) {
-    for (int c = 0; c <= r; ++c) half[at(r)] += inverse[at(c * stride + r)] * b_[block.first + at(c)];
-  }
-  for (int c = 0; c < n; ++c) {
-    double& x = d[block.first + at(c)];
-    x = 0.0;
-    for (int r = c; r < n; ++r) x += inverse[at(c * stride + r)] * half[at(r)];
-  }
+  const int n = 2 * block.size;
+  std::copy_n(&b_[block.first], n, &d[block.first]);
+  linalg::solve_block(n, &h_[h_first_[i]], &d[block.first]);  // H holds inertia, and is positive definite
 }
 
 void StepProblem::gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const {

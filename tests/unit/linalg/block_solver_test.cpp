@@ -7,6 +7,8 @@
 #include <random>
 #include <set>
 
+#include "linalg/dense_block.h"
+
 namespace keyblock::linalg {
 namespace {
 
@@ -155,6 +157,22 @@ TEST(BlockSolver, AgreesWithDenseSolutionForEqualAndMixedBlocks) {
         }
       }
     }
+  }
+}
+
+TEST(DenseBlock, IsSolved) {
+  for (const int n : {6, 12, 20}) {
+    const Problem p = random_problem(static_cast<unsigned>(n), 1, {n});
+    const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
+    const Eigen::VectorXd expected = p.dense.ldlt().solve(right);
+    std::vector<double> a(static_cast<std::size_t>(padded_rows(n) * n)), x(right.data(), right.data() + n);
+    for (int c = 0; c < n; ++c) {
+      for (int r = c; r < n; ++r) a[static_cast<std::size_t>(c * padded_rows(n) + r)] = p.dense(r, c);
+    }
+    ASSERT_TRUE(solve_block(n, a.data(), x.data()));
+    for (int k = 0; k < n; ++k) EXPECT_NEAR(x[static_cast<std::size_t>(k)], expected[k], 1e-14);
+    a[0] = -1.0;
+    EXPECT_FALSE(solve_block(n, a.data(), x.data()));
   }
 }
 
