@@ -15,12 +15,6 @@ constexpr double forcing = 0.003;     // of what is out of balance, likewise
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
-/// Vertex and edge.
-std::pair<int, int> key_of(const contact::Contact& contact) {
-  return {contact.vertex, contact.edge};
-}
-
-constexpr int longest_wait = 32;  // steps without a kept factor after failures
 
 }  // namespace
 
@@ -52,13 +46,6 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
   bound_steps_.clear();
 }
 
-/// Whether the factor of an earlier step is near enough to that of this one to be tried.
-bool OpenClose::can_keep_factor(const StepProblem& problem, linalg::BlockSolver& solver) const {
-  return factor_.solver == &solver && problem.has_weights() &&
-         std::ranges::equal(factor_.contacts, contacts_, {}, {}, key_of) &&
-         std::ranges::equal(factor_.inertia, problem.inertias());
-}
-
 /// out += scale · ∂ψ/∂D for a contact whose springs push with `force`.
 void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                           std::span<double> out) {
@@ -81,14 +68,7 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
     if (!assembled_) {
       problem.assemble(solver);
       factored_.assign(rows.size(), Piece{});
-      factor_.solver = &solver;
-      free_.clear();
-      factor_.contacts.resize(rows.size());
-      std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
-      factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
-      factor_.normal_stiffness.assign(rows.size(), 0.0);
-      factor_.shear_stiffness.assign(rows.size(), 0.0);
-      kept_ = false;
+      begin_factor(problem, solver);
     }
     bool any = !assembled_;
     for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -378,18 +358,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   direction_.resize(d.size());
   residual_.assign(d.size(), 0.0);
   start(problem, contacts);
-  kept_ = wait_ == 0 && solver.halves() != nullptr && can_keep_factor(problem, solver);
-  wait_ = std::max(0, wait_ - 1);
-  const bool tried = kept_;
-  const std::size_t corrected = kept_ ? corrections_.size() : 0;
-  free_.clear();
-  if (kept_) {
-    // Pieces on which the same springs act have the same matrix.
-    for (std::size_t c = 0; c < rows; ++c) {
-      if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
-    }
-    find_free_blocks(problem);
-  }
+  try_factor(problem, solver);
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
   worst_ = HUGE_VAL;
@@ -429,13 +398,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     });
   }
   result.residual_ratio = problem.residual_ratio(gradient_);
-  // The next step is expected to correct as many more springs as this one did.
-  const bool few = 2 * corrections_.size() <= most_kept + corrected;
-  if (!result.converged || result.refinements >= most_refinements || !few) factor_.solver = nullptr;
-  if (tried) {
-    wait_ = kept_ ? 0 : next_wait_;
-    next_wait_ = kept_ ? 1 : std::min(2 * next_wait_, longest_wait);
-  }
+  judge_factor(result);
   return result;
 }
 

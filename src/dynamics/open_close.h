@@ -66,7 +66,10 @@ class OpenClose {
   using Force = SpringArray::Force;
 
   void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
-  [[nodiscard]] bool can_keep_factor(const StepProblem& problem, linalg::BlockSolver& solver) const;
+  void begin_factor(const StepProblem& problem, const linalg::BlockSolver& solver);
+  [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
+  void try_factor(const StepProblem& problem, linalg::BlockSolver& solver);
+  void judge_factor(const OpenCloseResult& result);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
@@ -116,11 +119,13 @@ class OpenClose {
         shear_stiffness;  ///< N/m per thickness, per contact: of springs in the matrix; else 0
   };
   Factor factor_;
-  bool kept_ = false;              ///< it is that of an earlier step
-  int wait_ = 0, next_wait_ = 1;   ///< steps until a factor is kept again; after the next failure
-  std::vector<std::size_t> free_;  ///< blocks that nothing holds
-  std::vector<std::uint8_t> held_;
-  std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
+  bool kept_ = false;                 ///< it is that of an earlier step
+  bool tried_ = false;                ///< it was so at the start of the step
+  std::size_t corrected_before_ = 0;  ///< springs that it was corrected for then
+  int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
+  std::vector<std::size_t> free_;     ///< blocks that nothing holds
+  std::vector<std::uint8_t> held_;    ///< scratch: per unknown block, whether a spring holds it
+  std::vector<std::size_t> bends_;    ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.
   struct Corrected {
     std::size_t contact;

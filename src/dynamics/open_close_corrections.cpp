@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/index.h"
 #include "dynamics/open_close.h"
 
 namespace keyblock::dynamics {
@@ -95,25 +94,6 @@ bool OpenClose::find_corrections(const linalg::HalfSolver& halves) {
 void OpenClose::forget_corrections() {
   corrections_.clear();
   corrected_.clear();
-}
-
-/// Blocks that no spring of the matrix holds, nor any that is corrected. They may turn fast, which the factor of an earlier step
-/// knows nothing of, and are solved alone.
-void OpenClose::find_free_blocks(const StepProblem& problem) {
-  held_.assign(problem.inertias().size(), 0);  // by unknown
-  const auto hold = [&](std::size_t c) {
-    const StepProblem::Row& row = problem.rows()[c];
-    if (row.unknown_a >= 0) held_[at(row.unknown_a)] = 1;
-    if (row.unknown_b >= 0) held_[at(row.unknown_b)] = 1;
-  };
-  for (std::size_t c = 0; c < springs_.size(); ++c) {
-    if (factor_.normal_stiffness[c] > 0.0 || factor_.shear_stiffness[c] > 0.0) hold(c);
-  }
-  for (const Corrected spring : corrected_) hold(spring.contact);
-  free_.clear();
-  for (std::size_t b = 0; b < held_.size(); ++b) {
-    if (problem.moves(b) && held_[at(problem.unknown(b))] == 0) free_.push_back(b);
-  }
 }
 
 /// ∇Π at D, where the springs are.

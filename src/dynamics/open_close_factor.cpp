@@ -1,0 +1,82 @@
+// The factor of a step in the steps that follow: whether it is tried, and whether it did.
+#include <algorithm>
+
+#include "core/index.h"
+#include "dynamics/open_close.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+constexpr int longest_wait = 32;  // steps without a kept factor after failures
+
+/// Vertex and edge.
+std::pair<int, int> key_of(const contact::Contact& contact) {
+  return {contact.vertex, contact.edge};
+}
+
+}  // namespace
+
+/// Notes what the matrix of this step is for; it has no springs yet.
+void OpenClose::begin_factor(const StepProblem& problem, const linalg::BlockSolver& solver) {
+  factor_.solver = &solver;
+  factor_.contacts.resize(contacts_.size());
+  std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
+  factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
+  factor_.normal_stiffness.assign(contacts_.size(), 0.0);
+  factor_.shear_stiffness.assign(contacts_.size(), 0.0);
+  free_.clear();
+  kept_ = false;
+}
+
+/// Whether the factor at hand was made for contacts and inertia of this step.
+bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const {
+  return factor_.solver == &solver && problem.has_weights() &&
+         std::ranges::equal(factor_.contacts, contacts_, {}, {}, key_of) &&
+         std::ranges::equal(factor_.inertia, problem.inertias());
+}
+
+/// Keeps the factor of an earlier step where it may do.
+void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solver) {
+  kept_ = tried_ = wait_ == 0 && solver.halves() != nullptr && fits_factor(problem, solver);
+  wait_ = std::max(0, wait_ - 1);
+  corrected_before_ = kept_ ? corrections_.size() : 0;
+  free_.clear();
+  if (!kept_) return;
+  // Pieces on which the same springs act have the same matrix.
+  for (std::size_t c = 0; c < springs_.size(); ++c) {
+    if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
+  }
+  find_free_blocks(problem);
+}
+
+/// After the step: whether its factor is worth trying in the next one.
+void OpenClose::judge_factor(const OpenCloseResult& result) {
+  // The next step is expected to correct as many more springs as this one did.
+  const bool few = 2 * corrections_.size() <= most_kept + corrected_before_;
+  if (!result.converged || result.refinements >= most_refinements || !few) factor_.solver = nullptr;
+  if (!tried_) return;
+  wait_ = kept_ ? 0 : next_wait_;
+  next_wait_ = kept_ ? 1 : std::min(2 * next_wait_, longest_wait);
+}
+
+/// Blocks that no spring of the matrix holds, nor any that is corrected. They may turn fast, which the factor of an earlier step
+/// knows nothing of, and are solved alone.
+void OpenClose::find_free_blocks(const StepProblem& problem) {
+  held_.assign(problem.inertias().size(), 0);  // by unknown
+  const auto hold = [&](std::size_t c) {
+    const StepProblem::Row& row = problem.rows()[c];
+    if (row.unknown_a >= 0) held_[at(row.unknown_a)] = 1;
+    if (row.unknown_b >= 0) held_[at(row.unknown_b)] = 1;
+  };
+  for (std::size_t c = 0; c < springs_.size(); ++c) {
+    if (factor_.normal_stiffness[c] > 0.0 || factor_.shear_stiffness[c] > 0.0) hold(c);
+  }
+  for (const Corrected spring : corrected_) hold(spring.contact);
+  free_.clear();
+  for (std::size_t b = 0; b < held_.size(); ++b) {
+    if (problem.moves(b) && held_[at(problem.unknown(b))] == 0) free_.push_back(b);
+  }
+}
+
+}  // namespace keyblock::dynamics
