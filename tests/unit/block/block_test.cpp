@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "block/basis.h"
@@ -132,6 +134,36 @@ TEST_P(ElasticityOrder, EnergyIsInvariantUnderRotationAndStressTurns) {
   const Stress before = elasticity.mean_cauchy(a.data()), after = elasticity.mean_cauchy(turned.data());
   EXPECT_NEAR((before.xx + before.yy) / (after.xx + after.yy), 1.0, 1e-12);
   EXPECT_NEAR((c * c * before.xx - 2 * s * c * before.xy + s * s * before.yy) / after.xx, 1.0, 1e-10);
+}
+
+// Of the geometric part only the eigenvalues below the floor change, and become the floor.
+TEST_P(ElasticityOrder, FloorRaisesWhatIsBelowIt) {
+  const Basis basis(l_shape, GetParam());
+  const InSituStress crushing{-1e9, -2e7, 3e7, 0.0, 0.0, 0.0};
+  const std::vector<double> a = coefficients(basis);
+  const int n = 2 * basis.size(), m = basis.size() - 1;
+  const auto tangent = [&](const std::optional<InSituStress>& in_situ, double floor) {
+    std::vector<double> k(a.size() * a.size(), 0.0);
+    Elasticity(l_shape, basis, rock, in_situ).add_tangent(a.data(), 0.0, floor, k.data(), n);
+    Eigen::MatrixXd x(m, m);  // of the coefficients along x but the first
+    for (int j = 0; j < m; ++j) {
+      for (int i = j; i < m; ++i)
+        x(i, j) = x(j, i) = k[static_cast<std::size_t>((2 * j + 2) * n + 2 * i + 2)];
+    }
+    return x;
+  };
+  const Eigen::MatrixXd material = tangent(std::nullopt, 1e30),
+                        geometric = tangent(crushing, 1e30) - material;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(geometric);
+  const double lowest = solver.eigenvalues()[0], highest = solver.eigenvalues()[m - 1];
+  ASSERT_LT(lowest, highest);
+  for (const double floor : {-0.5 * (lowest + highest), -2.0 * lowest, -0.5 * highest}) {
+    const Eigen::MatrixXd expected = solver.eigenvectors() *
+                                     solver.eigenvalues().cwiseMax(-floor).asDiagonal() *
+                                     solver.eigenvectors().transpose();
+    const Eigen::MatrixXd error = tangent(crushing, floor) - material - expected;
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-9 * std::abs(lowest)) << floor;
+  }
 }
 
 TEST_P(ElasticityOrder, FloorKeepsTheTangentPositive) {
