@@ -11,7 +11,7 @@ namespace keyblock::dynamics {
 namespace {
 
 constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
-constexpr double forcing = 0.003;     // of what is out of balance, likewise
+constexpr double forcing = 0.01;      // of what is out of balance, likewise
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
@@ -117,41 +117,6 @@ void OpenClose::find_direction(const StepProblem& problem) {
   });
 }
 
-/// Solves with the springs of the last step, as if they could pull and hold without limit. An iterative solver goes on from d.
-bool OpenClose::first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                            std::span<double> d, OpenCloseResult& result) {
-  const auto& rows = problem.rows();
-  ++result.iterations;
-  if (!factor(problem, solver, result)) return false;
-  if (solver.is_iterative()) {
-    std::copy(d.begin(), d.end(), direction_.begin());
-    find_direction(problem);
-    springs_.go(1.0);
-    problem.multiply(d, direction_);
-    for (std::size_t k = 0; k < d.size(); ++k) direction_[k] = problem.right()[k] - direction_[k];
-  } else {
-    std::fill(d.begin(), d.end(), 0.0);
-    std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
-  }
-  for (std::size_t c = 0; c < rows.size(); ++c) {
-    add_force(problem, c, springs_.force_on(c, springs_.piece[c], springs_.y[c], springs_.w[c]), -1.0,
-              direction_);
-  }
-  if (!solve_linear(problem, solver, tolerance)) return false;
-  for (std::size_t k = 0; k < d.size(); ++k) d[k] += direction_[k];
-  find_direction(problem);
-  springs_.go(1.0);
-  // The gradient there is what the solution lacks and what the springs assumed get wrong.
-  for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] = -residual_[k];
-  for (std::size_t c = 0; c < rows.size(); ++c) {
-    const double y = springs_.y[c], w = springs_.w[c];
-    const Piece assumed = springs_.piece[c], p = springs_.piece[c] = springs_.piece_at(c, y, w);
-    if (p != assumed)
-      add_force(problem, c, springs_.force(c) - springs_.force_on(c, assumed, y, w), 1.0, gradient_);
-  }
-  return true;
-}
-
 /// Contacts that change piece between where they are and α along the direction.
 void OpenClose::find_bends(double alpha) {
   bends_.clear();
@@ -226,11 +191,9 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   if (!warm && corrects) {
     if (!kept_ && !factor(problem, solver, result)) return false;
   } else if (!warm) {
-    if (!first_solve(problem, solver, options.tolerance, d, result)) return false;
-    // The same springs act; what may still differ is the direction in which a contact slides.
-    const bool same = std::equal(springs_.piece.begin(), springs_.piece.end(), factored_.begin(),
-                                 [](Piece p, Piece q) { return p.same_springs(q); });
-    if (same && settled()) return true;
+    place(problem, d);
+    find_gradient(problem, d);
+    if (problem.residual_ratio(gradient_) <= linear_share * options.tolerance) return true;
   }
   for (int tries = corrects ? most_tries : 0; result.iterations < limit;) {
     // Before the first correction there is no D to go on from; later it is worth trying where few springs differ from the matrix.

@@ -74,10 +74,9 @@ class OpenClose {
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
-  bool first_solve(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                   std::span<double> d, OpenCloseResult& result);
   void solve_base(const StepProblem& problem, linalg::HalfSolver& halves);
   void place(const StepProblem& problem, std::span<const double> d);
+  void find_bent();
   int correct_bends(const StepProblem& problem, linalg::HalfSolver& halves);
   bool find_corrections(const linalg::HalfSolver& halves);
   void forget_corrections();

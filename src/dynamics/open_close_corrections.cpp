@@ -24,7 +24,7 @@ void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halve
   halves.half_solve(std::span(direction_).first(problem.unknowns()), base_);
 }
 
-/// Springs and their pieces at D, and in bends_ the contacts that are not on the straight lines of the matrix.
+/// Springs and their pieces at D.
 void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
   const auto& rows = problem.rows();
   team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -37,8 +37,12 @@ void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
     }
   });
   knows_relative_ = true;
+}
+
+/// Contacts that are not on the straight lines of the matrix, into bends_.
+void OpenClose::find_bent() {
   bends_.clear();
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  for (std::size_t c = 0; c < springs_.size(); ++c) {
     if (springs_.piece[c] != factored_[c]) bends_.push_back(c);
   }
 }
@@ -124,10 +128,12 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
       forget_corrections();
       finish();
       place(problem, d);
+      find_bent();
       break;
     }
     finish();
     place(problem, d);
+    find_bent();
     const int added = correct_bends(problem, halves);
     if (added > 0) continue;
     done = added == 0;

@@ -128,6 +128,7 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
 
 void Stepper::remove_absent(State& state) {
   candidates_.invalidate();
+  history_.forget();
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts);
   contact_energy_ = stored_energy(state);
@@ -183,7 +184,8 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     detect(state);
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
-    if (chosen.is_iterative()) guess(state, drive);
+    guessed_ = chosen.halves() == nullptr;
+    if (guessed_) history_.extrapolate(drive.step, increment_);
     const OpenCloseResult result =
         open_close_.solve(problem_, contacts_, chosen, model_.solver, team_, profile_, increment_);
     report.iterations += result.iterations;
@@ -312,6 +314,11 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   account(state, drive);
   const Profile::Scope scope(profile_, Phase::update);
   remember(state, drive, report);
+  if (guessed_ && !drive.is_static) {
+    history_.add(increment_, drive.step);
+  } else {
+    history_.forget();
+  }
   const double g = norm(model_.gravity);
   const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {

@@ -7,6 +7,7 @@
 #include "contact/detection.h"
 #include "core/parallel.h"
 #include "core/profile.h"
+#include "dynamics/increment_history.h"
 #include "dynamics/model.h"
 #include "dynamics/open_close.h"
 #include "dynamics/state.h"
@@ -51,6 +52,7 @@ class Stepper {
   void forget_history() {
     candidates_.invalidate();
     open_close_.forget_factor();
+    history_.forget();
   }
   /// The contacts of the state as it is, found anew.
   [[nodiscard]] std::vector<contact::Contact> find_contacts(const State& state);
@@ -99,7 +101,6 @@ class Stepper {
     has_places_ = direct_.analysed = iterative_.analysed = false;
     products_.reset();
   }
-  void guess(const State& state, const Drive& drive);
   void measure_spin(const State& state);
   [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();
@@ -135,6 +136,8 @@ class Stepper {
   bool has_places_ = false;             ///< pair_of_candidate_ is that of the pattern
   std::vector<double> reach_, turn_;    ///< m and rad, per block: Detection::Motion
   std::vector<double> increment_;
+  IncrementHistory history_;             ///< of dynamic steps; kept for solvers that start from a guess
+  bool guessed_ = false;                 ///< the last attempt was by one
   std::vector<double> speed_;            ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;             ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;         ///< per block, of the last attempt

@@ -91,10 +91,4 @@ linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool mu
   return *linear.solver;
 }
 
-/// An iterative solver starts from the increment of a motion that goes on as it is.
-void Stepper::guess(const State& state, const Drive& drive) {
-  for (std::size_t k = 0; k < increment_.size(); ++k)
-    increment_[k] = drive.is_static || k >= model_.unknowns ? 0.0 : drive.step * state.velocity[k];
-}
-
 }  // namespace keyblock::dynamics

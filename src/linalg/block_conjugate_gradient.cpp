@@ -15,6 +15,8 @@ namespace keyblock::linalg {
 namespace {
 
 constexpr int most_iterations = 400;
+constexpr double well_enough =
+    0.9;  // excess of the iteration's residual, with which that of the matrix is small enough
 
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (L + 1 + Lᵀ) Cᵀ with
 /// L_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly below the diagonal. Preconditioned from both sides by (1 + L) it is
@@ -53,7 +55,8 @@ class BlockConjugateGradient final : public BlockSolver {
   template <typename Body>
   double sum_over_ranges(const Body& body);
   [[nodiscard]] Range between() const { return {begin_[begin_.size() - 2], begin_.back()}; }
-  void forward(Vector& v, Range range) const;
+  void subtract_lower(const Vector& x, Vector& y, Range range) const;
+  void subtract_lower_between(const Vector& x, Vector& y) const;
   void divide_forward(Vector& v) const;
   void backward(Vector& v, Range range) const;
   void divide_backward(Vector& v) const;
@@ -62,8 +65,10 @@ class BlockConjugateGradient final : public BlockSolver {
   double apply(double beta);
   double go(double alpha);
   void scale(std::span<const double> x, Vector& out) const;
-  void unscale(const Vector& v, std::span<double> x) const;
+  void unscale(std::size_t j, const Vector& v, double* x) const;
   void subtract_product(std::span<const double> x, std::span<double> residual);
+  void find_residual(std::span<double> residual);
+  int iterate(double too_large, const Excess& excess, int most, std::span<double> residual);
 
   struct Entry {
     std::uint32_t row;     ///< > column
@@ -95,7 +100,7 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<std::uint8_t> stale_;
   int largest_ = 0;                  ///< stride of a block
   Vector t_, z_, r_, p_, q_, wide_;  ///< padded
-  Vector correction_;                ///< of x
+  Vector correction_;                ///< of x; before, the residual of the iteration
   Vector sums_;                      ///< per range
   bool solved_ = true;
 };
@@ -227,9 +232,13 @@ bool BlockConjugateGradient::factor() {
     Vector scratch(at(largest_));
     for (std::size_t j = range.first; j < range.last && good[k] != 0; ++j) {
       if (stale_[j] == 0) continue;
+      double* diagonal = &matrix_[diagonal_[j]];
+      for (int c = 1; c < size_[j]; ++c) {
+        for (int r = 0; r < c; ++r) diagonal[c * stride_[j] + r] = diagonal[r * stride_[j] + c];
+      }
       double* inverse = &inverse_[inverse_start_[j]];
-      std::copy_n(&matrix_[diagonal_[j]], stride_[j] * size_[j], inverse);
-      good[k] = invert_factor(size_[j], inverse, scratch.data());
+      std::copy_n(diagonal, stride_[j] * size_[j], inverse);
+      good[k] = size_[j] == 6 ? invert_factor<6>(inverse) : invert_factor(size_[j], inverse, scratch.data());
     }
   };
   for_parts(invert);
@@ -259,33 +268,38 @@ bool BlockConjugateGradient::factor() {
   return true;
 }
 
-/// What the columns of a part take from its own rows.
-void BlockConjugateGradient::forward(Vector& v, Range range) const {
+/// y −= L x, for what the columns of a part add to its own rows.
+void BlockConjugateGradient::subtract_lower(const Vector& x, Vector& y, Range range) const {
   for (std::size_t j = range.first; j < range.last; ++j) {
-    const double* x = &v[start_[j]];
     for (std::size_t e = entry_start_[j]; e < between_start_[j]; ++e) {
       const Entry& entry = entries_[e];
       const int lanes = stride_[entry.row] / row_padding;
-      double* y = &v[start_[entry.row]];
+      const double* x_j = &x[start_[j]];
+      double* y_i = &y[start_[entry.row]];
       if (size_[j] == 6 && lanes == 1) {  // order 1: loops of known length
-        subtract_times(1, 6, &lower_[entry.lower], x, y);
+        subtract_times(1, 6, &lower_[entry.lower], x_j, y_i);
       } else {
-        subtract_times(lanes, size_[j], &lower_[entry.lower], x, y);
+        subtract_times(lanes, size_[j], &lower_[entry.lower], x_j, y_i);
       }
     }
   }
 }
 
-/// v ← (1 + L)⁻¹ v. Rows between the parts gather, so that no two parts write to them.
-void BlockConjugateGradient::divide_forward(Vector& v) const {
-  for_parts([&](std::size_t, Range range) { forward(v, range); });
+/// The same for rows between the parts, which gather, so that no two parts write to them.
+void BlockConjugateGradient::subtract_lower_between(const Vector& x, Vector& y) const {
   const std::size_t first = between().first;
   for (std::size_t i = first; i < size_.size(); ++i) {
     for (std::size_t e = row_start_[i - first]; e < row_start_[i - first + 1]; ++e) {
       const auto [j, lower] = row_entries_[e];
-      subtract_times(stride_[i] / row_padding, size_[j], &lower_[lower], &v[start_[j]], &v[start_[i]]);
+      subtract_times(stride_[i] / row_padding, size_[j], &lower_[lower], &x[start_[j]], &y[start_[i]]);
     }
   }
+}
+
+/// v ← (1 + L)⁻¹ v.
+void BlockConjugateGradient::divide_forward(Vector& v) const {
+  for_parts([&](std::size_t, Range range) { subtract_lower(v, v, range); });
+  subtract_lower_between(v, v);
 }
 
 void BlockConjugateGradient::backward(Vector& v, Range range) const {
@@ -301,7 +315,23 @@ void BlockConjugateGradient::backward(Vector& v, Range range) const {
     return width;
   };
   for (std::size_t j = range.last; j-- > range.first;) {
-    if (entry_start_[j] == entry_start_[j + 1]) continue;
+    const std::size_t first = entry_start_[j], last = entry_start_[j + 1];
+    if (first == last) continue;
+    if (size_[j] == 6) {  // order 1: one register
+      Lanes t[6]{};
+      for (std::size_t e = first; e < last; ++e) {
+        const Entry& entry = entries_[e];
+        const double* x = &v[start_[entry.row]];
+        if (stride_[entry.row] == row_padding) {
+          add_lane_products(1, &lower_[entry.lower], x, t);
+        } else {
+          add_lane_products(stride_[entry.row] / row_padding, &lower_[entry.lower], x, t);
+        }
+      }
+      double* y = &v[start_[j]];
+      store(y, load(y) - sums(t));
+      continue;
+    }
     for (int c = 0; c < size_[j];)
       c += size_[j] - c >= 6 ? columns.template operator()<6>(j, c) : columns.template operator()<1>(j, c);
   }
@@ -347,15 +377,13 @@ void BlockConjugateGradient::scale(std::span<const double> x, Vector& out) const
   }
 }
 
-/// x ← C⁻ᵀ v.
-void BlockConjugateGradient::unscale(const Vector& v, std::span<double> x) const {
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    for (int c = 0; c < size_[j]; ++c) {
-      Lanes t[1]{};
-      add_lane_products(stride_[j] / row_padding, &inverse_[inverse_start_[j] + at(c * stride_[j])],
-                        &v[start_[j]], t);
-      x[offset_[j] + at(c)] = sum(t[0]);
-    }
+/// x ← C_j⁻ᵀ v_j.
+void BlockConjugateGradient::unscale(std::size_t j, const Vector& v, double* x) const {
+  for (int c = 0; c < size_[j]; ++c) {
+    Lanes t[1]{};
+    add_lane_products(stride_[j] / row_padding, &inverse_[inverse_start_[j] + at(c * stride_[j])],
+                      &v[start_[j]], t);
+    x[c] = sum(t[0]);
   }
 }
 
@@ -369,16 +397,7 @@ void BlockConjugateGradient::subtract_product(std::span<const double> x, std::sp
   for (std::size_t j = 0; j < size_.size(); ++j) {
     const double* x_j = &wide_[start_[j]];
     double* y_j = &q_[start_[j]];
-    const double* a = &matrix_[diagonal_[j]];
-    for (int c = 0; c < size_[j]; ++c) {
-      const double* column = a + c * stride_[j];
-      double own = column[c] * x_j[c];
-      for (int r = c + 1; r < size_[j]; ++r) {
-        y_j[r] -= column[r] * x_j[c];
-        own += column[r] * x_j[r];
-      }
-      y_j[c] -= own;
-    }
+    subtract_times(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], x_j, y_j);
     for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
       const auto [i, values, lower] = entries_[e];
       subtract_times(stride_[i] / row_padding, size_[j], &matrix_[values], x_j, &q_[start_[i]]);
@@ -410,6 +429,54 @@ double BlockConjugateGradient::go(double alpha) {
   });
 }
 
+/// What x lacks of the solution, as the iteration has it: C (1 + L) r. It is that of the matrix but for what the single precision of
+/// L leaves.
+void BlockConjugateGradient::find_residual(std::span<double> residual) {
+  const auto start = [&](std::size_t, Range range) {
+    padded(range, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); });
+  };
+  start(0, between());
+  for_parts([&](std::size_t k, Range range) {
+    start(k, range);
+    subtract_lower(r_, q_, range);
+  });
+  subtract_lower_between(r_, q_);
+  // C v = A_jj C⁻ᵀ v
+  const auto unscale_rows = [&](std::size_t, Range range) {
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      double* product = &t_[start_[j]];
+      unscale(j, q_, product);
+      multiply(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], product, &q_[start_[j]]);
+      for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] = -q_[start_[j] + at(c)];
+    }
+  };
+  for_parts(unscale_rows);
+  unscale_rows(0, between());
+}
+
+/// Conjugate gradients from r_ on, to z_. Returns how many iterations that took.
+///
+/// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
+/// factor of ten and more, the one way or the other. As it costs most of an iteration it is looked at when it should be small
+/// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
+int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most,
+                                    std::span<double> residual) {
+  std::fill(p_.begin(), p_.end(), 0.0);
+  std::fill(z_.begin(), z_.end(), 0.0);
+  double rr = go(0.0), beta = 0.0, wanted = rr / (too_large * std::sqrt(too_large));
+  for (int iterations = 1;; ++iterations) {
+    const double next = go(rr / apply(beta));
+    beta = next / rr;
+    rr = next;
+    if (iterations == most) return most;
+    if (rr > wanted) continue;
+    find_residual(residual);
+    too_large = excess(residual);
+    if (too_large <= well_enough) return iterations;
+    wanted = 0.5 * rr / (too_large * too_large);
+  }
+}
+
 void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess) {
   std::copy(x.begin(), x.end(), residual.begin());
   std::fill(x.begin(), x.end(), 0.0);
@@ -423,19 +490,9 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
     }
     scale(residual, r_);
     divide_forward(r_);
-    std::fill(p_.begin(), p_.end(), 0.0);
-    std::fill(z_.begin(), z_.end(), 0.0);
-    double rr = go(0.0), beta = 0.0;
-    // The residual of the scaled system tells when to look at that of the real one.
-    const double drop = 0.5 / too_large, wanted = drop * drop * rr;
-    while (rr > wanted && iterations < most_iterations) {
-      ++iterations;
-      const double next = go(rr / apply(beta));
-      beta = next / rr;
-      rr = next;
-    }
+    iterations += iterate(too_large, excess, most_iterations - iterations, correction_);
     divide_backward(z_);
-    unscale(z_, correction_);
+    for (std::size_t j = 0; j < size_.size(); ++j) unscale(j, z_, &correction_[offset_[j]]);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += correction_[k];
     subtract_product(correction_, residual);
   }
