@@ -5,15 +5,25 @@ namespace keyblock {
 /// Numbers that are computed at once: each lane on its own, so that any instruction set gives the same bits.
 inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(lane_count * sizeof(double)), aligned(8)));
+using NarrowLanes = float __attribute__((vector_size(lane_count * sizeof(float)), aligned(4)));
 
 inline Lanes load(const double* p) {
   return *reinterpret_cast<const Lanes*>(p);
 }
+inline NarrowLanes load(const float* p) {
+  return *reinterpret_cast<const NarrowLanes*>(p);
+}
 inline void store(double* p, Lanes v) {
   *reinterpret_cast<Lanes*>(p) = v;
 }
+inline void store(float* p, NarrowLanes v) {
+  *reinterpret_cast<NarrowLanes*>(p) = v;
+}
 inline Lanes broadcast(double x) {
   return Lanes{x, x, x, x, x, x, x, x};
+}
+inline NarrowLanes broadcast(float x) {
+  return NarrowLanes{x, x, x, x, x, x, x, x};
 }
 
 /// Rows become columns.

@@ -43,7 +43,8 @@ class BlockConjugateGradient final : public BlockSolver {
   [[nodiscard]] bool solved() const override { return solved_; }
 
  private:
-  using Vector = HugePageVector<double>;
+  using Vector = HugePageVector<float>;
+  using WideVector = HugePageVector<double>;
   struct Range {
     std::size_t first, last;  ///< places
   };
@@ -53,10 +54,16 @@ class BlockConjugateGradient final : public BlockSolver {
   template <typename Body>
   void for_parts(const Body& body) const;
   template <typename Body>
+  void for_ranges(const Body& body) const;
+  template <typename Body>
   double sum_over_ranges(const Body& body);
   [[nodiscard]] Range between() const { return {begin_[begin_.size() - 2], begin_.back()}; }
-  void subtract_lower(const Vector& x, Vector& y, Range range) const;
-  void subtract_lower_between(const Vector& x, Vector& y) const;
+  template <auto place, typename Number>
+  void subtract_lower(const Number* values, const Number* x, Number* y, Range range) const;
+  template <auto place, typename Number>
+  void subtract_lower_between(const Number* values, const Number* x, Number* y) const;
+  template <auto place, typename Number>
+  void subtract_upper(const Number* values, const Number* x, Number* y, Range range) const;
   void divide_forward(Vector& v) const;
   void backward(Vector& v, Range range) const;
   void divide_backward(Vector& v) const;
@@ -64,11 +71,11 @@ class BlockConjugateGradient final : public BlockSolver {
   void padded(Range range, const Body& body) const;
   double apply(double beta);
   double go(double alpha);
-  void scale(std::span<const double> x, Vector& out) const;
-  void unscale(std::size_t j, const Vector& v, double* x) const;
-  void subtract_product(std::span<const double> x, std::span<double> residual);
+  void scale(std::span<const double> x);
+  void unscale(std::size_t j, const Vector& v, double* x);
   void find_residual(std::span<double> residual);
-  int iterate(double too_large, const Excess& excess, int most, std::span<double> residual);
+  void take_over(const Vector& v, std::span<double> x, std::span<double> residual);
+  int iterate(double too_large, const Excess& excess, int most);
 
   struct Entry {
     std::uint32_t row;     ///< > column
@@ -87,21 +94,22 @@ class BlockConjugateGradient final : public BlockSolver {
       between_start_;  ///< per column, likewise: the first whose row lies between the parts
   std::vector<Entry> entries_;
   struct RowEntry {
-    std::size_t column, lower;
+    std::size_t column, entry;
   };
   std::vector<std::size_t> row_start_;      ///< per block between the parts, into row_entries_
   std::vector<RowEntry> row_entries_;       ///< of a row, by columns
   std::vector<std::size_t> diagonal_;       ///< into matrix_
   std::vector<std::size_t> inverse_start_;  ///< into inverse_
   std::vector<BlockSlot> slots_;
-  Vector matrix_;                ///< A
-  Vector inverse_;               ///< C_j⁻¹
+  WideVector matrix_;            ///< A
+  WideVector inverse_;           ///< C_j⁻¹
   HugePageVector<float> lower_;  ///< L
   std::vector<std::uint8_t> stale_;
-  int largest_ = 0;                  ///< stride of a block
-  Vector t_, z_, r_, p_, q_, wide_;  ///< padded
-  Vector correction_;                ///< of x; before, the residual of the iteration
-  Vector sums_;                      ///< per range
+  int largest_ = 0;               ///< stride of a block
+  Vector t_, z_, r_, p_, q_;      ///< padded
+  WideVector wide_, product_;     ///< padded: scratch
+  std::vector<double> estimate_;  ///< of the residual
+  std::vector<double> sums_;      ///< per range
   bool solved_ = true;
 };
 
@@ -117,6 +125,13 @@ void BlockConjugateGradient::for_parts(const Body& body) const {
   } else {
     team_->for_range(count, 2, some);
   }
+}
+
+/// Of the blocks between the parts, and of every part.
+template <typename Body>
+void BlockConjugateGradient::for_ranges(const Body& body) const {
+  body(between());
+  for_parts([&](std::size_t, Range range) { body(range); });
 }
 
 /// Σ over parts and what lies between, in that order.
@@ -171,7 +186,8 @@ void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span
     padded += at(padded_rows(size));
     largest_ = std::max(largest_, padded_rows(size));
   }
-  for (Vector* v : {&t_, &z_, &r_, &p_, &q_, &wide_}) v->assign(padded, 0.0);
+  for (Vector* v : {&t_, &z_, &r_, &p_, &q_}) v->assign(padded, 0.0F);
+  for (WideVector* v : {&wide_, &product_}) v->assign(padded, 0.0);
 }
 
 /// Where the block of every pair is in matrix_.
@@ -203,7 +219,7 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
       if (row < first_between) {
         between_start_[j] = entries_.size();
       } else {
-        rows[row - first_between].push_back({j, lower});
+        rows[row - first_between].push_back({j, entries_.size() - 1});
       }
       values[k] = used;
       used += at(stride_[row] * size_[j]);
@@ -229,7 +245,7 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
 bool BlockConjugateGradient::factor() {
   std::vector<std::uint8_t> good(begin_.size() - 1, 1);
   const auto invert = [&](std::size_t k, Range range) {
-    Vector scratch(at(largest_));
+    WideVector scratch(at(largest_));
     for (std::size_t j = range.first; j < range.last && good[k] != 0; ++j) {
       if (stale_[j] == 0) continue;
       double* diagonal = &matrix_[diagonal_[j]];
@@ -245,7 +261,7 @@ bool BlockConjugateGradient::factor() {
   invert(good.size() - 1, between());
   if (std::find(good.begin(), good.end(), 0) != good.end()) return false;
   const auto divide = [&](std::size_t, Range range) {
-    Vector scratch(at(largest_ * largest_));
+    WideVector scratch(at(largest_ * largest_));
     for (std::size_t j = range.first; j < range.last; ++j) {
       for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
         const auto [i, values, lower] = entries_[e];
@@ -268,73 +284,80 @@ bool BlockConjugateGradient::factor() {
   return true;
 }
 
-/// y −= L x, for what the columns of a part add to its own rows.
-void BlockConjugateGradient::subtract_lower(const Vector& x, Vector& y, Range range) const {
+/// y −= S x with S the blocks strictly below the diagonal, of L or of A; only what the columns of a part add to its own rows.
+template <auto place, typename Number>
+void BlockConjugateGradient::subtract_lower(const Number* values, const Number* x, Number* y,
+                                            Range range) const {
   for (std::size_t j = range.first; j < range.last; ++j) {
     for (std::size_t e = entry_start_[j]; e < between_start_[j]; ++e) {
       const Entry& entry = entries_[e];
       const int lanes = stride_[entry.row] / row_padding;
-      const double* x_j = &x[start_[j]];
-      double* y_i = &y[start_[entry.row]];
+      const Number *block = values + entry.*place, *x_j = x + start_[j];
+      Number* y_i = y + start_[entry.row];
       if (size_[j] == 6 && lanes == 1) {  // order 1: loops of known length
-        subtract_times(1, 6, &lower_[entry.lower], x_j, y_i);
+        subtract_times(1, 6, block, x_j, y_i);
       } else {
-        subtract_times(lanes, size_[j], &lower_[entry.lower], x_j, y_i);
+        subtract_times(lanes, size_[j], block, x_j, y_i);
       }
     }
   }
 }
 
 /// The same for rows between the parts, which gather, so that no two parts write to them.
-void BlockConjugateGradient::subtract_lower_between(const Vector& x, Vector& y) const {
+template <auto place, typename Number>
+void BlockConjugateGradient::subtract_lower_between(const Number* values, const Number* x, Number* y) const {
   const std::size_t first = between().first;
   for (std::size_t i = first; i < size_.size(); ++i) {
-    for (std::size_t e = row_start_[i - first]; e < row_start_[i - first + 1]; ++e) {
-      const auto [j, lower] = row_entries_[e];
-      subtract_times(stride_[i] / row_padding, size_[j], &lower_[lower], &x[start_[j]], &y[start_[i]]);
+    for (std::size_t k = row_start_[i - first]; k < row_start_[i - first + 1]; ++k) {
+      const auto [j, entry] = row_entries_[k];
+      subtract_times(stride_[i] / row_padding, size_[j], values + entries_[entry].*place, x + start_[j],
+                     y + start_[i]);
     }
+  }
+}
+
+/// y −= Sᵀ x, for the rows of a part from the last to the first.
+template <auto place, typename Number>
+void BlockConjugateGradient::subtract_upper(const Number* values, const Number* x, Number* y,
+                                            Range range) const {
+  using Register = decltype(load(x));
+  const auto columns = [&]<int width>(std::size_t j, int c) {
+    Register t[width]{};
+    for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
+      const Entry& entry = entries_[e];
+      const int rows = stride_[entry.row];
+      const Number *block = values + entry.*place + at(c * rows), *x_i = x + start_[entry.row];
+      if (rows == row_padding) {
+        add_lane_products(1, block, x_i, t);
+      } else {
+        add_lane_products(rows / row_padding, block, x_i, t);
+      }
+    }
+    Number* y_j = y + start_[j] + at(c);
+    if (width == 6 && size_[j] == 6) {
+      store(y_j, load(y_j) - sums(t));
+    } else {
+      for (int k = 0; k < width; ++k) y_j[k] -= sum(t[k]);
+    }
+    return width;
+  };
+  for (std::size_t j = range.last; j-- > range.first;) {
+    if (entry_start_[j] == entry_start_[j + 1]) continue;
+    for (int c = 0; c < size_[j];)
+      c += size_[j] - c >= 6 ? columns.template operator()<6>(j, c) : columns.template operator()<1>(j, c);
   }
 }
 
 /// v ← (1 + L)⁻¹ v.
 void BlockConjugateGradient::divide_forward(Vector& v) const {
-  for_parts([&](std::size_t, Range range) { subtract_lower(v, v, range); });
-  subtract_lower_between(v, v);
+  for_parts([&](std::size_t, Range range) {
+    subtract_lower<&Entry::lower>(lower_.data(), v.data(), v.data(), range);
+  });
+  subtract_lower_between<&Entry::lower>(lower_.data(), v.data(), v.data());
 }
 
 void BlockConjugateGradient::backward(Vector& v, Range range) const {
-  const auto columns = [&]<int width>(std::size_t j, int c) {
-    Lanes t[width]{};
-    for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const Entry& entry = entries_[e];
-      const int rows = stride_[entry.row];
-      add_lane_products(rows / row_padding, &lower_[entry.lower + at(c * rows)], &v[start_[entry.row]], t);
-    }
-    double* y = &v[start_[j] + at(c)];
-    for (int k = 0; k < width; ++k) y[k] -= sum(t[k]);
-    return width;
-  };
-  for (std::size_t j = range.last; j-- > range.first;) {
-    const std::size_t first = entry_start_[j], last = entry_start_[j + 1];
-    if (first == last) continue;
-    if (size_[j] == 6) {  // order 1: one register
-      Lanes t[6]{};
-      for (std::size_t e = first; e < last; ++e) {
-        const Entry& entry = entries_[e];
-        const double* x = &v[start_[entry.row]];
-        if (stride_[entry.row] == row_padding) {
-          add_lane_products(1, &lower_[entry.lower], x, t);
-        } else {
-          add_lane_products(stride_[entry.row] / row_padding, &lower_[entry.lower], x, t);
-        }
-      }
-      double* y = &v[start_[j]];
-      store(y, load(y) - sums(t));
-      continue;
-    }
-    for (int c = 0; c < size_[j];)
-      c += size_[j] - c >= 6 ? columns.template operator()<6>(j, c) : columns.template operator()<1>(j, c);
-  }
+  subtract_upper<&Entry::lower>(lower_.data(), v.data(), v.data(), range);
 }
 
 /// v ← (1 + Lᵀ)⁻¹ v.
@@ -346,9 +369,9 @@ void BlockConjugateGradient::divide_backward(Vector& v) const {
 /// p ← r + β p and q ← Â p. Returns p · q.
 double BlockConjugateGradient::apply(double beta) {
   const auto before = [&](std::size_t, Range range) {
-    const Lanes b = broadcast(beta);
+    const NarrowLanes b = broadcast(static_cast<float>(beta));
     padded(range, [&](std::size_t k) {
-      const Lanes p = load(&r_[k]) + b * load(&p_[k]);
+      const NarrowLanes p = load(&r_[k]) + b * load(&p_[k]);
       store(&p_[k], p);
       store(&t_[k], p);
     });
@@ -361,97 +384,110 @@ double BlockConjugateGradient::apply(double beta) {
   return sum_over_ranges([&](Range range) {
     Lanes total{};
     padded(range, [&](std::size_t k) {
-      const Lanes q = load(&q_[k]) + load(&t_[k]);
+      const NarrowLanes q = load(&q_[k]) + load(&t_[k]);
       store(&q_[k], q);
-      total = add_product(load(&p_[k]), q, total);
+      total = add_product(widen(load(&p_[k])), widen(q), total);
     });
     return sum(total);
   });
-}
-
-/// out ← C⁻¹ x.
-void BlockConjugateGradient::scale(std::span<const double> x, Vector& out) const {
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    multiply(stride_[j] / row_padding, size_[j], &inverse_[inverse_start_[j]], &x[offset_[j]],
-             &out[start_[j]]);
-  }
-}
-
-/// x ← C_j⁻ᵀ v_j.
-void BlockConjugateGradient::unscale(std::size_t j, const Vector& v, double* x) const {
-  for (int c = 0; c < size_[j]; ++c) {
-    Lanes t[1]{};
-    add_lane_products(stride_[j] / row_padding, &inverse_[inverse_start_[j] + at(c * stride_[j])],
-                      &v[start_[j]], t);
-    x[c] = sum(t[0]);
-  }
-}
-
-/// residual −= A x.
-void BlockConjugateGradient::subtract_product(std::span<const double> x, std::span<double> residual) {
-  std::fill(wide_.begin(), wide_.end(), 0.0);
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    for (int c = 0; c < size_[j]; ++c) wide_[start_[j] + at(c)] = x[offset_[j] + at(c)];
-  }
-  std::fill(q_.begin(), q_.end(), 0.0);
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    const double* x_j = &wide_[start_[j]];
-    double* y_j = &q_[start_[j]];
-    subtract_times(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], x_j, y_j);
-    for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const auto [i, values, lower] = entries_[e];
-      subtract_times(stride_[i] / row_padding, size_[j], &matrix_[values], x_j, &q_[start_[i]]);
-      for (int c = 0; c < size_[j]; ++c) {
-        Lanes t[1]{};
-        add_lane_products(stride_[i] / row_padding, &matrix_[values + at(c * stride_[i])], &wide_[start_[i]],
-                          t);
-        y_j[c] -= sum(t[0]);
-      }
-    }
-  }
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] += q_[start_[j] + at(c)];
-  }
 }
 
 /// z ← z + α p and r ← r − α q. Returns r · r.
 double BlockConjugateGradient::go(double alpha) {
-  const Lanes a = broadcast(alpha);
+  const NarrowLanes a = broadcast(static_cast<float>(alpha));
   return sum_over_ranges([&](Range range) {
     Lanes total{};
     padded(range, [&](std::size_t k) {
       store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
-      const Lanes r = load(&r_[k]) - a * load(&q_[k]);
+      const NarrowLanes r = load(&r_[k]) - a * load(&q_[k]);
       store(&r_[k], r);
-      total = add_product(r, r, total);
+      total = add_product(widen(r), widen(r), total);
     });
     return sum(total);
   });
 }
 
-/// What x lacks of the solution, as the iteration has it: C (1 + L) r. It is that of the matrix but for what the single precision of
-/// L leaves.
-void BlockConjugateGradient::find_residual(std::span<double> residual) {
-  const auto start = [&](std::size_t, Range range) {
-    padded(range, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); });
-  };
-  start(0, between());
-  for_parts([&](std::size_t k, Range range) {
-    start(k, range);
-    subtract_lower(r_, q_, range);
-  });
-  subtract_lower_between(r_, q_);
-  // C v = A_jj C⁻ᵀ v
-  const auto unscale_rows = [&](std::size_t, Range range) {
+/// r ← C⁻¹ x
+void BlockConjugateGradient::scale(std::span<const double> x) {
+  for_ranges([&](Range range) {
     for (std::size_t j = range.first; j < range.last; ++j) {
-      double* product = &t_[start_[j]];
-      unscale(j, q_, product);
-      multiply(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], product, &q_[start_[j]]);
-      for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] = -q_[start_[j] + at(c)];
+      double* scaled = &wide_[start_[j]];
+      multiply(stride_[j] / row_padding, size_[j], &inverse_[inverse_start_[j]], &x[offset_[j]], scaled);
+      for (int l = 0; l < stride_[j]; l += row_padding)
+        store(&r_[start_[j] + at(l)], narrow(load(scaled + l)));
     }
+  });
+}
+
+/// x ← C_j⁻ᵀ v_j, padded.
+void BlockConjugateGradient::unscale(std::size_t j, const Vector& v, double* x) {
+  double* wide = &wide_[start_[j]];
+  const double* inverse = &inverse_[inverse_start_[j]];
+  for (int l = 0; l < stride_[j]; l += row_padding) store(wide + l, widen(load(&v[start_[j] + at(l)])));
+  if (size_[j] == 6) {
+    Lanes t[6]{};
+    add_lane_products(1, inverse, wide, t);
+    store(x, sums(t));
+    return;
+  }
+  for (int c = 0; c < size_[j]; ++c) {
+    Lanes t[1]{};
+    add_lane_products(stride_[j] / row_padding, inverse + c * stride_[j], wide, t);
+    x[c] = sum(t[0]);
+  }
+}
+
+/// What x lacks of the solution, as the iteration has it: C (1 + L) r. It is that of the matrix but for what single precision
+/// leaves.
+void BlockConjugateGradient::find_residual(std::span<double> residual) {
+  for_ranges([&](Range range) { padded(range, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); }); });
+  for_parts([&](std::size_t, Range range) {
+    subtract_lower<&Entry::lower>(lower_.data(), r_.data(), q_.data(), range);
+  });
+  subtract_lower_between<&Entry::lower>(lower_.data(), r_.data(), q_.data());
+  // C v = A_jj C⁻ᵀ v
+  for_ranges([&](Range range) {
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      double *unscaled = &product_[start_[j]], *product = &wide_[start_[j]];
+      unscale(j, q_, unscaled);
+      multiply(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], unscaled, product);
+      for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] = -product[c];
+    }
+  });
+}
+
+/// x += C⁻ᵀ v, and residual −= A C⁻ᵀ v.
+void BlockConjugateGradient::take_over(const Vector& v, std::span<double> x, std::span<double> residual) {
+  for_ranges([&](Range range) {
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      double* correction = &product_[start_[j]];
+      unscale(j, v, correction);
+      for (int c = 0; c < size_[j]; ++c) x[offset_[j] + at(c)] += correction[c];
+    }
+  });
+  std::swap(wide_, product_);
+  const double* correction = wide_.data();
+  const auto multiply_rows = [&](Range range) {
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      multiply(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], correction + start_[j],
+               &product_[start_[j]]);
+      for (int l = 0; l < stride_[j]; l += row_padding) {
+        double* of_block = &product_[start_[j] + at(l)];
+        store(of_block, -load(of_block));
+      }
+    }
+    subtract_upper<&Entry::values>(matrix_.data(), correction, product_.data(), range);
   };
-  for_parts(unscale_rows);
-  unscale_rows(0, between());
+  for_ranges(multiply_rows);
+  for_parts([&](std::size_t, Range range) {
+    subtract_lower<&Entry::values>(matrix_.data(), correction, product_.data(), range);
+  });
+  subtract_lower_between<&Entry::values>(matrix_.data(), correction, product_.data());
+  for_ranges([&](Range range) {
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] += product_[start_[j] + at(c)];
+    }
+  });
 }
 
 /// Conjugate gradients from r_ on, to z_. Returns how many iterations that took.
@@ -459,10 +495,9 @@ void BlockConjugateGradient::find_residual(std::span<double> residual) {
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
 /// factor of ten and more, the one way or the other. As it costs most of an iteration it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
-int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most,
-                                    std::span<double> residual) {
-  std::fill(p_.begin(), p_.end(), 0.0);
-  std::fill(z_.begin(), z_.end(), 0.0);
+int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most) {
+  std::fill(p_.begin(), p_.end(), 0.0F);
+  std::fill(z_.begin(), z_.end(), 0.0F);
   double rr = go(0.0), beta = 0.0, wanted = rr / (too_large * std::sqrt(too_large));
   for (int iterations = 1;; ++iterations) {
     const double next = go(rr / apply(beta));
@@ -470,8 +505,8 @@ int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int 
     rr = next;
     if (iterations == most) return most;
     if (rr > wanted) continue;
-    find_residual(residual);
-    too_large = excess(residual);
+    find_residual(estimate_);
+    too_large = excess(estimate_);
     if (too_large <= well_enough) return iterations;
     wanted = 0.5 * rr / (too_large * too_large);
   }
@@ -481,20 +516,18 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
   std::copy(x.begin(), x.end(), residual.begin());
   std::fill(x.begin(), x.end(), 0.0);
   solved_ = true;
-  correction_.resize(x.size());
+  estimate_.resize(x.size());
   int iterations = 0;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
     if (iterations >= most_iterations) {
       solved_ = false;
       return;
     }
-    scale(residual, r_);
+    scale(residual);
     divide_forward(r_);
-    iterations += iterate(too_large, excess, most_iterations - iterations, correction_);
+    iterations += iterate(too_large, excess, most_iterations - iterations);
     divide_backward(z_);
-    for (std::size_t j = 0; j < size_.size(); ++j) unscale(j, z_, &correction_[offset_[j]]);
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] += correction_[k];
-    subtract_product(correction_, residual);
+    take_over(z_, x, residual);
   }
 }
 

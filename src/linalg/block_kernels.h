@@ -15,16 +15,17 @@ namespace keyblock::linalg {
 
 static_assert(row_padding == lane_count);
 
-inline Lanes load(const float* p) {
+inline Lanes widen(NarrowLanes v) {
 #if defined(__AVX512F__)
   // One instruction; compilers make five of the general form.
-  return _mm512_maskz_cvtps_pd(0xff, _mm256_loadu_ps(p));
+  return _mm512_maskz_cvtps_pd(0xff, v);
 #else
-  using Narrow = float __attribute__((vector_size(row_padding * sizeof(float)), aligned(4)));
-  return __builtin_convertvector(*reinterpret_cast<const Narrow*>(p), Lanes);
+  return __builtin_convertvector(v, Lanes);
 #endif
 }
-using keyblock::load;
+inline NarrowLanes narrow(Lanes v) {
+  return __builtin_convertvector(v, NarrowLanes);
+}
 
 /// c + a b, rounded once.
 inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
@@ -41,30 +42,40 @@ inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
   return c;
 #endif
 }
+inline NarrowLanes add_product(NarrowLanes a, NarrowLanes b, NarrowLanes c) {
+#if defined(__FMA__)
+  return _mm256_fmadd_ps(a, b, c);
+#else
+  for (int k = 0; k < row_padding; ++k) c[k] = std::fma(a[k], b[k], c[k]);
+  return c;
+#endif
+}
 /// c − a b, rounded once.
-inline Lanes subtract_product(Lanes a, Lanes b, Lanes c) {
+template <typename Register>
+Register subtract_product(Register a, Register b, Register c) {
   return add_product(-a, b, c);
 }
 
-inline double sum(Lanes v) {
+template <typename Register>
+auto sum(Register v) {
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
 /// The sum of each of up to eight vectors, as sum() forms it.
-template <int count>
-Lanes sums(const Lanes (&t)[count]) {
+template <typename Register, int count>
+Register sums(const Register (&t)[count]) {
   static_assert(count <= row_padding);
-  const auto at = [&](int k) { return k < count ? t[k] : Lanes{}; };
-  const auto pairs = [](Lanes a, Lanes b) {
+  const auto at = [&](int k) { return k < count ? t[k] : Register{}; };
+  const auto pairs = [](Register a, Register b) {
     return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
            __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
   };
-  const auto fours = [](Lanes a, Lanes b) {
+  const auto fours = [](Register a, Register b) {
     return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
            __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
   };
-  const Lanes low = fours(pairs(at(0), at(1)), pairs(at(2), at(3))),
-              high = fours(pairs(at(4), at(5)), pairs(at(6), at(7)));
+  const Register low = fours(pairs(at(0), at(1)), pairs(at(2), at(3))),
+                 high = fours(pairs(at(4), at(5)), pairs(at(6), at(7)));
   return __builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11) +
          __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15);
 }
@@ -226,7 +237,7 @@ bool invert_factor(double* a) {
     const Lanes factor = broadcast(scale[j / row_padding][j % row_padding]);
 #pragma GCC unroll 2
     for (int l = 0; l < lanes; ++l) {
-      const Lanes row = first + broadcast(l * row_padding - j);
+      const Lanes row = first + broadcast(static_cast<double>(l * row_padding - j));
       column[j][l] = row > 0.0 ? column[j][l] * factor : row == 0.0 ? broadcast(1.0) : Lanes{};
     }
   }
@@ -295,10 +306,10 @@ inline void multiply(int lanes, int columns, const double* a, const double* x, d
 
 /// y −= A x.
 template <typename Number>
-void subtract_times(int lanes, int columns, const Number* a, const double* x, double* y) {
+void subtract_times(int lanes, int columns, const Number* a, const Number* x, Number* y) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
-    Lanes t = load(y + l * row_padding);
+    auto t = load(y + l * row_padding);
     for (int j = 0; j < columns; ++j)
       t = subtract_product(load(a + j * stride + l * row_padding), broadcast(x[j]), t);
     store(y + l * row_padding, t);
@@ -306,11 +317,11 @@ void subtract_times(int lanes, int columns, const Number* a, const double* x, do
 }
 
 /// t_j += A_j ∘ x, the products of column j of A with x lane by lane; their sum is (Aᵀ x)_j. As many columns as t has.
-template <typename Number, int columns>
-void add_lane_products(int lanes, const Number* a, const double* x, Lanes (&t)[columns]) {
+template <typename Number, typename Register, int columns>
+void add_lane_products(int lanes, const Number* a, const Number* x, Register (&t)[columns]) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
-    const Lanes v = load(x + l * row_padding);
+    const Register v = load(x + l * row_padding);
 #pragma GCC unroll 8
     for (int j = 0; j < columns; ++j) t[j] = add_product(load(a + j * stride + l * row_padding), v, t[j]);
   }
