@@ -290,15 +290,18 @@ void Detection::add(const Surface& surface, const Found& found, const CandidateL
   contact.depth = -contact.gap - memory.offset + memory.multiplier;
 }
 
-void keep_memory(std::span<const Contact> contacts, CandidateList& candidates) {
-  candidates.tracked.clear();
-  candidates.memory.clear();
-  for (const Contact& c : contacts) {
-    candidates.tracked.push_back(c.candidate);
-    candidates.memory.push_back(c.memory);
-    if (c.memory.bonded)
-      candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
-  }
+void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
+  candidates.tracked.resize(contacts.size());
+  candidates.memory.resize(contacts.size());
+  team.for_range(contacts.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Contact& c = contacts[k];
+      candidates.tracked[k] = c.candidate;
+      candidates.memory[k] = c.memory;
+      if (c.memory.bonded)
+        candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
+    }
+  });
 }
 
 }  // namespace keyblock::contact

@@ -41,7 +41,7 @@ struct Contact {
 };
 
 /// Takes what the contacts of a step remember over into the list. Candidates that were no contacts remember nothing.
-void keep_memory(std::span<const Contact> contacts, CandidateList& candidates);
+void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team);
 
 /// Geometry of candidates turned into the contacts of a step.
 ///

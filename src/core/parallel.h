@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace keyblock {
 
@@ -26,5 +27,51 @@ class ThreadTeam {
   int size_;
   std::unique_ptr<Shared> shared_;
 };
+
+/// The i < n for which is(i), ascending. Piece by piece, by the threads of the team when n is at least `grain`.
+template <typename Is>
+void find_all(ThreadTeam& team, std::size_t n, std::size_t grain, const Is& is,
+              std::vector<std::size_t>& found) {
+  found.clear();
+  if (team.size() == 1 || n < grain) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is(i)) found.push_back(i);
+    }
+    return;
+  }
+  constexpr std::size_t piece = 4'096;
+  std::vector<std::vector<std::size_t>> of_piece((n + piece - 1) / piece);
+  team.for_range(of_piece.size(), 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      for (std::size_t i = p * piece; i < n && i < (p + 1) * piece; ++i) {
+        if (is(i)) of_piece[p].push_back(i);
+      }
+    }
+  });
+  for (const auto& some : of_piece) found.insert(found.end(), some.begin(), some.end());
+}
+
+/// The largest of(i), i < n, and of 0.
+template <typename Of>
+double largest_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& of) {
+  const auto largest = [&](std::size_t begin, std::size_t end) {
+    double found = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (const double x = of(i); x > found) found = x;
+    }
+    return found;
+  };
+  if (team.size() == 1 || n < grain) return largest(0, n);
+  const std::size_t pieces = static_cast<std::size_t>(team.size());
+  std::vector<double> of_piece(pieces);
+  team.for_range(pieces, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) of_piece[p] = largest(n * p / pieces, n * (p + 1) / pieces);
+  });
+  double found = 0.0;
+  for (const double x : of_piece) {
+    if (x > found) found = x;
+  }
+  return found;
+}
 
 }  // namespace keyblock

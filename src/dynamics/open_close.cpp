@@ -1,6 +1,7 @@
 #include "dynamics/open_close.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -24,14 +25,14 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
   springs_.resize(rows.size());
   friction_.resize(rows.size());
   cohesion_.resize(rows.size());
-  any_bond_ = false;
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  std::atomic<bool> any_bond = false;
+  const auto start_spring = [&](std::size_t c) {
     const StepProblem::Row& row = rows[c];
     const contact::Spring& s = row.spring;
     springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
     friction_[c] = contacts[c].fused ? -1.0 : contacts[c].friction_coefficient;
     cohesion_[c] = contacts[c].cohesion;
-    any_bond_ = any_bond_ || (contacts[c].memory.bonded && !contacts[c].fused);
+    if (contacts[c].memory.bonded && !contacts[c].fused) any_bond = true;
     Shear assumed = Shear::none;
     if (s.bound() > 0.0) {
       if (contacts[c].memory.state == contact::State::locked) {
@@ -41,7 +42,11 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
       }
     }
     springs_.piece[c] = {contacts[c].memory.state != contact::State::open || s.tensile(), assumed};
-  }
+  };
+  team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) start_spring(c);
+  });
+  any_bond_ = any_bond;
   assembled_ = knows_relative_ = false;
   bound_steps_.clear();
 }
@@ -50,8 +55,13 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
 void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                           std::span<double> out) {
   if (force.is_zero()) return;
+  problem.add_contact_force(problem.rows()[c], scale * contact_gradient(problem, c, force), out);
+}
+
+/// ∂ψ/∂r of a contact whose springs push with `force`.
+Vec2 OpenClose::contact_gradient(const StepProblem& problem, std::size_t c, Force force) {
   const StepProblem::Row& row = problem.rows()[c];
-  problem.add_contact_force(row, scale * (force.shear * row.tangent() - force.normal * row.normal), out);
+  return force.shear * row.tangent() - force.normal * row.normal;
 }
 
 /// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
@@ -70,22 +80,24 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
       factored_.assign(rows.size(), Piece{});
       begin_factor(problem, solver);
     }
-    bool any = !assembled_;
+    changes_.clear();
     for (std::size_t c = 0; c < rows.size(); ++c) {
       const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
       if (from.same_springs(to)) continue;
       const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
                    kn = normal - std::exchange(factor_.normal_stiffness[c], normal),
                    ks = shear - std::exchange(factor_.shear_stiffness[c], shear);
-      if (kn == 0.0 && ks == 0.0) continue;
-      problem.add_springs(rows[c], kn, ks, solver);
-      any = true;
-      if (!assembled_) continue;
-      if (rows[c].unknown_a >= 0) solver.touch(rows[c].unknown_a);
-      if (rows[c].unknown_b >= 0) solver.touch(rows[c].unknown_b);
+      if (kn != 0.0 || ks != 0.0) changes_.push_back({c, kn, ks});
+    }
+    if (assembled_ && changes_.empty()) return true;
+    problem.add_springs(changes_, solver);
+    for (const StepProblem::SpringChange& change : changes_) {
+      if (!assembled_) break;  // all is new
+      const StepProblem::Row& row = rows[change.contact];
+      if (row.unknown_a >= 0) solver.touch(row.unknown_a);
+      if (row.unknown_b >= 0) solver.touch(row.unknown_b);
     }
     assembled_ = true;
-    if (!any) return true;
   }
   forget_corrections();
   ++result.factorizations;
@@ -119,12 +131,12 @@ void OpenClose::find_direction(const StepProblem& problem) {
 
 /// Contacts that change piece between where they are and α along the direction.
 void OpenClose::find_bends(double alpha) {
-  bends_.clear();
-  for (std::size_t c = 0; c < springs_.size(); ++c) {
+  const auto bends = [&](std::size_t c) {
     const Piece p =
         springs_.piece_at(c, springs_.y[c] + alpha * springs_.dy[c], springs_.w[c] + alpha * springs_.dw[c]);
-    if (p != springs_.piece[c]) bends_.push_back(c);
-  }
+    return p != springs_.piece[c];
+  };
+  find_all(*team_, springs_.size(), contacts_worth_threads, bends, bends_);
 }
 
 /// dΠ(D + αp)/dα given the bends up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) but for the bends.

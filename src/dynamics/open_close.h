@@ -93,6 +93,7 @@ class OpenClose {
   [[nodiscard]] double slope(double alpha) const;
   void go(const StepProblem& problem, double alpha, std::span<double> d);
   void set_law(const StepProblem& problem, std::size_t c);
+  static Vec2 contact_gradient(const StepProblem& problem, std::size_t c, Force force);
   static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                         std::span<double> out);
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
@@ -124,7 +125,8 @@ class OpenClose {
   int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
   std::vector<std::size_t> free_;     ///< blocks that nothing holds
   std::vector<std::uint8_t> held_;    ///< scratch: per unknown block, whether a spring holds it
-  std::vector<std::size_t> bends_;    ///< contacts that change piece along the direction of search
+  std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of the matrix
+  std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.
   struct Corrected {
     std::size_t contact;

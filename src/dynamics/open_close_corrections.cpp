@@ -41,10 +41,8 @@ void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
 
 /// Contacts that are not on the straight lines of the matrix, into bends_.
 void OpenClose::find_bent() {
-  bends_.clear();
-  for (std::size_t c = 0; c < springs_.size(); ++c) {
-    if (springs_.piece[c] != factored_[c]) bends_.push_back(c);
-  }
+  const auto is_bent = [&](std::size_t c) { return springs_.piece[c] != factored_[c]; };
+  find_all(*team_, springs_.size(), contacts_worth_threads, is_bent, bends_);
 }
 
 /// Springs of the contacts in bends_ that are not corrected yet become so. How many there were; −1: too many.
@@ -104,7 +102,8 @@ void OpenClose::forget_corrections() {
 void OpenClose::find_gradient(const StepProblem& problem, std::span<const double> d) {
   problem.multiply(d, gradient_);
   for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] -= problem.right()[k];
-  for (std::size_t c = 0; c < springs_.size(); ++c) add_force(problem, c, springs_.force(c), 1.0, gradient_);
+  problem.add_contact_forces([&](std::size_t c) { return contact_gradient(problem, c, springs_.force(c)); },
+                             gradient_);
 }
 
 /// Goes to the minimum with the factor at hand, correcting the springs that act otherwise. They become more until no other does, so

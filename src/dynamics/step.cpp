@@ -1,6 +1,7 @@
 #include "dynamics/step.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/index.h"
@@ -102,7 +103,7 @@ void Stepper::start(State& state) {
     memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
     contact_energy_ += memory.stored;
   }
-  contact::keep_memory(contacts_, state.contacts);
+  contact::keep_memory(contacts_, state.contacts, team_);
   ensure_pattern(state, true);
 }
 
@@ -139,13 +140,12 @@ void Stepper::remove_absent(State& state) {
 /// Bound on how far each block moves and turns in the step: twice what its velocity and the body force make of it.
 void Stepper::predict_reach(const State& state, const Drive& drive) {
   const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
+  for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
     if (drive.is_static) {
       reach_[b] = 2.0 * state.moved[b];
       turn_[b] = reach_[b] / block.radius;
-      continue;
+      return;
     }
     double fastest = 0.0;
     for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
@@ -156,7 +156,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
     reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
     const double spin = block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
     turn_[b] = std::min(2.0 * std::abs(spin) * drive.step, reach_[b] / block.radius);
-  }
+  });
   for (const PrescribedMotion& motion : model_.motions)
     reach_[at(motion.block)] = norm(drive.prescribed[at(motion.block)]);
 }
@@ -204,11 +204,11 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
 }
 
 void Stepper::measure_spin(const State& state) {
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+  std::fill(spin_.begin(), spin_.end(), 0.0);
+  for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
-    spin_[b] =
-        model_.moves(b) ? block.pose.mean_spin(&increment_[block.first], &state.position[block.first]) : 0.0;
-  }
+    spin_[b] = block.pose.mean_spin(&increment_[block.first], &state.position[block.first]);
+  });
 }
 
 /// Whether the step, linear in the displacement, misses the gap at its end by too much: vertices of a turning block leave
@@ -238,9 +238,8 @@ bool Stepper::turned_too_far() const {
 
 /// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised.
 bool Stepper::moved_too_far() {
-  bool any = false;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
+  std::atomic<bool> any = false;
+  for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
     double moved = 0.0;
     for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
@@ -257,8 +256,48 @@ bool Stepper::moved_too_far() {
       reach_[b] = std::max(reach_[b], turn_[b] * block.radius);
       any = true;
     }
-  }
+  });
   return any;
+}
+
+/// What contact c remembers for the next step.
+Stepper::ContactAccount Stepper::remember_contact(std::size_t c, bool is_static) {
+  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  const StepProblem::Row& row = problem_.rows()[c];
+  const contact::Spring& s = row.spring;
+  contact::Memory& memory = contacts_[c].memory;
+  const Vec2 r = open_close_.relative()[c];
+  const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
+  ContactAccount account;
+  account.balance = augmented ? s.rigid_balance(depth, shear, dot(row.normal, r), dot(row.tangent(), r))
+                              : s.balance(depth, shear);
+  account.stored_before = memory.stored;
+  account.input = -dot(normal_force * row.normal - s.shear_force(shear) * row.tangent(), row.moved);
+  memory.stored = account.balance.stored;
+  const double change = std::max(0.0, normal_force) - memory.normal_force;
+  memory.normal_force = std::max(0.0, normal_force);
+  const bool slides = s.closed(depth) && !s.locked(shear) && s.bound() > 0.0;
+  memory.bounding_force =
+      std::max(0.0, memory.normal_force + (slides && !is_static && !augmented ? change : 0.0));
+  memory.shear = s.closed(depth) ? s.elastic_shear(shear) : 0.0;
+  memory.state = !s.closed(depth)  ? contact::State::open
+                 : s.locked(shear) ? contact::State::locked
+                                   : contact::State::sliding;
+  forces_[c] = {normal_force, s.closed(depth) ? s.shear_force(shear) : 0.0};
+  account.penetration = s.penetration(depth);
+  if (!augmented) return account;
+  const double penetration = -(contacts_[c].gap + dot(row.normal, r));
+  memory.offset = std::max(memory.offset, 0.0);
+  account.penetration = 0.0;
+  if (s.closed(depth)) {
+    account.penetration = penetration - memory.offset;
+    memory.multiplier = normal_force / contacts_[c].normal_stiffness;
+    memory.shear = s.shear_force(shear) / contacts_[c].shear_stiffness;
+  } else {
+    memory.multiplier = 0.0;
+  }
+  memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
+  return account;
 }
 
 /// Contact memory for the next step, and where the energy of contacts went.
@@ -267,46 +306,21 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
   state.ledger.numerical += contact_energy_;
   contact_energy_ = 0.0;
-  const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const StepProblem::Row& row = problem_.rows()[c];
-    const contact::Spring& s = row.spring;
-    contact::Memory& memory = contacts_[c].memory;
-    const Vec2 r = open_close_.relative()[c];
-    const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
-    const contact::Spring::Balance balance =
-        augmented ? s.rigid_balance(depth, shear, dot(row.normal, r), dot(row.tangent(), r))
-                  : s.balance(depth, shear);
-    account_contact(state.ledger, memory, row, r, balance);
-    memory.stored = balance.stored;
-    contact_energy_ += memory.stored;
-    const double change = std::max(0.0, normal_force) - memory.normal_force;
-    memory.normal_force = std::max(0.0, normal_force);
-    const bool slides = s.closed(depth) && !s.locked(shear) && s.bound() > 0.0;
-    memory.bounding_force =
-        std::max(0.0, memory.normal_force + (slides && !drive.is_static && !augmented ? change : 0.0));
-    memory.shear = s.closed(depth) ? s.elastic_shear(shear) : 0.0;
-    memory.state = !s.closed(depth)  ? contact::State::open
-                   : s.locked(shear) ? contact::State::locked
-                                     : contact::State::sliding;
-    forces_[c] = {normal_force, s.closed(depth) ? s.shear_force(shear) : 0.0};
-    if (memory.state != contact::State::open) ++report.closed_contacts;
-    if (!augmented) {
-      report.penetration = std::max(report.penetration, s.penetration(depth));
-      continue;
+  constexpr std::size_t piece = 1 << 14;  // of the contacts, whose accounts are kept at a time
+  for (std::size_t first = 0; first < contacts_.size(); first += piece) {
+    accounts_.resize(std::min(piece, contacts_.size() - first));
+    team_.for_range(accounts_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) accounts_[k] = remember_contact(first + k, drive.is_static);
+    });
+    for (const ContactAccount& account : accounts_) {
+      account.enter(state.ledger);
+      contact_energy_ += account.balance.stored;
+      report.penetration = std::max(report.penetration, account.penetration);
     }
-    const double penetration = -(contacts_[c].gap + dot(row.normal, r));
-    memory.offset = std::max(memory.offset, 0.0);
-    if (s.closed(depth)) {
-      report.penetration = std::max(report.penetration, penetration - memory.offset);
-      memory.multiplier = normal_force / contacts_[c].normal_stiffness;
-      memory.shear = s.shear_force(shear) / contacts_[c].shear_stiffness;
-    } else {
-      memory.multiplier = 0.0;
-    }
-    memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
   }
-  contact::keep_memory(contacts_, state.contacts);
+  report.closed_contacts += static_cast<int>(std::ranges::count_if(
+      contacts_, [](const contact::Contact& c) { return c.memory.state != contact::State::open; }));
+  contact::keep_memory(contacts_, state.contacts, team_);
   report.contact_energy = contact_energy();
 }
 
@@ -321,8 +335,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   }
   const double g = norm(model_.gravity);
   const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
+  for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
     double* v = &state.velocity[block.first];
@@ -342,11 +355,11 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
                      problem_.inertia(b) * dot(down, {d[0], d[1]}) / weight};
     }
     const double w = block.pose.update(d, &state.position[block.first], v);
-    if (state.acceleration.empty()) continue;
+    if (state.acceleration.empty()) return;
     block.pose.rotate(w, &state.acceleration[block.first]);
     block.pose.rotate(w, &state.force[block.first]);
     state.acceleration_known[b] = !drive.is_static && in_impact_[b] == 0;
-  }
+  });
   move_prescribed(state, drive);
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {

@@ -86,6 +86,15 @@ class Stepper {
   [[nodiscard]] double contact_energy() const { return contact_energy_ + support_energy_; }
 
  private:
+  /// Calls of_block(b) for the blocks that move.
+  template <typename OfBlock>
+  void for_blocks(const OfBlock& of_block) {
+    team_.for_range(model_.blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        if (model_.moves(b)) of_block(b);
+      }
+    });
+  }
   void place(State& state);
   static double stored_energy(const State& state);
   [[nodiscard]] double support_energy(const State& state) const;
@@ -109,8 +118,15 @@ class Stepper {
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
-  static void account_contact(EnergyLedger& ledger, const contact::Memory& before,
-                              const StepProblem::Row& row, Vec2 r, const contact::Spring::Balance& balance);
+  /// Where the energy of a contact went in the step, and how deep it is.
+  struct ContactAccount {
+    contact::Spring::Balance balance;
+    double stored_before = 0.0;  ///< J per thickness, at the start
+    double input = 0.0;          ///< J per thickness, by what fixed blocks are moved
+    double penetration = 0.0;    ///< m
+    void enter(EnergyLedger& ledger) const;
+  };
+  ContactAccount remember_contact(std::size_t c, bool is_static);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
@@ -145,6 +161,7 @@ class Stepper {
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
   double impact_speed_;                  ///< m/s
   std::vector<Force> forces_;
+  std::vector<ContactAccount> accounts_;  ///< scratch
   std::vector<Balance> balance_;
   double contact_energy_ = 0.0, support_energy_ = 0.0;
 };

@@ -73,13 +73,10 @@ void Stepper::account(State& state, const Drive& drive) {
   }
 }
 
-/// Where the energy of a contact went while its blocks moved by r against each other.
-void Stepper::account_contact(EnergyLedger& ledger, const contact::Memory& before,
-                              const StepProblem::Row& row, Vec2 r, const contact::Spring::Balance& balance) {
-  ledger.numerical -= before.stored;
+void Stepper::ContactAccount::enter(EnergyLedger& ledger) const {
+  ledger.numerical -= stored_before;
   ledger.friction += balance.friction;
-  const double normal = row.spring.normal_force(row.depth(r)), shear = row.spring.shear_force(row.shear(r));
-  ledger.input -= dot(normal * row.normal - shear * row.tangent(), row.moved);
+  ledger.input += input;
   ledger.damping += balance.damping;
   ledger.numerical += balance.numerical;
 }

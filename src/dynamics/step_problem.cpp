@@ -21,6 +21,7 @@ constexpr double geometric_floor = 0.05;
 void StepProblem::build(const Model& model, const State& state, const Drive& drive,
                         const contact::Surface& surface, std::span<const contact::Contact> contacts,
                         std::span<const int> pairs, ThreadTeam& team) {
+  team_ = &team;
   if (model_ != &model) {
     model_ = &model;
     h_first_.clear();
@@ -35,9 +36,9 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     viscous_.assign(model.blocks.size(), 0.0);
     weight_.assign(model.blocks.size(), 0.0);
   }
-  build_blocks(state, drive, team);
+  build_blocks(state, drive);
   add_supports(state, drive);
-  build_rows(drive, surface, contacts, pairs, team);
+  build_rows(drive, surface, contacts, pairs);
 }
 
 template <typename Size>
@@ -71,9 +72,9 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
 }
 
-void StepProblem::build_blocks(const State& state, const Drive& drive, ThreadTeam& team) {
+void StepProblem::build_blocks(const State& state, const Drive& drive) {
   const Vec2 acceleration = model_->gravity - drive.ground_acceleration;
-  team.for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Block& block = model_->blocks[i];
       with_known_size(block.size, [&](auto size) { build_block(size, i, state, drive, acceleration); });
@@ -118,9 +119,9 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 }
 
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
-                             std::span<const contact::Contact> contacts, std::span<const int> pairs,
-                             ThreadTeam& team) {
+                             std::span<const contact::Contact> contacts, std::span<const int> pairs) {
   rows_.resize(contacts.size());
+  if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
   std::uint32_t used = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     rows_[k].phi = used;
@@ -128,10 +129,11 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
                                        model_->blocks[at(contacts[k].block_b)].size);
   }
   phi_.resize(used);
-  team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       build_row(drive, surface, contacts[k], rows_[k]);
       rows_[k].pair = pairs[at(contacts[k].candidate)];
+      if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
     }
   });
 }
@@ -203,13 +205,15 @@ void multiply_block(Size size, const double* h, const double* x, double* y) {
 }  // namespace
 
 void StepProblem::multiply(std::span<const double> x, std::span<double> y) const {
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
-    const Block& block = model_->blocks[i];
-    with_known_size(block.size, [&](auto size) {
-      if (model_->moves(i)) return multiply_block(size, &h_[h_first_[i]], &x[block.first], &y[block.first]);
-      std::fill_n(&y[block.first], 2 * size, 0.0);
-    });
-  }
+  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Block& block = model_->blocks[i];
+      with_known_size(block.size, [&](auto size) {
+        if (model_->moves(i)) return multiply_block(size, &h_[h_first_[i]], &x[block.first], &y[block.first]);
+        std::fill_n(&y[block.first], 2 * size, 0.0);
+      });
+    }
+  });
 }
 
 void StepProblem::solve_alone(std::size_t i, std::span<double> d) const {
@@ -306,19 +310,29 @@ void StepProblem::assemble(linalg::BlockSolver& solver) const {
   }
 }
 
-void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const {
+void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
+  for_owned_contacts(
+      changes.size(), [&](std::size_t k) { return changes[k].contact; },
+      [&](std::size_t k, Owner owner) {
+        add_spring(rows_[changes[k].contact], changes[k].normal, changes[k].shear, owner, solver);
+      });
+}
+
+void StepProblem::add_spring(const Row& row, double kn, double ks, Owner owner,
+                             linalg::BlockSolver& solver) const {
   const Vec2 n = row.normal, t = row.tangent();
   const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
                     kn * n.y * n.y + ks * t.y * t.y};
   const double *phi_a = &phi_[row.phi], *phi_b = phi_a + row.size_a;
   const auto add_diagonal = [&](const double* phi, int size, int unknown) {
-    if (size > 0)
+    if (size > 0 && owner.has(unknown))
       add_block(phi, size, phi, size, k, 1.0, solver.diagonal(unknown), linalg::padded_rows(2 * size));
   };
   add_diagonal(phi_a, row.size_a, row.unknown_a);
   add_diagonal(phi_b, row.size_b, row.unknown_b);
   if (row.pair < 0) return;
   const linalg::BlockSlot slot = solver.slot(row.pair);
+  if (!owner.has(slot.row)) return;
   if (slot.row == row.unknown_a) {
     add_block(phi_a, row.size_a, phi_b, row.size_b, k, -1.0, slot.values, slot.stride);
   } else {
@@ -327,18 +341,16 @@ void StepProblem::add_springs(const Row& row, double kn, double ks, linalg::Bloc
 }
 
 double StepProblem::residual_ratio(std::span<const double> g) const {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
+  return largest_of(*team_, model_->blocks.size(), blocks_worth_threads, [&](std::size_t i) {
     const Block& block = model_->blocks[i];
-    if (!model_->moves(i) || weight_[i] <= 0.0) continue;
+    if (!model_->moves(i) || weight_[i] <= 0.0) return 0.0;
     double largest = 0.0;
     with_known_size(block.size, [&](auto size) {
       const double* of_block = &g[block.first];
       for (int k = 0; k < 2 * size; ++k) largest = std::max(largest, std::abs(of_block[k]));
     });
-    worst = std::max(worst, largest / weight_[i]);
-  }
-  return worst;
+    return largest / weight_[i];
+  });
 }
 
 StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d,

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/detection.h"
@@ -13,8 +15,8 @@
 
 namespace keyblock::dynamics {
 
-/// Contacts from which loops over them are worth the threads of a team.
-inline constexpr std::size_t contacts_worth_threads = 10'000;
+/// Contacts, and blocks, from which loops over them are worth the threads of a team.
+inline constexpr std::size_t contacts_worth_threads = 10'000, blocks_worth_threads = 2'000;
 
 /// What drives one step.
 struct Drive {
@@ -79,8 +81,12 @@ class StepProblem {
   void multiply(std::span<const double> x, std::span<double> y) const;
   /// Sets the solver's matrix to H. With add_springs for all that act at r it becomes ∇²Π there.
   void assemble(linalg::BlockSolver& solver) const;
-  /// Adds springs of stiffness kn and ks (N/m per thickness; negative: takes away) at a contact.
-  void add_springs(const Row& row, double kn, double ks, linalg::BlockSolver& solver) const;
+  /// Springs at a contact, N/m per thickness; negative: taken away.
+  struct SpringChange {
+    std::size_t contact;
+    double normal, shear;
+  };
+  void add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const;
   /// (∂r/∂D)ᵀ direction: the parts of the two blocks, as long as their coefficients.
   void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.
@@ -88,6 +94,22 @@ class StepProblem {
     const double* phi = &phi_[row.phi];
     add_scaled(phi, row.size_a, force, &out[row.first_a]);
     add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
+  }
+
+  /// The same for all contacts, with force_of(c).
+  template <typename ForceOf>
+  void add_contact_forces(const ForceOf& force_of, std::span<double> out) const {
+    for_owned_contacts(
+        rows_.size(), [](std::size_t c) { return c; },
+        [&](std::size_t c, Owner owner) {
+          const Row& row = rows_[c];
+          const Vec2 force = force_of(c);
+          if (force == Vec2{}) return;
+          const double* phi = &phi_[row.phi];
+          if (owner.has(row.unknown_a)) add_scaled(phi, row.size_a, force, &out[row.first_a]);
+          if (owner.has(row.unknown_b))
+            add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
+        });
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
@@ -135,16 +157,40 @@ class StepProblem {
     }
     for (int k = 0; k < size; ++k) add(k);
   }
+  /// Some of the unknown blocks, those of a thread. What contacts add to a block is added by its owner, in the order of the contacts,
+  /// so that the sums are the same for any number of threads.
+  struct Owner {
+    int begin = -1, end = std::numeric_limits<int>::max();  ///< all, fixed ones too
+    [[nodiscard]] bool has(int unknown) const { return unknown >= begin && unknown < end; }
+  };
+  /// Calls add(k, owner) for the k < n whose contact, contact_of(k), is one of a block of the owner, for all owners.
+  template <typename ContactOf, typename Add>
+  void for_owned_contacts(std::size_t n, const ContactOf& contact_of, const Add& add) const {
+    if (team_->size() == 1 || n < contacts_worth_threads) {
+      for (std::size_t k = 0; k < n; ++k) add(k, Owner{});
+      return;
+    }
+    team_->for_range(model_->blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+      const Owner owner{static_cast<int>(begin), static_cast<int>(end)};
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto [a, b] = unknowns_of_row_[contact_of(k)];
+        if (owner.has(a) || owner.has(b)) add(k, owner);
+      }
+    });
+  }
+  void add_spring(const Row& row, double kn, double ks, Owner owner, linalg::BlockSolver& solver) const;
   template <typename Size>
   void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);
-  void build_blocks(const State& state, const Drive& drive, ThreadTeam& team);
+  void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
-                  std::span<const contact::Contact> contacts, std::span<const int> pairs, ThreadTeam& team);
+                  std::span<const contact::Contact> contacts, std::span<const int> pairs);
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
 
   const Model* model_ = nullptr;
+  ThreadTeam* team_ = nullptr;
   std::vector<Row> rows_;
+  std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
   std::vector<double> phi_;
   std::vector<std::size_t> h_first_;  ///< per block, into h_
   std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)

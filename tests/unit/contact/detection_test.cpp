@@ -23,7 +23,7 @@ std::vector<Contact> find(const Surface& surface, CandidateList& list) {
   std::vector<Contact> contacts;
   ThreadTeam alone(1);
   detection.find(surface, {still, still, candidates.away()}, list, alone, contacts);
-  keep_memory(contacts, list);
+  keep_memory(contacts, list, alone);
   return contacts;
 }
 
@@ -148,7 +148,7 @@ TEST(Detection, ClearanceHidesNoContact) {
       EXPECT_EQ(fast[k].memory.offset, slow[k].memory.offset);
     }
     found += static_cast<long>(fast.size());
-    keep_memory(fast, list);
+    keep_memory(fast, list, alone);
     for (int b = 0; b < 64; ++b) {
       const double pace = b % 9 == 0 ? 0.004 : 0.0004, turn = pace * uniform(random);
       const Vec2 motion{pace * uniform(random), pace * uniform(random)}, centre = surface.position[at(4 * b)];

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -44,6 +45,26 @@ TEST_P(Team, SameBitsAsOneThread) {
     return bits;
   };
   EXPECT_EQ(compute(GetParam()), compute(1));
+}
+
+TEST_P(Team, FindsAllAndTheLargest) {
+  ThreadTeam team(GetParam());
+  const auto value = [](std::size_t i) { return std::sin(0.7 * static_cast<double>(i)); };
+  for (const std::size_t n : {0U, 1U, 10'000U}) {
+    std::vector<std::size_t> expected, found{99};
+    double largest = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (value(i) > 0.9) expected.push_back(i);
+      largest = std::max(largest, value(i));
+    }
+    for (const std::size_t grain : {1U, 100'000U}) {
+      find_all(
+          team, n, grain, [&](std::size_t i) { return value(i) > 0.9; }, found);
+      EXPECT_EQ(found, expected) << n;
+      EXPECT_EQ(largest_of(team, n, grain, value), largest) << n;
+    }
+  }
+  EXPECT_EQ(largest_of(team, 100, 1, [](std::size_t) { return -1.0; }), 0.0);
 }
 
 TEST_P(Team, ThrowsWhatThePieceThrewAndWorksOn) {

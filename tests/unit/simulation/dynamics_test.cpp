@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "scene.h"
@@ -179,20 +180,25 @@ TEST(Bond, CohesionHoldsAndBreaksOnce) {
 }
 
 TEST(Threads, GiveTheSameBits) {
-  const auto run = [](int threads) {
+  const auto run = [](int threads, int rows, int columns, double duration) {
     Scene scene(1e9, 35.0);
-    scene.rectangle({-2.0, -1.0}, 30.0, 1.0, 0.0, true);
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < 16; ++column)
+    scene.rectangle({-2.0, -1.0}, columns + 4.0, 1.0, 0.0, true);
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column)
         scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
     }
     Simulator s(scene, threads);
     const Sine ground(0.6 * g, 2.0);
-    s.run(0.4, 0.002, &ground);
-    return s.state.position;
+    s.run(duration, 0.002, &ground);
+    EXPECT_EQ(s.unconverged, 0);
+    return std::tuple(s.state.position, s.state.ledger.numerical, s.state.ledger.friction);
   };
-  EXPECT_EQ(run(1), run(2));
-  EXPECT_EQ(run(1), run(3));
+  const auto small = run(1, 6, 16, 0.4),
+             large = run(1, 60, 70, 0.016);  // all loops of the large one are worth threads
+  for (const int threads : {2, 3}) {
+    EXPECT_EQ(run(threads, 6, 16, 0.4), small);
+    EXPECT_EQ(run(threads, 60, 70, 0.016), large);
+  }
 }
 
 TEST(LinearSolver, DirectOracleGivesTheSameMotion) {

@@ -81,13 +81,15 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   const auto solver = linalg::make_block_cholesky();
   analyse(s.model, problem, *solver);
   problem.assemble(*solver);
+  std::vector<StepProblem::SpringChange> springs;
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {
     const StepProblem::Row& row = problem.rows()[c];
     const bool closed = row.spring.closed(row.depth(r[c])),
                held = row.spring.locked(row.shear(r[c])) && row.spring.bound() > 0.0;
-    problem.add_springs(row, closed ? row.spring.normal_stiffness() : 0.0,
-                        held ? row.spring.shear_stiffness() : 0.0, *solver);
+    springs.push_back(
+        {c, closed ? row.spring.normal_stiffness() : 0.0, held ? row.spring.shear_stiffness() : 0.0});
   }
+  problem.add_springs(springs, *solver);
   ASSERT_TRUE(solver->factor());
   std::vector<double> x(s.model.unknowns);
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = (up[k] - down[k]) / (2 * h);
