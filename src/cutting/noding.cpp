@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <string>
 
 #include "core/error.h"
@@ -47,6 +48,8 @@ struct GeometryDeleter {
 };
 using Geometry = std::unique_ptr<GEOSGeometry, GeometryDeleter>;
 
+/// In random order: the library enters ends and crossings into a k-d tree that it does not balance, in the order of the
+/// lines, and parallel lines side by side would make chains of it. What is noded does not depend on the order.
 Geometry to_geos(const Geos& geos, const std::vector<SourceLine>& lines) {
   std::vector<GEOSGeometry*> parts;
   for (const SourceLine& line : lines) {
@@ -56,6 +59,7 @@ Geometry to_geos(const Geos& geos, const std::vector<SourceLine>& lines) {
         geos.checked(GEOSCoordSeq_copyFromBuffer_r(geos.handle(), buffer.data(), 2, 0, 0));
     parts.push_back(geos.checked(GEOSGeom_createLineString_r(geos.handle(), sequence)));
   }
+  std::shuffle(parts.begin(), parts.end(), std::mt19937());
   return {geos.checked(GEOSGeom_createCollection_r(geos.handle(), GEOS_MULTILINESTRING, parts.data(),
                                                    static_cast<unsigned>(parts.size()))),
           {geos.handle()}};
