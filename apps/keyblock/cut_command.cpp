@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -39,8 +40,12 @@ void cut_scenario(const CutArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
   make_folder(folder);
   check_holds_no_run(folder);
-  write_file_atomically(folder / "blocks.geojson", cutting::to_geojson(model.system));
+  // Hundreds of megabytes for many blocks: both files are put together and written at the same time.
+  std::future<void> outlines = std::async(std::launch::async, [&] {
+    write_file_atomically(folder / "blocks.geojson", cutting::to_geojson(model.system));
+  });
   write_file_atomically(folder / "blocks.svg", picture(scenario, model));
+  outlines.get();
   write_file_atomically(folder / "summary.json",
                         scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION));
   const cutting::CutStatistics& cut = model.system.statistics;

@@ -35,10 +35,22 @@ void write_labels(Output out, const std::vector<EdgeLabel>& labels) {
   fmt::format_to(out, "]");
 }
 
+/// About the bytes of the text, on the high side; what is not written to takes no memory.
+std::size_t expected_size(const BlockSystem& system) {
+  constexpr std::size_t per_block = 160, per_vertex = 64;
+  std::size_t vertices = 0;
+  for (const CutBlock& block : system.blocks) {
+    for (std::size_t r = 0; r < block.polygon.ring_count(); ++r) vertices += block.polygon.ring(r).size() + 1;
+  }
+  return per_block * (system.blocks.size() + 1) + per_vertex * vertices;
+}
+
 }  // namespace
 
 std::string to_geojson(const BlockSystem& system) {
-  std::string text = "{\"type\":\"FeatureCollection\",\"features\":[";
+  std::string text;
+  text.reserve(expected_size(system));
+  text = "{\"type\":\"FeatureCollection\",\"features\":[";
   const Output out = std::back_inserter(text);
   for (std::size_t id = 0; id < system.blocks.size(); ++id) {
     const CutBlock& block = system.blocks[id];

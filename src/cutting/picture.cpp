@@ -90,6 +90,9 @@ class Picture {
     // Thinner lines for smaller blocks.
     const double spacing = scale_ * std::sqrt(box.size().x * box.size().y / static_cast<double>(edges + 1));
     line_ = std::clamp(0.12 * spacing, 0.25, 1.6);
+    // On the high side: an edge is drawn at most twice, as a side of its block and as a joint.
+    constexpr std::size_t bytes_per_edge = 64, bytes_of_legend = 4096;
+    body_.reserve(bytes_of_legend + bytes_per_edge * edges);
   }
 
   std::string draw(const std::vector<rockmass::Trace>& traces, const std::vector<Ring>& excavations) {
@@ -102,13 +105,15 @@ class Picture {
     joints();
     outlines(excavations);
     const double height = legend();
-    return fmt::format(
-               "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:.0f}\" width=\"{0:g}\" "
-               "height=\"{1:.0f}\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" "
-               "font-size=\"15\">\n"
-               "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-               page_width, height) +
-           body_ + "</svg>\n";
+    body_ += "</svg>\n";
+    body_.insert(
+        0,
+        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:.0f}\" width=\"{0:g}\" "
+                    "height=\"{1:.0f}\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\" "
+                    "font-size=\"15\">\n"
+                    "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+                    page_width, height));
+    return std::move(body_);
   }
 
  private:
