@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "cutting/cleaning.h"
 #include "cutting/linework.h"
 #include "cutting/noding.h"
@@ -42,15 +42,33 @@ bool is_joint(EdgeLabel label) {
   return label.kind == EdgeKind::joint_set || label.kind == EdgeKind::trace_map;
 }
 
+/// A set of traces.
+class TraceMarks {
+ public:
+  void add(const std::vector<int>& traces) {
+    for (const int trace : traces) {
+      if (at(trace) >= marked_.size()) marked_.resize(at(trace) + 1, false);
+      marked_[at(trace)] = true;
+    }
+  }
+  [[nodiscard]] int count() const {
+    return static_cast<int>(std::count(marked_.begin(), marked_.end(), true));
+  }
+
+ private:
+  std::vector<bool> marked_;
+};
+
 /// Takes away what bounds no block, and counts it.
 PlanarGraph bounded_blocks(NodedLinework noded, CutStatistics& statistics) {
   PlanarGraph& graph = noded.graph;
-  std::set<int> meeting, used;
+  TraceMarks meeting, used;
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
-    meeting.insert(noded.traces[e].begin(), noded.traces[e].end());
+    meeting.add(noded.traces[e]);
     if (is_joint(graph.edges[e].label)) statistics.trace_length += graph.length(graph.edges[e]);
   }
   std::vector<std::pair<int, int>> ends;
+  ends.reserve(graph.edges.size());
   for (const GraphEdge& edge : graph.edges) ends.emplace_back(edge.from, edge.to);
   const std::vector<GraphEdge> removed = graph.remove_trees();
   for (const GraphEdge& edge : removed) statistics.removed_length += graph.length(edge);
@@ -59,10 +77,10 @@ PlanarGraph bounded_blocks(NodedLinework noded, CutStatistics& statistics) {
   std::size_t e = 0;
   for (const GraphEdge& edge : graph.edges) {
     while (ends[e] != std::pair(edge.from, edge.to)) ++e;
-    used.insert(noded.traces[e].begin(), noded.traces[e].end());
+    used.add(noded.traces[e]);
   }
-  statistics.traces = static_cast<int>(meeting.size());
-  statistics.joints_used = static_cast<int>(used.size());
+  statistics.traces = meeting.count();
+  statistics.joints_used = used.count();
   return std::move(graph);
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "core/error.h"
 
@@ -27,14 +26,15 @@ class RingSimplifier {
  public:
   RingSimplifier(const PlanarGraph& graph, double tolerance) : graph_(graph), tolerance_(tolerance) {}
 
-  /// `pinned` vertices stay.
-  LabelledRing simplified(const LabelledRing& ring, const std::map<int, int>& times) {
+  /// `pinned` vertices, which are sorted, stay.
+  LabelledRing simplified(const LabelledRing& ring, const std::vector<int>& pinned) {
     const std::size_t n = ring.vertices.size();
     keep_.assign(n, false);
     std::vector<std::size_t> anchors{0, farthest(ring)};
     for (std::size_t k = 0; k < n; ++k) {
       const bool label_changes = !(ring.labels[k] == ring.labels[(k + n - 1) % n]);
-      if (label_changes || times.at(ring.vertices[k]) > 1) anchors.push_back(k);
+      const bool is_pinned = std::binary_search(pinned.begin(), pinned.end(), ring.vertices[k]);
+      if (label_changes || is_pinned) anchors.push_back(k);
     }
     std::sort(anchors.begin(), anchors.end());
     anchors.erase(std::unique(anchors.begin(), anchors.end()), anchors.end());
@@ -106,6 +106,21 @@ LabelledRing labelled_ring(const PlanarGraph& graph, const std::vector<HalfEdge>
   return result;
 }
 
+/// The vertices at which rings touch, ascending. No ring passes a vertex twice.
+std::vector<int> common_vertices(const std::vector<LabelledRing>& rings) {
+  std::vector<int> common;
+  if (rings.size() < 2) return common;
+  for (const LabelledRing& ring : rings)
+    common.insert(common.end(), ring.vertices.begin(), ring.vertices.end());
+  std::sort(common.begin(), common.end());
+  std::size_t kept = 0;
+  for (std::size_t k = 1; k < common.size(); ++k) {
+    if (common[k] == common[k - 1]) common[kept++] = common[k];
+  }
+  common.resize(kept);
+  return common;
+}
+
 bool crosses_itself(const PlanarGraph& graph, const std::vector<LabelledRing>& rings) {
   std::vector<std::pair<GridPoint, GridPoint>> edges;
   for (const LabelledRing& ring : rings) {
@@ -133,16 +148,15 @@ std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, Ve
   blocks.reserve(graph.faces.size());
   for (const Face& face : graph.faces) {
     std::vector<LabelledRing> full, rings;
-    std::map<int, int> times;
     for (const auto& ring : face.rings) {
       full.push_back(labelled_ring(graph, ring));
       for (const int v : full.back().vertices) {
-        ++times[v];
         seen[static_cast<std::size_t>(v)] |= 1;
       }
     }
+    const std::vector<int> common = common_vertices(full);
     for (const LabelledRing& ring : full) {
-      rings.push_back(collinear > 0.0 ? simplifier.simplified(ring, times) : ring);
+      rings.push_back(collinear > 0.0 ? simplifier.simplified(ring, common) : ring);
     }
     if (crosses_itself(graph, rings)) rings = full;
     CutBlock block;

@@ -1,7 +1,6 @@
 #include "cutting/planar_graph.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "core/index.h"
@@ -53,24 +52,24 @@ std::vector<int> Rotation::walks(int& count) const {
 }
 
 void PlanarGraph::remove_dead_ends(std::vector<GraphEdge>& removed) {
+  // Exclusive or of the numbers of a vertex's edges: of a single edge its number.
+  std::vector<std::size_t> incident(points.size(), 0);
   std::vector<int> degree(points.size(), 0);
-  std::vector<std::vector<int>> incident(points.size());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
+  const auto toggle = [&](std::size_t e, int change) {
     for (const int v : {edges[e].from, edges[e].to}) {
-      ++degree[at(v)];
-      incident[at(v)].push_back(static_cast<int>(e));
+      degree[at(v)] += change;
+      incident[at(v)] ^= e;
     }
-  }
+  };
+  for (std::size_t e = 0; e < edges.size(); ++e) toggle(e, 1);
   std::vector<bool> dead(edges.size(), false);
   for (std::size_t start = 0; start < points.size(); ++start) {
     for (int v = static_cast<int>(start); degree[at(v)] == 1;) {
-      const auto e = at(*std::find_if(incident[at(v)].begin(), incident[at(v)].end(),
-                                      [&](int candidate) { return !dead[at(candidate)]; }));
+      const std::size_t e = incident[at(v)];
       dead[e] = true;
       removed.push_back(edges[e]);
-      --degree[at(v)];
+      toggle(e, -1);
       v = edges[e].from == v ? edges[e].to : edges[e].from;
-      --degree[at(v)];
     }
   }
   std::size_t kept = 0;
@@ -101,21 +100,23 @@ namespace {
 
 using Cycle = std::vector<HalfEdge>;
 
-/// Cuts a closed walk into cycles that pass no vertex twice.
-std::vector<Cycle> simple_cycles(const PlanarGraph& graph, const Cycle& walk) {
+/// Cuts a closed walk into cycles that pass no vertex twice. `position` of every vertex is −1 before and after.
+std::vector<Cycle> simple_cycles(const PlanarGraph& graph, const Cycle& walk, std::vector<int>& position) {
   std::vector<Cycle> cycles;
   Cycle open;
-  std::map<int, std::size_t> position;  // of a vertex among the origins of `open`
+  open.reserve(walk.size());
   for (const HalfEdge h : walk) {
-    if (const auto found = position.find(graph.origin(h)); found != position.end()) {
-      const auto begin = open.begin() + static_cast<std::ptrdiff_t>(found->second);
+    int& place = position[at(graph.origin(h))];  // among the origins of `open`
+    if (place >= 0) {
+      const auto begin = open.begin() + place;
       cycles.emplace_back(begin, open.end());
-      for (const HalfEdge g : cycles.back()) position.erase(graph.origin(g));
+      for (const HalfEdge g : cycles.back()) position[at(graph.origin(g))] = -1;
       open.erase(begin, open.end());
     }
-    position[graph.origin(h)] = open.size();
+    place = static_cast<int>(open.size());
     open.push_back(h);
   }
+  for (const HalfEdge h : open) position[at(graph.origin(h))] = -1;
   cycles.push_back(std::move(open));
   return cycles;
 }
@@ -148,7 +149,7 @@ bool encloses(const PlanarGraph& graph, const Cycle& cycle, GridPoint p) {
 /// The faces as they are found, before their edges know them.
 class FaceTracer {
  public:
-  explicit FaceTracer(PlanarGraph& graph) : graph_(graph) {}
+  explicit FaceTracer(PlanarGraph& graph) : graph_(graph), position_(graph.points.size(), -1) {}
 
   void run() {
     std::vector<Face> old = std::move(graph_.faces);
@@ -184,7 +185,7 @@ class FaceTracer {
   void add_face(std::size_t w) {
     Face face;
     face.rings.emplace_back();
-    for (Cycle& cycle : simple_cycles(graph_, walks_[w])) {
+    for (Cycle& cycle : simple_cycles(graph_, walks_[w], position_)) {
       if (twice_area(graph_, cycle) > 0) {
         face.rings.front() = std::move(cycle);
       } else {
@@ -224,7 +225,7 @@ class FaceTracer {
       if (root(graph_.origin(outer.front())) != root(vertex) && encloses(graph_, outer, p)) best = f;
     }
     if (!best) return;
-    for (Cycle& cycle : simple_cycles(graph_, walks_[w])) {
+    for (Cycle& cycle : simple_cycles(graph_, walks_[w], position_)) {
       graph_.faces[*best].rings.push_back(std::move(cycle));
     }
   }
@@ -252,6 +253,7 @@ class FaceTracer {
   }
 
   PlanarGraph& graph_;
+  std::vector<int> position_;  ///< of each vertex in an open cycle; −1: in none
   std::vector<Cycle> walks_;
   std::vector<std::size_t> holes_;  ///< walks that bound no face from inside
   std::vector<int> component_;
