@@ -28,12 +28,12 @@ struct OpenCloseResult {
 
 /// Open-close iteration: a Newton method with an exact line search on the convex, piecewise quadratic Π(D) of a step.
 ///
-///     1. solve with the springs that acted in the last step; if the same springs act at the solution, that is it;
-///     2. correct that for the springs that act otherwise, a few of thousands, with the same factor (Corrections), until no others
-///        do. Where the solver has no factor, or they are many, repeat: solve ∇²Π p = −∇Π with the springs acting at D, and go to
-///        the minimum of Π(D + αp), which is the root of a piecewise linear function of α;
-///        The factor may be that of an earlier step with the same contacts and inertia: what its matrix, some micrometres old, gets
-///        wrong shows in the exact gradient, and is refined away or, where that does not do, ends it;
+///     1. with a factor: solve with the springs that acted in the last step; if the same springs act at the solution, that is
+///        it; else correct it for those that act otherwise, a few of thousands, with the same factor (Corrections), until no
+///        others do. The factor may be that of an earlier step with the same contacts and inertia: what its matrix, some
+///        micrometres old, gets wrong shows in the exact gradient, and is refined away or, where that does not do, ends it;
+///     2. where the solver has no factor, or they are many, repeat, from the increment that is guessed: solve ∇²Π p = −∇Π with
+///        the springs acting at D, and go to the minimum of Π(D + αp), which is the root of a piecewise linear function of α;
 ///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
 ///        (a new contact has no friction otherwise, in its first step);
 ///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
@@ -44,7 +44,7 @@ struct OpenCloseResult {
 /// the slope that the line search needs.
 class OpenClose {
  public:
-  /// d: the increment; where an iterative solver starts from, and then the solution. Bonds that break are cleared
+  /// d: the increment; a guess, for solvers without a factor to start from, and then the solution. Bonds that break are cleared
   /// in the memory of the contacts (one per row) and in the rows of the problem.
   OpenCloseResult solve(StepProblem& problem, std::span<contact::Contact> contacts,
                         linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,

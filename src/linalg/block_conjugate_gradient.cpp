@@ -23,7 +23,8 @@ constexpr double well_enough =
 ///
 ///     Â y = t + (1 + L)⁻¹ (y − t),     t = (1 + Lᵀ)⁻¹ y
 ///
-/// L has single precision: it takes half the memory to read in every iteration, and the residual is that of the matrix itself.
+/// L and the vectors have single precision: half the memory to read in every iteration, and half the instructions. A few digits of
+/// the solution are found so; the residual is then that of the matrix itself, and asks for more where they do not do.
 /// Vectors are padded as the blocks are. In the order of `partition`, the parts are solved for at the same time, by as many threads
 /// as there are; sums go part by part.
 class BlockConjugateGradient final : public BlockSolver {
