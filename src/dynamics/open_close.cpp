@@ -26,26 +26,28 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
   friction_.resize(rows.size());
   cohesion_.resize(rows.size());
   std::atomic<bool> any_bond = false;
-  const auto start_spring = [&](std::size_t c) {
-    const StepProblem::Row& row = rows[c];
-    const contact::Spring& s = row.spring;
-    springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
-    friction_[c] = contacts[c].fused ? -1.0 : contacts[c].friction_coefficient;
-    cohesion_[c] = contacts[c].cohesion;
-    if (contacts[c].memory.bonded && !contacts[c].fused) any_bond = true;
-    Shear assumed = Shear::none;
-    if (s.bound() > 0.0) {
-      if (contacts[c].memory.state == contact::State::locked) {
-        assumed = Shear::held;
-      } else if (s.shear() != 0.0) {
-        assumed = s.shear() > 0.0 ? Shear::forward : Shear::backward;
+  const auto start_springs = [&](std::size_t begin, std::size_t end) {
+    bool any = false;
+    for (std::size_t c = begin; c < end; ++c) {
+      const StepProblem::Row& row = rows[c];
+      const contact::Spring& s = row.spring;
+      springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
+      friction_[c] = contacts[c].fused ? -1.0 : contacts[c].friction_coefficient;
+      cohesion_[c] = contacts[c].cohesion;
+      any = any || (contacts[c].memory.bonded && !contacts[c].fused);
+      Shear assumed = Shear::none;
+      if (s.bound() > 0.0) {
+        if (contacts[c].memory.state == contact::State::locked) {
+          assumed = Shear::held;
+        } else if (s.shear() != 0.0) {
+          assumed = s.shear() > 0.0 ? Shear::forward : Shear::backward;
+        }
       }
+      springs_.piece[c] = {contacts[c].memory.state != contact::State::open || s.tensile(), assumed};
     }
-    springs_.piece[c] = {contacts[c].memory.state != contact::State::open || s.tensile(), assumed};
+    if (any) any_bond = true;
   };
-  team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) start_spring(c);
-  });
+  team_->for_range(rows.size(), contacts_worth_threads, start_springs);
   any_bond_ = any_bond;
   assembled_ = knows_relative_ = false;
   bound_steps_.clear();

@@ -284,6 +284,7 @@ Stepper::ContactAccount Stepper::remember_contact(std::size_t c, bool is_static)
                  : s.locked(shear) ? contact::State::locked
                                    : contact::State::sliding;
   forces_[c] = {normal_force, s.closed(depth) ? s.shear_force(shear) : 0.0};
+  account.closed = memory.state != contact::State::open;
   account.penetration = s.penetration(depth);
   if (!augmented) return account;
   const double penetration = -(contacts_[c].gap + dot(row.normal, r));
@@ -306,20 +307,24 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
   state.ledger.numerical += contact_energy_;
   contact_energy_ = 0.0;
-  constexpr std::size_t piece = 1 << 14;  // of the contacts, whose accounts are kept at a time
-  for (std::size_t first = 0; first < contacts_.size(); first += piece) {
-    accounts_.resize(std::min(piece, contacts_.size() - first));
-    team_.for_range(accounts_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) accounts_[k] = remember_contact(first + k, drive.is_static);
-    });
-    for (const ContactAccount& account : accounts_) {
-      account.enter(state.ledger);
-      contact_energy_ += account.balance.stored;
-      report.penetration = std::max(report.penetration, account.penetration);
+  const auto enter = [&](const ContactAccount& account) {
+    account.enter(state.ledger);
+    contact_energy_ += account.balance.stored;
+    report.penetration = std::max(report.penetration, account.penetration);
+    if (account.closed) ++report.closed_contacts;
+  };
+  if (team_.size() == 1 || contacts_.size() < contacts_worth_threads) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) enter(remember_contact(c, drive.is_static));
+  } else {
+    constexpr std::size_t piece = 1 << 14;  // of the contacts, whose accounts are kept at a time
+    for (std::size_t first = 0; first < contacts_.size(); first += piece) {
+      accounts_.resize(std::min(piece, contacts_.size() - first));
+      team_.for_range(accounts_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) accounts_[k] = remember_contact(first + k, drive.is_static);
+      });
+      std::ranges::for_each(accounts_, enter);
     }
   }
-  report.closed_contacts += static_cast<int>(std::ranges::count_if(
-      contacts_, [](const contact::Contact& c) { return c.memory.state != contact::State::open; }));
   contact::keep_memory(contacts_, state.contacts, team_);
   report.contact_energy = contact_energy();
 }

@@ -124,6 +124,7 @@ class Stepper {
     double stored_before = 0.0;  ///< J per thickness, at the start
     double input = 0.0;          ///< J per thickness, by what fixed blocks are moved
     double penetration = 0.0;    ///< m
+    bool closed = false;         ///< at the end
     void enter(EnergyLedger& ledger) const;
   };
   ContactAccount remember_contact(std::size_t c, bool is_static);

@@ -1,118 +1,19 @@
+#include "linalg/block_conjugate_gradient.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <stdexcept>
 
-#include "core/huge_pages.h"
-#include "core/index.h"
 #include "linalg/block_kernels.h"
-#include "linalg/block_solver.h"
-#include "linalg/partition.h"
 
 namespace keyblock::linalg {
 
 namespace {
 
 constexpr int most_iterations = 400;
-constexpr double well_enough =
-    0.9;  // excess of the iteration's residual, with which that of the matrix is small enough
+// Excess of the iteration's residual, with which that of the matrix is small enough.
+constexpr double well_enough = 0.9;
 
-/// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (L + 1 + Lᵀ) Cᵀ with
-/// L_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly below the diagonal. Preconditioned from both sides by (1 + L) it is
-///
-///     Â y = t + (1 + L)⁻¹ (y − t),     t = (1 + Lᵀ)⁻¹ y
-///
-/// L and the vectors have single precision: half the memory to read in every iteration, and half the instructions. A few digits of
-/// the solution are found so; the residual is then that of the matrix itself, and asks for more where they do not do.
-/// Vectors are padded as the blocks are. In the order of `partition`, the parts are solved for at the same time, by as many threads
-/// as there are; sums go part by part.
-class BlockConjugateGradient final : public BlockSolver {
- public:
-  explicit BlockConjugateGradient(ThreadTeam* team) : team_(team) {}
-  void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
-  void clear() override {
-    std::fill(matrix_.begin(), matrix_.end(), 0.0);
-    std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
-  }
-  double* diagonal(int block) override { return &matrix_[diagonal_[place_[at(block)]]]; }
-  BlockSlot slot(int pair) override { return slots_[at(pair)]; }
-  void touch(int block) override { stale_[place_[at(block)]] = 1; }
-  bool factor() override;
-  void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
-  [[nodiscard]] bool is_iterative() const override { return true; }
-  [[nodiscard]] bool solved() const override { return solved_; }
-
- private:
-  using Vector = HugePageVector<float>;
-  using WideVector = HugePageVector<double>;
-  struct Range {
-    std::size_t first, last;  ///< places
-  };
-
-  void place_vectors(std::span<const int> sizes, std::span<const int> order);
-  std::vector<std::size_t> place_matrix(std::span<const std::pair<int, int>> pairs);
-  template <typename Body>
-  void for_parts(const Body& body) const;
-  template <typename Body>
-  void for_ranges(const Body& body) const;
-  template <typename Body>
-  double sum_over_ranges(const Body& body);
-  [[nodiscard]] Range between() const { return {begin_[begin_.size() - 2], begin_.back()}; }
-  template <auto place, typename Number>
-  void subtract_lower(const Number* values, const Number* x, Number* y, Range range) const;
-  template <auto place, typename Number>
-  void subtract_lower_between(const Number* values, const Number* x, Number* y) const;
-  template <auto place, typename Number>
-  void subtract_upper(const Number* values, const Number* x, Number* y, Range range) const;
-  void divide_forward(Vector& v) const;
-  void backward(Vector& v, Range range) const;
-  void divide_backward(Vector& v) const;
-  template <typename Body>
-  void padded(Range range, const Body& body) const;
-  double apply(double beta);
-  double go(double alpha);
-  void scale(std::span<const double> x);
-  void unscale(std::size_t j, const Vector& v, double* x);
-  void find_residual(std::span<double> residual);
-  void take_over(const Vector& v, std::span<double> x, std::span<double> residual);
-  int iterate(double too_large, const Excess& excess, int most);
-
-  struct Entry {
-    std::uint32_t row;     ///< > column
-    std::uint32_t values;  ///< into matrix_
-    std::uint32_t lower;   ///< into lower_
-  };
-  // Everything is by place in the order of the partition, but for the slots.
-  ThreadTeam* team_;
-  std::vector<std::size_t> place_;  ///< block → place
-  std::vector<std::size_t> begin_;  ///< Partition::begin
-  std::vector<int> size_, stride_;
-  std::vector<std::size_t> offset_;       ///< its unknowns in x
-  std::vector<std::size_t> start_;        ///< into padded vectors
-  std::vector<std::size_t> entry_start_;  ///< per column, into entries_
-  std::vector<std::size_t>
-      between_start_;  ///< per column, likewise: the first whose row lies between the parts
-  std::vector<Entry> entries_;
-  struct RowEntry {
-    std::size_t column, entry;
-  };
-  std::vector<std::size_t> row_start_;      ///< per block between the parts, into row_entries_
-  std::vector<RowEntry> row_entries_;       ///< of a row, by columns
-  std::vector<std::size_t> diagonal_;       ///< into matrix_
-  std::vector<std::size_t> inverse_start_;  ///< into inverse_
-  std::vector<BlockSlot> slots_;
-  WideVector matrix_;            ///< A
-  WideVector inverse_;           ///< C_j⁻¹
-  HugePageVector<float> lower_;  ///< L
-  std::vector<std::uint8_t> stale_;
-  int largest_ = 0;               ///< stride of a block
-  Vector t_, z_, r_, p_, q_;      ///< padded
-  WideVector wide_, product_;     ///< padded: scratch
-  std::vector<double> estimate_;  ///< of the residual
-  std::vector<double> sums_;      ///< per range
-  bool solved_ = true;
-};
+}  // namespace
 
 /// Of every part, and then of the blocks between them; parts may go at the same time.
 template <typename Body>
@@ -152,95 +53,23 @@ void BlockConjugateGradient::padded(Range range, const Body& body) const {
   for (std::size_t k = start(range.first); k < start(range.last); k += row_padding) body(k);
 }
 
-void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
-  Partition found = partition(sizes.size(), pairs);
-  begin_ = std::move(found.begin);
-  sums_.assign(begin_.size() - 1, 0.0);
-  place_.resize(sizes.size());
-  for (std::size_t k = 0; k < sizes.size(); ++k) place_[at(found.order[k])] = k;
-  place_vectors(sizes, found.order);
-  const std::vector<std::size_t> values = place_matrix(pairs);
-  slots_.clear();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [i, j] = pairs[k];
-    const bool i_below = place_[at(i)] > place_[at(j)];
-    slots_.push_back(
-        {&matrix_[values[k]], padded_rows(sizes[at(i_below ? i : j)]), i_below ? i : j, i_below ? j : i});
-  }
-}
-
-void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span<const int> order) {
-  std::vector<std::size_t> unknown(sizes.size() + 1, 0);
-  for (std::size_t b = 0; b < sizes.size(); ++b) unknown[b + 1] = unknown[b] + at(sizes[b]);
-  size_.clear();
-  stride_.clear();
-  offset_.clear();
-  start_.clear();
-  largest_ = 0;
-  std::size_t padded = 0;
-  for (const int block : order) {
-    const int size = sizes[at(block)];
-    size_.push_back(size);
-    stride_.push_back(padded_rows(size));
-    offset_.push_back(unknown[at(block)]);
-    start_.push_back(padded);
-    padded += at(padded_rows(size));
-    largest_ = std::max(largest_, padded_rows(size));
-  }
-  for (Vector* v : {&t_, &z_, &r_, &p_, &q_}) v->assign(padded, 0.0F);
-  for (WideVector* v : {&wide_, &product_}) v->assign(padded, 0.0);
-}
-
-/// Where the block of every pair is in matrix_.
-std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const std::pair<int, int>> pairs) {
-  const std::size_t n = size_.size(), first_between = between().first;
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> below(n);  // row, pair
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [low, high] = std::minmax(place_[at(pairs[k].first)], place_[at(pairs[k].second)]);
-    below[low].emplace_back(high, k);
-  }
-  diagonal_.clear();
-  inverse_start_.clear();
-  entries_.clear();
-  entry_start_.assign(1, 0);
-  between_start_.clear();
-  std::vector<std::size_t> values(pairs.size());
-  std::vector<std::vector<RowEntry>> rows(n - first_between);
-  std::size_t used = 0, lower = 0, inverse = 0;
-  for (std::size_t j = 0; j < n; ++j) {
-    diagonal_.push_back(used);
-    inverse_start_.push_back(inverse);
-    used += at(stride_[j] * size_[j]);
-    inverse += at(stride_[j] * size_[j]);
-    std::sort(below[j].begin(), below[j].end());
-    between_start_.push_back(entries_.size());
-    for (const auto& [row, k] : below[j]) {
-      entries_.push_back({static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(used),
-                          static_cast<std::uint32_t>(lower)});
-      if (row < first_between) {
-        between_start_[j] = entries_.size();
-      } else {
-        rows[row - first_between].push_back({j, entries_.size() - 1});
-      }
-      values[k] = used;
-      used += at(stride_[row] * size_[j]);
-      lower += at(stride_[row] * size_[j]);
+/// C_i⁻¹ A C_j⁻ᵀ
+void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const double* a,
+                                         double* scaled) const {
+  const double *left = &inverse_[inverse_start_[i]], *right = &inverse_[inverse_start_[j]];
+  const auto multiply_left = [&](int lanes, int rows, int columns) {
+    for (int c = 0; c < columns; ++c) {
+      const int first = c * lanes * row_padding;
+      multiply(lanes, rows, left, a + first, scaled + first);
     }
-    entry_start_.push_back(entries_.size());
+  };
+  if (size_[i] == 6 && size_[j] == 6) {
+    multiply_left(1, 6, 6);
+    multiply_right<6>(right, scaled);
+  } else {
+    multiply_left(stride_[i] / row_padding, size_[i], size_[j]);
+    multiply_right(stride_[i] / row_padding, size_[j], right, scaled);
   }
-  row_start_.assign(1, 0);
-  row_entries_.clear();
-  for (const auto& row : rows) {
-    row_entries_.insert(row_entries_.end(), row.begin(), row.end());
-    row_start_.push_back(row_entries_.size());
-  }
-  if (used > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("a matrix of more than four thousand million numbers");
-  matrix_.assign(used, 0.0);
-  inverse_.assign(inverse, 0.0);
-  lower_.assign(lower, 0.0F);
-  stale_.assign(n, 1);
-  return values;
 }
 
 bool BlockConjugateGradient::factor() {
@@ -267,15 +96,9 @@ bool BlockConjugateGradient::factor() {
       for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
         const auto [i, values, lower] = entries_[e];
         if (stale_[i] == 0 && stale_[j] == 0) continue;
-        // C_i⁻¹ A_ij, column by column, then from the right.
-        const int rows = stride_[i];
-        for (int c = 0; c < size_[j]; ++c) {
-          multiply(rows / row_padding, size_[i], &inverse_[inverse_start_[i]],
-                   &matrix_[values + at(c * rows)], &scratch[at(c * rows)]);
-        }
-        multiply_right(rows / row_padding, size_[j], &inverse_[inverse_start_[j]], scratch.data());
-        for (std::size_t k = 0; k < at(rows * size_[j]); ++k)
-          lower_[lower + k] = static_cast<float>(scratch[k]);
+        scale_block(i, j, &matrix_[values], scratch.data());
+        for (std::size_t k = 0; k < at(stride_[i] * size_[j]); k += row_padding)
+          store(&lower_[lower + k], narrow(load(&scratch[k])));
       }
     }
   };
@@ -531,8 +354,6 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
     take_over(z_, x, residual);
   }
 }
-
-}  // namespace
 
 std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {
   return std::make_unique<BlockConjugateGradient>(team);
