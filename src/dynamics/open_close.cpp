@@ -72,34 +72,47 @@ SpringArray::Force OpenClose::bend(std::size_t c, double alpha) const {
   return springs_.force_at(c, y, w) - springs_.force_on(c, springs_.piece[c], y, w);
 }
 
-/// Of ∇²Π on the pieces that the contacts are on. Within a step only what changed is assembled and factored anew.
-bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result) {
+/// The matrix is ∇²Π on the pieces that the contacts are on.
+void OpenClose::assemble(const StepProblem& problem, linalg::BlockSolver& solver) {
+  problem.assemble(solver);
+  begin_factor(problem, solver);
+  factored_ = springs_.piece;
+  for (std::size_t c = 0; c < factored_.size(); ++c) {
+    factor_.normal_stiffness[c] = springs_.normal_stiffness(c, factored_[c]);
+    factor_.shear_stiffness[c] = springs_.shear_stiffness(c, factored_[c]);
+  }
+  problem.add_springs(factor_.normal_stiffness, factor_.shear_stiffness, solver);
+  assembled_ = true;
+}
+
+/// Brings the matrix of this step to the pieces that the contacts are on now. False when it has not changed.
+bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& solver) {
   const auto& rows = problem.rows();
+  changes_.clear();
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
+    if (from.same_springs(to)) continue;
+    const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
+                 kn = normal - std::exchange(factor_.normal_stiffness[c], normal),
+                 ks = shear - std::exchange(factor_.shear_stiffness[c], shear);
+    if (kn == 0.0 && ks == 0.0) continue;
+    changes_.push_back({c, kn, ks});
+    if (rows[c].unknown_a >= 0) solver.touch(rows[c].unknown_a);
+    if (rows[c].unknown_b >= 0) solver.touch(rows[c].unknown_b);
+  }
+  problem.add_springs(changes_, solver);
+  return !changes_.empty();
+}
+
+/// Within a step only what changed is assembled and factored anew.
+bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result) {
   {
     const Profile::Scope scope(*profile_, Phase::assembly);
     if (!assembled_) {
-      problem.assemble(solver);
-      factored_.assign(rows.size(), Piece{});
-      begin_factor(problem, solver);
+      assemble(problem, solver);
+    } else if (!change_matrix(problem, solver)) {
+      return true;
     }
-    changes_.clear();
-    for (std::size_t c = 0; c < rows.size(); ++c) {
-      const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
-      if (from.same_springs(to)) continue;
-      const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
-                   kn = normal - std::exchange(factor_.normal_stiffness[c], normal),
-                   ks = shear - std::exchange(factor_.shear_stiffness[c], shear);
-      if (kn != 0.0 || ks != 0.0) changes_.push_back({c, kn, ks});
-    }
-    if (assembled_ && changes_.empty()) return true;
-    problem.add_springs(changes_, solver);
-    for (const StepProblem::SpringChange& change : changes_) {
-      if (!assembled_) break;  // all is new
-      const StepProblem::Row& row = rows[change.contact];
-      if (row.unknown_a >= 0) solver.touch(row.unknown_a);
-      if (row.unknown_b >= 0) solver.touch(row.unknown_b);
-    }
-    assembled_ = true;
   }
   forget_corrections();
   ++result.factorizations;

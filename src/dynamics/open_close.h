@@ -70,6 +70,8 @@ class OpenClose {
   [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
   void try_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   void judge_factor(const OpenCloseResult& result);
+  void assemble(const StepProblem& problem, linalg::BlockSolver& solver);
+  bool change_matrix(const StepProblem& problem, linalg::BlockSolver& solver);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
@@ -125,7 +127,7 @@ class OpenClose {
   int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
   std::vector<std::size_t> free_;     ///< blocks that nothing holds
   std::vector<std::uint8_t> held_;    ///< scratch: per unknown block, whether a spring holds it
-  std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of the matrix
+  std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of change_matrix
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.
   struct Corrected {

@@ -318,6 +318,15 @@ void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::Blo
       });
 }
 
+void StepProblem::add_springs(std::span<const double> normal, std::span<const double> shear,
+                              linalg::BlockSolver& solver) const {
+  for_owned_contacts(
+      rows_.size(), [](std::size_t c) { return c; },
+      [&](std::size_t c, Owner owner) {
+        if (normal[c] != 0.0 || shear[c] != 0.0) add_spring(rows_[c], normal[c], shear[c], owner, solver);
+      });
+}
+
 void StepProblem::add_spring(const Row& row, double kn, double ks, Owner owner,
                              linalg::BlockSolver& solver) const {
   const Vec2 n = row.normal, t = row.tangent();

@@ -87,6 +87,9 @@ class StepProblem {
     double normal, shear;
   };
   void add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const;
+  /// The same at all contacts.
+  void add_springs(std::span<const double> normal, std::span<const double> shear,
+                   linalg::BlockSolver& solver) const;
   /// (∂r/∂D)ᵀ direction: the parts of the two blocks, as long as their coefficients.
   void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.

@@ -74,11 +74,17 @@ TEST(Run, RepeatedShakingGivesRepeatedSlip) {
 }
 
 /// Stops the run after some steps.
-TEST(Run, ResumedFromItsCheckpointEndsInTheSameBits) {
+class ResumedRun : public ::testing::TestWithParam<dynamics::LinearSolver> {};
+INSTANTIATE_TEST_SUITE_P(LinearSolvers, ResumedRun,
+                         ::testing::Values(dynamics::LinearSolver::automatic,
+                                           dynamics::LinearSolver::iterative));
+
+TEST_P(ResumedRun, EndsInTheSameBits) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("keyblock_resume_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
-  const RunSetup setup = shaken_incline(5);
+  RunSetup setup = shaken_incline(5);
+  setup.solver.linear = GetParam();
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
 
