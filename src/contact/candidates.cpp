@@ -30,7 +30,22 @@ void find_block_pairs(CandidateList& list) {
 
 }  // namespace
 
-bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list) {
+void Candidates::measure_motion(const Surface& surface, std::span<const double> reach, ThreadTeam& team) {
+  constexpr std::size_t worth_threads = 2'000;  // blocks
+  team.for_range(away_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      if (!surface.present[b]) continue;
+      double moved = 0.0;
+      for (auto v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
+        moved = std::max(moved, squared_norm(surface.position[v] - looked_at_[v]));
+      }
+      away_[b] = std::sqrt(moved) + reach[b];
+    }
+  });
+}
+
+bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list,
+                        ThreadTeam& team) {
   const auto blocks = at(surface.blocks());
   std::vector<std::uint8_t> dirty(blocks, looked_at_.empty());
   bool any = looked_at_.empty();
@@ -39,16 +54,12 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     margin_.assign(blocks, 0.0);
     box_.assign(blocks, Box{});
     away_.assign(blocks, 0.0);
+  } else {
+    measure_motion(surface, reach, team);
   }
   for (std::size_t b = 0; b < blocks; ++b) {
     if (!dirty[b]) {
-      if (!surface.present[b]) continue;
-      double moved = 0.0;
-      for (auto v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
-        moved = std::max(moved, squared_norm(surface.position[v] - looked_at_[v]));
-      }
-      away_[b] = std::sqrt(moved) + reach[b];
-      if (away_[b] <= margin_[b]) continue;
+      if (!surface.present[b] || away_[b] <= margin_[b]) continue;
       dirty[b] = 1;
       any = true;
     }

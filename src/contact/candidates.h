@@ -6,6 +6,7 @@
 
 #include "contact/surface.h"
 #include "contact/tolerances.h"
+#include "core/parallel.h"
 
 namespace keyblock::contact {
 
@@ -86,13 +87,14 @@ class Candidates {
 
   /// Brings `list` up to date; memory of candidates that stay is kept. reach[b]: m, bound on the motion of block b in the
   /// coming step. Returns true when the list has changed.
-  bool update(const Surface& surface, std::span<const double> reach, CandidateList& list);
+  bool update(const Surface& surface, std::span<const double> reach, CandidateList& list, ThreadTeam& team);
   /// m, per block, as of the last update: how far it may be, by the end of the step, from where it was looked at.
   [[nodiscard]] std::span<const double> away() const { return away_; }
   /// Forgets the positions at which blocks were looked at: all are looked at anew in the next update.
   void invalidate() { looked_at_.clear(); }
 
  private:
+  void measure_motion(const Surface& surface, std::span<const double> reach, ThreadTeam& team);
   static bool before(const Candidate& x, const Candidate& y);
   [[nodiscard]] std::vector<Candidate> collect(const Surface& surface,
                                                std::span<const std::uint8_t> dirty) const;

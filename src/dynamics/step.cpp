@@ -78,7 +78,7 @@ void Stepper::start(State& state) {
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   std::fill(reach_.begin(), reach_.end(), 0.0);
   std::fill(turn_.begin(), turn_.end(), 0.0);
-  candidates_.update(model_.surface, reach_, state.contacts);
+  candidates_.update(model_.surface, reach_, state.contacts, team_);
   detection_.find(model_.surface, {reach_, turn_, candidates_.away()}, state.contacts, team_, contacts_);
   for (contact::Contact& c : contacts_) {
     contact::Memory& memory = c.memory;
@@ -121,7 +121,7 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
   contact::Candidates candidates(tolerances_);
   const std::vector<double> still(model_.blocks.size(), 0.0);
   contact::CandidateList list = state.contacts;
-  candidates.update(model_.surface, still, list);
+  candidates.update(model_.surface, still, list, team_);
   std::vector<contact::Contact> contacts;
   detection_.find(model_.surface, {still, still, candidates.away()}, list, team_, contacts);
   return contacts;
@@ -131,7 +131,7 @@ void Stepper::remove_absent(State& state) {
   candidates_.invalidate();
   history_.forget();
   std::fill(reach_.begin(), reach_.end(), 0.0);
-  candidates_.update(model_.surface, reach_, state.contacts);
+  candidates_.update(model_.surface, reach_, state.contacts, team_);
   contact_energy_ = stored_energy(state);
   forget_pattern();
   state.pattern.clear();
@@ -163,7 +163,7 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
 
 void Stepper::detect(State& state) {
   const Profile::Scope scope(profile_, Phase::detection);
-  const bool changed = candidates_.update(model_.surface, reach_, state.contacts);
+  const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
   detection_.find(model_.surface, {reach_, turn_, candidates_.away()}, state.contacts, team_, contacts_);
   ensure_pattern(state, changed);
 }

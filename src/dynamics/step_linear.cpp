@@ -37,10 +37,12 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
   };
   if (candidates_changed || !has_places_) find_places();
   has_places_ = true;
-  const bool has_room = std::none_of(contacts_.begin(), contacts_.end(), [&](const contact::Contact& c) {
-    return pair_of_candidate_[at(c.candidate)] == missing;
-  });
-  if (has_room) return;
+  std::vector<std::size_t> without_room;
+  const auto has_none = [&](std::size_t c) {
+    return pair_of_candidate_[at(contacts_[c].candidate)] == missing;
+  };
+  find_all(team_, contacts_.size(), contacts_worth_threads, has_none, without_room);
+  if (without_room.empty()) return;
   std::vector<Pair> used;
   for (const contact::Contact& c : contacts_) {
     const Pair pair = pair_of(c.block_a, c.block_b);

@@ -296,18 +296,17 @@ void add_block(const double* phi_r, int rows, const double* phi_c, int columns, 
 
 void StepProblem::assemble(linalg::BlockSolver& solver) const {
   solver.clear();
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
-    if (!model_->moves(i)) {
-      if (const int u = model_->blocks[i].unknown; u >= 0) {
-        const int n = 2 * model_->blocks[i].size, stride = linalg::padded_rows(n);
-        for (int k = 0; k < n; ++k) solver.diagonal(u)[k * stride + k] = 1.0;
+  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Block& block = model_->blocks[i];
+      const int n = 2 * block.size, stride = linalg::padded_rows(n);
+      if (model_->moves(i)) {
+        std::copy_n(&h_[h_first_[i]], stride * n, solver.diagonal(block.unknown));
+      } else if (block.unknown >= 0) {
+        for (int k = 0; k < n; ++k) solver.diagonal(block.unknown)[k * stride + k] = 1.0;
       }
-      continue;
     }
-    const Block& block = model_->blocks[i];
-    const int n = 2 * block.size;
-    std::copy_n(&h_[h_first_[i]], linalg::padded_rows(n) * n, solver.diagonal(block.unknown));
-  }
+  });
 }
 
 void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {

@@ -33,14 +33,16 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   const double least =
       rigid ? std::min(impact_speed_, 1e-4 * norm(model_.gravity) * drive.step) : impact_speed_;
   // A point of an edge, and a little beyond its ends, is not much faster than its vertices.
-  const auto may_be_fast = [&](const contact::Contact& c) {
+  const auto may_be_fast = [&](std::size_t k) {
+    const contact::Contact& c = contacts_[k];
     const double beyond = std::max({0.0, -c.position, c.position - 1.0});
     return !prescribed_.empty() ||
            speed_[at(c.block_a)] + (1.0 + 2.0 * beyond) * speed_[at(c.block_b)] > 0.999 * least;
   };
+  std::vector<std::size_t> fast;
+  find_all(team_, contacts_.size(), contacts_worth_threads, may_be_fast, fast);
   bool any = false;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    if (!may_be_fast(contacts_[c])) continue;
+  for (const std::size_t c : fast) {
     const StepProblem::Row& row = problem_.rows()[c];
     if (row.spring.normal_force(row.depth(open_close_.relative()[c])) <= 0.0) continue;
     const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;

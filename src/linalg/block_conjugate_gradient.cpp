@@ -53,6 +53,18 @@ void BlockConjugateGradient::padded(Range range, const Body& body) const {
   for (std::size_t k = start(range.first); k < start(range.last); k += row_padding) body(k);
 }
 
+void BlockConjugateGradient::clear() {
+  std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
+  for_ranges([&](Range range) {
+    const auto start = [&](std::size_t place) {
+      return matrix_.begin() +
+             static_cast<std::ptrdiff_t>(place < diagonal_.size() ? diagonal_[place] : matrix_.size());
+    };
+    std::fill(start(range.first), start(range.last),
+              0.0);  // with what is below them, the diagonals follow each other
+  });
+}
+
 /// C_i⁻¹ A C_j⁻ᵀ
 void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const double* a,
                                          double* scaled) const {

@@ -27,10 +27,7 @@ class BlockConjugateGradient final : public BlockSolver {
  public:
   explicit BlockConjugateGradient(ThreadTeam* team) : team_(team) {}
   void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
-  void clear() override {
-    std::fill(matrix_.begin(), matrix_.end(), 0.0);
-    std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
-  }
+  void clear() override;
   double* diagonal(int block) override { return &matrix_[diagonal_[place_[at(block)]]]; }
   BlockSlot slot(int pair) override { return slots_[at(pair)]; }
   void touch(int block) override { stale_[place_[at(block)]] = 1; }

@@ -32,10 +32,11 @@ TEST(Candidates, ContainEveryNearPairWhileBlocksMove) {
   Surface surface = wall(8, 6);
   const Tolerances tolerances(0.7);
   Candidates candidates(tolerances);
+  ThreadTeam alone(1);
   CandidateList list;
   const std::vector<double> reach(static_cast<std::size_t>(surface.blocks()), 1e-3);
   for (int step = 0; step < 60; ++step) {
-    candidates.update(surface, reach, list);
+    candidates.update(surface, reach, list, alone);
     const auto have = keys(list);
     for (const Candidate& c : all_pairs_within(surface, tolerances.activation + 2e-3)) {
       EXPECT_TRUE(have.contains({c.vertex, c.edge})) << step << ": " << c.vertex << ' ' << c.edge;
@@ -54,9 +55,10 @@ TEST(Candidates, ContainEveryNearPairWhileBlocksMove) {
 TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
   Surface surface = wall(3, 2);
   Candidates candidates(Tolerances(0.7));
+  ThreadTeam alone(1);
   CandidateList list;
   const std::vector<double> reach(static_cast<std::size_t>(surface.blocks()), 0.0);
-  candidates.update(surface, reach, list);
+  candidates.update(surface, reach, list, alone);
   for (int k = 0; k < static_cast<int>(list.pairs.size()); k += 3) {
     list.tracked.push_back(k);
     list.memory.emplace_back().shear = k + 1.0;
@@ -75,12 +77,12 @@ TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
     }
   };
   candidates.invalidate();
-  EXPECT_FALSE(candidates.update(surface, reach, list));  // the same
+  EXPECT_FALSE(candidates.update(surface, reach, list, alone));  // the same
   ASSERT_EQ(list.pairs.size(), before.pairs.size());
   expect_kept();
   std::vector<double> faster = reach;
   faster[1] = 0.5;  // sees more of its neighbours
-  EXPECT_TRUE(candidates.update(surface, faster, list));
+  EXPECT_TRUE(candidates.update(surface, faster, list, alone));
   EXPECT_GT(list.pairs.size(), before.pairs.size());
   EXPECT_EQ(list.memory.size(), before.memory.size());
   expect_kept();
@@ -93,8 +95,9 @@ TEST(Candidates, IgnoreAbsentAndPairsOfFixedBlocks) {
   add_block(surface, rectangle(0, 1, 1, 2));
   surface.present[2] = 0;
   Candidates candidates(Tolerances(1.0));
+  ThreadTeam alone(1);
   CandidateList list;
-  candidates.update(surface, std::vector<double>(3, 0.0), list);
+  candidates.update(surface, std::vector<double>(3, 0.0), list, alone);
   EXPECT_TRUE(list.pairs.empty());
 }
 

@@ -17,11 +17,11 @@ std::vector<Contact> find(const Surface& surface, CandidateList& list) {
   const Tolerances tolerances(1.0);
   Candidates candidates(tolerances);
   const std::vector<double> still(static_cast<std::size_t>(surface.blocks()), 0.0);
-  candidates.update(surface, still, list);
+  ThreadTeam alone(1);
+  candidates.update(surface, still, list, alone);
   Detection detection(tolerances, {JointLaw{}},
                       std::vector<double>(static_cast<std::size_t>(surface.blocks()), 1e9));
   std::vector<Contact> contacts;
-  ThreadTeam alone(1);
   detection.find(surface, {still, still, candidates.away()}, list, alone, contacts);
   keep_memory(contacts, list, alone);
   return contacts;
@@ -133,7 +133,7 @@ TEST(Detection, ClearanceHidesNoContact) {
     for (double& r : reach) r = 1e-4 * std::abs(uniform(random));
     std::vector<double> turns;  // half the diameter of the blocks is 0.7 m
     for (const double r : reach) turns.push_back(r / 0.7);
-    candidates.update(surface, reach, list);
+    candidates.update(surface, reach, list, alone);
     CandidateList all = list;
     for (Candidate& c : all.pairs) {
       skipped += candidates.away()[at(c.block_a)] + candidates.away()[at(c.block_b)] < c.clearance;
