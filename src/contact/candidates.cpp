@@ -31,8 +31,7 @@ void find_block_pairs(CandidateList& list) {
 }  // namespace
 
 void Candidates::measure_motion(const Surface& surface, std::span<const double> reach, ThreadTeam& team) {
-  constexpr std::size_t worth_threads = 2'000;  // blocks
-  team.for_range(away_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+  team.for_range(away_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       if (!surface.present[b]) continue;
       double moved = 0.0;

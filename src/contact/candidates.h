@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "core/parallel.h"
 
 namespace keyblock::contact {
+
+/// Contacts (or vertices, or candidates), and blocks, from which loops over them are worth the threads of a team.
+inline constexpr std::size_t contacts_worth_threads = 10'000, blocks_worth_threads = 2'000;
 
 enum class State : std::uint8_t { open = 0, sliding = 1, locked = 2 };
 

@@ -11,8 +11,7 @@ namespace keyblock::contact {
 
 namespace {
 
-constexpr std::size_t worth_threads = 10'000;  // vertices, candidates or contacts
-constexpr std::size_t piece = 1'024;           // pairs of blocks
+constexpr std::size_t piece = 1'024;  // pairs of blocks
 
 /// Length over [0, edge_length] that the edge of the vertex towards `other` shares with an edge it faces.
 double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 normal, Vec2 tangent,
@@ -29,7 +28,7 @@ double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 nor
 
 void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
   corners_.resize(surface.position.size());
-  team.for_range(corners_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+  team.for_range(corners_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const std::size_t next = at(surface.next[e]);
       const Vec2 along = surface.position[next] - surface.position[e];
@@ -176,7 +175,7 @@ void Detection::find(const Surface& surface, const Motion& motion, const Candida
                           [](const Memory& memory) { return memory.bonded; });
   look(surface, candidates, team);
   contacts.resize(found_.size());
-  team.for_range(found_.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+  team.for_range(found_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) add(surface, found_[k], candidates, contacts[k]);
   });
 }
@@ -293,7 +292,7 @@ void Detection::add(const Surface& surface, const Found& found, const CandidateL
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
   candidates.tracked.resize(contacts.size());
   candidates.memory.resize(contacts.size());
-  team.for_range(contacts.size(), worth_threads, [&](std::size_t begin, std::size_t end) {
+  team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Contact& c = contacts[k];
       candidates.tracked[k] = c.candidate;

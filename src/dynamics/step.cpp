@@ -401,6 +401,7 @@ StepReport Stepper::advance(State& state, double dt, const GroundAcceleration* g
 
 StepReport Stepper::relax(State& state, double dt, std::span<const double> inertia_scale) {
   StepReport report;
+  history_.forget();
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;

@@ -153,8 +153,8 @@ class Stepper {
   bool has_places_ = false;             ///< pair_of_candidate_ is that of the pattern
   std::vector<double> reach_, turn_;    ///< m and rad, per block: Detection::Motion
   std::vector<double> increment_;
-  IncrementHistory history_;             ///< of dynamic steps; kept for solvers that start from a guess
-  bool guessed_ = false;                 ///< the last attempt was by one
+  IncrementHistory history_;             ///< of dynamic steps by solvers that start from a guess
+  bool guessed_ = false;                 ///< the last attempt started from one
   std::vector<double> speed_;            ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;             ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;         ///< per block, of the last attempt

@@ -15,8 +15,8 @@
 
 namespace keyblock::dynamics {
 
-/// Contacts, and blocks, from which loops over them are worth the threads of a team.
-inline constexpr std::size_t contacts_worth_threads = 10'000, blocks_worth_threads = 2'000;
+using contact::blocks_worth_threads;
+using contact::contacts_worth_threads;
 
 /// What drives one step.
 struct Drive {

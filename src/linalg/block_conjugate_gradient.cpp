@@ -55,14 +55,11 @@ void BlockConjugateGradient::padded(Range range, const Body& body) const {
 
 void BlockConjugateGradient::clear() {
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
-  for_ranges([&](Range range) {
-    const auto start = [&](std::size_t place) {
-      return matrix_.begin() +
-             static_cast<std::ptrdiff_t>(place < diagonal_.size() ? diagonal_[place] : matrix_.size());
-    };
-    std::fill(start(range.first), start(range.last),
-              0.0);  // with what is below them, the diagonals follow each other
-  });
+  // Each diagonal block is followed by those below it, and these by the next diagonal block.
+  const auto start = [&](std::size_t place) {
+    return matrix_.data() + (place < diagonal_.size() ? diagonal_[place] : matrix_.size());
+  };
+  for_ranges([&](Range range) { std::fill(start(range.first), start(range.last), 0.0); });
 }
 
 /// C_i⁻¹ A C_j⁻ᵀ

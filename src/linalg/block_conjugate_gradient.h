@@ -33,7 +33,6 @@ class BlockConjugateGradient final : public BlockSolver {
   void touch(int block) override { stale_[place_[at(block)]] = 1; }
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
-  [[nodiscard]] bool is_iterative() const override { return true; }
   [[nodiscard]] bool solved() const override { return solved_; }
 
  private:

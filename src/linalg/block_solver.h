@@ -80,7 +80,6 @@ class BlockSolver {
   /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j]. An iterative solver stops when `excess` is at most 1, and leaves
   /// what is missing in `residual`: the x given less A times the x returned. A direct one leaves zeros there.
   virtual void solve(std::span<double> x, std::span<double> residual, const Excess& excess) = 0;
-  [[nodiscard]] virtual bool is_iterative() const { return false; }
   /// Null where this solver has none.
   [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }
   /// False when the last solve() gave up before its residual was small enough.
