@@ -83,6 +83,7 @@ class OpenClose {
   bool find_corrections(const linalg::HalfSolver& halves);
   void forget_corrections();
   void find_free_blocks(const StepProblem& problem);
+  void leave_out_bends(const StepProblem& problem);
   void find_gradient(const StepProblem& problem, std::span<const double> d);
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
                OpenCloseResult& result);
@@ -138,7 +139,7 @@ class OpenClose {
   static constexpr std::size_t most_corrected = 64;  ///< springs, beyond which a factorization takes less
   static constexpr std::size_t most_kept =
       32;  ///< as many as are expected in the next step, with which a factor is worth keeping
-  static constexpr int most_refinements = 2;  ///< more of them take what a factorization does
+  static constexpr int most_refinements = 3;  ///< more of them take what a factorization does
   Corrections corrections_;                   ///< to the matrix at hand
   std::vector<Corrected> corrected_;          ///< the springs of these
   std::vector<Corrected> wanted_;             ///< scratch

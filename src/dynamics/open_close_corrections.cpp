@@ -106,6 +106,16 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
                              gradient_);
 }
 
+/// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.
+void OpenClose::leave_out_bends(const StepProblem& problem) {
+  for (const Corrected spring : wanted_) {
+    const std::size_t c = spring.contact;
+    const Force bend = springs_.force(c) - springs_.force_on(c, factored_[c], springs_.y[c], springs_.w[c]);
+    add_force(problem, c, {spring.normal ? bend.normal : 0.0, spring.normal ? 0.0 : bend.shear}, -1.0,
+              gradient_);
+  }
+}
+
 /// Goes to the minimum with the factor at hand, correcting the springs that act otherwise. They become more until no other does, so
 /// that this ends. False when they are too many, or their forces are not found; D and the gradient are then those of the corrections
 /// so far, or of none; and when the factor of an earlier step will not do.
@@ -134,11 +144,16 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
     place(problem, d);
     find_bent();
     const int added = correct_bends(problem, halves);
-    if (added > 0) continue;
     done = added == 0;
-    if (!done || !kept_) break;
+    if (added < 0 || (done && !kept_)) break;
+    // What the factor of an earlier step gets wrong is refined away along with the first springs that come to be corrected,
+    // and at the end until nothing of it is left.
+    if (!kept_ || (!done && refinements > 0)) continue;
     find_gradient(problem, d);
-    if (problem.residual_ratio(gradient_) <= kept_share * tolerance) return true;
+    if (!done) leave_out_bends(problem);
+    const bool fits = problem.residual_ratio(gradient_) <= kept_share * tolerance;
+    if (fits && done) return true;
+    if (fits) continue;
     if (refinements++ == most_refinements) return false;
     ++result.refinements;
     const Profile::Scope scope(*profile_, Phase::solution);
