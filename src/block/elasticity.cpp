@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <type_traits>
 
 #include "core/index.h"
 #include "core/known_size.h"
@@ -14,6 +15,17 @@ Stress in_situ_at(const std::optional<InSituStress>& in_situ, Vec2 point) {
   return {in_situ->sxx + in_situ->sxx_gradient * height, in_situ->syy + in_situ->syy_gradient * height,
           in_situ->sxy};
 }
+
+namespace {
+
+double add_up(double x) {
+  return x;
+}
+double add_up(AlignedLanes x) {
+  return sum(x);
+}
+
+}  // namespace
 
 Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material& material,
                        const std::optional<InSituStress>& in_situ)
@@ -29,23 +41,60 @@ Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material
   c33_ = e / (2.0 * (1.0 + nu));
   // A linear S₀ times the quadratic E has degree 2(n − 1) + 1, above 4(n − 1) only at n = 1.
   const int degree = std::max(4 * (basis.order() - 1), in_situ ? 2 * (basis.order() - 1) + 1 : 0);
-  for (const WeightedPoint& w : thinned_rule(polygon_rule(region, degree), degree)) {
-    points_.push_back({w.weight, in_situ_at(in_situ, w.point)});
-    gradient_.resize(gradient_.size() + static_cast<std::size_t>(size_));
-    basis.gradients(w.point, gradient_.data() + gradient_.size() - size_);
+  const std::vector<WeightedPoint> rule = thinned_rule(polygon_rule(region, degree), degree);
+  std::vector<Vec2> gradients(at(size_));
+  if (basis.order() == 1) {  // the centroid alone
+    basis.gradients(rule[0].point, gradients.data());
+    point_ = {rule[0].weight, in_situ_at(in_situ, rule[0].point)};
+    for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] = {gradients[k].x, gradients[k].y};
+    return;
+  }
+  constexpr std::size_t width = lane_count;
+  const std::size_t groups = (rule.size() + width - 1) / width;
+  points_.resize(groups);
+  gradients_.resize(groups * at(size_));
+  for (std::size_t q = 0; q < groups * width; ++q) {
+    const WeightedPoint& w = rule[std::min(q, rule.size() - 1)];
+    const Stress initial = in_situ_at(in_situ, w.point);
+    const std::size_t group = q / width, lane = q % width;
+    Point<AlignedLanes>& point = points_[group];
+    point.weight[lane] = q < rule.size() ? w.weight : 0.0;
+    point.initial.xx[lane] = initial.xx;
+    point.initial.yy[lane] = initial.yy;
+    point.initial.xy[lane] = initial.xy;
+    basis.gradients(w.point, gradients.data());
+    for (std::size_t k = 0; k < at(size_); ++k) {
+      gradients_[group * at(size_) + k].x[lane] = gradients[k].x;
+      gradients_[group * at(size_) + k].y[lane] = gradients[k].y;
+    }
   }
 }
 
 template <typename Do>
-void Elasticity::at_points(const Do& what) const {
+void Elasticity::with_points(const Do& what) const {
   with_known_size(size_, [&](auto size) {
-    for (std::size_t q = 0; q < points_.size(); ++q) what(size, points_[q], &gradient_[q * at(size)]);
+    if constexpr (std::is_same_v<decltype(size), std::integral_constant<int, 3>>) {
+      what(size, std::span<const Point<double>>(&point_, 1), gradient_.data());
+    } else {
+      what(size, std::span<const Point<AlignedLanes>>(points_), gradients_.data());
+    }
   });
 }
 
-template <typename Size>
-Elasticity::Gradient2 Elasticity::deformation(Size size, const double* a, const Vec2* gradients) {
-  Gradient2 f{0.0, 0.0, 0.0, 0.0};
+template <typename Value>
+double Elasticity::sum_over_points(const Value& value) const {
+  double total = 0.0;
+  with_points([&](auto size, auto points, const auto* gradients) {
+    for (std::size_t q = 0; q < points.size(); ++q)
+      total += add_up(value(size, points[q], gradients + q * at(size)));
+  });
+  return total;
+}
+
+template <typename Number, typename Size>
+Elasticity::Deformation<Number> Elasticity::deformation(Size size, const double* a,
+                                                        const Gradient<Number>* gradients) {
+  Deformation<Number> f;
   for (int k = 1; k < size; ++k) {
     f.xx += a[2 * k] * gradients[k].x;
     f.xy += a[2 * k] * gradients[k].y;
@@ -55,57 +104,75 @@ Elasticity::Gradient2 Elasticity::deformation(Size size, const double* a, const 
   return f;
 }
 
-Stress Elasticity::second_piola(const Gradient2& f, const Stress& initial) const {
-  const double exx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0);
-  const double eyy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0);
-  const double two_exy = f.xx * f.xy + f.yx * f.yy;
-  return {initial.xx + c11_ * exx + c12_ * eyy, initial.yy + c12_ * exx + c11_ * eyy,
-          initial.xy + c33_ * two_exy};
+namespace {
+
+/// Green's strain, with twice its shear.
+template <typename Deformation>
+auto strain(const Deformation& f) {
+  const auto exx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0), eyy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0),
+             two_exy = f.xx * f.xy + f.yx * f.yy;
+  return SymmetricTensor<std::remove_const_t<decltype(exx)>>{exx, eyy, two_exy};
 }
 
-double Elasticity::density(const Gradient2& f, const Stress& initial) const {
-  const Stress s = second_piola(f, initial);
-  const double exx = 0.5 * (f.xx * f.xx + f.yx * f.yx - 1.0);
-  const double eyy = 0.5 * (f.xy * f.xy + f.yy * f.yy - 1.0);
-  const double two_exy = f.xx * f.xy + f.yx * f.yy;
-  return 0.5 * ((s.xx + initial.xx) * exx + (s.yy + initial.yy) * eyy + (s.xy + initial.xy) * two_exy);
+/// F S Fᵀ / det F
+template <typename Deformation, typename Tensor>
+Tensor push_forward(const Deformation& f, const Tensor& s) {
+  const auto j = f.xx * f.yy - f.xy * f.yx;
+  const auto pxx = f.xx * s.xx + f.xy * s.xy, pxy = f.xx * s.xy + f.xy * s.yy;
+  const auto pyx = f.yx * s.xx + f.yy * s.xy, pyy = f.yx * s.xy + f.yy * s.yy;
+  return {(pxx * f.xx + pxy * f.xy) / j, (pyx * f.yx + pyy * f.yy) / j, (pxx * f.yx + pxy * f.yy) / j};
+}
+
+}  // namespace
+
+template <typename Number>
+SymmetricTensor<Number> Elasticity::second_piola(const Deformation<Number>& f,
+                                                 const SymmetricTensor<Number>& initial) const {
+  const SymmetricTensor<Number> e = strain(f);
+  return {initial.xx + c11_ * e.xx + c12_ * e.yy, initial.yy + c12_ * e.xx + c11_ * e.yy,
+          initial.xy + c33_ * e.xy};
 }
 
 double Elasticity::energy(const double* a) const {
-  double sum = 0.0;
-  at_points([&](auto size, const Point& point, const Vec2* g) {
-    sum += point.weight * density(deformation(size, a, g), point.initial);
+  return sum_over_points([&](auto size, const auto& point, const auto* g) {
+    const auto f = deformation(size, a, g);
+    const auto e = strain(f), s = second_piola(f, point.initial);
+    const auto& initial = point.initial;
+    return point.weight *
+           (0.5 * ((s.xx + initial.xx) * e.xx + (s.yy + initial.yy) * e.yy + (s.xy + initial.xy) * e.xy));
   });
-  return sum;
 }
 
 void Elasticity::add_force(const double* a, double* force) const {
-  at_points([&](auto size, const Point& point, const Vec2* g) {
-    const Gradient2 f = deformation(size, a, g);
-    const Stress s = second_piola(f, point.initial);
-    // P = F S
-    const double w = point.weight;
-    const double pxx = w * (f.xx * s.xx + f.xy * s.xy), pxy = w * (f.xx * s.xy + f.xy * s.yy);
-    const double pyx = w * (f.yx * s.xx + f.yy * s.xy), pyy = w * (f.yx * s.xy + f.yy * s.yy);
-    for (int k = 1; k < size; ++k) {
-      force[2 * k] += pxx * g[k].x + pxy * g[k].y;
-      force[2 * k + 1] += pyx * g[k].x + pyy * g[k].y;
+  with_points([&](auto size, auto points, const auto* gradients) {
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const auto* g = gradients + q * at(size);
+      const auto f = deformation(size, a, g);
+      const auto s = second_piola(f, points[q].initial);
+      // P = F S
+      const auto w = points[q].weight;
+      const auto pxx = w * (f.xx * s.xx + f.xy * s.xy), pxy = w * (f.xx * s.xy + f.xy * s.yy);
+      const auto pyx = w * (f.yx * s.xx + f.yy * s.xy), pyy = w * (f.yx * s.xy + f.yy * s.yy);
+      for (int k = 1; k < size; ++k) {
+        force[2 * k] += add_up(pxx * g[k].x + pxy * g[k].y);
+        force[2 * k + 1] += add_up(pyx * g[k].x + pyy * g[k].y);
+      }
     }
   });
 }
 
 namespace {
 
-/// Whether g + shift · 1 has a Cholesky factor.
-bool is_positive_definite(const double* g, int n, double shift) {
-  std::vector<double> a(g, g + n * n);
-  for (int j = 0; j < n; ++j) {
-    double* column = &a[static_cast<std::size_t>(j * n)];
-    const double pivot = column[j] + shift;
+/// Whether a + shift · 1 has a Cholesky factor; a is overwritten.
+template <typename Matrix>
+bool is_positive_definite(Matrix& a, double shift) {
+  const Eigen::Index n = a.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double pivot = a(j, j) + shift;
     if (!(pivot > 0.0)) return false;
-    for (int q = j + 1; q < n; ++q) {
-      const double factor = column[q] / pivot;
-      for (int r = q; r < n; ++r) a[static_cast<std::size_t>(q * n + r)] -= factor * column[r];
+    for (Eigen::Index q = j + 1; q < n; ++q) {
+      const double factor = a(q, j) / pivot;
+      for (Eigen::Index r = q; r < n; ++r) a(r, q) -= factor * a(r, j);
     }
   }
   return true;
@@ -125,7 +192,8 @@ void floor_eigenvalues(double* g, double floor) {
 }
 
 /// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor; does nothing when a
-/// bound shows that none is below.
+/// bound shows that none is below. Matrix: of Eigen, n × n.
+template <typename Matrix>
 void floor_eigenvalues(double* g, int n, double floor) {
   const auto entry = [&](int r, int c) -> double& { return g[r >= c ? c * n + r : r * n + c]; };
   double bound = 0.0;
@@ -134,15 +202,17 @@ void floor_eigenvalues(double* g, int n, double floor) {
     for (int k = 0; k < n; ++k) others += k == i ? 0.0 : std::abs(entry(i, k));
     bound = std::max(bound, others - entry(i, i));
   }
-  if (bound <= floor || is_positive_definite(g, n, floor)) return;
-  Eigen::MatrixXd whole(n, n);
+  if (bound <= floor) return;
+  Matrix whole(n, n);
   for (int c = 0; c < n; ++c) {
     for (int r = 0; r < n; ++r) whole(r, c) = entry(r, c);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(whole);
+  Matrix reduced = whole;
+  if (is_positive_definite(reduced, floor)) return;
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(whole);
   if (solver.eigenvalues().minCoeff() >= -floor) return;
-  const Eigen::VectorXd raised = solver.eigenvalues().cwiseMax(-floor);
-  whole = solver.eigenvectors() * raised.asDiagonal() * solver.eigenvectors().transpose();
+  const auto& vectors = solver.eigenvectors();
+  whole = vectors * solver.eigenvalues().cwiseMax(-floor).asDiagonal() * vectors.transpose();
   for (int c = 0; c < n; ++c) {
     for (int r = c; r < n; ++r) entry(r, c) = whole(r, c);
   }
@@ -150,54 +220,95 @@ void floor_eigenvalues(double* g, int n, double floor) {
 
 }  // namespace
 
+/// The geometric part to `geometric`, (N − 1)², lower triangle, and the rest to the tangent.
+template <typename Number, typename Size>
+void Elasticity::add_tangent_at(Size size, std::span<const Point<Number>> points,
+                                const Gradient<Number>* gradients, const double* a, double viscous,
+                                double* geometric, double* tangent, int stride) const {
+  struct Columns {
+    Number x[3], y[3];  // of three rows
+  };
+  struct Stressed {
+    SymmetricTensor<Number> stress;  // times the weight
+    Number weight;
+  };
+  // Orders 1 and 2 have room here; higher ones are worth an allocation.
+  constexpr std::size_t few_groups = 2, few = few_groups * 6;
+  const std::size_t count = points.size();
+  std::array<Columns, few> few_b;
+  std::array<Columns, few_groups> few_cb;
+  std::array<Stressed, few_groups> few_stressed;
+  const bool is_small = count <= few_groups && at(size) * count <= few;
+  std::vector<Columns> many(is_small ? 0 : (at(size) + 1) * count);
+  std::vector<Stressed> many_stressed(is_small ? 0 : count);
+  Columns* b = is_small ? few_b.data() : many.data();  // B_k at all points, then B_{k + 1}
+  Columns* cb = is_small ? few_cb.data() : many.data() + at(size) * count;  // C B_l, weighted
+  Stressed* stressed = is_small ? few_stressed.data() : many_stressed.data();
+  for (std::size_t q = 0; q < count; ++q) {
+    const Gradient<Number>* g = gradients + q * at(size);
+    const Deformation<Number> f = deformation(size, a, g);
+    const SymmetricTensor<Number> s = second_piola(f, points[q].initial);
+    const Number w = points[q].weight;
+    stressed[q] = {{w * s.xx, w * s.yy, w * s.xy}, (1.0 + viscous) * w};
+    for (int k = 1; k < size; ++k) {
+      b[at(k) * count + q] = {{f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x},
+                              {f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x}};
+    }
+  }
+  const auto times = [](const Number(&x)[3], const Number(&y)[3]) {
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+  };
+  for (int l = 1; l < size; ++l) {
+    for (std::size_t q = 0; q < count; ++q) {
+      const Number w = stressed[q].weight;
+      const auto elastic = [&](const Number(&from)[3], Number(&to)[3]) {
+        to[0] = w * (c11_ * from[0] + c12_ * from[1]);
+        to[1] = w * (c12_ * from[0] + c11_ * from[1]);
+        to[2] = w * (c33_ * from[2]);
+      };
+      elastic(b[at(l) * count + q].x, cb[q].x);
+      elastic(b[at(l) * count + q].y, cb[q].y);
+    }
+    double* column_x = tangent + static_cast<std::ptrdiff_t>(2 * l) * stride;
+    double* column_y = column_x + stride;
+    for (int k = l; k < size; ++k) {
+      Number xx{}, yx{}, xy{}, yy{}, g{};
+      for (std::size_t q = 0; q < count; ++q) {
+        const Columns &row = b[at(k) * count + q], &column = cb[q];
+        const Gradient<Number>&at_k = gradients[q * at(size) + at(k)],
+              &at_l = gradients[q * at(size) + at(l)];
+        const SymmetricTensor<Number>& s = stressed[q].stress;
+        xx += times(row.x, column.x);
+        yx += times(row.y, column.x);
+        xy += times(row.x, column.y);
+        yy += times(row.y, column.y);
+        g += at_k.x * (s.xx * at_l.x + s.xy * at_l.y) + at_k.y * (s.xy * at_l.x + s.yy * at_l.y);
+      }
+      column_x[2 * k] += add_up(xx);
+      column_x[2 * k + 1] += add_up(yx);
+      column_y[2 * k + 1] += add_up(yy);
+      if (k > l) column_y[2 * k] += add_up(xy);
+      geometric[(l - 1) * (size - 1) + k - 1] = add_up(g);
+    }
+  }
+}
+
 void Elasticity::add_tangent(const double* a, double viscous, double floor, double* tangent,
                              int stride) const {
-  // Order 1 has room here; higher orders are worth an allocation.
-  constexpr std::size_t few = 3;
-  const std::size_t count = at(size_), m = count - 1;
-  std::array<std::array<double, 6>, few> few_b;
-  std::array<double, (few - 1) * (few - 1)> few_geometric{};
-  std::vector<std::array<double, 6>> many_b(count > few ? count : 0);
-  std::vector<double> many_geometric(count > few ? m * m : 0, 0.0);
-  std::array<double, 6>* b =
-      count > few ? many_b.data() : few_b.data();  // B_k, columns x and y of three rows
-  double* geometric = count > few ? many_geometric.data() : few_geometric.data();  // (N − 1)², lower triangle
-  at_points([&](auto size, const Point& point, const Vec2* g) {
-    const Gradient2 f = deformation(size, a, g);
-    const Stress s = second_piola(f, point.initial);
-    const double weight = (1.0 + viscous) * point.weight;
-    for (int k = 1; k < size; ++k) {
-      b[k] = {f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x,
-              f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x};
+  constexpr std::size_t few = 5;  // order 2
+  const std::size_t m = at(size_) - 1;
+  std::array<double, few * few> few_geometric;
+  std::vector<double> many_geometric(m > few ? m * m : 0);
+  double* geometric = m > few ? many_geometric.data() : few_geometric.data();
+  with_points([&](auto size, auto points, const auto* gradients) {
+    add_tangent_at(size, points, gradients, a, viscous, geometric, tangent, stride);
+    if constexpr (std::is_same_v<decltype(size), int>) {
+      floor_eigenvalues<Eigen::MatrixXd>(geometric, size - 1, floor);
+    } else if constexpr (size == 3) {
+      floor_eigenvalues(geometric, floor);
+    } else {
+      floor_eigenvalues<Eigen::Matrix<double, size - 1, size - 1>>(geometric, size - 1, floor);
     }
-    for (int l = 1; l < size; ++l) {
-      const Vec2 sg{point.weight * (s.xx * g[l].x + s.xy * g[l].y),
-                    point.weight * (s.xy * g[l].x + s.yy * g[l].y)};
-      const auto& bl = b[l];
-      std::array<double, 6> cb;
-      for (std::size_t c = 0; c < 6; c += 3) {
-        cb[c] = weight * (c11_ * bl[c] + c12_ * bl[c + 1]);
-        cb[c + 1] = weight * (c12_ * bl[c] + c11_ * bl[c + 1]);
-        cb[c + 2] = weight * c33_ * bl[c + 2];
-      }
-      double* column_x = tangent + static_cast<std::ptrdiff_t>(2 * l) * stride;
-      double* column_y = column_x + stride;
-      for (int k = l; k < size; ++k) {
-        const auto& bk = b[k];
-        geometric[(l - 1) * (size - 1) + k - 1] += dot(g[k], sg);
-        column_x[2 * k] += bk[0] * cb[0] + bk[1] * cb[1] + bk[2] * cb[2];
-        column_x[2 * k + 1] += bk[3] * cb[0] + bk[4] * cb[1] + bk[5] * cb[2];
-        column_y[2 * k + 1] += bk[3] * cb[3] + bk[4] * cb[4] + bk[5] * cb[5];
-        if (k > l) column_y[2 * k] += bk[0] * cb[3] + bk[1] * cb[4] + bk[2] * cb[5];
-      }
-    }
-  });
-  if (m == 2) {
-    floor_eigenvalues(geometric, floor);
-  } else {
-    floor_eigenvalues(geometric, size_ - 1, floor);
-  }
-  with_known_size(size_, [&](auto size) {
     for (int l = 1; l < size; ++l) {
       for (int k = l; k < size; ++k) {
         const double value = geometric[(l - 1) * (size - 1) + k - 1];
@@ -209,55 +320,47 @@ void Elasticity::add_tangent(const double* a, double viscous, double floor, doub
 }
 
 double Elasticity::material_work(const double* a, const double* d) const {
-  double sum = 0.0;
-  at_points([&](auto size, const Point& point, const Vec2* g) {
-    const Gradient2 f = deformation(size, a, g), h = deformation(size, d, g);
-    const double xx = f.xx * h.xx + f.yx * h.yx, yy = f.xy * h.xy + f.yy * h.yy;
-    const double two_xy = f.xx * h.xy + f.xy * h.xx + f.yx * h.yy + f.yy * h.yx;
-    sum += point.weight * (c11_ * (xx * xx + yy * yy) + 2.0 * c12_ * xx * yy + c33_ * two_xy * two_xy);
+  return sum_over_points([&](auto size, const auto& point, const auto* g) {
+    const auto f = deformation(size, a, g), h = deformation(size, d, g);
+    const auto xx = f.xx * h.xx + f.yx * h.yx, yy = f.xy * h.xy + f.yy * h.yy;
+    const auto two_xy = f.xx * h.xy + f.xy * h.xx + f.yx * h.yy + f.yy * h.yx;
+    return point.weight * (c11_ * (xx * xx + yy * yy) + 2.0 * c12_ * xx * yy + c33_ * two_xy * two_xy);
   });
-  return sum;
 }
 
 double Elasticity::squared_stress(const double* a, const double* b) const {
-  double sum = 0.0;
-  at_points([&](auto size, const Point& point, const Vec2* g) {
-    Stress s = second_piola(deformation(size, a, g), point.initial);
+  return sum_over_points([&](auto size, const auto& point, const auto* g) {
+    auto s = second_piola(deformation(size, a, g), point.initial);
     if (b != nullptr) {
-      const Stress other = second_piola(deformation(size, b, g), point.initial);
+      const auto other = second_piola(deformation(size, b, g), point.initial);
       s = {s.xx - other.xx, s.yy - other.yy, s.xy - other.xy};
     }
-    sum += point.weight * (s.xx * s.xx + s.yy * s.yy + 2.0 * s.xy * s.xy);
+    return point.weight * (s.xx * s.xx + s.yy * s.yy + 2.0 * s.xy * s.xy);
   });
-  return sum;
 }
-
-namespace {
-Stress push_forward(double fxx, double fxy, double fyx, double fyy, const Stress& s) {
-  const double j = fxx * fyy - fxy * fyx;
-  const double pxx = fxx * s.xx + fxy * s.xy, pxy = fxx * s.xy + fxy * s.yy;
-  const double pyx = fyx * s.xx + fyy * s.xy, pyy = fyx * s.xy + fyy * s.yy;
-  return {(pxx * fxx + pxy * fxy) / j, (pyx * fyx + pyy * fyy) / j, (pxx * fyx + pxy * fyy) / j};
-}
-}  // namespace
 
 Stress Elasticity::cauchy(const double* a, const Basis& basis, Vec2 point) const {
-  std::vector<Vec2> g(static_cast<std::size_t>(size_));
+  std::vector<Vec2> g(at(size_));
   basis.gradients(point, g.data());
-  const Gradient2 f = deformation(size_, a, g.data());
-  return push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, in_situ_at(in_situ_, point)));
+  std::vector<Gradient<double>> gradients;
+  for (const Vec2 v : g) gradients.push_back({v.x, v.y});
+  const Deformation<double> f = deformation(size_, a, gradients.data());
+  return push_forward(f, second_piola(f, in_situ_at(in_situ_, point)));
 }
 
 Stress Elasticity::mean_cauchy(const double* a) const {
   Stress mean;
   double total = 0.0;
-  at_points([&](auto size, const Point& point, const Vec2* g) {
-    const Gradient2 f = deformation(size, a, g);
-    const Stress s = push_forward(f.xx, f.xy, f.yx, f.yy, second_piola(f, point.initial));
-    mean.xx += point.weight * s.xx;
-    mean.yy += point.weight * s.yy;
-    mean.xy += point.weight * s.xy;
-    total += point.weight;
+  with_points([&](auto size, auto points, const auto* gradients) {
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const auto f = deformation(size, a, gradients + q * at(size));
+      const auto s = push_forward(f, second_piola(f, points[q].initial));
+      const auto w = points[q].weight;
+      mean.xx += add_up(w * s.xx);
+      mean.yy += add_up(w * s.yy);
+      mean.xy += add_up(w * s.xy);
+      total += add_up(w);
+    }
   });
   return {mean.xx / total, mean.yy / total, mean.xy / total};
 }

@@ -1,17 +1,21 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "block/basis.h"
 #include "block/material.h"
+#include "core/lanes.h"
 
 namespace keyblock::block {
 
 /// Symmetric tensor of the plane.
-struct Stress {
-  double xx = 0.0, yy = 0.0, xy = 0.0;
+template <typename Number>
+struct SymmetricTensor {
+  Number xx{}, yy{}, xy{};
 };
+using Stress = SymmetricTensor<double>;
 
 /// Stress before excavation at a point; zero without one.
 Stress in_situ_at(const std::optional<InSituStress>& in_situ, Vec2 point);
@@ -48,27 +52,45 @@ class Elasticity {
   [[nodiscard]] Stress mean_cauchy(const double* a) const;
 
  private:
-  struct Gradient2 {
-    double xx, xy, yx, yy;  ///< F_ij
+  // Everything is computed at one point, a double, or at as many as there are lanes.
+  template <typename Number>
+  struct Deformation {
+    Number xx{}, xy{}, yx{}, yy{};  ///< F_ij
   };
-  /// A point of the rule.
+  template <typename Number>
+  struct Gradient {
+    Number x{}, y{};
+  };
+  /// Of the rule.
+  template <typename Number>
   struct Point {
-    double weight = 0.0;  ///< m²
-    Stress initial;       ///< S₀
+    Number weight{};                  ///< m²
+    SymmetricTensor<Number> initial;  ///< S₀
   };
-  /// Calls what(N, point, ∇φ at it) for all points.
+  /// Calls what(N, points, ∇φ_k at them): order 1 with its one point, others with all of theirs.
   template <typename Do>
-  void at_points(const Do& what) const;
-  template <typename Size>
-  static Gradient2 deformation(Size size, const double* a, const Vec2* gradients);
-  [[nodiscard]] Stress second_piola(const Gradient2& f, const Stress& initial) const;
-  [[nodiscard]] double density(const Gradient2& f, const Stress& initial) const;
+  void with_points(const Do& what) const;
+  /// Σ over the points of value(N, point, ∇φ at it).
+  template <typename Value>
+  [[nodiscard]] double sum_over_points(const Value& value) const;
+  template <typename Number, typename Size>
+  static Deformation<Number> deformation(Size size, const double* a, const Gradient<Number>* gradients);
+  template <typename Number>
+  [[nodiscard]] SymmetricTensor<Number> second_piola(const Deformation<Number>& f,
+                                                     const SymmetricTensor<Number>& initial) const;
+  template <typename Number, typename Size>
+  void add_tangent_at(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
+                      const double* a, double viscous, double* geometric, double* tangent, int stride) const;
 
   int size_;
   double c11_, c12_, c33_;  ///< plane elasticity matrix; c22 = c11
+  // Of order 1, here: what a step reads of a block comes in one piece.
+  Point<double> point_;
+  std::array<Gradient<double>, 3> gradient_;
+  // Of other orders, by groups of as many points as there are lanes; what the last lacks has no weight.
+  std::vector<Point<AlignedLanes>> points_;
+  std::vector<Gradient<AlignedLanes>> gradients_;  ///< ∇φ_k in group g: [g N + k]
   std::optional<InSituStress> in_situ_;
-  std::vector<Point> points_;
-  std::vector<Vec2> gradient_;  ///< ∇φ_k at point q: gradient_[q N + k]
 };
 
 }  // namespace keyblock::block

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "core/index.h"
+#include "core/known_size.h"
+
 namespace keyblock::block {
 
 void rotation(double w, double& cosine, double& sine) {
@@ -38,10 +41,11 @@ Pose::Pose(const Polygon& region, const Basis& basis) : size_(basis.size()) {
       for (std::size_t l = 0; l < n; ++l) w_[k * n + l] += w.weight * cross(g[k], g[l]);
     }
   }
+  w12_ = w_[n + 2];
 }
 
 double Pose::area(const double* a) const {
-  if (size_ == 3) return w_[5] * (a[2] * a[5] - a[4] * a[3]);
+  if (size_ == 3) return w12_ * (a[2] * a[5] - a[4] * a[3]);
   const auto n = static_cast<std::size_t>(size_);
   double sum = 0.0;
   for (std::size_t k = 1; k < n; ++k) {
@@ -55,18 +59,20 @@ double Pose::area(const double* a) const {
 double Pose::mean_spin(const double* increment, const double* a) const {
   if (size_ == 3) {
     const double curl = increment[2] * a[4] + increment[3] * a[5] - increment[4] * a[2] - increment[5] * a[3];
-    return 0.5 * w_[5] * curl / area(a);
+    return 0.5 * w12_ * curl / area(a);
   }
-  const auto n = static_cast<std::size_t>(size_);
   double sum = 0.0;
-  for (std::size_t k = 1; k < n; ++k) {
-    double row_x = 0.0, row_y = 0.0;
-    for (std::size_t l = 1; l < n; ++l) {
-      row_x += w_[k * n + l] * a[2 * l];
-      row_y += w_[k * n + l] * a[2 * l + 1];
+  with_known_size(size_, [&](auto size) {
+    for (int k = 1; k < size; ++k) {
+      const double* w = &w_[at(k * size)];
+      double row_x = 0.0, row_y = 0.0;
+      for (int l = 1; l < size; ++l) {
+        row_x += w[l] * a[2 * l];
+        row_y += w[l] * a[2 * l + 1];
+      }
+      sum += increment[2 * k] * row_x + increment[2 * k + 1] * row_y;
     }
-    sum += increment[2 * k] * row_x + increment[2 * k + 1] * row_y;
-  }
+  });
   return 0.5 * sum / area(a);
 }
 

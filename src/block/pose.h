@@ -30,6 +30,7 @@ class Pose {
 
  private:
   int size_;
+  double w12_ = 0.0;       ///< W_12: at order 1 all there is, and at hand
   std::vector<double> w_;  ///< N × N
 };
 

@@ -5,6 +5,8 @@ namespace keyblock {
 /// Numbers that are computed at once: each lane on its own, so that any instruction set gives the same bits.
 inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(lane_count * sizeof(double)), aligned(8)));
+/// The same where it is stored by itself: compilers take no type of another alignment than its own for an argument of a template.
+using AlignedLanes = double __attribute__((vector_size(lane_count * sizeof(double))));
 using NarrowLanes = float __attribute__((vector_size(lane_count * sizeof(float)), aligned(4)));
 
 inline Lanes load(const double* p) {
@@ -24,6 +26,31 @@ inline Lanes broadcast(double x) {
 }
 inline NarrowLanes broadcast(float x) {
   return NarrowLanes{x, x, x, x, x, x, x, x};
+}
+
+/// Of all lanes, always in this order.
+template <typename Register>
+auto sum(Register v) {
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+
+/// The sum of each of up to eight vectors, as sum() forms it.
+template <typename Register, int count>
+Register sums(const Register (&t)[count]) {
+  static_assert(count <= lane_count);
+  const auto at = [&](int k) { return k < count ? t[k] : Register{}; };
+  const auto pairs = [](Register a, Register b) {
+    return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+           __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  };
+  const auto fours = [](Register a, Register b) {
+    return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
+           __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  };
+  const Register low = fours(pairs(at(0), at(1)), pairs(at(2), at(3))),
+                 high = fours(pairs(at(4), at(5)), pairs(at(6), at(7)));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11) +
+         __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
 /// Rows become columns.

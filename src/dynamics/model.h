@@ -15,19 +15,20 @@ namespace keyblock::dynamics {
 
 /// One block as mechanics sees it; constant during a run.
 struct Block {
-  Polygon reference;
-  block::Basis basis;
-  block::Elasticity elasticity;
-  block::Pose pose;
-  Material material;
-  bool fixed = false;
-  double area = 0.0;    ///< m², of the reference polygon
-  double radius = 0.0;  ///< m, from the centroid to the farthest vertex
+  // First, and together, what every step reads.
   std::size_t first =
       0;         ///< its coefficients start here in State::position: a_0x, a_0y, a_1x, …; fixed blocks last
   int size = 0;  ///< N, number of basis functions; 2N unknowns
+  int unknown = -1;  ///< number among the blocks that move; −1: fixed
+  bool fixed = false;
+  double area = 0.0;    ///< m², of the reference polygon
+  double radius = 0.0;  ///< m, from the centroid to the farthest vertex
+  Material material;
+  block::Pose pose;
+  block::Elasticity elasticity;
+  Polygon reference;
+  block::Basis basis;
   int edge_order = 1;  ///< contact divides the edges as for a block of this order
-  int unknown = -1;    ///< number among the blocks that move; −1: fixed
   /// Force per unit acceleration on coefficient 0, ρ √A; the others feel no uniform body force.
   [[nodiscard]] double body_force() const { return material.density * std::sqrt(area); }
   [[nodiscard]] double mass() const { return material.density * area; }

@@ -56,30 +56,6 @@ Register subtract_product(Register a, Register b, Register c) {
   return add_product(-a, b, c);
 }
 
-template <typename Register>
-auto sum(Register v) {
-  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
-}
-
-/// The sum of each of up to eight vectors, as sum() forms it.
-template <typename Register, int count>
-Register sums(const Register (&t)[count]) {
-  static_assert(count <= row_padding);
-  const auto at = [&](int k) { return k < count ? t[k] : Register{}; };
-  const auto pairs = [](Register a, Register b) {
-    return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
-           __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-  };
-  const auto fours = [](Register a, Register b) {
-    return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
-           __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
-  };
-  const Register low = fours(pairs(at(0), at(1)), pairs(at(2), at(3))),
-                 high = fours(pairs(at(4), at(5)), pairs(at(6), at(7)));
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11) +
-         __builtin_shufflevector(low, high, 4, 5, 6, 7, 12, 13, 14, 15);
-}
-
 /// The first `count` numbers of v to `out`, where `room` numbers may be overwritten.
 template <int count>
 void store_first(double* out, int room, Lanes v) {

@@ -45,10 +45,13 @@ Polygon frame_polygon(const Box& domain) {
 Block make_block(const Polygon& polygon, const BlockProperties& properties, int order, int edge_order,
                  const std::optional<InSituStress>& in_situ) {
   const block::Basis basis(polygon, order);
-  Block block{polygon, basis, block::Elasticity(polygon, basis, properties.material, in_situ),
-              block::Pose(polygon, basis), properties.material};
-  block.fixed = properties.fixed;
-  block.area = area(polygon);
+  Block block{.fixed = properties.fixed,
+              .area = area(polygon),
+              .material = properties.material,
+              .pose = block::Pose(polygon, basis),
+              .elasticity = block::Elasticity(polygon, basis, properties.material, in_situ),
+              .reference = polygon,
+              .basis = basis};
   const Vec2 centre = centroid(polygon);
   for (const Vec2 p : polygon.outer) block.radius = std::max(block.radius, norm(p - centre));
   block.size = basis.size();
