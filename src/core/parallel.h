@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -51,13 +52,13 @@ void find_all(ThreadTeam& team, std::size_t n, std::size_t grain, const Is& is,
   for (const auto& some : of_piece) found.insert(found.end(), some.begin(), some.end());
 }
 
-/// The largest of(i), i < n, and of 0.
+/// The largest of(i), i < n, and of 0; NaN when one is.
 template <typename Of>
 double largest_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& of) {
   const auto largest = [&](std::size_t begin, std::size_t end) {
     double found = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (const double x = of(i); x > found) found = x;
+    for (std::size_t i = begin; i < end && !std::isnan(found); ++i) {
+      if (const double x = of(i); !(x <= found)) found = x;
     }
     return found;
   };
@@ -69,7 +70,8 @@ double largest_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& 
   });
   double found = 0.0;
   for (const double x : of_piece) {
-    if (x > found) found = x;
+    if (!(x <= found)) found = x;
+    if (std::isnan(found)) break;
   }
   return found;
 }

@@ -30,8 +30,8 @@ void OpenClose::start(const StepProblem& problem, std::span<const contact::Conta
     bool any = false;
     for (std::size_t c = begin; c < end; ++c) {
       const StepProblem::Row& row = rows[c];
-      const contact::Spring& s = row.spring;
-      springs_.set(c, s, row.depth(row.moved), row.shear(row.moved));
+      const contact::Spring& s = problem.springs()[c];
+      springs_.set(c, s, problem.depth(c, row.moved), problem.shear(c, row.moved));
       friction_[c] = contacts[c].fused ? -1.0 : contacts[c].friction_coefficient;
       cohesion_[c] = contacts[c].cohesion;
       any = any || (contacts[c].memory.bonded && !contacts[c].fused);
@@ -234,7 +234,9 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
       }
     }
     if (!newton_step(problem, solver, options.tolerance, d, result)) return false;
-    if (problem.residual_ratio(gradient_) < enough) return true;
+    const double ratio = problem.residual_ratio(gradient_);
+    if (ratio < enough) return true;
+    if (std::isnan(ratio)) return false;
   }
   return false;
 }
@@ -242,18 +244,18 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
 /// Takes over the bound or bond of a spring that changed, and what that does to the gradient.
 void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
   const Force before = springs_.force(c);
-  springs_.set_law(c, problem.rows()[c].spring);
+  springs_.set_law(c, problem.springs()[c]);
   springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
   add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
-  auto& rows = problem.rows();
+  std::vector<contact::Spring>& springs = problem.springs();
   double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
     return friction_[c] * std::max(0.0, springs_.force(c).normal) + cohesion_[c];
   };
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  for (std::size_t c = 0; c < springs.size(); ++c) {
     if (friction_[c] < 0.0) continue;
     // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
     const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
@@ -266,8 +268,8 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
-  bound_steps_.resize(rows.size());
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  bound_steps_.resize(springs.size());
+  for (std::size_t c = 0; c < springs.size(); ++c) {
     if (friction_[c] < 0.0) continue;
     const double missing = bound(c) - springs_.bound[c];
     const double gained = bound_steps_[c].missing - missing;
@@ -275,7 +277,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
     if (!first && bound_steps_[c].taken * gained > 0.0)
       share = std::clamp(bound_steps_[c].taken / gained, least_share, 1.0);
     bound_steps_[c] = {missing, share * missing};
-    rows[c].spring.set_bound(springs_.bound[c] + share * missing);
+    springs[c].set_bound(springs_.bound[c] + share * missing);
     set_law(problem, c);
   }
   return true;
@@ -285,29 +287,30 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
 /// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
 /// left alone.
 bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
-  auto& rows = problem.rows();
+  std::vector<contact::Spring>& springs = problem.springs();
   double worst = 0.0;
-  shift_.assign(rows.size(), {});
-  for (std::size_t c = 0; c < rows.size(); ++c) {
-    const StepProblem::Row& row = rows[c];
+  shift_.assign(springs.size(), {});
+  for (std::size_t c = 0; c < springs.size(); ++c) {
+    const contact::Spring& spring = springs[c];
     if (!springs_.piece[c].closed) continue;
     // n·r and t·r, but for what multipliers have added.
-    const double normal = row.spring.depth() - springs_.y[c], slip = springs_.w[c] - row.spring.shear();
+    const double normal = spring.depth() - springs_.y[c], slip = springs_.w[c] - spring.shear();
     const double penetration = -(contacts[c].gap + normal) - std::max(0.0, contacts[c].memory.offset);
     const double drift = springs_.piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
     worst = std::max({worst, std::abs(penetration), std::abs(drift)});
     // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
-    shift_[c] = {penetration * (1.0 + 0.25 * row.inertia / row.spring.normal_stiffness()),
-                 drift * (1.0 + 0.25 * row.inertia / row.spring.shear_stiffness())};
+    const double inertia = problem.inertia_between(c);
+    shift_[c] = {penetration * (1.0 + 0.25 * inertia / spring.normal_stiffness()),
+                 drift * (1.0 + 0.25 * inertia / spring.shear_stiffness())};
   }
   if (worst <= tolerance) return false;
   // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
   stalls_ = worst > 0.9 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;
   if (stalls_ == 3) return false;
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  for (std::size_t c = 0; c < springs.size(); ++c) {
     if (shift_[c] == Vec2{}) continue;
-    rows[c].spring.shift(shift_[c].x, shift_[c].y);
+    springs[c].shift(shift_[c].x, shift_[c].y);
     const Force before = springs_.force(c);
     springs_.shift(c, shift_[c].x, shift_[c].y);
     springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
@@ -319,10 +322,10 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
 bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> contacts) {
   if (!any_bond_) return false;
   bool any = false;
-  auto& rows = problem.rows();
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  std::vector<contact::Spring>& springs = problem.springs();
+  for (std::size_t c = 0; c < springs.size(); ++c) {
     if (!contacts[c].memory.bonded || contacts[c].fused) continue;
-    contact::Spring& s = rows[c].spring;
+    contact::Spring& s = springs[c];
     const double normal = springs_.force(c).normal;
     if (-normal <= contacts[c].tension && s.locked(springs_.w[c])) continue;
     contacts[c].memory.bonded = false;

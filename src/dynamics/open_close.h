@@ -66,7 +66,7 @@ class OpenClose {
   using Force = SpringArray::Force;
 
   void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
-  void begin_factor(const StepProblem& problem, const linalg::BlockSolver& solver);
+  void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
   void try_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   void judge_factor(const OpenCloseResult& result);

@@ -18,15 +18,17 @@ std::pair<int, int> key_of(const contact::Contact& contact) {
 }  // namespace
 
 /// Notes what the matrix of this step is for; it has no springs yet.
-void OpenClose::begin_factor(const StepProblem& problem, const linalg::BlockSolver& solver) {
-  factor_.solver = &solver;
-  factor_.contacts.resize(contacts_.size());
-  std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
-  factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
+void OpenClose::begin_factor(const StepProblem& problem, linalg::BlockSolver& solver) {
   factor_.normal_stiffness.assign(contacts_.size(), 0.0);
   factor_.shear_stiffness.assign(contacts_.size(), 0.0);
   free_.clear();
   kept_ = false;
+  factor_.solver = nullptr;
+  if (solver.halves() == nullptr) return;  // it has no factor
+  factor_.solver = &solver;
+  factor_.contacts.resize(contacts_.size());
+  std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
+  factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
 }
 
 /// Whether the factor at hand was made for contacts and inertia of this step.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/index.h"
 
 namespace keyblock::dynamics {
@@ -59,7 +60,8 @@ void Stepper::place(State& state) {
       for (std::size_t v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
         const Vec2 x =
             map_point(&surface.phi[surface.phi_begin[v]], block.size, &state.position[block.first]);
-        moved = std::max(moved, squared_norm(x - surface.position[v]));
+        const double squared = squared_norm(x - surface.position[v]);
+        if (!(squared <= moved)) moved = squared;  // nor if it is not a number
         surface.position[v] = x;
       }
       state.moved[b] = std::sqrt(moved);
@@ -189,6 +191,8 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     const OpenCloseResult result =
         open_close_.solve(problem_, contacts_, chosen, model_.solver, team_, profile_, increment_);
     report.iterations += result.iterations;
+    if (std::isnan(result.residual_ratio))
+      throw RunError("the forces of the step to " + std::to_string(drive.end_time) + " s are not finite");
     if (result.linear_failed && !must_be_direct) {
       must_be_direct = true;
       continue;
@@ -230,7 +234,8 @@ bool Stepper::turned_too_far() const {
                                  spin_[b] * spin_[b] * model_.blocks[b].radius) +
                           std::abs(spin_[b] * dot(row.tangent(), r));
     if (missed <= tolerances_.turn) continue;
-    if (row.spring.normal_force(row.depth(r)) > 0.0 || contacts_[c].gap + dot(row.normal, r) < missed)
+    if (problem_.springs()[c].normal_force(problem_.depth(c, r)) > 0.0 ||
+        contacts_[c].gap + dot(row.normal, r) < missed)
       return true;
   }
   return false;
@@ -264,10 +269,11 @@ bool Stepper::moved_too_far() {
 Stepper::ContactAccount Stepper::remember_contact(std::size_t c, bool is_static) {
   const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   const StepProblem::Row& row = problem_.rows()[c];
-  const contact::Spring& s = row.spring;
+  const contact::Spring& s = problem_.springs()[c];
   contact::Memory& memory = contacts_[c].memory;
   const Vec2 r = open_close_.relative()[c];
-  const double depth = row.depth(r), shear = row.shear(r), normal_force = s.normal_force(depth);
+  const double depth = problem_.depth(c, r), shear = problem_.shear(c, r),
+               normal_force = s.normal_force(depth);
   ContactAccount account;
   account.balance = augmented ? s.rigid_balance(depth, shear, dot(row.normal, r), dot(row.tangent(), r))
                               : s.balance(depth, shear);
@@ -368,7 +374,12 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   move_prescribed(state, drive);
   place(state);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (model_.moves(b)) report.max_displacement = std::max(report.max_displacement, state.moved[b]);
+    if (!model_.moves(b)) continue;
+    if (!std::isfinite(state.moved[b])) {
+      throw RunError("block " + std::to_string(b) + " has no finite position after the step to " +
+                     std::to_string(drive.end_time) + " s");
+    }
+    report.max_displacement = std::max(report.max_displacement, state.moved[b]);
   }
 }
 

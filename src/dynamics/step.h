@@ -163,6 +163,11 @@ class Stepper {
   double impact_speed_;                  ///< m/s
   std::vector<Force> forces_;
   std::vector<ContactAccount> accounts_;  ///< scratch
+  /// J per thickness.
+  struct BlockWork {
+    double numerical = 0.0, input = 0.0;
+  };
+  std::vector<BlockWork> block_work_;  ///< scratch
   std::vector<Balance> balance_;
   double contact_energy_ = 0.0, support_energy_ = 0.0;
 };

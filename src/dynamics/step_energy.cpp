@@ -32,21 +32,26 @@ void Stepper::account(State& state, const Drive& drive) {
   const StepProblem::ElasticLoss elastic = problem_.elastic_loss(state, increment_, spin_);
   ledger.numerical += elastic.numerical;
   ledger.damping += elastic.damping;
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
+  block_work_.assign(model_.blocks.size(), {});
+  for_blocks([&](std::size_t b) {
+    BlockWork& work = block_work_[b];
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
     const double* v = &state.velocity[block.first];
     if (drive.is_static) {
-      for (int k = 0; k < 2 * block.size; ++k) ledger.numerical += problem_.inertia(b) * d[k] * d[k];
+      for (int k = 0; k < 2 * block.size; ++k) work.numerical += problem_.inertia(b) * d[k] * d[k];
     } else {  // work of the forces at the end of the step, less what became kinetic energy
       for (int k = 0; k < 2 * block.size; ++k) {
         const Motion start = motion(state, block.first + at(k)), end = rule_[b].end(start, d[k], drive.step);
-        ledger.numerical +=
+        work.numerical +=
             block.material.density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
       }
     }
-    ledger.input -= block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
+    work.input = -block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
+  });
+  for (const BlockWork& work : block_work_) {
+    ledger.numerical += work.numerical;
+    ledger.input += work.input;
   }
   for (const GeneralizedLoad& load : model_.loads) {
     if (!model_.moves(at(load.block))) continue;

@@ -25,8 +25,10 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   if (model_ != &model) {
     model_ = &model;
     h_first_.clear();
+    largest_size_ = 0;
     std::size_t used = 0;
     for (const Block& block : model.blocks) {
+      largest_size_ = std::max(largest_size_, block.size);
       h_first_.push_back(used);
       used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
     }
@@ -121,17 +123,15 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
                              std::span<const contact::Contact> contacts, std::span<const int> pairs) {
   rows_.resize(contacts.size());
+  springs_.resize(contacts.size());
+  inertia_between_.resize(contacts.size());
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
-  std::uint32_t used = 0;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    rows_[k].phi = used;
-    used += static_cast<std::uint32_t>(model_->blocks[at(contacts[k].block_a)].size +
-                                       model_->blocks[at(contacts[k].block_b)].size);
-  }
-  phi_.resize(used);
+  phi_.resize(contacts.size() * at(2 * largest_size_));
   team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
+      rows_[k].phi = static_cast<std::uint32_t>(k * at(2 * largest_size_));
       build_row(drive, surface, contacts[k], rows_[k]);
+      build_spring(drive, contacts[k], k);
       rows_[k].pair = pairs[at(contacts[k].candidate)];
       if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
     }
@@ -142,7 +142,6 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
                             Row& row) {
   const Block& a = model_->blocks[at(c.block_a)];
   const Block& b = model_->blocks[at(c.block_b)];
-  const contact::Memory& memory = c.memory;
   row.first_a = static_cast<std::uint32_t>(a.first);
   row.first_b = static_cast<std::uint32_t>(b.first);
   row.size_a = a.fixed ? 0 : a.size;
@@ -157,13 +156,19 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
   row.normal = c.normal;
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
+}
+
+void StepProblem::build_spring(const Drive& drive, const contact::Contact& c, std::size_t k) {
+  const contact::Memory& memory = c.memory;
   const double mass = reduced_mass(c);
-  row.inertia = mass * drive.rule[at(a.fixed ? c.block_b : c.block_a)].inertia() / (drive.step * drive.step);
+  const bool fixed = model_->blocks[at(c.block_a)].fixed;
+  inertia_between_[k] =
+      mass * drive.rule[at(fixed ? c.block_b : c.block_a)].inertia() / (drive.step * drive.step);
   const auto dashpot = [&](double stiffness) {
     return drive.is_static ? 0.0
                            : 2.0 * model_->solver.contact_damping * std::sqrt(stiffness * mass) / drive.step;
   };
-  row.spring =
+  springs_[k] =
       contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
                        dashpot(c.shear_stiffness), c.depth, memory.shear,
                        c.fused ? HUGE_VAL : c.friction_coefficient * memory.bounding_force + c.cohesion,
@@ -228,8 +233,8 @@ void StepProblem::gradient(std::span<const double> d, std::span<const Vec2> r, s
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= b_[k];
   for (std::size_t c = 0; c < rows_.size(); ++c) {
     const Row& row = rows_[c];
-    const double normal = row.spring.normal_force(row.depth(r[c]));
-    const double shear = row.spring.shear_force(row.shear(r[c]));
+    const double normal = springs_[c].normal_force(depth(c, r[c]));
+    const double shear = springs_[c].shear_force(this->shear(c, r[c]));
     if (normal == 0.0 && shear == 0.0) continue;
     add_contact_force(row, shear * row.tangent() - normal * row.normal, g);
   }
@@ -352,22 +357,26 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
   return largest_of(*team_, model_->blocks.size(), blocks_worth_threads, [&](std::size_t i) {
     const Block& block = model_->blocks[i];
     if (!model_->moves(i) || weight_[i] <= 0.0) return 0.0;
-    double largest = 0.0;
+    double largest = 0.0, all = 0.0;
     with_known_size(block.size, [&](auto size) {
       const double* of_block = &g[block.first];
-      for (int k = 0; k < 2 * size; ++k) largest = std::max(largest, std::abs(of_block[k]));
+      for (int k = 0; k < 2 * size; ++k) {
+        largest = std::max(largest, std::abs(of_block[k]));
+        all += of_block[k];
+      }
     });
-    return largest / weight_[i];
+    return (std::isnan(all) ? all : largest) / weight_[i];
   });
 }
 
 StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d,
                                                    std::span<const double> spin) {
-  ElasticLoss loss;
   turn_.assign(d.size(), 0.0);
   product_.resize(d.size());
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) {
-    if (!model_->moves(i)) continue;
+  losses_.assign(model_->blocks.size(), {});
+  const auto find_loss = [&](std::size_t i) {
+    if (!model_->moves(i)) return;
+    ElasticLoss& loss = losses_[i];
     const Block& block = model_->blocks[i];
     const double *of_block = &d[block.first], *position = &state.position[block.first], *h = &h_[h_first_[i]];
     double *turn = &turn_[block.first], *product = &product_[block.first];
@@ -389,6 +398,14 @@ StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span
       multiply_block(size, h, turn, product);
       loss.numerical += stiffness(of_block, turn) - 0.5 * stiffness(turn, turn);
     });
+  };
+  team_->for_range(losses_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) find_loss(i);
+  });
+  ElasticLoss loss;
+  for (const ElasticLoss& of_block : losses_) {
+    loss.numerical += of_block.numerical;
+    loss.damping += of_block.damping;
   }
   for (const GroundSpring& spring :
        model_->springs) {  // linear in D: no part of what the pose update takes out

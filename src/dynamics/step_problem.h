@@ -39,21 +39,18 @@ struct Drive {
 /// Π is convex and piecewise quadratic. This class holds its data and evaluates it; it does not know how to minimize.
 class StepProblem {
  public:
-  /// r_c = φ_V · D_a − φ_P · D_b + moved; a fixed block contributes what it is moved by, nothing else.
-  struct Row {
+  /// r_c = φ_V · D_a − φ_P · D_b + moved; a fixed block contributes what it is moved by, nothing else. A cache line: every
+  /// evaluation of the contacts reads it, and little else.
+  struct alignas(64) Row {
     std::uint32_t first_a, first_b;  ///< of the block's coefficients
     std::uint32_t phi;   ///< into phi_: N values of a at its vertex, N of b at the point of its edge
     int size_a, size_b;  ///< N; 0: fixed
     int unknown_a, unknown_b;
     int pair = -1;  ///< of the solver's pattern; −1: one block is fixed
     Vec2 normal;
-    double inertia = 0.0;  ///< N/m per thickness, of the two blocks against each other in this step
-    Vec2 moved;            ///< m, known part of r: prescribed displacement of a less that of b
-    contact::Spring spring;
+    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b
 
     [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
-    [[nodiscard]] double depth(Vec2 r) const { return spring.depth() - dot(normal, r); }
-    [[nodiscard]] double shear(Vec2 r) const { return spring.shear() + dot(tangent(), r); }
   };
 
   /// pairs: of every candidate of contact, its pair of blocks in the solver's pattern, −1 with a fixed block.
@@ -62,6 +59,18 @@ class StepProblem {
 
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  /// Of every row.
+  [[nodiscard]] std::vector<contact::Spring>& springs() { return springs_; }
+  [[nodiscard]] const std::vector<contact::Spring>& springs() const { return springs_; }
+  /// y and w of the spring of a contact, given r.
+  [[nodiscard]] double depth(std::size_t contact, Vec2 r) const {
+    return springs_[contact].depth() - dot(rows_[contact].normal, r);
+  }
+  [[nodiscard]] double shear(std::size_t contact, Vec2 r) const {
+    return springs_[contact].shear() + dot(rows_[contact].tangent(), r);
+  }
+  /// N/m per thickness, of the two blocks of a contact against each other in this step.
+  [[nodiscard]] double inertia_between(std::size_t contact) const { return inertia_between_[contact]; }
   /// Unknowns come first among the coefficients; those of fixed blocks follow.
   [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
 
@@ -116,7 +125,7 @@ class StepProblem {
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
-  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
+  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity); NaN where one is.
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
   [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
   [[nodiscard]] int unknown(std::size_t block) const { return model_->blocks[block].unknown; }
@@ -189,19 +198,24 @@ class StepProblem {
   void build_rows(const Drive& drive, const contact::Surface& surface,
                   std::span<const contact::Contact> contacts, std::span<const int> pairs);
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
+  void build_spring(const Drive& drive, const contact::Contact& c, std::size_t k);
 
   const Model* model_ = nullptr;
   ThreadTeam* team_ = nullptr;
   std::vector<Row> rows_;
+  std::vector<contact::Spring> springs_;              ///< of every row
+  std::vector<double> inertia_between_;               ///< likewise
   std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
-  std::vector<double> phi_;
-  std::vector<std::size_t> h_first_;  ///< per block, into h_
-  std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
+  std::vector<double> phi_;                           ///< of every row, twice largest_size_
+  int largest_size_ = 0;                              ///< N
+  std::vector<std::size_t> h_first_;                  ///< per block, into h_
+  std::vector<double> h_;                             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;
   std::vector<double> inertia_;         ///< per block, cρ/Δt²
   std::vector<double> viscous_;         ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> weight_;          ///< per block, N-like scale of its coefficients
   std::vector<double> turn_, product_;  ///< scratch
+  std::vector<ElasticLoss> losses_;     ///< scratch, per block
 };
 
 }  // namespace keyblock::dynamics

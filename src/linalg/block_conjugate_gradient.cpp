@@ -136,17 +136,29 @@ void BlockConjugateGradient::subtract_lower(const Number* values, const Number* 
   }
 }
 
-/// The same for rows between the parts, which gather, so that no two parts write to them.
+/// The same for rows between the parts, which gather, so that no two parts write to them: from the columns of the parts each on its
+/// own, and then from each other in their order.
 template <auto place, typename Number>
 void BlockConjugateGradient::subtract_lower_between(const Number* values, const Number* x, Number* y) const {
-  const std::size_t first = between().first;
-  for (std::size_t i = first; i < size_.size(); ++i) {
-    for (std::size_t k = row_start_[i - first]; k < row_start_[i - first + 1]; ++k) {
+  constexpr std::size_t worth_threads = 64;  // rows
+  const std::size_t first = between().first, rows = size_.size() - first;
+  const auto subtract = [&](std::size_t row, std::size_t begin, std::size_t end) {
+    const std::size_t i = first + row;
+    for (std::size_t k = begin; k < end; ++k) {
       const auto [j, entry] = row_entries_[k];
       subtract_times(stride_[i] / row_padding, size_[j], values + entries_[entry].*place, x + start_[j],
                      y + start_[i]);
     }
+  };
+  const auto gather = [&](std::size_t from, std::size_t to) {
+    for (std::size_t row = from; row < to; ++row) subtract(row, row_start_[row], row_between_[row]);
+  };
+  if (team_ == nullptr) {
+    gather(0, rows);
+  } else {
+    team_->for_range(rows, worth_threads, gather);
   }
+  for (std::size_t row = 0; row < rows; ++row) subtract(row, row_between_[row], row_start_[row + 1]);
 }
 
 /// y −= Sᵀ x, for the rows of a part from the last to the first.

@@ -91,6 +91,7 @@ class BlockConjugateGradient final : public BlockSolver {
     std::size_t column, entry;
   };
   std::vector<std::size_t> row_start_;      ///< per block between the parts, into row_entries_
+  std::vector<std::size_t> row_between_;    ///< likewise: the first whose column lies between the parts too
   std::vector<RowEntry> row_entries_;       ///< of a row, by columns
   std::vector<std::size_t> diagonal_;       ///< into matrix_
   std::vector<std::size_t> inverse_start_;  ///< into inverse_

@@ -85,8 +85,11 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     entry_start_.push_back(entries_.size());
   }
   row_start_.assign(1, 0);
+  row_between_.clear();
   row_entries_.clear();
   for (const auto& row : rows) {
+    const auto between = std::ranges::lower_bound(row, first_between, {}, &RowEntry::column);
+    row_between_.push_back(row_entries_.size() + static_cast<std::size_t>(between - row.begin()));
     row_entries_.insert(row_entries_.end(), row.begin(), row.end());
     row_start_.push_back(row_entries_.size());
   }

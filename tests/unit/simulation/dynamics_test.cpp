@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 #include <vector>
 
+#include "core/error.h"
 #include "scene.h"
 
 namespace keyblock::simulation {
@@ -223,6 +225,21 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
 
 // A wall that is shaken gently, and a stone that spins through the air until it strikes it: with the factors of earlier steps the
 // motion is that of factors made in every step.
+// A ground that shakes by what is no number: the run ends there, and does not go on with positions that are none.
+TEST(Step, EndsTheRunWhenABlockHasNoPosition) {
+  for (const auto linear : {dynamics::LinearSolver::block, dynamics::LinearSolver::iterative}) {
+    Scene scene(1e9, 35.0);
+    scene.setup.solver.linear = linear;
+    scene.rectangle({-2.0, -1.0}, 6.0, 1.0, 0.0, true);
+    scene.rectangle({0.0, 0.0}, 1.0, 0.5);
+    scene.rectangle({0.0, 0.5}, 1.0, 0.5);
+    Simulator s(scene);
+    s.run(0.002, 0.002);
+    const Sine ground(std::numeric_limits<double>::quiet_NaN(), 2.0);
+    EXPECT_THROW(s.run(0.002, 0.002, &ground), RunError);
+  }
+}
+
 TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
   constexpr int steps = 150;
   const auto run = [](bool keep) {

@@ -83,11 +83,11 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   problem.assemble(*solver);
   std::vector<StepProblem::SpringChange> springs;
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {
-    const StepProblem::Row& row = problem.rows()[c];
-    const bool closed = row.spring.closed(row.depth(r[c])),
-               held = row.spring.locked(row.shear(r[c])) && row.spring.bound() > 0.0;
+    const contact::Spring& spring = problem.springs()[c];
+    const bool closed = spring.closed(problem.depth(c, r[c])),
+               held = spring.locked(problem.shear(c, r[c])) && spring.bound() > 0.0;
     springs.push_back(
-        {c, closed ? row.spring.normal_stiffness() : 0.0, held ? row.spring.shear_stiffness() : 0.0});
+        {c, closed ? spring.normal_stiffness() : 0.0, held ? spring.shear_stiffness() : 0.0});
   }
   problem.add_springs(springs, *solver);
   ASSERT_TRUE(solver->factor());
