@@ -130,15 +130,16 @@ std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList
     f.memory = memory_of(at(f.candidate));
     const Candidate& c = candidates.pairs[at(f.candidate)];
     const int corner = f.first_half ? c.edge : surface.next[at(c.edge)];
-    f.low = f.disputed ? std::min(c.vertex, corner) : -1;
-    f.high = f.disputed ? std::max(c.vertex, corner) : -1;
+    const auto [low, high] = std::minmax(c.vertex, corner);
+    f.corners = f.disputed ? static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high) : 0;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (found[i].candidate < 0 || found[i].low < 0) continue;
-    std::array<Found*, 4> rivals;  // two edges end in each corner
-    std::size_t size = 0;
-    for (std::size_t k = i; k < count && found[k].pair == found[i].pair && size < rivals.size(); ++k) {
-      if (found[k].low == found[i].low && found[k].high == found[i].high) rivals[size++] = &found[k];
+    const std::uint64_t corners = found[i].corners;
+    if (corners == 0) continue;
+    std::array<Found*, 4> rivals{&found[i]};  // two edges end in each corner
+    std::size_t size = 1;
+    for (std::size_t k = i + 1; k < count && found[k].pair == found[i].pair && size < rivals.size(); ++k) {
+      if (found[k].corners == corners) rivals[size++] = &found[k];
     }
     compete(std::span(rivals).first(size), candidates);
   }
@@ -222,7 +223,7 @@ void Detection::compete(std::span<Found* const> rivals, const CandidateList& can
   // tangents of the two lines run against each other, and normal and tangent turn together.
   if (winner != nullptr && holder != nullptr && parallel) winner->memory = holder->memory;
   for (Found* f : rivals) {
-    f->low = f->high = -1;
+    f->corners = 0;
     if (f != winner) f->candidate = -1;
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -82,13 +83,13 @@ class Detection {
   };
   /// A candidate that passes the geometry.
   struct Found {
-    int candidate;      ///< −1: has lost to another of the same two corners
-    int pair;           ///< of blocks
-    int memory;         ///< of the list, that it goes on with; −1: none
-    int low, high;      ///< the two corners that meet; −1: none
-    bool first_half;    ///< of the edge is where the vertex is
-    bool disputed;      ///< the vertex is near an end of the edge, so that two corners meet
-    double gap, along;  ///< m
+    int candidate;          ///< −1: has lost to another of the same two corners
+    int pair;               ///< of blocks
+    int memory;             ///< of the list, that it goes on with; −1: none
+    std::uint64_t corners;  ///< the two that meet; 0: none
+    bool first_half;        ///< of the edge is where the vertex is
+    bool disputed;          ///< the vertex is near an end of the edge, so that two corners meet
+    double gap, along;      ///< m
   };
   void measure_corners(const Surface& surface, ThreadTeam& team);
   void look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team);

@@ -1,5 +1,4 @@
 #pragma once
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -52,13 +51,13 @@ void find_all(ThreadTeam& team, std::size_t n, std::size_t grain, const Is& is,
   for (const auto& some : of_piece) found.insert(found.end(), some.begin(), some.end());
 }
 
-/// The largest of(i), i < n, and of 0; NaN when one is.
+/// The largest of(i), i < n, and of 0.
 template <typename Of>
 double largest_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& of) {
   const auto largest = [&](std::size_t begin, std::size_t end) {
     double found = 0.0;
-    for (std::size_t i = begin; i < end && !std::isnan(found); ++i) {
-      if (const double x = of(i); !(x <= found)) found = x;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (const double x = of(i); x > found) found = x;
     }
     return found;
   };
@@ -70,8 +69,7 @@ double largest_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& 
   });
   double found = 0.0;
   for (const double x : of_piece) {
-    if (!(x <= found)) found = x;
-    if (std::isnan(found)) break;
+    if (x > found) found = x;
   }
   return found;
 }

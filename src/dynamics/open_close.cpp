@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "dynamics/line_search.h"
@@ -234,9 +235,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
       }
     }
     if (!newton_step(problem, solver, options.tolerance, d, result)) return false;
-    const double ratio = problem.residual_ratio(gradient_);
-    if (ratio < enough) return true;
-    if (std::isnan(ratio)) return false;
+    if (problem.residual_ratio(gradient_) < enough) return true;
   }
   return false;
 }
@@ -299,7 +298,7 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
     const double drift = springs_.piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
     worst = std::max({worst, std::abs(penetration), std::abs(drift)});
     // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
-    const double inertia = problem.inertia_between(c);
+    const double inertia = problem.inertia_between(contacts[c]);
     shift_[c] = {penetration * (1.0 + 0.25 * inertia / spring.normal_stiffness()),
                  drift * (1.0 + 0.25 * inertia / spring.shear_stiffness())};
   }
@@ -391,6 +390,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     });
   }
   result.residual_ratio = problem.residual_ratio(gradient_);
+  result.finite = std::isfinite(std::accumulate(gradient_.begin(), gradient_.end(), 0.0));
   judge_factor(result);
   return result;
 }

@@ -17,6 +17,7 @@ namespace keyblock::dynamics {
 struct OpenCloseResult {
   bool converged = false;
   bool linear_failed = false;  ///< the linear solver gave up
+  bool finite = true;          ///< what is out of balance is a number
   bool bond_broken = false;    ///< some contact lost its cohesion and tension on the way
   int iterations = 0;          ///< linear solves
   int factorizations = 0;

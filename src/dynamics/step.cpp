@@ -191,7 +191,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     const OpenCloseResult result =
         open_close_.solve(problem_, contacts_, chosen, model_.solver, team_, profile_, increment_);
     report.iterations += result.iterations;
-    if (std::isnan(result.residual_ratio))
+    if (!result.finite)
       throw RunError("the forces of the step to " + std::to_string(drive.end_time) + " s are not finite");
     if (result.linear_failed && !must_be_direct) {
       must_be_direct = true;

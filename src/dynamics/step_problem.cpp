@@ -124,7 +124,6 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
                              std::span<const contact::Contact> contacts, std::span<const int> pairs) {
   rows_.resize(contacts.size());
   springs_.resize(contacts.size());
-  inertia_between_.resize(contacts.size());
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
   phi_.resize(contacts.size() * at(2 * largest_size_));
   team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -161,13 +160,8 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
 void StepProblem::build_spring(const Drive& drive, const contact::Contact& c, std::size_t k) {
   const contact::Memory& memory = c.memory;
   const double mass = reduced_mass(c);
-  const bool fixed = model_->blocks[at(c.block_a)].fixed;
-  inertia_between_[k] =
-      mass * drive.rule[at(fixed ? c.block_b : c.block_a)].inertia() / (drive.step * drive.step);
-  const auto dashpot = [&](double stiffness) {
-    return drive.is_static ? 0.0
-                           : 2.0 * model_->solver.contact_damping * std::sqrt(stiffness * mass) / drive.step;
-  };
+  const double damping = drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step;
+  const auto dashpot = [&](double stiffness) { return damping * std::sqrt(stiffness * mass); };
   springs_[k] =
       contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
                        dashpot(c.shear_stiffness), c.depth, memory.shear,
@@ -178,6 +172,11 @@ void StepProblem::build_spring(const Drive& drive, const contact::Contact& c, st
 double StepProblem::reduced_mass(const contact::Contact& c) const {
   const Block &a = model_->blocks[at(c.block_a)], &b = model_->blocks[at(c.block_b)];
   return a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
+}
+
+double StepProblem::inertia_between(const contact::Contact& c) const {
+  const std::size_t moves = at(model_->blocks[at(c.block_a)].fixed ? c.block_b : c.block_a);
+  return reduced_mass(c) * inertia_[moves] / model_->blocks[moves].material.density;
 }
 
 void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
@@ -357,15 +356,10 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
   return largest_of(*team_, model_->blocks.size(), blocks_worth_threads, [&](std::size_t i) {
     const Block& block = model_->blocks[i];
     if (!model_->moves(i) || weight_[i] <= 0.0) return 0.0;
-    double largest = 0.0, all = 0.0;
-    with_known_size(block.size, [&](auto size) {
-      const double* of_block = &g[block.first];
-      for (int k = 0; k < 2 * size; ++k) {
-        largest = std::max(largest, std::abs(of_block[k]));
-        all += of_block[k];
-      }
-    });
-    return (std::isnan(all) ? all : largest) / weight_[i];
+    const double* of_block = &g[block.first];
+    double largest = 0.0;
+    for (int k = 0; k < 2 * block.size; ++k) largest = std::max(largest, std::abs(of_block[k]));
+    return largest / weight_[i];
   });
 }
 

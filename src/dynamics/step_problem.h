@@ -69,11 +69,11 @@ class StepProblem {
   [[nodiscard]] double shear(std::size_t contact, Vec2 r) const {
     return springs_[contact].shear() + dot(rows_[contact].tangent(), r);
   }
-  /// N/m per thickness, of the two blocks of a contact against each other in this step.
-  [[nodiscard]] double inertia_between(std::size_t contact) const { return inertia_between_[contact]; }
   /// Unknowns come first among the coefficients; those of fixed blocks follow.
   [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
 
+  /// N/m per thickness, of the two blocks of a contact against each other in this step.
+  [[nodiscard]] double inertia_between(const contact::Contact& c) const;
   /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
   /// r of a contact for increment D, but for the known part.
@@ -125,7 +125,7 @@ class StepProblem {
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
-  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity); NaN where one is.
+  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
   [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
   [[nodiscard]] int unknown(std::size_t block) const { return model_->blocks[block].unknown; }
@@ -204,7 +204,6 @@ class StepProblem {
   ThreadTeam* team_ = nullptr;
   std::vector<Row> rows_;
   std::vector<contact::Spring> springs_;              ///< of every row
-  std::vector<double> inertia_between_;               ///< likewise
   std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
   std::vector<double> phi_;                           ///< of every row, twice largest_size_
   int largest_size_ = 0;                              ///< N
