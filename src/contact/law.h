@@ -25,7 +25,12 @@ class Spring {
   };
   Spring() = default;
   explicit Spring(const Constants& c)
-      : k_(c),
+      : elastic_normal_(c.normal_stiffness),
+        elastic_shear_(c.shear_stiffness),
+        start_depth_(c.depth),
+        start_shear_(c.shear),
+        bound_(c.bound),
+        tensile_(c.tensile),
         normal_(c.normal_stiffness + c.normal_damping),
         shear_(c.shear_stiffness + c.shear_damping),
         depth_(c.depth - c.normal_damping * (c.tensile ? c.depth : std::max(c.depth, 0.0)) / normal_),
@@ -36,24 +41,22 @@ class Spring {
   [[nodiscard]] double shear_stiffness() const { return shear_; }
   [[nodiscard]] double depth() const { return depth_; }   ///< y at D = 0
   [[nodiscard]] double shear() const { return origin_; }  ///< w at D = 0
-  [[nodiscard]] double bound() const { return k_.bound; }
-  [[nodiscard]] bool tensile() const { return k_.tensile; }
-  void set_bound(double bound) { k_.bound = bound; }
+  [[nodiscard]] double bound() const { return bound_; }
+  [[nodiscard]] bool tensile() const { return tensile_; }
+  void set_bound(double bound) { bound_ = bound; }
   /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
   void shift(double normal, double shear) {
     depth_ += normal;
     origin_ += shear;
   }
-  void break_bond() { k_.tensile = false; }
+  void break_bond() { tensile_ = false; }
 
-  [[nodiscard]] bool closed(double y) const { return k_.tensile || y > 0.0; }
-  [[nodiscard]] bool locked(double w) const { return std::abs(shear_ * w) <= k_.bound; }
+  [[nodiscard]] bool closed(double y) const { return tensile_ || y > 0.0; }
+  [[nodiscard]] bool locked(double w) const { return std::abs(shear_ * w) <= bound_; }
   [[nodiscard]] double normal_force(double y) const { return closed(y) ? normal_ * y : 0.0; }
-  [[nodiscard]] double shear_force(double w) const { return std::clamp(shear_ * w, -k_.bound, k_.bound); }
+  [[nodiscard]] double shear_force(double w) const { return std::clamp(shear_ * w, -bound_, bound_); }
   /// T of a contact that goes on sliding the way its spring is stretched.
-  [[nodiscard]] double sliding_force() const {
-    return origin_ == 0.0 ? 0.0 : std::copysign(k_.bound, origin_);
-  }
+  [[nodiscard]] double sliding_force() const { return origin_ == 0.0 ? 0.0 : std::copysign(bound_, origin_); }
   /// Minus the integral of the forces: ∂potential/∂y = N, ∂potential/∂w = T.
   [[nodiscard]] double potential(double y, double w) const {
     const double force = shear_force(w);
@@ -61,16 +64,16 @@ class Spring {
   }
 
   /// x at the end of the step, from y.
-  [[nodiscard]] double penetration(double y) const { return y + (k_.depth - depth_); }
+  [[nodiscard]] double penetration(double y) const { return y + (start_depth_ - depth_); }
   /// The part of the shear displacement that comes back, from w; the rest has slipped.
   [[nodiscard]] double elastic_shear(double w) const {
-    return shear_force(w) / shear_ + (k_.shear - origin_);
+    return shear_force(w) / shear_ + (start_shear_ - origin_);
   }
 
   [[nodiscard]] double stored_at_start() const {
-    const bool pressed = k_.tensile || k_.depth > 0.0;
-    return 0.5 * (pressed ? k_.normal_stiffness * k_.depth * k_.depth : 0.0) +
-           0.5 * k_.shear_stiffness * k_.shear * k_.shear;
+    const bool pressed = tensile_ || start_depth_ > 0.0;
+    return 0.5 * (pressed ? elastic_normal_ * start_depth_ * start_depth_ : 0.0) +
+           0.5 * elastic_shear_ * start_shear_ * start_shear_;
   }
   /// Where the energy of a contact goes in a step: work of its forces on the blocks + stored − before + friction + damping
   /// + numerical = 0; the last is what end-of-step forces lose against the potential.
@@ -80,13 +83,13 @@ class Spring {
   [[nodiscard]] Balance balance(double y, double w) const {
     const double x = penetration(y), normal = normal_force(y), shear = shear_force(w),
                  elastic = elastic_shear(w);
-    const double x_force = k_.tensile || x > 0.0 ? k_.normal_stiffness * x : 0.0;
+    const double x_force = tensile_ || x > 0.0 ? elastic_normal_ * x : 0.0;
     Balance b;
     b.stored = 0.5 * x_force * x;
-    if (closed(y)) b.stored += 0.5 * k_.shear_stiffness * elastic * elastic;  // else shear is forgotten
+    if (closed(y)) b.stored += 0.5 * elastic_shear_ * elastic * elastic;  // else shear is forgotten
     b.friction = std::abs(shear) * std::abs(w - shear / shear_);
-    b.damping =
-        (normal - x_force) * (x - k_.depth) + (shear - k_.shear_stiffness * elastic) * (elastic - k_.shear);
+    b.damping = (normal - x_force) * (x - start_depth_) +
+                (shear - elastic_shear_ * elastic) * (elastic - start_shear_);
     const double work = -normal * (y - depth_) - shear * (w - origin_);
     b.numerical = stored_at_start() - work - b.stored - b.friction - b.damping;
     return b;
@@ -102,7 +105,10 @@ class Spring {
   }
 
  private:
-  Constants k_;
+  double elastic_normal_ = 0.0, elastic_shear_ = 0.0;  // without the dashpots
+  double start_depth_ = 0.0, start_shear_ = 0.0;
+  double bound_ = 0.0;
+  bool tensile_ = false;
   double normal_ = 0.0, shear_ = 0.0;
   double depth_ = 0.0, origin_ = 0.0;
 };

@@ -269,7 +269,7 @@ bool Stepper::moved_too_far() {
 Stepper::ContactAccount Stepper::remember_contact(std::size_t c, bool is_static) {
   const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   const StepProblem::Row& row = problem_.rows()[c];
-  const contact::Spring& s = problem_.springs()[c];
+  const contact::Spring s = problem_.springs()[c];  // by value: nothing that is written below changes it
   contact::Memory& memory = contacts_[c].memory;
   const Vec2 r = open_close_.relative()[c];
   const double depth = problem_.depth(c, r), shear = problem_.shear(c, r),

@@ -363,38 +363,49 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
   });
 }
 
+namespace {
+
+/// Row k of w × r, of the relative part r of a block's coefficients.
+double turn_of(double w, const double* position, std::size_t k) {
+  return k < 2 ? 0.0 : k % 2 == 0 ? -w * position[k + 1] : w * position[k - 1];
+}
+
+}  // namespace
+
+template <typename Size>
+StepProblem::ElasticLoss StepProblem::block_loss(Size size, std::size_t i, const double* position,
+                                                 const double* d, double spin, double* turn,
+                                                 double* product) const {
+  const double* h = &h_[h_first_[i]];
+  /// xᵀ H y without inertia, with H y in product.
+  const auto stiffness = [&](const double* x, const double* y) {
+    double sum = 0.0;
+    for (int k = 0; k < 2 * size; ++k) sum += x[k] * (product[k] - inertia_[i] * y[k]);
+    return sum;
+  };
+  ElasticLoss loss;
+  loss.damping = viscous_[i] * model_->blocks[i].elasticity.material_work(position, d);
+  multiply_block(size, h, d, product);
+  loss.numerical = 0.5 * (stiffness(d, d) - loss.damping);
+  for (std::size_t k = 0; k < at(2 * size); ++k) turn[k] = turn_of(spin, position, k);
+  multiply_block(size, h, turn, product);
+  loss.numerical += stiffness(d, turn) - 0.5 * stiffness(turn, turn);
+  return loss;
+}
+
 StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span<const double> d,
                                                    std::span<const double> spin) {
-  turn_.assign(d.size(), 0.0);
-  product_.resize(d.size());
   losses_.assign(model_->blocks.size(), {});
-  const auto find_loss = [&](std::size_t i) {
-    if (!model_->moves(i)) return;
-    ElasticLoss& loss = losses_[i];
-    const Block& block = model_->blocks[i];
-    const double *of_block = &d[block.first], *position = &state.position[block.first], *h = &h_[h_first_[i]];
-    double *turn = &turn_[block.first], *product = &product_[block.first];
-    const double damping = viscous_[i] * block.elasticity.material_work(position, of_block);
-    loss.damping += damping;
-    with_known_size(block.size, [&](auto size) {
-      /// xᵀ H y without inertia, with H y in product.
-      const auto stiffness = [&](const double* x, const double* y) {
-        double sum = 0.0;
-        for (int k = 0; k < 2 * size; ++k) sum += x[k] * (product[k] - inertia_[i] * y[k]);
-        return sum;
-      };
-      multiply_block(size, h, of_block, product);
-      loss.numerical += 0.5 * (stiffness(of_block, of_block) - damping);
-      for (int k = 1; k < size; ++k) {
-        turn[2 * k] = -spin[i] * position[2 * k + 1];
-        turn[2 * k + 1] = spin[i] * position[2 * k];
-      }
-      multiply_block(size, h, turn, product);
-      loss.numerical += stiffness(of_block, turn) - 0.5 * stiffness(turn, turn);
-    });
-  };
   team_->for_range(losses_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) find_loss(i);
+    std::vector<double> turn(at(2 * largest_size_)), product(at(2 * largest_size_));
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!model_->moves(i)) continue;
+      const Block& block = model_->blocks[i];
+      losses_[i] = with_known_size(block.size, [&](auto size) {
+        return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data(),
+                          product.data());
+      });
+    }
   });
   ElasticLoss loss;
   for (const ElasticLoss& of_block : losses_) {
@@ -403,12 +414,12 @@ StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span
   }
   for (const GroundSpring& spring :
        model_->springs) {  // linear in D: no part of what the pose update takes out
-    if (!model_->moves(at(spring.block))) continue;
-    const std::size_t first = model_->blocks[at(spring.block)].first + at(spring.axis);
+    const std::size_t b = at(spring.block), first = model_->blocks[b].first, axis = at(spring.axis);
+    if (!model_->moves(b)) continue;
     double moved = 0.0, turned = 0.0;
     for (std::size_t k = 0; k < spring.phi.size(); ++k) {
-      moved += spring.phi[k] * d[first + 2 * k];
-      turned += spring.phi[k] * turn_[first + 2 * k];
+      moved += spring.phi[k] * d[first + 2 * k + axis];
+      turned += spring.phi[k] * turn_of(spin[b], &state.position[first], 2 * k + axis);
     }
     loss.numerical -= spring.stiffness * (moved - 0.5 * turned) * turned;
   }

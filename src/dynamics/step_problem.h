@@ -193,6 +193,9 @@ class StepProblem {
   void add_spring(const Row& row, double kn, double ks, Owner owner, linalg::BlockSolver& solver) const;
   template <typename Size>
   void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);
+  template <typename Size>
+  [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
+                                       double spin, double* turn, double* product) const;
   void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
@@ -210,11 +213,10 @@ class StepProblem {
   std::vector<std::size_t> h_first_;                  ///< per block, into h_
   std::vector<double> h_;                             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;
-  std::vector<double> inertia_;         ///< per block, cρ/Δt²
-  std::vector<double> viscous_;         ///< per block, β/Δt: viscosity of the rock over its stiffness
-  std::vector<double> weight_;          ///< per block, N-like scale of its coefficients
-  std::vector<double> turn_, product_;  ///< scratch
-  std::vector<ElasticLoss> losses_;     ///< scratch, per block
+  std::vector<double> inertia_;      ///< per block, cρ/Δt²
+  std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
+  std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
+  std::vector<ElasticLoss> losses_;  ///< scratch, per block
 };
 
 }  // namespace keyblock::dynamics

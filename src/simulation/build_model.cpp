@@ -269,6 +269,7 @@ Model build_model(const RunSetup& setup) {
   for (const JointProperties& joint : setup.joints.trace_maps) model.laws.push_back(law_of(joint));
 
   model.surface.block_begin.push_back(0);
+  model.blocks.reserve(setup.system.blocks.size() + 1);
   for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
     const cutting::CutBlock& cut = setup.system.blocks[b];
     const BlockProperties& properties = setup.properties[b];
