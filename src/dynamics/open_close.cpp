@@ -249,12 +249,12 @@ void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
-  std::vector<contact::Spring>& springs = problem.springs();
+  std::vector<contact::Spring>& of_contact = problem.springs();
   double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
     return friction_[c] * std::max(0.0, springs_.force(c).normal) + cohesion_[c];
   };
-  for (std::size_t c = 0; c < springs.size(); ++c) {
+  for (std::size_t c = 0; c < of_contact.size(); ++c) {
     if (friction_[c] < 0.0) continue;
     // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
     const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
@@ -267,8 +267,8 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
-  bound_steps_.resize(springs.size());
-  for (std::size_t c = 0; c < springs.size(); ++c) {
+  bound_steps_.resize(of_contact.size());
+  for (std::size_t c = 0; c < of_contact.size(); ++c) {
     if (friction_[c] < 0.0) continue;
     const double missing = bound(c) - springs_.bound[c];
     const double gained = bound_steps_[c].missing - missing;
@@ -276,7 +276,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
     if (!first && bound_steps_[c].taken * gained > 0.0)
       share = std::clamp(bound_steps_[c].taken / gained, least_share, 1.0);
     bound_steps_[c] = {missing, share * missing};
-    springs[c].set_bound(springs_.bound[c] + share * missing);
+    of_contact[c].set_bound(springs_.bound[c] + share * missing);
     set_law(problem, c);
   }
   return true;
@@ -286,11 +286,11 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
 /// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
 /// left alone.
 bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
-  std::vector<contact::Spring>& springs = problem.springs();
+  std::vector<contact::Spring>& of_contact = problem.springs();
   double worst = 0.0;
-  shift_.assign(springs.size(), {});
-  for (std::size_t c = 0; c < springs.size(); ++c) {
-    const contact::Spring& spring = springs[c];
+  shift_.assign(of_contact.size(), {});
+  for (std::size_t c = 0; c < of_contact.size(); ++c) {
+    const contact::Spring& spring = of_contact[c];
     if (!springs_.piece[c].closed) continue;
     // n·r and t·r, but for what multipliers have added.
     const double normal = spring.depth() - springs_.y[c], slip = springs_.w[c] - spring.shear();
@@ -307,9 +307,9 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
   stalls_ = worst > 0.9 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;
   if (stalls_ == 3) return false;
-  for (std::size_t c = 0; c < springs.size(); ++c) {
+  for (std::size_t c = 0; c < of_contact.size(); ++c) {
     if (shift_[c] == Vec2{}) continue;
-    springs[c].shift(shift_[c].x, shift_[c].y);
+    of_contact[c].shift(shift_[c].x, shift_[c].y);
     const Force before = springs_.force(c);
     springs_.shift(c, shift_[c].x, shift_[c].y);
     springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
@@ -321,10 +321,10 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
 bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> contacts) {
   if (!any_bond_) return false;
   bool any = false;
-  std::vector<contact::Spring>& springs = problem.springs();
-  for (std::size_t c = 0; c < springs.size(); ++c) {
+  std::vector<contact::Spring>& of_contact = problem.springs();
+  for (std::size_t c = 0; c < of_contact.size(); ++c) {
     if (!contacts[c].memory.bonded || contacts[c].fused) continue;
-    contact::Spring& s = springs[c];
+    contact::Spring& s = of_contact[c];
     const double normal = springs_.force(c).normal;
     if (-normal <= contacts[c].tension && s.locked(springs_.w[c])) continue;
     contacts[c].memory.bonded = false;

@@ -52,6 +52,7 @@ class StepProblem {
 
     [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
   };
+  static_assert(sizeof(Row) == 64);
 
   /// pairs: of every candidate of contact, its pair of blocks in the solver's pattern, −1 with a fixed block.
   void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,
