@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "linalg/block_kernels.h"
 
@@ -13,343 +14,337 @@ constexpr int most_iterations = 400;
 // Excess of the iteration's residual, with which that of the matrix is small enough.
 constexpr double well_enough = 0.9;
 
+/// Sizes of blocks and where they are in padded vectors.
+struct AnyBlocks {
+  const int *sizes, *strides;
+  const std::size_t* starts;
+  [[nodiscard]] int size(std::size_t j) const { return sizes[j]; }
+  [[nodiscard]] int stride(std::size_t j) const { return strides[j]; }
+  [[nodiscard]] std::size_t start(std::size_t j) const { return starts[j]; }
+};
+
+/// The same where all blocks are of order 1: known to the compiler.
+struct BlocksOfOrder1 {
+  static constexpr int size(std::size_t /*j*/) { return 6; }
+  static constexpr int stride(std::size_t /*j*/) { return padded_rows(6); }
+  static constexpr std::size_t start(std::size_t j) { return j * padded_rows(6); }
+};
+
+/// Calls body(k) for each register of block j.
+template <typename Layout, typename Body>
+void for_registers(Layout layout, std::size_t j, const Body& body) {
+  for (int l = 0; l < layout.stride(j); l += row_padding) body(layout.start(j) + at(l));
+}
+
 }  // namespace
 
-/// Of every part, and then of the blocks between them; parts may go at the same time.
+BlockConjugateGradient::Dots& BlockConjugateGradient::Dots::operator+=(const Dots& other) {
+  rr += other.rr;
+  pq += other.pq;
+  rq += other.rq;
+  qq += other.qq;
+  return *this;
+}
+
 template <typename Body>
-void BlockConjugateGradient::for_parts(const Body& body) const {
-  const std::size_t count = begin_.size() - 2;
-  const auto some = [&](std::size_t from, std::size_t to) {
-    for (std::size_t k = from; k < to; ++k) body(k, Range{begin_[k], begin_[k + 1]});
-  };
-  if (team_ == nullptr || count == 1) {
-    some(0, count);
+decltype(auto) BlockConjugateGradient::with_layout(const Body& body) const {
+  if (same_) return body(BlocksOfOrder1{});
+  return body(AnyBlocks{size_.data(), stride_.data(), start_.data()});
+}
+
+/// y −= S_j x_j of the rows of the same range, with S_j what stands above the diagonal in column j of U or of A, from `block` on.
+template <typename Layout, typename Number>
+void BlockConjugateGradient::subtract_above(Layout layout, std::size_t j, const Number* block,
+                                            const Number* x, Number* y) const {
+  const Number* x_j = x + layout.start(j);
+  for (std::size_t e = column_start_[j]; e < own_start_[j]; ++e)
+    block += layout.stride(rows_[e]) * layout.size(j);
+  if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
+    decltype(load(x)) factor[6];
+#pragma GCC unroll 6
+    for (int c = 0; c < 6; ++c) factor[c] = broadcast(x_j[c]);
+    for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e, block += 6 * row_padding) {
+      Number* y_i = y + layout.start(rows_[e]);
+      auto t = load(y_i);
+#pragma GCC unroll 6
+      for (int c = 0; c < 6; ++c) t = subtract_product(load(block + c * row_padding), factor[c], t);
+      store(y_i, t);
+    }
   } else {
-    team_->for_range(count, 2, some);
-  }
-}
-
-/// Of the blocks between the parts, and of every part.
-template <typename Body>
-void BlockConjugateGradient::for_ranges(const Body& body) const {
-  body(between());
-  for_parts([&](std::size_t, Range range) { body(range); });
-}
-
-/// Σ over parts and what lies between, in that order.
-template <typename Body>
-double BlockConjugateGradient::sum_over_ranges(const Body& body) {
-  for_parts([&](std::size_t k, Range range) { sums_[k] = body(range); });
-  sums_.back() = body(between());
-  double total = 0.0;
-  for (const double part : sums_) total += part;
-  return total;
-}
-
-/// Of every register of a padded vector that belongs to a range.
-template <typename Body>
-void BlockConjugateGradient::padded(Range range, const Body& body) const {
-  const auto start = [&](std::size_t place) { return place < start_.size() ? start_[place] : p_.size(); };
-  for (std::size_t k = start(range.first); k < start(range.last); k += row_padding) body(k);
-}
-
-void BlockConjugateGradient::clear() {
-  std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
-  // Each diagonal block is followed by those below it, and these by the next diagonal block.
-  const auto start = [&](std::size_t place) {
-    return matrix_.data() + (place < diagonal_.size() ? diagonal_[place] : matrix_.size());
-  };
-  for_ranges([&](Range range) { std::fill(start(range.first), start(range.last), 0.0); });
-}
-
-/// C_i⁻¹ A C_j⁻ᵀ
-void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const double* a,
-                                         double* scaled) const {
-  const double *left = &inverse_[inverse_start_[i]], *right = &inverse_[inverse_start_[j]];
-  const auto multiply_left = [&](int lanes, int rows, int columns) {
-    for (int c = 0; c < columns; ++c) {
-      const int first = c * lanes * row_padding;
-      multiply(lanes, rows, left, a + first, scaled + first);
-    }
-  };
-  if (size_[i] == 6 && size_[j] == 6) {
-    multiply_left(1, 6, 6);
-    multiply_right<6>(right, scaled);
-  } else {
-    multiply_left(stride_[i] / row_padding, size_[i], size_[j]);
-    multiply_right(stride_[i] / row_padding, size_[j], right, scaled);
-  }
-}
-
-bool BlockConjugateGradient::factor() {
-  std::vector<std::uint8_t> good(begin_.size() - 1, 1);
-  const auto invert = [&](std::size_t k, Range range) {
-    WideVector scratch(at(largest_));
-    for (std::size_t j = range.first; j < range.last && good[k] != 0; ++j) {
-      if (stale_[j] == 0) continue;
-      double* diagonal = &matrix_[diagonal_[j]];
-      for (int c = 1; c < size_[j]; ++c) {
-        for (int r = 0; r < c; ++r) diagonal[c * stride_[j] + r] = diagonal[r * stride_[j] + c];
-      }
-      double* inverse = &inverse_[inverse_start_[j]];
-      std::copy_n(diagonal, stride_[j] * size_[j], inverse);
-      good[k] = size_[j] == 6 ? invert_factor<6>(inverse) : invert_factor(size_[j], inverse, scratch.data());
-    }
-  };
-  for_parts(invert);
-  invert(good.size() - 1, between());
-  if (std::find(good.begin(), good.end(), 0) != good.end()) return false;
-  const auto divide = [&](std::size_t, Range range) {
-    WideVector scratch(at(largest_ * largest_));
-    for (std::size_t j = range.first; j < range.last; ++j) {
-      for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-        const auto [i, values, lower] = entries_[e];
-        if (stale_[i] == 0 && stale_[j] == 0) continue;
-        scale_block(i, j, &matrix_[values], scratch.data());
-        for (std::size_t k = 0; k < at(stride_[i] * size_[j]); k += row_padding)
-          store(&lower_[lower + k], narrow(load(&scratch[k])));
-      }
-    }
-  };
-  for_parts(divide);
-  divide(0, between());
-  std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
-  return true;
-}
-
-/// y −= S x with S the blocks strictly below the diagonal, of L or of A; only what the columns of a part add to its own rows.
-template <auto place, typename Number>
-void BlockConjugateGradient::subtract_lower(const Number* values, const Number* x, Number* y,
-                                            Range range) const {
-  for (std::size_t j = range.first; j < range.last; ++j) {
-    for (std::size_t e = entry_start_[j]; e < between_start_[j]; ++e) {
-      const Entry& entry = entries_[e];
-      const int lanes = stride_[entry.row] / row_padding;
-      const Number *block = values + entry.*place, *x_j = x + start_[j];
-      Number* y_i = y + start_[entry.row];
-      if (size_[j] == 6 && lanes == 1) {  // order 1: loops of known length
-        subtract_times(1, 6, block, x_j, y_i);
-      } else {
-        subtract_times(lanes, size_[j], block, x_j, y_i);
-      }
+    for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e) {
+      const std::size_t i = rows_[e];
+      subtract_times(layout.stride(i) / row_padding, layout.size(j), block, x_j, y + layout.start(i));
+      block += layout.stride(i) * layout.size(j);
     }
   }
 }
 
-/// The same for rows between the parts, which gather, so that no two parts write to them: from the columns of the parts each on its
-/// own, and then from each other in their order.
-template <auto place, typename Number>
-void BlockConjugateGradient::subtract_lower_between(const Number* values, const Number* x, Number* y) const {
+/// y −= S x of the rows between the parts, with S the blocks whose columns lie in parts; `place` says where in `values`. Rows gather, so
+/// that no two parts write to them.
+template <auto place, typename Layout, typename Number>
+void BlockConjugateGradient::subtract_from_parts(Layout layout, const Number* values, const Number* x,
+                                                 Number* y) const {
   constexpr std::size_t worth_threads = 64;  // rows
-  const std::size_t first = between().first, rows = size_.size() - first;
-  const auto subtract = [&](std::size_t row, std::size_t begin, std::size_t end) {
-    const std::size_t i = first + row;
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto [j, entry] = row_entries_[k];
-      subtract_times(stride_[i] / row_padding, size_[j], values + entries_[entry].*place, x + start_[j],
-                     y + start_[i]);
-    }
-  };
+  const std::size_t rows = between().last;
   const auto gather = [&](std::size_t from, std::size_t to) {
-    for (std::size_t row = from; row < to; ++row) subtract(row, row_start_[row], row_between_[row]);
+    for (std::size_t row = from; row < to; ++row) {
+      for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+        const RowEntry& entry = row_entries_[k];
+        subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), values + entry.*place,
+                       x + layout.start(entry.column), y + layout.start(row));
+      }
+    }
   };
   if (team_ == nullptr) {
     gather(0, rows);
   } else {
     team_->for_range(rows, worth_threads, gather);
   }
-  for (std::size_t row = 0; row < rows; ++row) subtract(row, row_between_[row], row_start_[row + 1]);
 }
 
-/// y −= Sᵀ x, for the rows of a part from the last to the first.
-template <auto place, typename Number>
-void BlockConjugateGradient::subtract_upper(const Number* values, const Number* x, Number* y,
-                                            Range range) const {
-  using Register = decltype(load(x));
-  const auto columns = [&]<int width>(std::size_t j, int c) {
-    Register t[width]{};
-    for (std::size_t e = entry_start_[j]; e < entry_start_[j + 1]; ++e) {
-      const Entry& entry = entries_[e];
-      const int rows = stride_[entry.row];
-      const Number *block = values + entry.*place + at(c * rows), *x_i = x + start_[entry.row];
-      if (rows == row_padding) {
-        add_lane_products(1, block, x_i, t);
-      } else {
-        add_lane_products(rows / row_padding, block, x_i, t);
-      }
+/// y_j ← (Uᵀ x)_j.
+template <typename Layout>
+void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
+  float* y_j = y + layout.start(j);
+  const auto columns = [&]<int width>(int c) {
+    NarrowLanes t[width]{};
+    const float* block = above_.data() + above_start_[j];
+    for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
+      const std::size_t i = rows_[e];
+      add_lane_products(layout.stride(i) / row_padding, block + c * layout.stride(i), x + layout.start(i), t);
+      block += layout.stride(i) * layout.size(j);
     }
-    Number* y_j = y + start_[j] + at(c);
-    if (width == 6 && size_[j] == 6) {
-      store(y_j, load(y_j) - sums(t));
+    if constexpr (width == 6) {
+      store_first<6>(y_j + c, layout.stride(j) - c, sums(t));
     } else {
-      for (int k = 0; k < width; ++k) y_j[k] -= sum(t[k]);
+      y_j[c] = sum(t[0]);
     }
-    return width;
   };
-  for (std::size_t j = range.last; j-- > range.first;) {
-    if (entry_start_[j] == entry_start_[j + 1]) continue;
-    for (int c = 0; c < size_[j];)
-      c += size_[j] - c >= 6 ? columns.template operator()<6>(j, c) : columns.template operator()<1>(j, c);
-  }
+  int c = 0;
+  for (; c + 6 <= layout.size(j); c += 6) columns.template operator()<6>(c);
+  for (; c < layout.size(j); ++c) columns.template operator()<1>(c);
 }
 
-/// v ← (1 + L)⁻¹ v.
-void BlockConjugateGradient::divide_forward(Vector& v) const {
-  for_parts([&](std::size_t, Range range) {
-    subtract_lower<&Entry::lower>(lower_.data(), v.data(), v.data(), range);
-  });
-  subtract_lower_between<&Entry::lower>(lower_.data(), v.data(), v.data());
-}
-
-void BlockConjugateGradient::backward(Vector& v, Range range) const {
-  subtract_upper<&Entry::lower>(lower_.data(), v.data(), v.data(), range);
-}
-
-/// v ← (1 + Lᵀ)⁻¹ v.
-void BlockConjugateGradient::divide_backward(Vector& v) const {
-  backward(v, between());
-  for_parts([&](std::size_t, Range range) { backward(v, range); });
-}
-
-/// p ← r + β p and q ← Â p. Returns p · q.
-double BlockConjugateGradient::apply(double beta) {
-  const auto before = [&](std::size_t, Range range) {
-    const NarrowLanes b = broadcast(static_cast<float>(beta));
-    padded(range, [&](std::size_t k) {
-      const NarrowLanes p = load(&r_[k]) + b * load(&p_[k]);
-      store(&p_[k], p);
-      store(&t_[k], p);
-    });
-    backward(t_, range);
-    padded(range, [&](std::size_t k) { store(&q_[k], load(&p_[k]) - load(&t_[k])); });
-  };
-  before(0, between());
-  for_parts(before);
-  divide_forward(q_);
-  return sum_over_ranges([&](Range range) {
-    Lanes total{};
-    padded(range, [&](std::size_t k) {
-      const NarrowLanes q = load(&q_[k]) + load(&t_[k]);
-      store(&q_[k], q);
-      total = add_product(widen(load(&p_[k])), widen(q), total);
-    });
-    return sum(total);
-  });
-}
-
-/// z ← z + α p and r ← r − α q. Returns r · r.
-double BlockConjugateGradient::go(double alpha) {
-  const NarrowLanes a = broadcast(static_cast<float>(alpha));
-  return sum_over_ranges([&](Range range) {
-    Lanes total{};
-    padded(range, [&](std::size_t k) {
-      store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
-      const NarrowLanes r = load(&r_[k]) - a * load(&q_[k]);
+/// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of a range.
+template <typename Layout>
+void BlockConjugateGradient::go_forward(Layout layout, Range range, float alpha, float beta) {
+  const NarrowLanes a = broadcast(alpha), b = broadcast(beta);
+  for (std::size_t j = range.first; j < range.last; ++j) {
+    store_transposed(layout, j, t_.data(), q_.data());
+    for_registers(layout, j, [&](std::size_t k) {
+      const NarrowLanes p = load(&p_[k]), r = load(&r_[k]) - a * load(&t_[k]), next = r + b * p;
+      store(&t_[k], next - load(&q_[k]));
+      store(&z_[k], load(&z_[k]) + a * p);
       store(&r_[k], r);
-      total = add_product(widen(r), widen(r), total);
+      store(&p_[k], next);
     });
-    return sum(total);
+  }
+}
+
+/// q ← (1 + U)⁻¹ q and t ← t + q of a range, but for what columns of other ranges add to its rows.
+template <typename Layout>
+BlockConjugateGradient::Dots BlockConjugateGradient::go_backward(Layout layout, Range range) {
+  Lanes rr{}, pq{}, rq{}, qq{};
+  for (std::size_t j = range.last; j-- > range.first;) {
+    subtract_above(layout, j, above_.data() + above_start_[j], q_.data(), q_.data());
+    for_registers(layout, j, [&](std::size_t k) {
+      const NarrowLanes t = load(&t_[k]) + load(&q_[k]);
+      store(&t_[k], t);
+      const Lanes q = widen(t), r = widen(load(&r_[k]));
+      rr = add_product(r, r, rr);
+      pq = add_product(widen(load(&p_[k])), q, pq);
+      rq = add_product(r, q, rq);
+      qq = add_product(q, q, qq);
+    });
+  }
+  return {sum(rr), sum(pq), sum(rq), sum(qq)};
+}
+
+/// z ← z + α p and r ← r − α Â p for the last p; p ← r + β p; and Â p, into t_, for this one.
+BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double beta) {
+  return with_layout([&](auto layout) {
+    const auto a = static_cast<float>(alpha), b = static_cast<float>(beta);
+    go_forward(layout, between(), a, b);
+    for_parts([&](std::size_t k, Range range) {
+      go_forward(layout, range, a, b);
+      dots_[k] = go_backward(layout, range);
+    });
+    subtract_from_parts<&RowEntry::above>(layout, above_.data(), q_.data(), q_.data());
+    dots_.front() = go_backward(layout, between());
+    Dots total;
+    for (const Dots& part : dots_) total += part;
+    return total;
   });
 }
 
-/// r ← C⁻¹ x
-void BlockConjugateGradient::scale(std::span<const double> x) {
-  for_ranges([&](Range range) {
-    for (std::size_t j = range.first; j < range.last; ++j) {
-      double* scaled = &wide_[start_[j]];
-      multiply(stride_[j] / row_padding, size_[j], &inverse_[inverse_start_[j]], &x[offset_[j]], scaled);
-      for (int l = 0; l < stride_[j]; l += row_padding)
-        store(&r_[start_[j] + at(l)], narrow(load(scaled + l)));
+/// z ← z + α p and r ← r − α Â p.
+void BlockConjugateGradient::go(double alpha) {
+  const NarrowLanes a = broadcast(static_cast<float>(alpha));
+  for_ranges([&](std::size_t, Range range) {
+    const auto start = [&](std::size_t place) { return place < start_.size() ? start_[place] : z_.size(); };
+    for (std::size_t k = start(range.first); k < start(range.last); k += row_padding) {
+      store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
+      store(&r_[k], load(&r_[k]) - a * load(&t_[k]));
     }
   });
 }
 
-/// x ← C_j⁻ᵀ v_j, padded.
-void BlockConjugateGradient::unscale(std::size_t j, const Vector& v, double* x) {
-  double* wide = &wide_[start_[j]];
-  const double* inverse = &inverse_[inverse_start_[j]];
-  for (int l = 0; l < stride_[j]; l += row_padding) store(wide + l, widen(load(&v[start_[j] + at(l)])));
-  if (size_[j] == 6) {
+/// r ← (1 + U)⁻¹ C⁻¹ x, and everything else to zero.
+void BlockConjugateGradient::start(std::span<const double> x) {
+  with_layout([&](auto layout) {
+    const auto divide = [&](Range range) {
+      for (std::size_t j = range.last; j-- > range.first;)
+        subtract_above(layout, j, above_.data() + above_start_[j], r_.data(), r_.data());
+    };
+    const auto scale = [&](Range range) {
+      for (std::size_t j = range.first; j < range.last; ++j) {
+        double* scaled = &wide_[layout.start(j)];
+        multiply(layout.stride(j) / row_padding, layout.size(j), &inverse_[inverse_start_[j]], &x[offset_[j]],
+                 scaled);
+        for_registers(layout, j, [&](std::size_t k) {
+          store(&r_[k], narrow(load(&wide_[k])));
+          for (Vector* v : {&z_, &p_, &t_}) store(&(*v)[k], NarrowLanes{});
+        });
+      }
+    };
+    scale(between());
+    for_parts([&](std::size_t, Range range) {
+      scale(range);
+      divide(range);
+    });
+    subtract_from_parts<&RowEntry::above>(layout, above_.data(), r_.data(), r_.data());
+    divide(between());
+  });
+}
+
+/// x_j ← C_j⁻ᵀ v_j.
+template <typename Layout>
+void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch,
+                                     WideVector& x) const {
+  for_registers(layout, j, [&](std::size_t k) { store(&scratch[k], widen(load(&v[k]))); });
+  const double *wide = &scratch[layout.start(j)], *inverse = &inverse_[inverse_start_[j]];
+  double* x_j = &x[layout.start(j)];
+  const int stride = layout.stride(j), lanes = stride / row_padding;
+  int c = 0;
+  for (; c + 6 <= layout.size(j); c += 6) {
     Lanes t[6]{};
-    add_lane_products(1, inverse, wide, t);
-    store(x, sums(t));
-    return;
+    add_lane_products(lanes, inverse + c * stride, wide, t);
+    store_first<6>(x_j + c, stride - c, sums(t));
   }
-  for (int c = 0; c < size_[j]; ++c) {
+  for (; c < layout.size(j); ++c) {
     Lanes t[1]{};
-    add_lane_products(stride_[j] / row_padding, inverse + c * stride_[j], wide, t);
-    x[c] = sum(t[0]);
+    add_lane_products(lanes, inverse + c * stride, wide, t);
+    x_j[c] = sum(t[0]);
   }
 }
 
-/// What x lacks of the solution, as the iteration has it: C (1 + L) r. It is that of the matrix but for what single precision
+/// What x lacks of the solution, as the iteration has it: C (1 + U) r. It is that of the matrix but for what single precision
 /// leaves.
 void BlockConjugateGradient::find_residual(std::span<double> residual) {
-  for_ranges([&](Range range) { padded(range, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); }); });
-  for_parts([&](std::size_t, Range range) {
-    subtract_lower<&Entry::lower>(lower_.data(), r_.data(), q_.data(), range);
-  });
-  subtract_lower_between<&Entry::lower>(lower_.data(), r_.data(), q_.data());
-  // C v = A_jj C⁻ᵀ v
-  for_ranges([&](Range range) {
-    for (std::size_t j = range.first; j < range.last; ++j) {
-      double *unscaled = &product_[start_[j]], *product = &wide_[start_[j]];
-      unscale(j, q_, unscaled);
-      multiply(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], unscaled, product);
-      for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] = -product[c];
-    }
+  with_layout([&](auto layout) {
+    const auto copy = [&](Range range) {
+      for (std::size_t j = range.first; j < range.last; ++j)
+        for_registers(layout, j, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); });
+    };
+    const auto multiply_columns = [&](Range range) {
+      for (std::size_t j = range.last; j-- > range.first;) {
+        subtract_above(layout, j, above_.data() + above_start_[j], r_.data(), q_.data());
+        // C v = A_jj C⁻ᵀ v
+        unscale(layout, j, q_, wide_, product_);
+        double* product = &wide_[layout.start(j)];
+        multiply(layout.stride(j) / row_padding, layout.size(j), &matrix_[diagonal_[j]],
+                 &product_[layout.start(j)], product);
+        for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] = -product[c];
+      }
+    };
+    copy(between());
+    for_parts([&](std::size_t, Range range) {
+      copy(range);
+      multiply_columns(range);
+    });
+    subtract_from_parts<&RowEntry::above>(layout, above_.data(), r_.data(), q_.data());
+    multiply_columns(between());
   });
 }
 
-/// x += C⁻ᵀ v, and residual −= A C⁻ᵀ v.
-void BlockConjugateGradient::take_over(const Vector& v, std::span<double> x, std::span<double> residual) {
-  for_ranges([&](Range range) {
-    for (std::size_t j = range.first; j < range.last; ++j) {
-      double* correction = &product_[start_[j]];
-      unscale(j, v, correction);
-      for (int c = 0; c < size_[j]; ++c) x[offset_[j] + at(c)] += correction[c];
+/// product −= A wide, column j and row j of A, but for rows of other ranges.
+template <typename Layout>
+void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
+  const double *x = wide_.data(), *x_j = x + layout.start(j), *block = &matrix_[diagonal_[j]];
+  double *y = product_.data(), *y_j = y + layout.start(j);
+  const int size = layout.size(j), stride = layout.stride(j);
+  subtract_times(stride / row_padding, size, block, x_j, y_j);
+  block += stride * size;
+  subtract_above(layout, j, block, x, y);
+  for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
+    const std::size_t i = rows_[e];
+    const int lanes = layout.stride(i) / row_padding;
+    int c = 0;
+    for (; c + 6 <= size; c += 6) {
+      Lanes t[6]{};
+      add_lane_products(lanes, block + c * layout.stride(i), x + layout.start(i), t);
+      const Lanes total = sums(t);
+      store_first<6>(y_j + c, stride - c, load(y_j + c) - total);
     }
-  });
-  std::swap(wide_, product_);
-  const double* correction = wide_.data();
-  const auto multiply_rows = [&](Range range) {
-    for (std::size_t j = range.first; j < range.last; ++j) {
-      multiply(stride_[j] / row_padding, size_[j], &matrix_[diagonal_[j]], correction + start_[j],
-               &product_[start_[j]]);
-      for (int l = 0; l < stride_[j]; l += row_padding) {
-        double* of_block = &product_[start_[j] + at(l)];
-        store(of_block, -load(of_block));
+    for (; c < size; ++c) {
+      Lanes t[1]{};
+      add_lane_products(lanes, block + c * layout.stride(i), x + layout.start(i), t);
+      y_j[c] -= sum(t[0]);
+    }
+    block += layout.stride(i) * size;
+  }
+}
+
+/// x += C⁻ᵀ (1 + Uᵀ)⁻¹ z, and residual −= A times that.
+void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> residual) {
+  with_layout([&](auto layout) {
+    const auto solve = [&](Range range) {
+      for (std::size_t j = range.first; j < range.last; ++j) {
+        store_transposed(layout, j, z_.data(), q_.data());
+        for_registers(layout, j, [&](std::size_t k) { store(&z_[k], load(&z_[k]) - load(&q_[k])); });
+        unscale(layout, j, z_, product_, wide_);
+        for_registers(layout, j, [&](std::size_t k) { store(&product_[k], Lanes{}); });
+        const double* correction = &wide_[layout.start(j)];
+        for (int c = 0; c < layout.size(j); ++c) x[offset_[j] + at(c)] += correction[c];
       }
-    }
-    subtract_upper<&Entry::values>(matrix_.data(), correction, product_.data(), range);
-  };
-  for_ranges(multiply_rows);
-  for_parts([&](std::size_t, Range range) {
-    subtract_lower<&Entry::values>(matrix_.data(), correction, product_.data(), range);
-  });
-  subtract_lower_between<&Entry::values>(matrix_.data(), correction, product_.data());
-  for_ranges([&](Range range) {
-    for (std::size_t j = range.first; j < range.last; ++j) {
-      for (int c = 0; c < size_[j]; ++c) residual[offset_[j] + at(c)] += product_[start_[j] + at(c)];
-    }
+    };
+    const auto multiply_columns = [&](Range range) {
+      for (std::size_t j = range.first; j < range.last; ++j) subtract_product_of(layout, j);
+    };
+    solve(between());
+    for_parts([&](std::size_t, Range range) {
+      solve(range);
+      multiply_columns(range);
+    });
+    subtract_from_parts<&RowEntry::values>(layout, matrix_.data(), wide_.data(), product_.data());
+    multiply_columns(between());
+    for_ranges([&](std::size_t, Range range) {
+      for (std::size_t j = range.first; j < range.last; ++j) {
+        const double* of_block = &product_[layout.start(j)];
+        for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] += of_block[c];
+      }
+    });
   });
 }
 
 /// Conjugate gradients from r_ on, to z_. Returns how many iterations that took.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
-/// factor of ten and more, the one way or the other. As it costs most of an iteration it is looked at when it should be small
+/// factor of ten and more, the one way or the other. As it costs an iteration it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
 int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most) {
-  std::fill(p_.begin(), p_.end(), 0.0F);
-  std::fill(z_.begin(), z_.end(), 0.0F);
-  double rr = go(0.0), beta = 0.0, wanted = rr / (too_large * std::sqrt(too_large));
+  double alpha = 0.0, beta = 0.0, wanted = 0.0;
   for (int iterations = 1;; ++iterations) {
-    const double next = go(rr / apply(beta));
-    beta = next / rr;
-    rr = next;
-    if (iterations == most) return most;
-    if (rr > wanted) continue;
+    const Dots dots = apply(alpha, beta);
+    if (!(dots.pq > 0.0)) return iterations;  // nothing is left of p in single precision
+    if (iterations == 1) wanted = dots.rr / (too_large * std::sqrt(too_large));
+    alpha = dots.rr / dots.pq;
+    const double rr = std::max(0.0, dots.rr - 2.0 * alpha * dots.rq + alpha * alpha * dots.qq);
+    beta = rr / dots.rr;
+    if (rr > wanted && iterations < most) continue;
+    go(alpha);
+    alpha = 0.0;
+    if (iterations == most) return iterations;
     find_residual(estimate_);
     too_large = excess(estimate_);
     if (too_large <= well_enough) return iterations;
@@ -368,11 +363,9 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
       solved_ = false;
       return;
     }
-    scale(residual);
-    divide_forward(r_);
+    start(residual);
     iterations += iterate(too_large, excess, most_iterations - iterations);
-    divide_backward(z_);
-    take_over(z_, x, residual);
+    take_over(x, residual);
   }
 }
 

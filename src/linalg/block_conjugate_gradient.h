@@ -12,17 +12,18 @@
 
 namespace keyblock::linalg {
 
-/// make_block_conjugate_gradient(). Its pattern is found in block_conjugate_gradient_pattern.cpp.
+/// make_block_conjugate_gradient(). Its pattern is found in block_conjugate_gradient_pattern.cpp, the matrix made ready in
+/// block_conjugate_gradient_factor.cpp.
 ///
-/// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (L + 1 + Lᵀ) Cᵀ with
-/// L_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly below the diagonal. Preconditioned from both sides by (1 + L) it is
+/// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (Uᵀ + 1 + U) Cᵀ with
+/// U_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly above the diagonal. Preconditioned from both sides by (1 + U) it is
 ///
-///     Â y = t + (1 + L)⁻¹ (y − t),     t = (1 + Lᵀ)⁻¹ y
+///     Â p = t + (1 + U)⁻¹ (p − t),     t = (1 + Uᵀ)⁻¹ p
 ///
-/// L and the vectors have single precision: half the memory to read in every iteration, and half the instructions. A few digits of
+/// U and the vectors have single precision: half the memory to read in every iteration, and half the instructions. A few digits of
 /// the solution are found so; the residual is then that of the matrix itself, and asks for more where they do not do.
-/// Vectors are padded as the blocks are. In the order of `partition`, the parts are solved for at the same time, by as many threads
-/// as there are; sums go part by part.
+/// Vectors are padded as the blocks are. In the order of `partition`, the parts follow each other, each forward, with the memory,
+/// and backward while a cache has it, or go at the same time, by as many threads as there are; sums go part by part.
 class BlockConjugateGradient final : public BlockSolver {
  public:
   explicit BlockConjugateGradient(ThreadTeam* team) : team_(team) {}
@@ -41,70 +42,90 @@ class BlockConjugateGradient final : public BlockSolver {
   struct Range {
     std::size_t first, last;  ///< places
   };
+  /// Dot products of an iteration, with q = Â p; they give r · r after it too.
+  struct Dots {
+    double rr = 0.0, pq = 0.0, rq = 0.0, qq = 0.0;
+    Dots& operator+=(const Dots& other);
+  };
 
   void place_vectors(std::span<const int> sizes, std::span<const int> order);
   std::vector<std::size_t> place_matrix(std::span<const std::pair<int, int>> pairs);
   template <typename Body>
-  void for_parts(const Body& body) const;
+  decltype(auto) with_layout(const Body& body) const;
+  /// Calls body(k, part) for every part, from 1 on; parts may go at the same time.
   template <typename Body>
-  void for_ranges(const Body& body) const;
+  void for_parts(const Body& body) const {
+    const std::size_t count = begin_.size() - 2;
+    const auto some = [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from + 1; k <= to; ++k) body(k, Range{begin_[k], begin_[k + 1]});
+    };
+    if (team_ == nullptr || count == 1) {
+      some(0, count);
+    } else {
+      team_->for_range(count, 2, some);
+    }
+  }
+  /// The same for what lies between the parts, 0, and then for every part.
   template <typename Body>
-  double sum_over_ranges(const Body& body);
-  [[nodiscard]] Range between() const { return {begin_[begin_.size() - 2], begin_.back()}; }
-  template <auto place, typename Number>
-  void subtract_lower(const Number* values, const Number* x, Number* y, Range range) const;
-  template <auto place, typename Number>
-  void subtract_lower_between(const Number* values, const Number* x, Number* y) const;
-  template <auto place, typename Number>
-  void subtract_upper(const Number* values, const Number* x, Number* y, Range range) const;
-  void divide_forward(Vector& v) const;
-  void backward(Vector& v, Range range) const;
-  void divide_backward(Vector& v) const;
-  template <typename Body>
-  void padded(Range range, const Body& body) const;
-  double apply(double beta);
-  double go(double alpha);
-  void scale(std::span<const double> x);
-  void unscale(std::size_t j, const Vector& v, double* x);
+  void for_ranges(const Body& body) const {
+    body(std::size_t{0}, between());
+    for_parts(body);
+  }
+  [[nodiscard]] Range between() const { return {0, begin_[1]}; }
+  template <typename Layout, typename Number>
+  void subtract_above(Layout layout, std::size_t j, const Number* block, const Number* x, Number* y) const;
+  template <auto place, typename Layout, typename Number>
+  void subtract_from_parts(Layout layout, const Number* values, const Number* x, Number* y) const;
+  template <typename Layout>
+  void store_transposed(Layout layout, std::size_t j, const float* x, float* y) const;
+  template <typename Layout>
+  void go_forward(Layout layout, Range range, float alpha, float beta);
+  template <typename Layout>
+  [[nodiscard]] Dots go_backward(Layout layout, Range range);
+  Dots apply(double alpha, double beta);
+  void go(double alpha);
+  void start(std::span<const double> x);
+  template <typename Layout>
+  void unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch, WideVector& x) const;
+  template <typename Layout>
+  void subtract_product_of(Layout layout, std::size_t j);
   void find_residual(std::span<double> residual);
-  void take_over(const Vector& v, std::span<double> x, std::span<double> residual);
+  void take_over(std::span<double> x, std::span<double> residual);
   void scale_block(std::size_t i, std::size_t j, const double* a, double* scaled) const;
   int iterate(double too_large, const Excess& excess, int most);
 
-  struct Entry {
-    std::uint32_t row;     ///< > column
-    std::uint32_t values;  ///< into matrix_
-    std::uint32_t lower;   ///< into lower_
-  };
   // Everything is by place in the order of the partition, but for the slots.
   ThreadTeam* team_;
   std::vector<std::size_t> place_;  ///< block → place
   std::vector<std::size_t> begin_;  ///< Partition::begin
   std::vector<int> size_, stride_;
-  std::vector<std::size_t> offset_;       ///< its unknowns in x
-  std::vector<std::size_t> start_;        ///< into padded vectors
-  std::vector<std::size_t> entry_start_;  ///< per column, into entries_
-  std::vector<std::size_t>
-      between_start_;  ///< per column, likewise: the first whose row lies between the parts
-  std::vector<Entry> entries_;
+  std::vector<std::size_t> offset_;  ///< its unknowns in x
+  std::vector<std::size_t> start_;   ///< into padded vectors
+  bool same_ = false;                ///< all blocks have 6 unknowns
+  /// Blocks above the diagonal, column by column, first those of rows between the parts.
+  std::vector<std::uint32_t> rows_;         ///< of each, < column
+  std::vector<std::size_t> column_start_;   ///< per column, into rows_
+  std::vector<std::size_t> own_start_;      ///< likewise: the first whose row lies in the same range
+  std::vector<std::size_t> diagonal_;       ///< per column, into matrix_: A_jj, followed by what is above it
+  std::vector<std::size_t> above_start_;    ///< per column, into above_
+  std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_
+  /// A block of a row between the parts whose column lies in one of them.
   struct RowEntry {
-    std::size_t column, entry;
+    std::size_t column;
+    std::size_t values, above;  ///< into matrix_, above_
   };
-  std::vector<std::size_t> row_start_;      ///< per block between the parts, into row_entries_
-  std::vector<std::size_t> row_between_;    ///< likewise: the first whose column lies between the parts too
-  std::vector<RowEntry> row_entries_;       ///< of a row, by columns
-  std::vector<std::size_t> diagonal_;       ///< into matrix_
-  std::vector<std::size_t> inverse_start_;  ///< into inverse_
+  std::vector<std::size_t> row_start_;  ///< per block between the parts, into row_entries_
+  std::vector<RowEntry> row_entries_;   ///< of a row, by columns
   std::vector<BlockSlot> slots_;
-  WideVector matrix_;            ///< A
-  WideVector inverse_;           ///< C_j⁻¹
-  HugePageVector<float> lower_;  ///< L
+  WideVector matrix_;   ///< A
+  WideVector inverse_;  ///< C_j⁻¹
+  Vector above_;        ///< U
   std::vector<std::uint8_t> stale_;
   int largest_ = 0;               ///< stride of a block
-  Vector t_, z_, r_, p_, q_;      ///< padded
+  Vector t_, z_, r_, p_, q_;      ///< padded; between iterations Â p is in t_
   WideVector wide_, product_;     ///< padded: scratch
   std::vector<double> estimate_;  ///< of the residual
-  std::vector<double> sums_;      ///< per range
+  std::vector<Dots> dots_;        ///< per range
   bool solved_ = true;
 };
 

@@ -57,8 +57,8 @@ Register subtract_product(Register a, Register b, Register c) {
 }
 
 /// The first `count` numbers of v to `out`, where `room` numbers may be overwritten.
-template <int count>
-void store_first(double* out, int room, Lanes v) {
+template <int count, typename Number, typename Register>
+void store_first(Number* out, int room, Register v) {
   if (room >= row_padding) return store(out, v);
   for (int k = 0; k < count; ++k) out[k] = v[k];
 }

@@ -1,6 +1,8 @@
 #include "linalg/partition.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "core/index.h"
 
@@ -8,71 +10,120 @@ namespace keyblock::linalg {
 
 namespace {
 
-constexpr std::size_t parts = 8;            // into which a large system is cut
-constexpr std::size_t worth_parts = 4'000;  // blocks
+constexpr std::size_t largest_part = 1'000;  // blocks, whose matrix and vectors a cache of a MB has room for
 
-/// Blocks in the order of a breadth-first search, and how far each is from where it began. Pieces that are not coupled follow each
-/// other, a level apart.
-struct Levels {
-  std::vector<int> order, level;
-};
-
-Levels breadth_first(const std::vector<std::vector<int>>& neighbours, int root) {
-  const std::size_t n = neighbours.size();
-  Levels found{{}, std::vector<int>(n, -1)};
-  const auto reach = [&](int block, int level) {
-    if (found.level[at(block)] >= 0) return;
-    found.level[at(block)] = level;
-    found.order.push_back(block);
-  };
-  reach(root, 0);
-  int unseen = 0;
-  for (std::size_t next = 0; next < n; ++next) {
-    if (next == found.order.size()) {
-      while (found.level[at(unseen)] >= 0) ++unseen;
-      reach(unseen, found.level[at(found.order.back())] + 1);
+/// Cuts blocks in two, again and again.
+class Dissection {
+ public:
+  Dissection(std::size_t n, std::span<const std::pair<int, int>> pairs)
+      : neighbours_(n), piece_(n, 0), level_(n, 0), colour_(n, 0) {
+    for (const auto& [i, j] : pairs) {
+      neighbours_[at(i)].push_back(j);
+      neighbours_[at(j)].push_back(i);
     }
-    const int here = found.order[next];
-    for (const int k : neighbours[at(here)]) reach(k, found.level[at(here)] + 1);
   }
-  return found;
-}
+
+  void cut(std::vector<int> blocks) {
+    ++pieces_;
+    for (const int block : blocks) piece_[at(block)] = pieces_;
+    // A second search, from where the first ended, has more and narrower levels.
+    search(blocks);
+    std::reverse(blocks.begin(), blocks.end());
+    search(blocks);
+    if (blocks.size() <= largest_part) {
+      bring_apart(blocks);
+      parts_.push_back(std::move(blocks));
+      return;
+    }
+    const int middle = level_[at(blocks[blocks.size() / 2])];
+    std::vector<int> before, after;
+    for (const int block : blocks) {
+      const int level = level_[at(block)];
+      const bool goes_on = has_neighbour(block, [&](int k) { return level_[at(k)] > level; });
+      (level > middle ? after : level == middle && goes_on ? between_ : before).push_back(block);
+    }
+    blocks = {};
+    for (auto* half : {&before, &after}) {
+      if (!half->empty()) cut(std::move(*half));
+    }
+  }
+
+  Partition result() {
+    std::sort(between_.begin(), between_.end());
+    Partition result;
+    const auto add = [&](const std::vector<int>& blocks) {
+      result.begin.push_back(result.order.size());
+      result.order.insert(result.order.end(), blocks.begin(), blocks.end());
+    };
+    add(between_);
+    for (const std::vector<int>& part : parts_) add(part);
+    result.begin.push_back(result.order.size());
+    return result;
+  }
+
+ private:
+  /// Whether a neighbour within the piece at hand is such.
+  template <typename Is>
+  [[nodiscard]] bool has_neighbour(int block, const Is& is) const {
+    return std::ranges::any_of(neighbours_[at(block)],
+                               [&](int k) { return piece_[at(k)] == pieces_ && is(k); });
+  }
+
+  /// Brings the piece at hand into the order of a breadth-first search from its first block, and finds how far each is from there.
+  /// What is not coupled with it follows, a level later.
+  void search(std::vector<int>& blocks) {
+    for (const int block : blocks) level_[at(block)] = -1;
+    std::vector<int> found;
+    const auto reach = [&](int block, int level) {
+      if (piece_[at(block)] != pieces_ || level_[at(block)] >= 0) return;
+      level_[at(block)] = level;
+      found.push_back(block);
+    };
+    int level = 0;
+    std::size_t next = 0;
+    for (const int start : blocks) {
+      reach(start, level);
+      for (; next < found.size(); ++next) {
+        level = level_[at(found[next])] + 1;
+        for (const int k : neighbours_[at(found[next])]) reach(k, level);
+      }
+    }
+    blocks = std::move(found);
+  }
+
+  /// Orders the piece at hand level by level, and what is not coupled within a level together: a processor then need not wait for
+  /// the block before.
+  void bring_apart(std::vector<int>& blocks) {
+    for (const int block : blocks) colour_[at(block)] = -1;
+    for (const int block : blocks) {
+      const auto is_taken = [&](int colour) {
+        return has_neighbour(
+            block, [&](int k) { return level_[at(k)] == level_[at(block)] && colour_[at(k)] == colour; });
+      };
+      int colour = 0;
+      while (is_taken(colour)) ++colour;
+      colour_[at(block)] = colour;
+    }
+    std::ranges::stable_sort(blocks, {},
+                             [&](int block) { return std::pair(level_[at(block)], colour_[at(block)]); });
+  }
+
+  std::vector<std::vector<int>> neighbours_;
+  std::vector<int> piece_;  ///< that a block was in last
+  std::vector<int> level_, colour_;
+  int pieces_ = 0;
+  std::vector<std::vector<int>> parts_;
+  std::vector<int> between_;
+};
 
 }  // namespace
 
 Partition partition(std::size_t n, std::span<const std::pair<int, int>> pairs) {
-  Partition result;
-  if (n < worth_parts) {
-    for (std::size_t k = 0; k < n; ++k) result.order.push_back(static_cast<int>(k));
-    result.begin = {0, n, n};
-    return result;
-  }
-  std::vector<std::vector<int>> neighbours(n);
-  for (const auto& [i, j] : pairs) {
-    neighbours[at(i)].push_back(j);
-    neighbours[at(j)].push_back(i);
-  }
-  // A second search, from where the first ended, has more and narrower levels.
-  const Levels levels = breadth_first(neighbours, breadth_first(neighbours, 0).order.back());
-  const auto level_of = [&](std::size_t place) { return levels.level[at(levels.order[place])]; };
-  std::vector<int> between;
-  result.begin.push_back(0);
-  for (std::size_t first = 0, last = 0; first < n; first = last) {
-    while (last < n && level_of(last) == level_of(first)) ++last;
-    const bool ends_a_part = last < n && first >= result.begin.size() * n / parts;
-    std::vector<int>& target = ends_a_part ? between : result.order;
-    for (std::size_t k = first; k < last; ++k) target.push_back(levels.order[k]);
-    if (ends_a_part) result.begin.push_back(result.order.size());
-  }
-  result.begin.push_back(result.order.size());
-  // Within a part in the order of the caller's vectors.
-  const auto place = [&](std::size_t k) { return result.order.begin() + static_cast<std::ptrdiff_t>(k); };
-  for (std::size_t k = 0; k + 1 < result.begin.size(); ++k)
-    std::sort(place(result.begin[k]), place(result.begin[k + 1]));
-  std::sort(between.begin(), between.end());
-  result.order.insert(result.order.end(), between.begin(), between.end());
-  result.begin.push_back(n);
-  return result;
+  Dissection dissection(n, pairs);
+  std::vector<int> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  dissection.cut(std::move(all));
+  return dissection.result();
 }
 
 }  // namespace keyblock::linalg

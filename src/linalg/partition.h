@@ -6,15 +6,15 @@
 
 namespace keyblock::linalg {
 
-/// Order of the blocks: some parts that are not coupled with each other, and last the blocks between them. Parts are runs of levels
-/// of a breadth-first search, each ended by a level of the last kind. The order depends on the pattern alone.
+/// Order of the blocks: parts that are not coupled with each other, after the blocks between them. A system is cut in two at the
+/// middle level of a breadth-first search, and so are its halves, until parts are small enough for a cache. The order depends on
+/// the pattern alone.
 struct Partition {
-  std::vector<int> order;  ///< place → block
-  /// First place of every part; then of the blocks between, which may be none; then n.
-  std::vector<std::size_t> begin;
+  std::vector<int> order;          ///< place → block
+  std::vector<std::size_t> begin;  ///< 0; first place of every part, which is the end of what is before it; n
 };
 
-/// Of n blocks that are coupled in these pairs. Few blocks are one part.
+/// Of n blocks that are coupled in these pairs.
 Partition partition(std::size_t n, std::span<const std::pair<int, int>> pairs);
 
 }  // namespace keyblock::linalg

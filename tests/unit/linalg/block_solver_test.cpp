@@ -8,6 +8,7 @@
 #include <set>
 
 #include "linalg/dense_block.h"
+#include "linalg/partition.h"
 
 namespace keyblock::linalg {
 namespace {
@@ -259,46 +260,85 @@ TEST(BlockSolver, AnEmptySystemIsSolved) {
 }
 
 // Enough blocks to be cut into parts: a grid with diagonals here and there, and a piece that is not coupled with it.
-TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
-  constexpr int side = 70, blocks = side * side + 40;
+struct Grid {
+  static constexpr int side = 50, blocks = side * side + 40;
   std::vector<std::pair<int, int>> pairs;
-  std::mt19937 random(3);
-  for (int k = 0; k < side * side; ++k) {
-    if (k % side != 0) pairs.emplace_back(k - 1, k);
-    if (k >= side) pairs.emplace_back(k, k - side);
-    if (k > side && k % side != 0 && random() % 5 == 0) pairs.emplace_back(k - side - 1, k);
+  Grid() {
+    std::mt19937 random(3);
+    for (int k = 0; k < side * side; ++k) {
+      if (k % side != 0) pairs.emplace_back(k - 1, k);
+      if (k >= side) pairs.emplace_back(k, k - side);
+      if (k > side && k % side != 0 && random() % 5 == 0) pairs.emplace_back(k - side - 1, k);
+    }
+    for (int k = side * side + 1; k < blocks; ++k) pairs.emplace_back(k - 1, k);
   }
-  for (int k = side * side + 1; k < blocks; ++k) pairs.emplace_back(k - 1, k);
-  const std::vector<int> sizes(blocks, 6);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<double> right(6 * blocks), coupling(36 * pairs.size());
-  for (double& v : right) v = uniform(random);
-  for (double& v : coupling) v = uniform(random);
-  const auto solution = [&](BlockSolver& solver) {
-    solver.analyse(sizes, pairs);
-    solver.clear();
-    for (int b = 0; b < blocks; ++b) {
-      for (int k = 0; k < 6; ++k) solver.diagonal(b)[k * padded_rows(6) + k] = 24.0;
+};
+
+TEST(Partition, PartsAreSmallAndNotCoupled) {
+  const Grid grid;
+  const Partition found = partition(Grid::blocks, grid.pairs);
+  std::vector<int> sorted = found.order;
+  std::sort(sorted.begin(), sorted.end());
+  for (int k = 0; k < Grid::blocks; ++k) ASSERT_EQ(sorted[static_cast<std::size_t>(k)], k);
+  ASSERT_EQ(found.begin.front(), 0U);
+  ASSERT_EQ(found.begin.back(), sorted.size());
+  EXPECT_LT(found.begin[1], sorted.size() / 10);
+  std::vector<std::size_t> part(sorted.size());
+  for (std::size_t p = 0; p + 1 < found.begin.size(); ++p) {
+    EXPECT_LE(found.begin[p + 1] - found.begin[p], 1'000U);
+    for (std::size_t k = found.begin[p]; k < found.begin[p + 1]; ++k)
+      part[static_cast<std::size_t>(found.order[k])] = p;
+  }
+  for (const auto& [i, j] : grid.pairs) {
+    const std::size_t a = part[static_cast<std::size_t>(i)], b = part[static_cast<std::size_t>(j)];
+    EXPECT_TRUE(a == b || a == 0 || b == 0) << i << ' ' << j;
+  }
+}
+
+TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
+  const Grid grid;
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
+    std::mt19937 random(5);
+    std::vector<int> sizes;
+    for (int b = 0; b < Grid::blocks; ++b) sizes.push_back(choice[random() % choice.size()]);
+    const auto size_of = [&](int block) { return sizes[static_cast<std::size_t>(block)]; };
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<double> right(static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), 0)));
+    for (double& v : right) v = uniform(random);
+    std::vector<std::vector<double>> coupling;  // by rows of the first block of the pair
+    for (const auto& [i, j] : grid.pairs) {
+      coupling.emplace_back(static_cast<std::size_t>(size_of(i) * size_of(j)));
+      for (double& v : coupling.back()) v = uniform(random);
     }
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-      const BlockSlot slot = solver.slot(static_cast<int>(p));
-      const bool turned = slot.row != pairs[p].first;
-      for (int r = 0; r < 6; ++r) {
-        for (int c = 0; c < 6; ++c)
-          slot.values[c * slot.stride + r] =
-              coupling[36 * p + static_cast<std::size_t>(turned ? 6 * c + r : 6 * r + c)];
+    const auto solution = [&](BlockSolver& solver) {
+      solver.analyse(sizes, grid.pairs);
+      solver.clear();
+      for (int b = 0; b < Grid::blocks; ++b) {
+        const int size = size_of(b);
+        for (int k = 0; k < size; ++k) solver.diagonal(b)[k * padded_rows(size) + k] = 4.0 * choice.back();
       }
+      for (std::size_t p = 0; p < grid.pairs.size(); ++p) {
+        const BlockSlot slot = solver.slot(static_cast<int>(p));
+        const auto [i, j] = grid.pairs[p];
+        for (int r = 0; r < size_of(i); ++r) {
+          for (int c = 0; c < size_of(j); ++c) {
+            const bool turned = slot.row != i;
+            slot.values[turned ? r * slot.stride + c : c * slot.stride + r] =
+                coupling[p][static_cast<std::size_t>(r * size_of(j) + c)];
+          }
+        }
+      }
+      EXPECT_TRUE(solver.factor());
+      std::vector<double> x = right, residual(x.size());
+      solver.solve(x, residual, strict());
+      return x;
+    };
+    const auto expected = solution(*make_block_cholesky()), alone = solution(*make_iterative());
+    for (std::size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(alone[k], expected[k], 1e-10);
+    for (const int threads : {2, 3, 8}) {
+      ThreadTeam team(threads);
+      EXPECT_EQ(solution(*make_block_conjugate_gradient(&team)), alone) << threads;
     }
-    EXPECT_TRUE(solver.factor());
-    std::vector<double> x = right, residual(x.size());
-    solver.solve(x, residual, strict());
-    return x;
-  };
-  const auto expected = solution(*make_block_cholesky()), alone = solution(*make_iterative());
-  for (std::size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(alone[k], expected[k], 1e-10);
-  for (const int threads : {2, 3, 8}) {
-    ThreadTeam team(threads);
-    EXPECT_EQ(solution(*make_block_conjugate_gradient(&team)), alone) << threads;
   }
 }
 

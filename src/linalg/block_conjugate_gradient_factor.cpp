@@ -1,0 +1,73 @@
+// The matrix of conjugate gradients, and what is scaled by its diagonal blocks.
+#include <algorithm>
+
+#include "linalg/block_conjugate_gradient.h"
+#include "linalg/block_kernels.h"
+
+namespace keyblock::linalg {
+
+void BlockConjugateGradient::clear() {
+  std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
+  // Each diagonal block is followed by those above it, and these by the next diagonal block.
+  const auto start = [&](std::size_t place) {
+    return matrix_.data() + (place < diagonal_.size() ? diagonal_[place] : matrix_.size());
+  };
+  for_ranges([&](std::size_t, Range range) { std::fill(start(range.first), start(range.last), 0.0); });
+}
+
+/// C_i⁻¹ A C_j⁻ᵀ
+void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const double* a,
+                                         double* scaled) const {
+  const double *left = &inverse_[inverse_start_[i]], *right = &inverse_[inverse_start_[j]];
+  const auto multiply_left = [&](int lanes, int rows, int columns) {
+    for (int c = 0; c < columns; ++c) {
+      const int first = c * lanes * row_padding;
+      multiply(lanes, rows, left, a + first, scaled + first);
+    }
+  };
+  if (size_[i] == 6 && size_[j] == 6) {
+    multiply_left(1, 6, 6);
+    multiply_right<6>(right, scaled);
+  } else {
+    multiply_left(stride_[i] / row_padding, size_[i], size_[j]);
+    multiply_right(stride_[i] / row_padding, size_[j], right, scaled);
+  }
+}
+
+bool BlockConjugateGradient::factor() {
+  std::vector<std::uint8_t> good(begin_.size() - 1, 1);
+  for_ranges([&](std::size_t k, Range range) {
+    WideVector scratch(at(largest_));
+    for (std::size_t j = range.first; j < range.last && good[k] != 0; ++j) {
+      if (stale_[j] == 0) continue;
+      double* diagonal = &matrix_[diagonal_[j]];
+      for (int c = 1; c < size_[j]; ++c) {
+        for (int r = 0; r < c; ++r) diagonal[c * stride_[j] + r] = diagonal[r * stride_[j] + c];
+      }
+      double* inverse = &inverse_[inverse_start_[j]];
+      std::copy_n(diagonal, stride_[j] * size_[j], inverse);
+      good[k] = size_[j] == 6 ? invert_factor<6>(inverse) : invert_factor(size_[j], inverse, scratch.data());
+    }
+  });
+  if (std::find(good.begin(), good.end(), 0) != good.end()) return false;
+  for_ranges([&](std::size_t, Range range) {
+    WideVector scratch(at(largest_ * largest_));
+    for (std::size_t j = range.first; j < range.last; ++j) {
+      const double* values = &matrix_[diagonal_[j]] + at(stride_[j] * size_[j]);
+      float* above = above_.data() + above_start_[j];
+      for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
+        const std::size_t i = rows_[e], count = at(stride_[i] * size_[j]);
+        if (stale_[i] != 0 || stale_[j] != 0) {
+          scale_block(i, j, values, scratch.data());
+          for (std::size_t k = 0; k < count; k += row_padding) store(above + k, narrow(load(&scratch[k])));
+        }
+        values += count;
+        above += count;
+      }
+    }
+  });
+  std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
+  return true;
+}
+
+}  // namespace keyblock::linalg
