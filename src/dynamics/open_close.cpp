@@ -77,6 +77,8 @@ SpringArray::Force OpenClose::bend(std::size_t c, double alpha) const {
 void OpenClose::assemble(const StepProblem& problem, linalg::BlockSolver& solver) {
   problem.assemble(solver);
   begin_factor(problem, solver);
+  factor_.places.clear();
+  for (const contact::Contact& contact : contacts_) factor_.places.emplace_back(contact);
   factored_ = springs_.piece;
   for (std::size_t c = 0; c < factored_.size(); ++c) {
     factor_.normal_stiffness[c] = springs_.normal_stiffness(c, factored_[c]);
@@ -86,7 +88,7 @@ void OpenClose::assemble(const StepProblem& problem, linalg::BlockSolver& solver
   assembled_ = true;
 }
 
-/// Brings the matrix of this step to the pieces that the contacts are on now. False when it has not changed.
+/// Brings the matrix at hand to the pieces that the contacts are on now. False when it has not changed.
 bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& solver) {
   const auto& rows = problem.rows();
   changes_.clear();
@@ -94,10 +96,17 @@ bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& s
     const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
     if (from.same_springs(to)) continue;
     const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
-                 kn = normal - std::exchange(factor_.normal_stiffness[c], normal),
-                 ks = shear - std::exchange(factor_.shear_stiffness[c], shear);
-    if (kn == 0.0 && ks == 0.0) continue;
-    changes_.push_back({c, kn, ks});
+                 normal_before = std::exchange(factor_.normal_stiffness[c], normal),
+                 shear_before = std::exchange(factor_.shear_stiffness[c], shear);
+    if (normal == normal_before && shear == shear_before) continue;
+    const StepProblem::Place now(contacts_[c]), before = std::exchange(factor_.places[c], now);
+    if (now == before) {
+      changes_.push_back({c, contacts_[c].edge, now, normal - normal_before, shear - shear_before});
+    } else {
+      // Of an earlier step: what it has there is taken away as it was, or the matrix would not stay positive definite.
+      changes_.push_back({c, contacts_[c].edge, before, -normal_before, -shear_before});
+      changes_.push_back({c, contacts_[c].edge, now, normal, shear});
+    }
     if (rows[c].unknown_a >= 0) solver.touch(rows[c].unknown_a);
     if (rows[c].unknown_b >= 0) solver.touch(rows[c].unknown_b);
   }
@@ -234,8 +243,19 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
         continue;
       }
     }
-    if (!newton_step(problem, solver, options.tolerance, d, result)) return false;
-    if (problem.residual_ratio(gradient_) < enough) return true;
+    if (!newton_step(problem, solver, options.tolerance, d, result)) {
+      if (!kept_) return false;
+      assembled_ = kept_ = false;
+    } else if (problem.residual_ratio(gradient_) < enough) {
+      if (!kept_) return true;
+      // The gradient itself shows what the matrix of an earlier step got wrong. Where that is too much, another Newton step takes
+      // it off, and the matrix of the next time step is its own.
+      place(problem, d);
+      find_gradient(problem, d);
+      if (problem.residual_ratio(gradient_) < enough) return true;
+      factor_.solver = nullptr;
+      if (result.refinements++ > 0) assembled_ = kept_ = false;
+    }
   }
   return false;
 }

@@ -34,7 +34,9 @@ struct OpenCloseResult {
 ///        others do. The factor may be that of an earlier step with the same contacts and inertia: what its matrix, some
 ///        micrometres old, gets wrong shows in the exact gradient, and is refined away or, where that does not do, ends it;
 ///     2. where the solver has no factor, or they are many, repeat, from the increment that is guessed: solve ∇²Π p = −∇Π with
-///        the springs acting at D, and go to the minimum of Π(D + αp), which is the root of a piecewise linear function of α;
+///        the springs acting at D, and go to the minimum of Π(D + αp), which is the root of a piecewise linear function of α.
+///        The matrix of an iterative solver may be that of an earlier step, brought to these springs; the gradient, found
+///        anew at the end, shows whether that did;
 ///     3. where the Coulomb bounds differ too much from μN at the solution, freeze them anew and go on from there
 ///        (a new contact has no friction otherwise, in its first step);
 ///     4. with an augmented Lagrangian, forces are moved from penetration to multipliers until none is left;
@@ -68,7 +70,8 @@ class OpenClose {
 
   void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
   void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
-  [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
+  [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver);
+  [[nodiscard]] bool carry_contacts();
   void try_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   void judge_factor(const OpenCloseResult& result);
   void assemble(const StepProblem& problem, linalg::BlockSolver& solver);
@@ -121,6 +124,7 @@ class OpenClose {
     std::vector<double> inertia;                  ///< per block
     std::vector<double> normal_stiffness,
         shear_stiffness;  ///< N/m per thickness, per contact: of springs in the matrix; else 0
+    std::vector<StepProblem::Place> places;  ///< of these springs
   };
   Factor factor_;
   bool kept_ = false;                 ///< it is that of an earlier step

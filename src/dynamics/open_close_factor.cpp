@@ -24,23 +24,62 @@ void OpenClose::begin_factor(const StepProblem& problem, linalg::BlockSolver& so
   free_.clear();
   kept_ = false;
   factor_.solver = nullptr;
-  if (solver.halves() == nullptr) return;  // it has no factor
+  if (!solver.serves_later_steps()) return;
   factor_.solver = &solver;
   factor_.contacts.resize(contacts_.size());
   std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
   factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
 }
 
-/// Whether the factor at hand was made for contacts and inertia of this step.
-bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const {
+/// Whether the factor at hand was made for the inertia of this step, and has springs of its contacts only.
+bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) {
   return factor_.solver == &solver && problem.has_weights() &&
-         std::ranges::equal(factor_.contacts, contacts_, {}, {}, key_of) &&
-         std::ranges::equal(factor_.inertia, problem.inertias());
+         std::ranges::equal(factor_.inertia, problem.inertias()) && carry_contacts();
+}
+
+/// What is known of the matrix at hand by contact goes over to the contacts of this step: those that came have no spring in it, those that
+/// went had none. False when one had, or is corrected.
+bool OpenClose::carry_contacts() {
+  constexpr std::size_t gone = SIZE_MAX, most_gone = 64;  // in a row
+  const std::vector<std::pair<int, int>>& before = factor_.contacts;
+  if (std::ranges::equal(before, contacts_, {}, {}, key_of)) return true;
+  std::vector<std::size_t> now(before.size(), gone);
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const std::size_t last = std::min(next + most_gone, before.size());
+    for (std::size_t k = next; k < last; ++k) {
+      if (before[k] != key_of(contacts_[c])) continue;
+      now[k] = c;
+      next = k + 1;
+      break;
+    }
+  }
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (now[k] == gone && (factor_.normal_stiffness[k] != 0.0 || factor_.shear_stiffness[k] != 0.0))
+      return false;
+  }
+  if (std::ranges::any_of(corrected_, [&](Corrected spring) { return now[spring.contact] == gone; }))
+    return false;
+  for (Corrected& spring : corrected_) spring.contact = now[spring.contact];
+  const auto carry = [&](auto& of_contact) {
+    std::remove_reference_t<decltype(of_contact)> carried(contacts_.size());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      if (now[k] != gone) carried[now[k]] = of_contact[k];
+    }
+    of_contact = std::move(carried);
+  };
+  carry(factored_);
+  carry(factor_.normal_stiffness);
+  carry(factor_.shear_stiffness);
+  carry(factor_.places);
+  factor_.contacts.resize(contacts_.size());
+  std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
+  return true;
 }
 
 /// Keeps the factor of an earlier step where it may do.
 void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solver) {
-  kept_ = tried_ = wait_ == 0 && solver.halves() != nullptr && fits_factor(problem, solver);
+  kept_ = tried_ = wait_ == 0 && solver.serves_later_steps() && fits_factor(problem, solver);
   wait_ = std::max(0, wait_ - 1);
   corrected_before_ = kept_ ? corrections_.size() : 0;
   free_.clear();
@@ -50,6 +89,12 @@ void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solv
     if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
   }
   find_free_blocks(problem);
+  if (solver.halves() != nullptr) return;
+  assembled_ = true;
+  for (const std::size_t b : free_) {
+    problem.assemble_block(b, solver);
+    solver.touch(problem.unknown(b));
+  }
 }
 
 /// After the step: whether its factor is worth trying in the next one.

@@ -64,9 +64,9 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
 /// The solver that takes least, knowing the pattern. The choice depends on the state alone, so that a run that is resumed takes
 /// the same.
 linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool must_be_direct) {
-  // Block products that a solution by conjugate gradients is worth, for each pair of blocks (docs/performance.md). Static steps
-  // have little inertia, and need many more iterations.
-  constexpr double dynamic_worth = 80.0, static_worth = 150.0;
+  // Block products of a factorization, for each block, that conjugate gradients are worth (docs/performance.md). Static steps have
+  // little inertia, and need many more iterations.
+  constexpr double dynamic_worth = 120.0, static_worth = 450.0;
   constexpr std::size_t never_factored = 30'000;  // blocks; not even the order of elimination is looked for
   const Profile::Scope scope(profile_, Phase::assembly);
   const LinearSolver wanted = model_.solver.linear;
@@ -82,7 +82,7 @@ linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool mu
                     .products;
     }
     iterative =
-        *products_ > (is_static ? static_worth : dynamic_worth) * static_cast<double>(state.pattern.size());
+        *products_ > (is_static ? static_worth : dynamic_worth) * static_cast<double>(unknown_sizes_.size());
   }
   Linear& linear = iterative ? iterative_ : direct_;
   if (!linear.analysed) {

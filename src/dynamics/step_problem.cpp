@@ -137,6 +137,14 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
   });
 }
 
+/// At a point of an edge, `position` from 0 to 1.
+void StepProblem::find_phi(const contact::Surface& surface, int edge, double position, int size,
+                           double* phi) {
+  const double* from = &surface.phi[surface.phi_begin[at(edge)]];
+  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(edge)])]];
+  for (int i = 0; i < size; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
+}
+
 void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
                             Row& row) {
   const Block& a = model_->blocks[at(c.block_a)];
@@ -148,10 +156,7 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
   row.unknown_a = a.unknown;
   row.unknown_b = b.unknown;
   std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[row.phi]);
-  double* phi_b = &phi_[row.phi] + row.size_a;
-  const double* from = &surface.phi[surface.phi_begin[at(c.edge)]];
-  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(c.edge)])]];
-  for (int i = 0; i < row.size_b; ++i) phi_b[i] = (1.0 - c.position) * from[i] + c.position * to[i];
+  find_phi(surface, c.edge, c.position, row.size_b, &phi_[row.phi] + row.size_a);
   row.normal = c.normal;
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
@@ -302,22 +307,36 @@ void StepProblem::assemble(linalg::BlockSolver& solver) const {
   solver.clear();
   team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Block& block = model_->blocks[i];
-      const int n = 2 * block.size, stride = linalg::padded_rows(n);
-      if (model_->moves(i)) {
-        std::copy_n(&h_[h_first_[i]], stride * n, solver.diagonal(block.unknown));
-      } else if (block.unknown >= 0) {
-        for (int k = 0; k < n; ++k) solver.diagonal(block.unknown)[k * stride + k] = 1.0;
-      }
+      if (model_->blocks[i].unknown >= 0) assemble_block(i, solver);
     }
   });
 }
 
+void StepProblem::assemble_block(std::size_t i, linalg::BlockSolver& solver) const {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * block.size, stride = linalg::padded_rows(n);
+  double* diagonal = solver.diagonal(block.unknown);
+  if (model_->moves(i)) {
+    std::copy_n(&h_[h_first_[i]], stride * n, diagonal);
+  } else {
+    for (int k = 0; k < n; ++k) diagonal[k * stride + k] = 1.0;
+  }
+}
+
 void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
+  const auto size = at(largest_size_);
+  std::vector<double> phi_b(changes.size() * size);
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const SpringChange& change = changes[k];
+    find_phi(model_->surface, change.edge, change.place.position, rows_[change.contact].size_b,
+             &phi_b[k * size]);
+  }
   for_owned_contacts(
       changes.size(), [&](std::size_t k) { return changes[k].contact; },
       [&](std::size_t k, Owner owner) {
-        add_spring(rows_[changes[k].contact], changes[k].normal, changes[k].shear, owner, solver);
+        const SpringChange& change = changes[k];
+        add_spring(rows_[change.contact], change.place.normal, &phi_b[k * size], change.normal, change.shear,
+                   owner, solver);
       });
 }
 
@@ -326,16 +345,18 @@ void StepProblem::add_springs(std::span<const double> normal, std::span<const do
   for_owned_contacts(
       rows_.size(), [](std::size_t c) { return c; },
       [&](std::size_t c, Owner owner) {
-        if (normal[c] != 0.0 || shear[c] != 0.0) add_spring(rows_[c], normal[c], shear[c], owner, solver);
+        if (normal[c] == 0.0 && shear[c] == 0.0) return;
+        const Row& row = rows_[c];
+        add_spring(row, row.normal, &phi_[row.phi] + row.size_a, normal[c], shear[c], owner, solver);
       });
 }
 
-void StepProblem::add_spring(const Row& row, double kn, double ks, Owner owner,
+void StepProblem::add_spring(const Row& row, Vec2 n, const double* phi_b, double kn, double ks, Owner owner,
                              linalg::BlockSolver& solver) const {
-  const Vec2 n = row.normal, t = row.tangent();
+  const Vec2 t = contact::tangent_of(n);
   const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
                     kn * n.y * n.y + ks * t.y * t.y};
-  const double *phi_a = &phi_[row.phi], *phi_b = phi_a + row.size_a;
+  const double* phi_a = &phi_[row.phi];
   const auto add_diagonal = [&](const double* phi, int size, int unknown) {
     if (size > 0 && owner.has(unknown))
       add_block(phi, size, phi, size, k, 1.0, solver.diagonal(unknown), linalg::padded_rows(2 * size));

@@ -91,9 +91,21 @@ class StepProblem {
   void multiply(std::span<const double> x, std::span<double> y) const;
   /// Sets the solver's matrix to H. With add_springs for all that act at r it becomes ∇²Π there.
   void assemble(linalg::BlockSolver& solver) const;
+  /// The same for the block on the diagonal that belongs to one.
+  void assemble_block(std::size_t block, linalg::BlockSolver& solver) const;
+  /// Where a contact has its springs: normal of the edge, and how far along it.
+  struct Place {
+    Vec2 normal;
+    double position = 0.0;
+    explicit Place(const contact::Contact& c) : normal(c.normal), position(c.position) {}
+    Place() = default;
+    friend bool operator==(const Place&, const Place&) = default;
+  };
   /// Springs at a contact, N/m per thickness; negative: taken away.
   struct SpringChange {
     std::size_t contact;
+    int edge;
+    Place place;
     double normal, shear;
   };
   void add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const;
@@ -191,7 +203,8 @@ class StepProblem {
       }
     });
   }
-  void add_spring(const Row& row, double kn, double ks, Owner owner, linalg::BlockSolver& solver) const;
+  void add_spring(const Row& row, Vec2 normal, const double* phi_b, double kn, double ks, Owner owner,
+                  linalg::BlockSolver& solver) const;
   template <typename Size>
   void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);
   template <typename Size>
@@ -201,6 +214,7 @@ class StepProblem {
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
                   std::span<const contact::Contact> contacts, std::span<const int> pairs);
+  static void find_phi(const contact::Surface& surface, int edge, double position, int size, double* phi);
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
   void build_spring(const Drive& drive, const contact::Contact& c, std::size_t k);
 

@@ -25,6 +25,7 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
   HalfSolver* halves() override { return this; }
+  [[nodiscard]] bool serves_later_steps() const override { return true; }
   void half_solve(Part a, Part b, HalfSolution& half) override;
   void half_solve(std::span<const double> b, std::vector<double>& half) override;
   [[nodiscard]] double product(const HalfSolution& x, const HalfSolution& y) const override;

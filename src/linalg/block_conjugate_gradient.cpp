@@ -11,6 +11,8 @@ namespace keyblock::linalg {
 namespace {
 
 constexpr int most_iterations = 400;
+// By which the residual may be larger than before; beyond that the matrix is not positive definite.
+constexpr double most_growth = 100.0;
 // Excess of the iteration's residual, with which that of the matrix is small enough.
 constexpr double well_enough = 0.9;
 
@@ -333,11 +335,15 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
 /// factor of ten and more, the one way or the other. As it costs an iteration it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
 int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most) {
-  double alpha = 0.0, beta = 0.0, wanted = 0.0;
+  double alpha = 0.0, beta = 0.0, wanted = 0.0, most_rr = HUGE_VAL;
   for (int iterations = 1;; ++iterations) {
     const Dots dots = apply(alpha, beta);
-    if (!(dots.pq > 0.0)) return iterations;  // nothing is left of p in single precision
-    if (iterations == 1) wanted = dots.rr / (too_large * std::sqrt(too_large));
+    // Nothing is left of p in single precision, or the matrix is not positive definite.
+    if (!(dots.pq > 0.0 && dots.rr < most_rr)) return iterations;
+    if (iterations == 1) {
+      wanted = dots.rr / (too_large * std::sqrt(too_large));
+      most_rr = most_growth * most_growth * dots.rr;
+    }
     alpha = dots.rr / dots.pq;
     const double rr = std::max(0.0, dots.rr - 2.0 * alpha * dots.rq + alpha * alpha * dots.qq);
     beta = rr / dots.rr;
@@ -358,11 +364,13 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
   solved_ = true;
   estimate_.resize(x.size());
   int iterations = 0;
+  double most = HUGE_VAL;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
-    if (iterations >= most_iterations) {
+    if (iterations >= most_iterations || !(too_large < most)) {
       solved_ = false;
       return;
     }
+    most = most_growth * too_large;
     start(residual);
     iterations += iterate(too_large, excess, most_iterations - iterations);
     take_over(x, residual);

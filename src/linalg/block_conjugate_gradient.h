@@ -35,6 +35,7 @@ class BlockConjugateGradient final : public BlockSolver {
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
   [[nodiscard]] bool solved() const override { return solved_; }
+  [[nodiscard]] bool serves_later_steps() const override { return true; }
 
  private:
   using Vector = HugePageVector<float>;

@@ -82,6 +82,8 @@ class BlockSolver {
   virtual void solve(std::span<double> x, std::span<double> residual, const Excess& excess) = 0;
   /// Null where this solver has none.
   [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }
+  /// Whether the matrix and what factor() made of it may serve later steps, corrected for what they get wrong.
+  [[nodiscard]] virtual bool serves_later_steps() const { return false; }
   /// False when the last solve() gave up before its residual was small enough.
   [[nodiscard]] virtual bool solved() const { return true; }
 };

@@ -86,7 +86,8 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
     const contact::Spring& spring = problem.springs()[c];
     const bool closed = spring.closed(problem.depth(c, r[c])),
                held = spring.locked(problem.shear(c, r[c])) && spring.bound() > 0.0;
-    springs.push_back({c, closed ? spring.normal_stiffness() : 0.0, held ? spring.shear_stiffness() : 0.0});
+    springs.push_back({c, contacts[c].edge, StepProblem::Place(contacts[c]),
+                       closed ? spring.normal_stiffness() : 0.0, held ? spring.shear_stiffness() : 0.0});
   }
   problem.add_springs(springs, *solver);
   ASSERT_TRUE(solver->factor());
