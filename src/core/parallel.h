@@ -51,6 +51,28 @@ void find_all(ThreadTeam& team, std::size_t n, std::size_t grain, const Is& is,
   for (const auto& some : of_piece) found.insert(found.end(), some.begin(), some.end());
 }
 
+/// Σ of(i), i < n: piece by piece, which are the same for any number of threads. T: a number, or what has += and begins at zero.
+template <typename T, typename Of>
+T sum_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& of) {
+  constexpr std::size_t piece = 4'096;
+  std::vector<T> of_piece((n + piece - 1) / piece, T{});
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      T sum{};
+      for (std::size_t i = p * piece; i < n && i < (p + 1) * piece; ++i) sum += of(i);
+      of_piece[p] = sum;
+    }
+  };
+  if (n < grain) {
+    add(0, of_piece.size());
+  } else {
+    team.for_range(of_piece.size(), 2, add);
+  }
+  T total{};
+  for (const T& some : of_piece) total += some;
+  return total;
+}
+
 /// The largest of(i), i < n, and of 0.
 template <typename Of>
 double largest_of(ThreadTeam& team, std::size_t n, std::size_t grain, const Of& of) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "core/index.h"
 #include "dynamics/line_search.h"
 
 namespace keyblock::dynamics {
@@ -17,6 +17,16 @@ constexpr double forcing = 0.003;     // of what is out of balance, likewise
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
+
+/// Two sums over the same.
+struct Sums {
+  double first = 0.0, second = 0.0;
+  Sums& operator+=(Sums other) {
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
+};
 
 }  // namespace
 
@@ -77,24 +87,37 @@ SpringArray::Force OpenClose::bend(std::size_t c, double alpha) const {
 void OpenClose::assemble(const StepProblem& problem, linalg::BlockSolver& solver) {
   problem.assemble(solver);
   begin_factor(problem, solver);
-  factor_.places.clear();
-  for (const contact::Contact& contact : contacts_) factor_.places.emplace_back(contact);
   factored_ = springs_.piece;
+  team_->for_range(factored_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      factor_.normal_stiffness[c] = springs_.normal_stiffness(c, factored_[c]);
+      factor_.shear_stiffness[c] = springs_.shear_stiffness(c, factored_[c]);
+      factor_.places[c] = StepProblem::Place(contacts_[c]);
+    }
+  });
   for (std::size_t c = 0; c < factored_.size(); ++c) {
-    factor_.normal_stiffness[c] = springs_.normal_stiffness(c, factored_[c]);
-    factor_.shear_stiffness[c] = springs_.shear_stiffness(c, factored_[c]);
+    if (factor_.has_spring(c)) hold(problem, c, 1);
   }
   problem.add_springs(factor_.normal_stiffness, factor_.shear_stiffness, solver);
   assembled_ = true;
+}
+
+/// Counts what holds the blocks of a contact.
+void OpenClose::hold(const StepProblem& problem, std::size_t c, int count) {
+  const StepProblem::Row& row = problem.rows()[c];
+  if (row.unknown_a >= 0) factor_.held[at(row.unknown_a)] += count;
+  if (row.unknown_b >= 0) factor_.held[at(row.unknown_b)] += count;
 }
 
 /// Brings the matrix at hand to the pieces that the contacts are on now. False when it has not changed.
 bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& solver) {
   const auto& rows = problem.rows();
   changes_.clear();
-  for (std::size_t c = 0; c < rows.size(); ++c) {
+  find_bent();
+  for (const std::size_t c : bends_) {
     const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
     if (from.same_springs(to)) continue;
+    const bool had_spring = factor_.has_spring(c);
     const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
                  normal_before = std::exchange(factor_.normal_stiffness[c], normal),
                  shear_before = std::exchange(factor_.shear_stiffness[c], shear);
@@ -107,6 +130,7 @@ bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& s
       changes_.push_back({c, contacts_[c].edge, before, -normal_before, -shear_before});
       changes_.push_back({c, contacts_[c].edge, now, normal, shear});
     }
+    hold(problem, c, static_cast<int>(factor_.has_spring(c)) - static_cast<int>(had_spring));
     if (rows[c].unknown_a >= 0) solver.touch(rows[c].unknown_a);
     if (rows[c].unknown_b >= 0) solver.touch(rows[c].unknown_b);
   }
@@ -175,12 +199,12 @@ double OpenClose::slope(double alpha) const {
 }
 
 double OpenClose::search_line() {
-  slope_at_zero_ = curvature_ = 0.0;
-  for (std::size_t k = 0; k < direction_.size(); ++k) {
-    slope_at_zero_ += gradient_[k] * direction_[k];
-    curvature_ -= residual_[k] * direction_[k];
-  }
-  curvature_ -= slope_at_zero_;
+  const auto [from_gradient, from_residual] =
+      sum_of<Sums>(*team_, direction_.size(), coefficients_worth_threads, [&](std::size_t k) {
+        return Sums{gradient_[k] * direction_[k], residual_[k] * direction_[k]};
+      });
+  slope_at_zero_ = from_gradient;
+  curvature_ = -from_residual - from_gradient;
   find_bends(1.0);
   return line_search(
       slope_at_zero_, [&](double alpha) { find_bends(alpha); }, [&](double alpha) { return slope(alpha); });
@@ -188,12 +212,15 @@ double OpenClose::search_line() {
 
 /// D ← D + αp, and the gradient and springs with it.
 void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d) {
-  for (std::size_t k = 0; k < d.size(); ++k) {
-    d[k] += alpha * direction_[k];
-    gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
-  }
+  team_->for_range(d.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      d[k] += alpha * direction_[k];
+      gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
+    }
+  });
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
-  springs_.go(alpha);
+  team_->for_range(springs_.size(), contacts_worth_threads,
+                   [&](std::size_t begin, std::size_t end) { springs_.go(alpha, begin, end); });
   knows_relative_ = false;
   for (const std::size_t c : bends_) springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
 }
@@ -270,18 +297,17 @@ void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   std::vector<contact::Spring>& of_contact = problem.springs();
-  double error = 0.0, scale = 0.0;
   const auto bound = [&](std::size_t c) {
     return friction_[c] * std::max(0.0, springs_.force(c).normal) + cohesion_[c];
   };
-  for (std::size_t c = 0; c < of_contact.size(); ++c) {
-    if (friction_[c] < 0.0) continue;
-    // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-    const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
-    const double change = std::clamp(elastic, -wanted, wanted) - springs_.force(c).shear;
-    error += change * change;
-    scale += wanted * wanted;
-  }
+  const auto [error, scale] =
+      sum_of<Sums>(*team_, of_contact.size(), contacts_worth_threads, [&](std::size_t c) {
+        if (friction_[c] < 0.0) return Sums{};
+        // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
+        const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
+        const double change = std::clamp(elastic, -wanted, wanted) - springs_.force(c).shear;
+        return Sums{change * change, wanted * wanted};
+      });
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
@@ -410,7 +436,8 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     });
   }
   result.residual_ratio = problem.residual_ratio(gradient_);
-  result.finite = std::isfinite(std::accumulate(gradient_.begin(), gradient_.end(), 0.0));
+  result.finite = std::isfinite(sum_of<double>(team, gradient_.size(), coefficients_worth_threads,
+                                               [&](std::size_t k) { return gradient_[k]; }));
   judge_factor(result);
   return result;
 }

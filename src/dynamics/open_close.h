@@ -89,6 +89,7 @@ class OpenClose {
   void find_free_blocks(const StepProblem& problem);
   void leave_out_bends(const StepProblem& problem);
   void find_gradient(const StepProblem& problem, std::span<const double> d);
+  void hold(const StepProblem& problem, std::size_t c, int count);
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
                OpenCloseResult& result);
   bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
@@ -125,6 +126,10 @@ class OpenClose {
     std::vector<double> normal_stiffness,
         shear_stiffness;  ///< N/m per thickness, per contact: of springs in the matrix; else 0
     std::vector<StepProblem::Place> places;  ///< of these springs
+    std::vector<int> held;                   ///< per unknown block: contacts that have such springs
+    [[nodiscard]] bool has_spring(std::size_t c) const {
+      return normal_stiffness[c] != 0.0 || shear_stiffness[c] != 0.0;
+    }
   };
   Factor factor_;
   bool kept_ = false;                 ///< it is that of an earlier step
@@ -132,7 +137,6 @@ class OpenClose {
   std::size_t corrected_before_ = 0;  ///< springs that it was corrected for then
   int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
   std::vector<std::size_t> free_;     ///< blocks that nothing holds
-  std::vector<std::uint8_t> held_;    ///< scratch: per unknown block, whether a spring holds it
   std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of change_matrix
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.

@@ -101,7 +101,9 @@ void OpenClose::forget_corrections() {
 /// ∇Π at D, where the springs are.
 void OpenClose::find_gradient(const StepProblem& problem, std::span<const double> d) {
   problem.multiply(d, gradient_);
-  for (std::size_t k = 0; k < gradient_.size(); ++k) gradient_[k] -= problem.right()[k];
+  team_->for_range(gradient_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) gradient_[k] -= problem.right()[k];
+  });
   problem.add_contact_forces([&](std::size_t c) { return contact_gradient(problem, c, springs_.force(c)); },
                              gradient_);
 }

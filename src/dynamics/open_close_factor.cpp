@@ -19,8 +19,10 @@ std::pair<int, int> key_of(const contact::Contact& contact) {
 
 /// Notes what the matrix of this step is for; it has no springs yet.
 void OpenClose::begin_factor(const StepProblem& problem, linalg::BlockSolver& solver) {
-  factor_.normal_stiffness.assign(contacts_.size(), 0.0);
-  factor_.shear_stiffness.assign(contacts_.size(), 0.0);
+  factor_.normal_stiffness.resize(contacts_.size());
+  factor_.shear_stiffness.resize(contacts_.size());
+  factor_.places.resize(contacts_.size());
+  factor_.held.assign(problem.inertias().size(), 0);
   free_.clear();
   kept_ = false;
   factor_.solver = nullptr;
@@ -42,7 +44,11 @@ bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolve
 bool OpenClose::carry_contacts() {
   constexpr std::size_t gone = SIZE_MAX, most_gone = 64;  // in a row
   const std::vector<std::pair<int, int>>& before = factor_.contacts;
-  if (std::ranges::equal(before, contacts_, {}, {}, key_of)) return true;
+  if (before.size() == contacts_.size()) {
+    const auto is_other = [&](std::size_t c) { return before[c] != key_of(contacts_[c]); };
+    find_all(*team_, before.size(), contacts_worth_threads, is_other, bends_);
+    if (bends_.empty()) return true;
+  }
   std::vector<std::size_t> now(before.size(), gone);
   std::size_t next = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -55,8 +61,7 @@ bool OpenClose::carry_contacts() {
     }
   }
   for (std::size_t k = 0; k < now.size(); ++k) {
-    if (now[k] == gone && (factor_.normal_stiffness[k] != 0.0 || factor_.shear_stiffness[k] != 0.0))
-      return false;
+    if (now[k] == gone && factor_.has_spring(k)) return false;
   }
   if (std::ranges::any_of(corrected_, [&](Corrected spring) { return now[spring.contact] == gone; }))
     return false;
@@ -85,9 +90,11 @@ void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solv
   free_.clear();
   if (!kept_) return;
   // Pieces on which the same springs act have the same matrix.
-  for (std::size_t c = 0; c < springs_.size(); ++c) {
-    if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
-  }
+  team_->for_range(springs_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
+    }
+  });
   find_free_blocks(problem);
   if (solver.halves() != nullptr) return;
   assembled_ = true;
@@ -110,20 +117,12 @@ void OpenClose::judge_factor(const OpenCloseResult& result) {
 /// Blocks that no spring of the matrix holds, nor any that is corrected. They may turn fast, which the factor of an earlier step
 /// knows nothing of, and are solved alone.
 void OpenClose::find_free_blocks(const StepProblem& problem) {
-  held_.assign(problem.inertias().size(), 0);  // by unknown
-  const auto hold = [&](std::size_t c) {
-    const StepProblem::Row& row = problem.rows()[c];
-    if (row.unknown_a >= 0) held_[at(row.unknown_a)] = 1;
-    if (row.unknown_b >= 0) held_[at(row.unknown_b)] = 1;
-  };
-  for (std::size_t c = 0; c < springs_.size(); ++c) {
-    if (factor_.normal_stiffness[c] > 0.0 || factor_.shear_stiffness[c] > 0.0) hold(c);
-  }
-  for (const Corrected spring : corrected_) hold(spring.contact);
+  for (const Corrected spring : corrected_) hold(problem, spring.contact, 1);
   free_.clear();
-  for (std::size_t b = 0; b < held_.size(); ++b) {
-    if (problem.moves(b) && held_[at(problem.unknown(b))] == 0) free_.push_back(b);
+  for (std::size_t b = 0; b < factor_.held.size(); ++b) {
+    if (problem.moves(b) && factor_.held[at(problem.unknown(b))] == 0) free_.push_back(b);
   }
+  for (const Corrected spring : corrected_) hold(problem, spring.contact, -1);
 }
 
 }  // namespace keyblock::dynamics

@@ -62,8 +62,8 @@ class SpringArray {
     w[c] += shear;
   }
   /// Goes on along the direction of search; `piece` stays that of where it was.
-  void go(double alpha) {
-    for (std::size_t c = 0; c < y.size(); ++c) {
+  void go(double alpha, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
       y[c] += alpha * dy[c];
       w[c] += alpha * dw[c];
     }

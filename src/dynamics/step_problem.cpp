@@ -25,11 +25,13 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   if (model_ != &model) {
     model_ = &model;
     h_first_.clear();
+    coefficients_.clear();
     largest_size_ = 0;
     std::size_t used = 0;
     for (const Block& block : model.blocks) {
       largest_size_ = std::max(largest_size_, block.size);
       h_first_.push_back(used);
+      coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
       used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
     }
     h_.assign(used, 0.0);
@@ -50,6 +52,7 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   const int n = 2 * size, stride = linalg::padded_rows(n);
   double* b = &b_[block.first];
   std::fill(b, b + n, 0.0);
+  inertia_[i] = 0.0;
   if (!model_->moves(i)) return;
   const double* a = &state.position[block.first];
   const double* v = &state.velocity[block.first];
@@ -375,11 +378,10 @@ void StepProblem::add_spring(const Row& row, Vec2 n, const double* phi_b, double
 
 double StepProblem::residual_ratio(std::span<const double> g) const {
   return largest_of(*team_, model_->blocks.size(), blocks_worth_threads, [&](std::size_t i) {
-    const Block& block = model_->blocks[i];
-    if (!model_->moves(i) || weight_[i] <= 0.0) return 0.0;
-    const double* of_block = &g[block.first];
+    if (inertia_[i] <= 0.0 || weight_[i] <= 0.0) return 0.0;
     double largest = 0.0;
-    for (int k = 0; k < 2 * block.size; ++k) largest = std::max(largest, std::abs(of_block[k]));
+    for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k)
+      largest = std::max(largest, std::abs(g[k]));
     return largest / weight_[i];
   });
 }

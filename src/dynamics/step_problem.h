@@ -17,6 +17,7 @@ namespace keyblock::dynamics {
 
 using contact::blocks_worth_threads;
 using contact::contacts_worth_threads;
+inline constexpr std::size_t coefficients_worth_threads = 20'000;
 
 /// What drives one step.
 struct Drive {
@@ -225,10 +226,12 @@ class StepProblem {
   std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
   std::vector<double> phi_;                           ///< of every row, twice largest_size_
   int largest_size_ = 0;                              ///< N
-  std::vector<std::size_t> h_first_;                  ///< per block, into h_
-  std::vector<double> h_;                             ///< lower triangles, stride padded_rows(2N)
+  /// Per block: the first of its coefficients, and where they end.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> coefficients_;
+  std::vector<std::size_t> h_first_;  ///< per block, into h_
+  std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
   std::vector<double> b_;
-  std::vector<double> inertia_;      ///< per block, cρ/Δt²
+  std::vector<double> inertia_;      ///< per block, cρ/Δt²; 0: it does not move
   std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
   std::vector<ElasticLoss> losses_;  ///< scratch, per block
