@@ -107,8 +107,7 @@ void BlockConjugateGradient::subtract_from_parts(Layout layout, const Number* va
 /// y_j ← (Uᵀ x)_j.
 template <typename Layout>
 void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
-  float* y_j = y + layout.start(j);
-  const auto columns = [&]<int width>(int c) {
+  in_sixes(layout.size(j), [&]<int width>(int c) {
     NarrowLanes t[width]{};
     const float* block = above_.data() + above_start_[j];
     for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
@@ -116,15 +115,8 @@ void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, cons
       add_lane_products(layout.stride(i) / row_padding, block + c * layout.stride(i), x + layout.start(i), t);
       block += layout.stride(i) * layout.size(j);
     }
-    if constexpr (width == 6) {
-      store_first<6>(y_j + c, layout.stride(j) - c, sums(t));
-    } else {
-      y_j[c] = sum(t[0]);
-    }
-  };
-  int c = 0;
-  for (; c + 6 <= layout.size(j); c += 6) columns.template operator()<6>(c);
-  for (; c < layout.size(j); ++c) columns.template operator()<1>(c);
+    store_first<width>(y + layout.start(j) + at(c), layout.stride(j) - c, sums(t));
+  });
 }
 
 /// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of a range.
@@ -225,19 +217,12 @@ void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector&
                                      WideVector& x) const {
   for_registers(layout, j, [&](std::size_t k) { store(&scratch[k], widen(load(&v[k]))); });
   const double *wide = &scratch[layout.start(j)], *inverse = &inverse_[inverse_start_[j]];
-  double* x_j = &x[layout.start(j)];
-  const int stride = layout.stride(j), lanes = stride / row_padding;
-  int c = 0;
-  for (; c + 6 <= layout.size(j); c += 6) {
-    Lanes t[6]{};
-    add_lane_products(lanes, inverse + c * stride, wide, t);
-    store_first<6>(x_j + c, stride - c, sums(t));
-  }
-  for (; c < layout.size(j); ++c) {
-    Lanes t[1]{};
-    add_lane_products(lanes, inverse + c * stride, wide, t);
-    x_j[c] = sum(t[0]);
-  }
+  const int stride = layout.stride(j);
+  in_sixes(layout.size(j), [&]<int width>(int c) {
+    Lanes t[width]{};
+    add_lane_products(stride / row_padding, inverse + c * stride, wide, t);
+    store_first<width>(&x[layout.start(j)] + c, stride - c, sums(t));
+  });
 }
 
 /// What x lacks of the solution, as the iteration has it: C (1 + U) r. It is that of the matrix but for what single precision
@@ -280,19 +265,11 @@ void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
   subtract_above(layout, j, block, x, y);
   for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
     const std::size_t i = rows_[e];
-    const int lanes = layout.stride(i) / row_padding;
-    int c = 0;
-    for (; c + 6 <= size; c += 6) {
-      Lanes t[6]{};
-      add_lane_products(lanes, block + c * layout.stride(i), x + layout.start(i), t);
-      const Lanes total = sums(t);
-      store_first<6>(y_j + c, stride - c, load(y_j + c) - total);
-    }
-    for (; c < size; ++c) {
-      Lanes t[1]{};
-      add_lane_products(lanes, block + c * layout.stride(i), x + layout.start(i), t);
-      y_j[c] -= sum(t[0]);
-    }
+    in_sixes(size, [&]<int width>(int c) {
+      Lanes t[width]{};
+      add_lane_products(layout.stride(i) / row_padding, block + c * layout.stride(i), x + layout.start(i), t);
+      subtract_first<width>(y_j + c, stride - c, sums(t));
+    });
     block += layout.stride(i) * size;
   }
 }
@@ -332,7 +309,7 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
 /// Conjugate gradients from r_ on, to z_. Returns how many iterations that took.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
-/// factor of ten and more, the one way or the other. As it costs an iteration it is looked at when it should be small
+/// factor of ten and more, the one way or the other. As it costs two or three iterations it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
 int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most) {
   double alpha = 0.0, beta = 0.0, wanted = 0.0, most_rr = HUGE_VAL;

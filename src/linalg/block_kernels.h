@@ -62,6 +62,20 @@ void store_first(Number* out, int room, Register v) {
   if (room >= row_padding) return store(out, v);
   for (int k = 0; k < count; ++k) out[k] = v[k];
 }
+/// The same, taken away from what is there.
+template <int count, typename Number, typename Register>
+void subtract_first(Number* out, int room, Register v) {
+  if (room >= row_padding) return store(out, load(out) - v);
+  for (int k = 0; k < count; ++k) out[k] -= v[k];
+}
+
+/// Calls columns<width>(c), six columns at a time and then one by one.
+template <typename Columns>
+void in_sixes(int size, const Columns& columns) {
+  int c = 0;
+  for (; c + 6 <= size; c += 6) columns.template operator()<6>(c);
+  for (; c < size; ++c) columns.template operator()<1>(c);
+}
 
 /// C −= A Bᵀ for `lanes` registers of rows and `columns` columns of C, all held in registers; A: rows × k, B: columns × k.
 template <int lanes, int columns>

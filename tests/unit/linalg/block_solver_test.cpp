@@ -145,9 +145,9 @@ TEST(BlockSolver, FactorsWhatWasTouchedOnly) {
 
 TEST(BlockSolver, AgreesWithDenseSolutionForEqualAndMixedBlocks) {
   unsigned seed = 0;
-  for (const std::vector<int>& choice : {std::vector{6}, {6, 12}, {12}, {6, 12, 20, 30}, {132}}) {
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12}, {12}, {6, 12, 20, 30}, {72}, {132}}) {
     for (int n : {1, 2, 7, 40}) {
-      if (choice[0] == 132 && n > 7) continue;
+      if (choice[0] >= 72 && n > 7) continue;
       const Problem p = random_problem(++seed, n, choice);
       const Eigen::VectorXd expected = p.dense.ldlt().solve(p.right);
       for (const auto& make : {make_block_cholesky, make_cholmod, make_iterative}) {
