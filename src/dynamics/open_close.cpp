@@ -109,9 +109,16 @@ void OpenClose::hold(const StepProblem& problem, std::size_t c, int count) {
   if (row.unknown_b >= 0) factor_.held[at(row.unknown_b)] += count;
 }
 
-/// Brings the matrix at hand to the pieces that the contacts are on now. False when it has not changed.
+/// Brings the matrix at hand to the pieces that the contacts are on now, and one of an earlier step to how its free blocks are turned.
+/// False when it has not changed.
 bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& solver) {
   const auto& rows = problem.rows();
+  const bool turned = !free_.empty();
+  for (const std::size_t b : free_) {
+    problem.assemble_block(b, solver);
+    solver.touch(problem.unknown(b));
+  }
+  free_.clear();
   changes_.clear();
   find_bent();
   for (const std::size_t c : bends_) {
@@ -135,7 +142,7 @@ bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& s
     if (rows[c].unknown_b >= 0) solver.touch(rows[c].unknown_b);
   }
   problem.add_springs(changes_, solver);
-  return !changes_.empty();
+  return turned || !changes_.empty();
 }
 
 /// Within a step only what changed is assembled and factored anew.

@@ -70,7 +70,7 @@ class OpenClose {
 
   void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
   void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
-  [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver);
+  [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
   [[nodiscard]] bool carry_contacts();
   void try_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   void judge_factor(const OpenCloseResult& result);

@@ -1,5 +1,7 @@
 // The factor of a step in the steps that follow: whether it is tried, and whether it did.
 #include <algorithm>
+#include <cstdint>
+#include <type_traits>
 
 #include "core/index.h"
 #include "dynamics/open_close.h"
@@ -33,10 +35,10 @@ void OpenClose::begin_factor(const StepProblem& problem, linalg::BlockSolver& so
   factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
 }
 
-/// Whether the factor at hand was made for the inertia of this step, and has springs of its contacts only.
-bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) {
+/// Whether the factor at hand was made for the inertia of this step.
+bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const {
   return factor_.solver == &solver && problem.has_weights() &&
-         std::ranges::equal(factor_.inertia, problem.inertias()) && carry_contacts();
+         std::ranges::equal(factor_.inertia, problem.inertias());
 }
 
 /// What is known of the matrix at hand by contact goes over to the contacts of this step: those that came have no spring in it, those that
@@ -46,8 +48,9 @@ bool OpenClose::carry_contacts() {
   const std::vector<std::pair<int, int>>& before = factor_.contacts;
   if (before.size() == contacts_.size()) {
     const auto is_other = [&](std::size_t c) { return before[c] != key_of(contacts_[c]); };
-    find_all(*team_, before.size(), contacts_worth_threads, is_other, bends_);
-    if (bends_.empty()) return true;
+    std::vector<std::size_t> others;
+    find_all(*team_, before.size(), contacts_worth_threads, is_other, others);
+    if (others.empty()) return true;
   }
   std::vector<std::size_t> now(before.size(), gone);
   std::size_t next = 0;
@@ -84,7 +87,7 @@ bool OpenClose::carry_contacts() {
 
 /// Keeps the factor of an earlier step where it may do.
 void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solver) {
-  kept_ = tried_ = wait_ == 0 && solver.serves_later_steps() && fits_factor(problem, solver);
+  kept_ = tried_ = wait_ == 0 && fits_factor(problem, solver) && carry_contacts();
   wait_ = std::max(0, wait_ - 1);
   corrected_before_ = kept_ ? corrections_.size() : 0;
   free_.clear();
@@ -96,12 +99,7 @@ void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solv
     }
   });
   find_free_blocks(problem);
-  if (solver.halves() != nullptr) return;
-  assembled_ = true;
-  for (const std::size_t b : free_) {
-    problem.assemble_block(b, solver);
-    solver.touch(problem.unknown(b));
-  }
+  assembled_ = solver.halves() == nullptr;
 }
 
 /// After the step: whether its factor is worth trying in the next one.

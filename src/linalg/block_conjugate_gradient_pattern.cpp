@@ -1,7 +1,5 @@
 // Where the blocks of a matrix, and what belongs to them in vectors, are.
 #include <algorithm>
-#include <limits>
-#include <stdexcept>
 
 #include "linalg/block_conjugate_gradient.h"
 #include "linalg/partition.h"
@@ -91,8 +89,6 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     row_entries_.insert(row_entries_.end(), row.begin(), row.end());
     row_start_.push_back(row_entries_.size());
   }
-  if (used > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("a matrix of more than four thousand million numbers");
   matrix_.assign(used, 0.0);
   inverse_.assign(inverse, 0.0);
   above_.assign(scaled, 0.0F);

@@ -35,7 +35,8 @@ class Dissection {
       parts_.push_back(std::move(blocks));
       return;
     }
-    const int middle = level_[at(blocks[blocks.size() / 2])];
+    // Not at the last level, beyond which nothing is left to cut off.
+    const int middle = std::min(level_[at(blocks[blocks.size() / 2])], level_[at(blocks.back())] - 1);
     std::vector<int> before, after;
     for (const int block : blocks) {
       const int level = level_[at(block)];

@@ -295,6 +295,19 @@ TEST(Partition, PartsAreSmallAndNotCoupled) {
   }
 }
 
+// A slab on thousands of stones: most blocks are of the last level, beyond which there is none to cut off.
+TEST(Partition, EndsWhereOneBlockTouchesAll) {
+  constexpr int blocks = 3'000;
+  std::vector<std::pair<int, int>> pairs;
+  for (int k = 1; k < blocks; ++k) pairs.emplace_back(0, k);
+  const Partition found = partition(blocks, pairs);
+  EXPECT_EQ(found.order.size(), static_cast<std::size_t>(blocks));
+  EXPECT_EQ(found.order.front(), 0);
+  EXPECT_EQ(found.begin[1], 1U);
+  for (std::size_t p = 1; p + 1 < found.begin.size(); ++p)
+    EXPECT_LE(found.begin[p + 1] - found.begin[p], 1'000U);
+}
+
 TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
   const Grid grid;
   for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
