@@ -1,0 +1,141 @@
+// The matrix of a step: stiffness and inertia of its blocks, and springs of its contacts.
+#include <algorithm>
+#include <cstddef>
+
+#include "core/index.h"
+#include "core/lanes.h"
+#include "dynamics/step_problem.h"
+#include "linalg/block_kernels.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+/// C of a contact: normal and shear spring in coordinates.
+struct Stiffness {
+  double xx, xy, yy;
+};
+
+/// target += scale · (φ_r φ_cᵀ) ⊗ C, with columns of `stride` numbers.
+void add_outer(const double* phi_r, int rows, const double* phi_c, int columns, Stiffness k, double scale,
+               double* target, int stride) {
+  for (int c = 0; c < columns; ++c) {
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
+    double* y = x + stride;
+    const double f = scale * phi_c[c], fxx = f * k.xx, fxy = f * k.xy, fyy = f * k.yy;
+    for (int r = 0; r < rows; ++r) {
+      x[2 * r] += phi_r[r] * fxx;
+      x[2 * r + 1] += phi_r[r] * fxy;
+      y[2 * r] += phi_r[r] * fxy;
+      y[2 * r + 1] += phi_r[r] * fyy;
+    }
+  }
+}
+
+/// The same between two blocks of N basis functions, a column at once.
+template <int size>
+void add_outer(const double* phi_r, const double* phi_c, Stiffness k, double scale, double* target) {
+  constexpr int stride = linalg::padded_rows(2 * size), lanes = stride / linalg::row_padding;
+  const auto phi = [&](int r) { return r < size ? phi_r[r] : 0.0; };
+  Lanes rows[lanes];
+#pragma GCC unroll 2
+  for (int l = 0; l < lanes; ++l) {
+    const double p0 = phi(4 * l), p1 = phi(4 * l + 1), p2 = phi(4 * l + 2), p3 = phi(4 * l + 3);
+    rows[l] = Lanes{p0, p0, p1, p1, p2, p2, p3, p3};
+  }
+  const Lanes kx{k.xx, k.xy, k.xx, k.xy, k.xx, k.xy, k.xx, k.xy},
+      ky{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, k.xy, k.yy};
+#pragma GCC unroll 6
+  for (int c = 0; c < size; ++c) {
+    const Lanes f = broadcast(scale * phi_c[c]), fx = f * kx, fy = f * ky;
+    double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
+    double* y = x + stride;
+#pragma GCC unroll 2
+    for (int l = 0; l < lanes; ++l) {
+      store(x + l * linalg::row_padding, load(x + l * linalg::row_padding) + rows[l] * fx);
+      store(y + l * linalg::row_padding, load(y + l * linalg::row_padding) + rows[l] * fy);
+    }
+  }
+}
+
+/// The same, whichever it is.
+void add_block(const double* phi_r, int rows, const double* phi_c, int columns, Stiffness k, double scale,
+               double* target, int stride) {
+  if (rows == 3 && columns == 3) return add_outer<3>(phi_r, phi_c, k, scale, target);
+  if (rows == 6 && columns == 6) return add_outer<6>(phi_r, phi_c, k, scale, target);
+  add_outer(phi_r, rows, phi_c, columns, k, scale, target, stride);
+}
+
+}  // namespace
+
+void StepProblem::assemble(linalg::BlockSolver& solver) const {
+  solver.clear();
+  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (model_->blocks[i].unknown >= 0) assemble_block(i, solver);
+    }
+  });
+}
+
+void StepProblem::assemble_block(std::size_t i, linalg::BlockSolver& solver) const {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * block.size, stride = linalg::padded_rows(n);
+  double* diagonal = solver.diagonal(block.unknown);
+  if (model_->moves(i)) {
+    std::copy_n(&h_[h_first_[i]], stride * n, diagonal);
+  } else {
+    for (int k = 0; k < n; ++k) diagonal[k * stride + k] = 1.0;
+  }
+}
+
+void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
+  const auto size = at(largest_size_);
+  std::vector<double> phi_b(changes.size() * size);
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const SpringChange& change = changes[k];
+    find_phi(model_->surface, change.edge, change.place.position, rows_[change.contact].size_b,
+             &phi_b[k * size]);
+  }
+  for_owned_contacts(
+      changes.size(), [&](std::size_t k) { return changes[k].contact; },
+      [&](std::size_t k, Owner owner) {
+        const SpringChange& change = changes[k];
+        add_spring(rows_[change.contact], change.place.normal, &phi_b[k * size], change.normal, change.shear,
+                   owner, solver);
+      });
+}
+
+void StepProblem::add_springs(std::span<const double> normal, std::span<const double> shear,
+                              linalg::BlockSolver& solver) const {
+  for_owned_contacts(
+      rows_.size(), [](std::size_t c) { return c; },
+      [&](std::size_t c, Owner owner) {
+        if (normal[c] == 0.0 && shear[c] == 0.0) return;
+        const Row& row = rows_[c];
+        add_spring(row, row.normal, &phi_[row.phi] + row.size_a, normal[c], shear[c], owner, solver);
+      });
+}
+
+void StepProblem::add_spring(const Row& row, Vec2 n, const double* phi_b, double kn, double ks, Owner owner,
+                             linalg::BlockSolver& solver) const {
+  const Vec2 t = contact::tangent_of(n);
+  const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
+                    kn * n.y * n.y + ks * t.y * t.y};
+  const double* phi_a = &phi_[row.phi];
+  const auto add_diagonal = [&](const double* phi, int size, int unknown) {
+    if (size > 0 && owner.has(unknown))
+      add_block(phi, size, phi, size, k, 1.0, solver.diagonal(unknown), linalg::padded_rows(2 * size));
+  };
+  add_diagonal(phi_a, row.size_a, row.unknown_a);
+  add_diagonal(phi_b, row.size_b, row.unknown_b);
+  if (row.pair < 0) return;
+  const linalg::BlockSlot slot = solver.slot(row.pair);
+  if (!owner.has(slot.row)) return;
+  if (slot.row == row.unknown_a) {
+    add_block(phi_a, row.size_a, phi_b, row.size_b, k, -1.0, slot.values, slot.stride);
+  } else {
+    add_block(phi_b, row.size_b, phi_a, row.size_a, k, -1.0, slot.values, slot.stride);
+  }
+}
+
+}  // namespace keyblock::dynamics
