@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "core/index.h"
 
@@ -17,15 +18,27 @@ double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
 
 namespace {
 
-void find_block_pairs(CandidateList& list) {
-  const auto blocks = [&](std::size_t k) {
-    return std::minmax(list.pairs[k].block_a, list.pairs[k].block_b);
-  };
-  list.block_pairs.clear();
+/// What is known of pairs of blocks stays, but for those with a block that is looked at anew.
+void find_block_pairs(std::span<const std::uint8_t> dirty, CandidateList& list) {
+  const std::vector<BlockPair> known = std::exchange(list.block_pairs, {});
+  list.block_pairs.reserve(known.size());
+  auto last = known.begin();
+  int a = -1, b = -1;
   for (std::size_t k = 0; k < list.pairs.size(); ++k) {
-    if (k == 0 || blocks(k) != blocks(k - 1)) list.block_pairs.push_back(k);
+    const auto [low, high] = std::minmax(list.pairs[k].block_a, list.pairs[k].block_b);
+    if (low == a && high == b) continue;
+    a = low;
+    b = high;
+    BlockPair pair;
+    if (dirty[at(a)] == 0 && dirty[at(b)] == 0) {
+      while (last != known.end() && std::pair(last->block_a, last->block_b) < std::pair(a, b)) ++last;
+      if (last != known.end() && last->block_a == a && last->block_b == b) pair = *last;
+    }
+    pair.first = static_cast<int>(k);
+    pair.block_a = a;
+    pair.block_b = b;
+    list.block_pairs.push_back(pair);
   }
-  list.block_pairs.push_back(list.pairs.size());
 }
 
 }  // namespace
@@ -72,7 +85,7 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
   const bool changed = any && merge(collect(surface, dirty), dirty, list);
-  if (changed || list.block_pairs.empty()) find_block_pairs(list);
+  if (any || list.block_pairs.empty()) find_block_pairs(dirty, list);
   return changed;
 }
 
@@ -230,6 +243,8 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
     return false;
 
   CandidateList merged;
+  merged.block_pairs = std::move(list.block_pairs);
+  merged.may_have_bonds = list.may_have_bonds;
   merged.pairs.reserve(list.pairs.size() + found.size());
   memory_of = CandidateList::Finder(list, 0);
   const auto add = [&](const Candidate& c, int memory) {

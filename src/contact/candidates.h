@@ -43,23 +43,37 @@ struct Candidate {
   double clearance = 0.0;
 };
 
+/// Two blocks that have candidates, and which of these are contacts: known as long as the blocks move little. Nothing that a
+/// restart would miss: looked at anew, the contacts are the same.
+struct BlockPair {
+  int first = 0;  ///< of its candidates; those of the next pair follow
+  int block_a = 0, block_b = 0;
+  int wait = 0;  ///< steps until it is looked again for how long its contacts stay the same
+  double steady =
+      -1.0;  ///< m: they do as long as the ways of both blocks (Detection::Motion) add up to no more,
+  double reach = 0.0;          ///< m: and their reaches to no more than this
+  std::uint64_t contacts = 0;  ///< then: bit k for candidate first + k
+};
+
 /// Candidates in the order (smaller block, larger block, vertex, edge), and what those remember that were contacts in the last
 /// step.
 struct CandidateList {
   std::vector<Candidate> pairs;
-  /// Where in `pairs` those of each pair of blocks begin, and the end. Derived; Candidates::update sees to it.
-  std::vector<std::size_t> block_pairs;
-  std::vector<int> tracked;    ///< contacts of the last step, into pairs; ascending
-  std::vector<Memory> memory;  ///< of each of them
+  std::vector<BlockPair> block_pairs;  ///< derived; Candidates::update sees to it
+  std::vector<int> tracked;            ///< contacts of the last step, into pairs; ascending
+  std::vector<Memory> memory;          ///< of each of them
+  [[nodiscard]] std::size_t end_of_pair(std::size_t p) const {
+    return p + 1 < block_pairs.size() ? static_cast<std::size_t>(block_pairs[p + 1].first) : pairs.size();
+  }
+  bool may_have_bonds = true;  ///< false: none of them is bonded. Derived; keep_memory sees to it
 
   /// Walks over the candidates in their order: where the memory of each is.
   class Finder {
    public:
-    Finder(const CandidateList& list, std::size_t first)
+    Finder(const CandidateList& list, int first)
         : tracked_(list.tracked),
-          next_(static_cast<std::size_t>(
-              std::lower_bound(tracked_.begin(), tracked_.end(), static_cast<int>(first)) -
-              tracked_.begin())) {}
+          next_(static_cast<std::size_t>(std::lower_bound(tracked_.begin(), tracked_.end(), first) -
+                                         tracked_.begin())) {}
     /// Into `memory`; −1: none. No candidate before the last one that was asked for.
     int operator()(std::size_t candidate) {
       const int wanted = static_cast<int>(candidate);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <tuple>
 
@@ -13,15 +15,11 @@ namespace {
 
 constexpr std::size_t piece = 1'024;  // pairs of blocks
 
-/// Length over [0, edge_length] that the edge of the vertex towards `other` shares with an edge it faces.
-double shared_length(const Surface& surface, Vec2 v, int other, Vec2 a, Vec2 normal, Vec2 tangent,
-                     double edge_length) {
-  const Vec2 u = surface.position[at(other)] - v;
-  const double across = dot(normal, u);
-  if (across * across > Tolerances::sine_facing * Tolerances::sine_facing * squared_norm(u)) return 0.0;
-  const double from = dot(v - a, tangent), to = from + dot(u, tangent);
-  const double low = std::max(0.0, std::min(from, to)), high = std::min(edge_length, std::max(from, to));
-  return std::max(0.0, high - low);
+Lanes least(Lanes a, Lanes b) {
+  return b < a ? b : a;
+}
+Lanes largest(Lanes a, Lanes b) {
+  return a < b ? b : a;
 }
 
 }  // namespace
@@ -41,9 +39,9 @@ void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
   });
 }
 
-/// Those of a group that are contacts, but for others of the same two corners, to `found`. Returns their number. All at once and
+/// Those of a group that are contacts, but for others of the same two corners, to `passed`. Returns their number. All at once and
 /// without branches: which of the conditions fails is a matter of chance.
-std::size_t Detection::pass(const CandidateList& candidates, const Group& group, Found* found) const {
+std::size_t Detection::pass(const CandidateList& candidates, const Group& group, Rival* passed) const {
   static_assert(sizeof(Corner) == sizeof(Lanes));
   Lanes edge[lane_count], vertex[lane_count];
   for (std::size_t i = 0; i < lane_count; ++i) {
@@ -56,7 +54,6 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6], reflex = edge[7];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
-  const auto least = [](Lanes a, Lanes b) { return b < a ? b : a; };
   const Lanes reach = load(group.reach.data()), deepest = load(group.deepest.data());
   const Lanes zone = least(tolerances_.end_zone + reach, 0.5 * length);
   const Lanes deep_zone = zone < deepest ? deepest : zone;
@@ -78,22 +75,21 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const auto disputed = (least(along, length - along) < zone) & ~(first_half ? reflex_start : reflex_end);
   std::size_t count = 0;
   for (std::size_t i = 0; i < group.size; ++i) {
-    found[count].candidate = group.candidate[i];
-    found[count].pair = group.pair[i];
-    found[count].gap = gap[i];
-    found[count].along = along[i];
-    found[count].first_half = first_half[i] != 0;
-    found[count].disputed = disputed[i] != 0;
+    passed[count].candidate = group.candidate[i];
+    passed[count].pair = group.pair[i];
+    passed[count].gap = gap[i];
+    passed[count].along = along[i];
+    passed[count].first_half = first_half[i] != 0;
+    passed[count].disputed = disputed[i] != 0;
     count += passes[i] != 0 ? 1 : 0;
   }
   return count;
 }
 
-/// The contacts among the candidates of pairs of blocks [first, last), into `found`, which has room for all of them. Returns their
-/// number.
-std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList& candidates,
-                                     std::size_t first, std::size_t last, Found* found) const {
-  CandidateList::Finder bond_of(candidates, candidates.block_pairs[first]);
+/// The candidates of pairs of blocks [first, last) that pass, but for steady pairs.
+void Detection::find_rivals(const Surface& surface, const CandidateList& candidates, std::size_t first,
+                            std::size_t last, std::vector<Rival>& rivals) const {
+  CandidateList::Finder bond_of(candidates, candidates.block_pairs[first].first);
   const auto is_bonded = [&](std::size_t k) {
     const int memory = bond_of(k);
     return memory >= 0 && candidates.memory[at(memory)].bonded;
@@ -101,12 +97,15 @@ std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList
   std::size_t count = 0;
   Group group;
   const auto take = [&] {
-    if (group.size > 0) count += pass(candidates, group, found + count);
+    rivals.resize(count + lane_count);
+    count += pass(candidates, group, &rivals[count]);
     group.size = 0;
   };
   for (std::size_t p = first; p < last; ++p) {
-    const std::size_t begin = candidates.block_pairs[p], end = candidates.block_pairs[p + 1];
-    const std::size_t a = at(candidates.pairs[begin].block_a), b = at(candidates.pairs[begin].block_b);
+    const BlockPair& pair = candidates.block_pairs[p];
+    if (is_steady(pair)) continue;
+    const std::size_t begin = at(pair.first), end = candidates.end_of_pair(p), a = at(pair.block_a),
+                      b = at(pair.block_b);
     const double reach = motion_.reach[a] + motion_.reach[b], turn = motion_.turn[a] + motion_.turn[b],
                  away = motion_.away[a] + motion_.away[b],
                  deepest = std::min({tolerances_.depth_limit, surface.thickness[a], surface.thickness[b]});
@@ -117,115 +116,163 @@ std::size_t Detection::look_at_pairs(const Surface& surface, const CandidateList
       group.reach[i] = reach;
       group.turn[i] = turn;
       group.deepest[i] = deepest;
-      if (any_bond_) group.bonded[i] = is_bonded(k) ? 1.0 : 0.0;
+      if (candidates.may_have_bonds) group.bonded[i] = is_bonded(k) ? 1.0 : 0.0;
       group.size += away < candidates.pairs[k].clearance ? 0 : 1;
       if (group.size == lane_count) take();
     }
   }
-  take();
+  if (group.size > 0) take();
+  rivals.resize(count);
 
-  CandidateList::Finder memory_of(candidates, candidates.block_pairs[first]);
-  for (std::size_t i = 0; i < count; ++i) {
-    Found& f = found[i];
-    f.memory = memory_of(at(f.candidate));
-    const Candidate& c = candidates.pairs[at(f.candidate)];
-    const int corner = f.first_half ? c.edge : surface.next[at(c.edge)];
+  CandidateList::Finder memory_of(candidates, candidates.block_pairs[first].first);
+  for (Rival& r : rivals) {
+    r.memory = memory_of(at(r.candidate));
+    const Candidate& c = candidates.pairs[at(r.candidate)];
+    const int corner = r.first_half ? c.edge : surface.next[at(c.edge)];
     const auto [low, high] = std::minmax(c.vertex, corner);
-    f.corners = f.disputed ? static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high) : 0;
+    r.corners = r.disputed ? static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high) : 0;
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t corners = found[i].corners;
+}
+
+/// Those that lose to another of the same two corners, and for how long that and everything else about a pair stays as it is.
+/// end: of its candidates; rivals: those that pass.
+void Detection::decide(const Surface& surface, const CandidateList& candidates, BlockPair& pair,
+                       std::size_t end, std::span<Rival> rivals) const {
+  constexpr int steps = 16;                    // after which a pair that was not steady is tried again
+  constexpr double reach_share = 2.0;          // of the reach now, up to which a steady pair is left alone
+  constexpr double least_share = 0.02;         // of the reach, that is worth being steady for
+  constexpr std::size_t most_candidates = 64;  // bits
+  const double reach = motion_.reach[at(pair.block_a)] + motion_.reach[at(pair.block_b)];
+  const bool tries = pair.wait == 0 && end - at(pair.first) <= most_candidates;
+  double margin = tries ? candidate_margin(surface, candidates, pair, end, rivals, reach_share * reach) : 0.0;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    const std::uint64_t corners = rivals[i].corners;
     if (corners == 0) continue;
-    std::array<Found*, 4> rivals{&found[i]};  // two edges end in each corner
+    std::array<Rival*, 4> meeting{&rivals[i]};  // two edges end in each corner
     std::size_t size = 1;
-    for (std::size_t k = i + 1; k < count && found[k].pair == found[i].pair && size < rivals.size(); ++k) {
-      if (found[k].corners == corners) rivals[size++] = &found[k];
+    for (std::size_t k = i + 1; k < rivals.size() && size < meeting.size(); ++k) {
+      if (rivals[k].corners == corners) meeting[size++] = &rivals[k];
     }
-    compete(std::span(rivals).first(size), candidates);
+    const auto same = std::span(meeting).first(size);
+    const Outcome outcome = compete(same, candidates);
+    if (margin > 0.0) margin = std::min(margin, outcome_margin(same, outcome, candidates));
+    for (Rival* r : same) {
+      r->corners = 0;
+      if (r != outcome.winner) r->candidate = -1;
+    }
   }
-  const Found* end = std::remove_if(found, found + count, [](const Found& f) { return f.candidate < 0; });
-  return static_cast<std::size_t>(end - found);
+  pair.wait = std::max(0, pair.wait - 1);
+  if (!tries) return;
+  if (!(margin > least_share * reach)) {
+    pair.wait = steps;
+    return;
+  }
+  pair.steady = motion_.way[at(pair.block_a)] + motion_.way[at(pair.block_b)] + margin;
+  pair.reach = reach_share * reach;
+  pair.contacts = 0;
+  for (const Rival& r : rivals) {
+    if (r.candidate >= 0) pair.contacts |= std::uint64_t{1} << (r.candidate - pair.first);
+  }
+}
+
+bool Detection::is_steady(const BlockPair& pair) const {
+  const std::size_t a = at(pair.block_a), b = at(pair.block_b);
+  return motion_.way[a] + motion_.way[b] <= pair.steady && motion_.reach[a] + motion_.reach[b] <= pair.reach;
+}
+
+/// The contacts among the candidates of pairs of blocks [first, last).
+void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates, std::size_t first,
+                              std::size_t last, std::vector<Found>& found) const {
+  std::vector<Rival> rivals;
+  find_rivals(surface, candidates, first, last, rivals);
+  const auto end_of = [&](std::size_t p) { return candidates.end_of_pair(p); };
+  for (auto r = rivals.begin(); r != rivals.end();) {
+    const int p = r->pair;
+    const auto next = std::find_if(r, rivals.end(), [p](const Rival& other) { return other.pair != p; });
+    decide(surface, candidates, candidates.block_pairs[at(p)], end_of(at(p)), {r, next});
+    r = next;
+  }
+  found.clear();
+  CandidateList::Finder memory_of(candidates, candidates.block_pairs[first].first);
+  auto r = rivals.begin();
+  for (std::size_t p = first; p < last; ++p) {
+    const BlockPair& pair = candidates.block_pairs[p];
+    const bool steady = is_steady(pair);
+    if (steady) {
+      for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1) {
+        const int candidate = pair.first + std::countr_zero(left);
+        found.push_back({candidate, memory_of(at(candidate))});
+      }
+    }
+    for (; r != rivals.end() && at(r->pair) == p; ++r) {
+      if (!steady && r->candidate >= 0) found.push_back({r->candidate, r->memory});
+    }
+  }
 }
 
 /// Piece by piece of the pairs of blocks, so that the order of what is found is the same whoever finds it.
-void Detection::look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team) {
-  const std::vector<std::size_t>& begins = candidates.block_pairs;
-  const std::size_t n = begins.empty() ? 0 : begins.size() - 1, pieces = (n + piece - 1) / piece;
-  room_.resize(candidates.pairs.size());
-  std::vector<std::size_t> count(pieces, 0);
-  const auto look_at_piece = [&](std::size_t p) {
-    count[p] = look_at_pairs(surface, candidates, p * piece, std::min(n, (p + 1) * piece),
-                             &room_[begins[p * piece]]);
-  };
-  team.for_range(pieces, 2, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) look_at_piece(p);
-  });
-  std::size_t total = 0;
-  for (std::size_t p = 0; p < pieces; ++p) {
-    if (p > 0) std::copy_n(&room_[begins[p * piece]], count[p], &room_[total]);
-    total += count[p];
-  }
-  found_ = std::span(room_).first(total);
-}
-
-void Detection::find(const Surface& surface, const Motion& motion, const CandidateList& candidates,
+void Detection::find(const Surface& surface, const Motion& motion, CandidateList& candidates,
                      ThreadTeam& team, std::vector<Contact>& contacts) {
   motion_ = motion;
   measure_corners(surface, team);
-  any_bond_ = std::any_of(candidates.memory.begin(), candidates.memory.end(),
-                          [](const Memory& memory) { return memory.bonded; });
-  look(surface, candidates, team);
-  contacts.resize(found_.size());
-  team.for_range(found_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) add(surface, found_[k], candidates, contacts[k]);
+  const std::size_t pairs = candidates.block_pairs.size(), pieces = (pairs + piece - 1) / piece;
+  const auto for_pieces = [&](const auto& of_piece) {
+    team.for_range(pieces, 2, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) of_piece(p);
+    });
+  };
+  found_.resize(pieces);
+  for_pieces([&](std::size_t p) {
+    look_at_pairs(surface, candidates, p * piece, std::min(pairs, (p + 1) * piece), found_[p]);
+  });
+  std::vector<std::size_t> first(pieces, 0);  // contact of each piece
+  std::size_t total = 0;
+  for (std::size_t p = 0; p < pieces; ++p) {
+    first[p] = total;
+    total += found_[p].size();
+  }
+  contacts.resize(total);
+  for_pieces([&](std::size_t p) {
+    describe(surface, candidates, found_[p], std::span(contacts).subspan(first[p], found_[p].size()));
   });
 }
 
-/// Which of the candidates for one pair of corners is the contact.
-void Detection::compete(std::span<Found* const> rivals, const CandidateList& candidates) const {
-  const auto line = [&](const Found& f) -> const Corner& {
-    return corners_[at(candidates.pairs[at(f.candidate)].edge)];
-  };
-  const auto over = [&](const Found& f) { return inside(f.along, line(f).length); };
-  const auto turned = [&](const Found& f, const Found& g) {
-    return std::abs(cross(line(f).tangent, line(g).tangent)) >= Tolerances::sine_parallel;
-  };
-  const auto force = [&](const Found& f) { return candidates.memory[at(f.memory)].normal_force; };
+Detection::Outcome Detection::compete(std::span<Rival* const> rivals, const CandidateList& candidates) const {
+  const auto line = [&](const Rival& f) -> const Corner& { return this->line(f, candidates); };
+  const auto over = [&](const Rival& f) { return inside(f.along, line(f).length); };
+  const auto force = [&](const Rival& f) { return candidates.memory[at(f.memory)].normal_force; };
   bool parallel = true;
-  Found* holder = nullptr;  // the one that was in contact; the strongest, should there be several
-  for (Found* f : rivals) {
-    parallel = parallel && !turned(*f, *rivals[0]);
+  Rival* holder = nullptr;  // the one that was in contact; the strongest, should there be several
+  for (Rival* f : rivals) {
+    parallel = parallel && !turned(line(*f), line(*rivals[0]));
     if (f->memory >= 0 && (holder == nullptr || force(*f) > force(*holder))) holder = f;
   }
-  Found* winner = nullptr;
+  Rival* winner = nullptr;
   if (parallel) {
-    for (Found* f : rivals) {
+    for (Rival* f : rivals) {
       if (winner == nullptr || over(*f) > over(*winner)) winner = f;
     }
-    const double leave = -0.5 * tolerances_.end_zone;
-    if (holder != nullptr && (over(*holder) > leave || over(*winner) < -tolerances_.rounding)) {
+    if (holder != nullptr && (over(*holder) > leave() || over(*winner) < -tolerances_.rounding)) {
       winner = holder;
     } else if (holder == nullptr && over(*winner) < -tolerances_.rounding) {
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {
-    for (Found* f : rivals) {
+    for (Rival* f : rivals) {
       if (winner == nullptr || f->gap > winner->gap) winner = f;
     }
     double second = -HUGE_VAL;
-    for (const Found* f : rivals) {
-      if (turned(*f, *winner)) second = std::max(second, f->gap);
+    for (const Rival* f : rivals) {
+      if (turned(line(*f), line(*winner))) second = std::max(second, f->gap);
     }
     const double best = winner->gap;
     if (best > -tolerances_.corner_depth && best - second < tolerances_.corner_tie) winner = nullptr;
   }
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.
-  if (winner != nullptr && holder != nullptr && parallel) winner->memory = holder->memory;
-  for (Found* f : rivals) {
-    f->corners = 0;
-    if (f != winner) f->candidate = -1;
-  }
+  const bool hands_over = winner != nullptr && holder != nullptr && parallel && winner != holder;
+  if (hands_over) winner->memory = holder->memory;
+  return {winner, parallel, hands_over};
 }
 
 namespace {
@@ -248,34 +295,41 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 
 }  // namespace
 
-void Detection::add(const Surface& surface, const Found& found, const CandidateList& candidates,
-                    Contact& contact) const {
-  const Candidate& candidate = candidates.pairs[at(found.candidate)];
-  const Corner& line = corners_[at(candidate.edge)];
-  const Vec2 a = surface.position[at(candidate.edge)], v = surface.position[at(candidate.vertex)],
-             normal = line.normal();
-  contact.candidate = found.candidate;
-  contact.block_a = candidate.block_a;
-  contact.block_b = candidate.block_b;
-  contact.vertex = candidate.vertex;
-  contact.edge = candidate.edge;
-  contact.normal = normal;
-  contact.position = found.along / line.length;
-  contact.gap = found.gap;
-  contact.length = 0.5 * (shared_length(surface, v, surface.previous[at(candidate.vertex)], a, normal,
-                                        line.tangent, line.length) +
-                          shared_length(surface, v, surface.next[at(candidate.vertex)], a, normal,
-                                        line.tangent, line.length));
-
-  Memory& memory = contact.memory;
-  if (found.memory < 0) {
-    memory = {};
-    memory.offset = std::max(0.0, -found.gap);
-  } else {
-    memory = candidates.memory[at(found.memory)];
-    if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -found.gap));
+/// Eight at once, or fewer at the end.
+Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
+                                       std::span<const Found> found) const {
+  Lanes edge[lane_count], vertex[lane_count];
+  double to_x[2][lane_count], to_y[2][lane_count];  // from the vertex to the previous one, and to the next
+  for (std::size_t i = 0; i < lane_count; ++i) {
+    const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
+    const Corner& corner = corners_[at(c.vertex)];
+    edge[i] = load(&corners_[at(c.edge)].position.x);
+    vertex[i] = load(&corner.position.x);
+    const std::size_t others[2] = {at(surface.previous[at(c.vertex)]), at(surface.next[at(c.vertex)])};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec2 to = surface.position[others[k]] - corner.position;
+      to_x[k][i] = to.x;
+      to_y[k][i] = to.y;
+    }
   }
+  transpose(edge);
+  transpose(vertex);
+  const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
+  const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
+  const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
+  // Length over the edge that an edge of the vertex shares with it, where they face each other.
+  const auto shared = [&](std::size_t k) {
+    const Lanes ux = load(to_x[k]), uy = load(to_y[k]), across = nx * ux + ny * uy,
+                to = along + (ux * tx + uy * ty);
+    const Lanes low = largest(Lanes{}, least(along, to)), high = least(length, largest(along, to));
+    const auto turned =
+        across * across > Tolerances::sine_facing * Tolerances::sine_facing * (ux * ux + uy * uy);
+    return turned ? Lanes{} : largest(Lanes{}, high - low);
+  };
+  return {gap, along / length, 0.5 * (shared(0) + shared(1))};
+}
 
+void Detection::give_law(const Surface& surface, Contact& contact) const {
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
   const double per_length = law.normal_stiffness > 0.0
                                 ? law.normal_stiffness
@@ -283,25 +337,61 @@ void Detection::add(const Surface& surface, const Found& found, const CandidateL
   contact.normal_stiffness = per_length * std::max(contact.length, tolerances_.least_length);
   contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
   contact.friction_coefficient = law.friction_coefficient;
-  contact.cohesion = memory.bonded ? law.cohesion * contact.length : 0.0;
-  contact.tension = memory.bonded ? law.tension * contact.length : 0.0;
-  contact.fused = memory.bonded && law.fused;
-  keep_energy(memory, contact.gap, contact.normal_stiffness);
-  contact.depth = -contact.gap - memory.offset + memory.multiplier;
+  contact.cohesion = contact.memory.bonded ? law.cohesion * contact.length : 0.0;
+  contact.tension = contact.memory.bonded ? law.tension * contact.length : 0.0;
+  contact.fused = contact.memory.bonded && law.fused;
+}
+
+void Detection::describe(const Surface& surface, const CandidateList& candidates,
+                         std::span<const Found> found, std::span<Contact> contacts) const {
+  for (std::size_t begin = 0; begin < found.size(); begin += lane_count) {
+    const std::size_t count = std::min(found.size() - begin, std::size_t{lane_count});
+    const Geometry geometry = measure(surface, candidates, found.subspan(begin, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Found& f = found[begin + i];
+      const Candidate& candidate = candidates.pairs[at(f.candidate)];
+      Contact& contact = contacts[begin + i];
+      contact.candidate = f.candidate;
+      contact.block_a = candidate.block_a;
+      contact.block_b = candidate.block_b;
+      contact.vertex = candidate.vertex;
+      contact.edge = candidate.edge;
+      contact.normal = corners_[at(candidate.edge)].normal();
+      contact.position = geometry.position[i];
+      contact.gap = geometry.gap[i];
+      contact.length = geometry.length[i];
+      Memory& memory = contact.memory;
+      if (f.memory < 0) {
+        memory = {};
+        memory.offset = std::max(0.0, -contact.gap);
+      } else {
+        memory = candidates.memory[at(f.memory)];
+        if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -contact.gap));
+      }
+      give_law(surface, contact);
+      keep_energy(memory, contact.gap, contact.normal_stiffness);
+      contact.depth = -contact.gap - memory.offset + memory.multiplier;
+    }
+  }
 }
 
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
   candidates.tracked.resize(contacts.size());
   candidates.memory.resize(contacts.size());
+  std::atomic<bool> any_bond = false;
   team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    bool any = false;
     for (std::size_t k = begin; k < end; ++k) {
       const Contact& c = contacts[k];
       candidates.tracked[k] = c.candidate;
       candidates.memory[k] = c.memory;
-      if (c.memory.bonded)
-        candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
+      if (!c.memory.bonded) continue;
+      candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
+      any = true;
     }
+    if (any) any_bond = true;
   });
+  candidates.may_have_bonds = any_bond;
 }
 
 }  // namespace keyblock::contact

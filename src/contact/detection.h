@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -64,9 +65,11 @@ class Detection {
     std::span<const double> reach;  ///< m, in the step
     std::span<const double> turn;   ///< rad, in the step
     std::span<const double> away;   ///< m, Candidates::away
+    /// m, per block: length of the way that it has gone since some time in the past, by the vertex that moved furthest in each step.
+    std::span<const double> way;
   };
   /// Contacts of the step in the order of the candidates.
-  void find(const Surface& surface, const Motion& motion, const CandidateList& candidates, ThreadTeam& team,
+  void find(const Surface& surface, const Motion& motion, CandidateList& candidates, ThreadTeam& team,
             std::vector<Contact>& contacts);
 
   [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
@@ -82,19 +85,44 @@ class Detection {
     [[nodiscard]] Vec2 normal() const { return {tangent.y, -tangent.x}; }
   };
   /// A candidate that passes the geometry.
-  struct Found {
+  struct Rival {
     int candidate;          ///< −1: has lost to another of the same two corners
     int pair;               ///< of blocks
     int memory;             ///< of the list, that it goes on with; −1: none
-    std::uint64_t corners;  ///< the two that meet; 0: none
     bool first_half;        ///< of the edge is where the vertex is
     bool disputed;          ///< the vertex is near an end of the edge, so that two corners meet
+    std::uint64_t corners;  ///< the two that meet; 0: none
     double gap, along;      ///< m
   };
+  /// A contact of the step.
+  struct Found {
+    int candidate;
+    int memory;  ///< of the list, that it goes on with; −1: none
+  };
   void measure_corners(const Surface& surface, ThreadTeam& team);
-  void look(const Surface& surface, const CandidateList& candidates, ThreadTeam& team);
-  std::size_t look_at_pairs(const Surface& surface, const CandidateList& candidates, std::size_t first,
-                            std::size_t last, Found* found) const;
+  void look_at_pairs(const Surface& surface, CandidateList& candidates, std::size_t first, std::size_t last,
+                     std::vector<Found>& found) const;
+  void find_rivals(const Surface& surface, const CandidateList& candidates, std::size_t first,
+                   std::size_t last, std::vector<Rival>& rivals) const;
+  void decide(const Surface& surface, const CandidateList& candidates, BlockPair& pair, std::size_t end,
+              std::span<Rival> rivals) const;
+  [[nodiscard]] bool is_steady(const BlockPair& pair) const;
+  /// Which of the candidates for one pair of corners is the contact.
+  struct Outcome {
+    Rival* winner = nullptr;   ///< null: none
+    bool parallel = true;      ///< all their lines
+    bool handed_over = false;  ///< the winner goes on with the memory of another
+  };
+  [[nodiscard]] Outcome compete(std::span<Rival* const> rivals, const CandidateList& candidates) const;
+  // m by which both blocks of a pair together may move before its contacts are others; 0: not known. `reach`: m, what their reaches
+  // add up to at most.
+  [[nodiscard]] double candidate_margin(const Surface& surface, const CandidateList& candidates,
+                                        const BlockPair& pair, std::size_t end, std::span<const Rival> rivals,
+                                        double reach) const;
+  [[nodiscard]] double rival_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
+                                    double reach) const;
+  [[nodiscard]] double outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
+                                      const CandidateList& candidates) const;
   /// Up to as many candidates as there are lanes, and what their two blocks together may do (Motion).
   struct Group {
     std::size_t size = 0;
@@ -103,22 +131,37 @@ class Detection {
     std::array<double, lane_count> deepest{};  ///< m, depth up to which they may be in contact
     std::array<double, lane_count> bonded{};   ///< 1 or 0
   };
-  std::size_t pass(const CandidateList& candidates, const Group& group, Found* found) const;
+  std::size_t pass(const CandidateList& candidates, const Group& group, Rival* passed) const;
+  /// Whether lines cannot count as one.
+  [[nodiscard]] static bool turned(const Corner& one, const Corner& other) {
+    return std::abs(cross(one.tangent, other.tangent)) >= Tolerances::sine_parallel;
+  }
+  /// m, how far beyond an end the contact of parallel lines stays where it is.
+  [[nodiscard]] double leave() const { return -0.5 * tolerances_.end_zone; }
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
-  void compete(std::span<Found* const> rivals, const CandidateList& candidates) const;
-  void add(const Surface& surface, const Found& found, const CandidateList& candidates,
-           Contact& contact) const;
+  [[nodiscard]] const Corner& line(const Rival& rival, const CandidateList& candidates) const {
+    return corners_[static_cast<std::size_t>(
+        candidates.pairs[static_cast<std::size_t>(rival.candidate)].edge)];
+  }
+  void describe(const Surface& surface, const CandidateList& candidates, std::span<const Found> found,
+                std::span<Contact> contacts) const;
+  /// What is computed of as many contacts as there are lanes at once.
+  struct Geometry {
+    Lanes gap, position, length;  ///< as of Contact
+  };
+  [[nodiscard]] Geometry measure(const Surface& surface, const CandidateList& candidates,
+                                 std::span<const Found> found) const;
+  void give_law(const Surface& surface, Contact& contact) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
   // Scratch.
   std::vector<Corner> corners_;  ///< per vertex
-  bool any_bond_ = false;        ///< whether a contact of the last step is bonded
   Motion motion_;                ///< in the step
-  std::vector<Found> room_;      ///< for all candidates to pass
-  std::span<Found> found_;       ///< its beginning: the contacts, in the order of the candidates
+  std::vector<std::vector<Found>>
+      found_;  ///< by piece of the pairs of blocks, in the order of the candidates
 };
 
 }  // namespace keyblock::contact

@@ -37,6 +37,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       iterative_{linalg::make_block_conjugate_gradient(&team)},
       reach_(model.blocks.size(), 0.0),
       turn_(model.blocks.size(), 0.0),
+      way_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       speed_(model.blocks.size(), 0.0),
       spin_(model.blocks.size(), 0.0),
@@ -65,6 +66,7 @@ void Stepper::place(State& state) {
         surface.position[v] = x;
       }
       state.moved[b] = std::sqrt(moved);
+      way_[b] += state.moved[b];
     }
   });
 }
@@ -81,7 +83,8 @@ void Stepper::start(State& state) {
   std::fill(reach_.begin(), reach_.end(), 0.0);
   std::fill(turn_.begin(), turn_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts, team_);
-  detection_.find(model_.surface, {reach_, turn_, candidates_.away()}, state.contacts, team_, contacts_);
+  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
+                  contacts_);
   for (contact::Contact& c : contacts_) {
     contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
@@ -125,7 +128,7 @@ std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
   contact::CandidateList list = state.contacts;
   candidates.update(model_.surface, still, list, team_);
   std::vector<contact::Contact> contacts;
-  detection_.find(model_.surface, {still, still, candidates.away()}, list, team_, contacts);
+  detection_.find(model_.surface, {still, still, candidates.away(), way_}, list, team_, contacts);
   return contacts;
 }
 
@@ -166,7 +169,8 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
 void Stepper::detect(State& state) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
-  detection_.find(model_.surface, {reach_, turn_, candidates_.away()}, state.contacts, team_, contacts_);
+  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
+                  contacts_);
   ensure_pattern(state, changed);
 }
 

@@ -149,9 +149,9 @@ class Stepper {
   std::optional<double> products_;  ///< block products of a factorization with the pattern
   std::vector<contact::Contact> contacts_;
   std::vector<int> unknown_sizes_;
-  std::vector<int> pair_of_candidate_;  ///< index into State::pattern, −1 with a fixed block
-  bool has_places_ = false;             ///< pair_of_candidate_ is that of the pattern
-  std::vector<double> reach_, turn_;    ///< m and rad, per block: Detection::Motion
+  std::vector<int> pair_of_candidate_;      ///< index into State::pattern, −1 with a fixed block
+  bool has_places_ = false;                 ///< pair_of_candidate_ is that of the pattern
+  std::vector<double> reach_, turn_, way_;  ///< m and rad, per block: Detection::Motion
   std::vector<double> increment_;
   IncrementHistory history_;             ///< of dynamic steps by solvers that start from a guess
   bool guessed_ = false;                 ///< the last attempt started from one

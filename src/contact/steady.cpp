@@ -1,0 +1,130 @@
+// How far the blocks of a pair may move before its contacts are others.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/detection.h"
+#include "core/index.h"
+
+namespace keyblock::contact {
+
+namespace {
+
+/// Of a line of length L whose ends move by m: it turns by less than this times m / L, as long as m is at most
+constexpr double turn = 2.2;
+constexpr double largest = 0.05;  // of L
+
+/// How much a distance of a vertex from a line changes at most, over the motion m of both blocks together: n·(V − A) by 1 + 2.2
+/// |V − A| / L; the rest is room.
+double rate(double distance, double length) {
+  return 2.0 + turn * distance / length;
+}
+
+}  // namespace
+
+/// Before another candidate of the pair passes, or one that does passes no more, or comes to meet other corners.
+double Detection::candidate_margin(const Surface& surface, const CandidateList& candidates,
+                                   const BlockPair& pair, std::size_t end, std::span<const Rival> rivals,
+                                   double reach) const {
+  double margin = HUGE_VAL;
+  auto rival = rivals.begin();
+  for (std::size_t k = at(pair.first); k < end && margin > 0.0; ++k) {
+    const Candidate& c = candidates.pairs[k];
+    if (rival != rivals.end() && at(rival->candidate) == k) {
+      margin = std::min(margin, rival_margin(surface, c, *rival++, reach));
+    } else {
+      margin = std::min(margin, clearance(surface, surface.position, tolerances_, c.vertex, c.edge) - reach);
+    }
+  }
+  return std::max(0.0, margin);
+}
+
+/// The conditions of pass(), each with what is between it and failure. What reach and turn add to them only helps, but where it
+/// makes corners meet.
+double Detection::rival_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
+                               double reach) const {
+  const Corner &line = corners_[at(candidate.edge)], &vertex = corners_[at(candidate.vertex)];
+  const double length = line.length, zone = tolerances_.end_zone;
+  if (length < 4.0 * zone) return 0.0;
+  const double from_start = norm(vertex.position - line.position),
+               from_end = norm(vertex.position - line.position - length * line.tangent);
+  const double start_rate = rate(from_start, length), end_rate = rate(from_end, length),
+               gap_rate = std::min(start_rate, end_rate);
+  const double deepest = std::min({tolerances_.depth_limit, surface.thickness[at(candidate.block_a)],
+                                   surface.thickness[at(candidate.block_b)]});
+  const bool reflex_start = surface.reflex[at(candidate.edge)] != 0,
+             reflex_end = surface.reflex[at(surface.next[at(candidate.edge)])] != 0;
+  const auto beyond = [&](bool reflex) { return reflex ? std::max(zone, deepest) : zone; };
+  double margin = std::min({(tolerances_.activation - rival.gap) / gap_rate, (rival.gap + deepest) / gap_rate,
+                            (rival.along + beyond(reflex_start)) / start_rate,
+                            (length + beyond(reflex_end) - rival.along) / end_rate});
+
+  for (const int other : {surface.previous[at(candidate.vertex)], surface.next[at(candidate.vertex)]}) {
+    const Vec2 u = surface.position[at(other)] - vertex.position;
+    const double size = norm(u), shortest = std::min(size, length);
+    const double outside = dot(line.normal(), u) / size + Tolerances::sine_inside;
+    margin = std::min(margin, std::min(outside / turn, largest) * shortest);
+  }
+
+  const double from_zone_start = (rival.along - zone - reach) / start_rate,
+               from_zone_end = (length - rival.along - zone - reach) / end_rate;
+  if (from_zone_start > 0.0 && from_zone_end > 0.0) return std::min({margin, from_zone_start, from_zone_end});
+  margin = std::min(margin, std::abs(rival.along - 0.5 * length) / std::max(start_rate, end_rate));
+  if (rival.first_half ? reflex_start : reflex_end) return margin;
+  return std::min(margin, rival.first_half ? (zone - rival.along) / start_rate
+                                           : (zone - (length - rival.along)) / end_rate);
+}
+
+/// The rules of compete(), with the winner as the one that was in contact.
+double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
+                                 const CandidateList& candidates) const {
+  if (outcome.handed_over) return 0.0;
+  const auto line = [&](const Rival* r) -> const Corner& { return this->line(*r, candidates); };
+  // Near an end of their lines, all of them.
+  const auto over_rate = [&](const Rival* r) {
+    return rate(line(r).length + tolerances_.depth_limit, line(r).length);
+  };
+  const auto gap_rate = [&](const Rival* r) {
+    return rate(std::abs(r->gap) + std::abs(inside(r->along, line(r).length)), line(r).length);
+  };
+  double margin = HUGE_VAL, fastest = 0.0, least_gap = HUGE_VAL, largest_gap = -HUGE_VAL;
+  bool each_turned = true;
+  for (const Rival* r : rivals) {
+    bool any_turned = false;
+    for (const Rival* other : rivals) {
+      if (other == r) continue;
+      const double sine = std::abs(cross(line(r).tangent, line(other).tangent)),
+                   shortest = std::min(line(r).length, line(other).length);
+      margin = std::min(
+          margin, std::min(std::abs(sine - Tolerances::sine_parallel) / (2.0 * turn), largest) * shortest);
+      any_turned = any_turned || turned(line(r), line(other));
+    }
+    each_turned = each_turned && any_turned;
+    fastest = std::max(fastest, gap_rate(r));
+    least_gap = std::min(least_gap, r->gap);
+    largest_gap = std::max(largest_gap, r->gap);
+  }
+  const Rival* winner = outcome.winner;
+  if (outcome.parallel) {
+    if (winner != nullptr)
+      return std::min(margin, (inside(winner->along, line(winner).length) - leave()) / over_rate(winner));
+    for (const Rival* r : rivals)
+      margin = std::min(margin, (-tolerances_.rounding - inside(r->along, line(r).length)) / over_rate(r));
+    return margin;
+  }
+  if (winner == nullptr) {  // a tie, whichever has the largest gap
+    if (!each_turned) return 0.0;
+    return std::min({margin, (largest_gap + tolerances_.corner_depth) / fastest,
+                     (tolerances_.corner_tie - (largest_gap - least_gap)) / (2.0 * fastest)});
+  }
+  double second = -HUGE_VAL;
+  for (const Rival* r : rivals) {
+    if (r == winner) continue;
+    margin = std::min(margin, (winner->gap - r->gap) / (2.0 * fastest));
+    if (turned(line(r), line(winner))) second = std::max(second, r->gap);
+  }
+  const double deep = (-tolerances_.corner_depth - winner->gap) / fastest,
+               apart = (winner->gap - second - tolerances_.corner_tie) / (2.0 * fastest);
+  return std::min(margin, std::max(deep, apart));
+}
+
+}  // namespace keyblock::contact
