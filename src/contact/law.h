@@ -24,17 +24,32 @@ class Spring {
     bool tensile = false;                                  ///< the normal spring also pulls
   };
   Spring() = default;
+  /// The one spring that spring and dashpot are. Number: of one contact, or of several at once.
+  template <typename Number>
+  struct Shifted {
+    Number normal_stiffness, shear_stiffness;  ///< N/m per thickness
+    Number depth, shear;                       ///< m, y and w at D = 0
+    /// x_pressed: x₀ where the normal spring acts, else 0.
+    static Shifted of(Number k_n, Number k_s, Number c_n, Number c_s, Number x, Number x_pressed, Number u) {
+      const Number normal = k_n + c_n, shear = k_s + c_s;
+      return {normal, shear, x - c_n * x_pressed / normal, u - c_s * u / shear};
+    }
+  };
   explicit Spring(const Constants& c)
+      : Spring(c,
+               Shifted<double>::of(c.normal_stiffness, c.shear_stiffness, c.normal_damping, c.shear_damping,
+                                   c.depth, c.tensile ? c.depth : std::max(c.depth, 0.0), c.shear)) {}
+  Spring(const Constants& c, const Shifted<double>& s)
       : elastic_normal_(c.normal_stiffness),
         elastic_shear_(c.shear_stiffness),
         start_depth_(c.depth),
         start_shear_(c.shear),
         bound_(c.bound),
         tensile_(c.tensile),
-        normal_(c.normal_stiffness + c.normal_damping),
-        shear_(c.shear_stiffness + c.shear_damping),
-        depth_(c.depth - c.normal_damping * (c.tensile ? c.depth : std::max(c.depth, 0.0)) / normal_),
-        origin_(c.shear - c.shear_damping * c.shear / shear_) {}
+        normal_(s.normal_stiffness),
+        shear_(s.shear_stiffness),
+        depth_(s.depth),
+        origin_(s.shear) {}
 
   // The one spring: penetration y and shear w about the shifted origin.
   [[nodiscard]] double normal_stiffness() const { return normal_; }
@@ -43,20 +58,11 @@ class Spring {
   [[nodiscard]] double shear() const { return origin_; }  ///< w at D = 0
   [[nodiscard]] double bound() const { return bound_; }
   [[nodiscard]] bool tensile() const { return tensile_; }
-  void set_bound(double bound) { bound_ = bound; }
-  /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
-  void shift(double normal, double shear) {
-    depth_ += normal;
-    origin_ += shear;
-  }
-  void break_bond() { tensile_ = false; }
 
   [[nodiscard]] bool closed(double y) const { return tensile_ || y > 0.0; }
   [[nodiscard]] bool locked(double w) const { return std::abs(shear_ * w) <= bound_; }
   [[nodiscard]] double normal_force(double y) const { return closed(y) ? normal_ * y : 0.0; }
   [[nodiscard]] double shear_force(double w) const { return std::clamp(shear_ * w, -bound_, bound_); }
-  /// T of a contact that goes on sliding the way its spring is stretched.
-  [[nodiscard]] double sliding_force() const { return origin_ == 0.0 ? 0.0 : std::copysign(bound_, origin_); }
   /// Minus the integral of the forces: ∂potential/∂y = N, ∂potential/∂w = T.
   [[nodiscard]] double potential(double y, double w) const {
     const double force = shear_force(w);

@@ -1,4 +1,8 @@
 #pragma once
+#include <cmath>
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
 
 namespace keyblock {
 
@@ -26,6 +30,17 @@ inline Lanes broadcast(double x) {
 }
 inline NarrowLanes broadcast(float x) {
   return NarrowLanes{x, x, x, x, x, x, x, x};
+}
+
+inline Lanes square_root(Lanes v) {
+#if defined(__AVX__)
+  const __m256d low = _mm256_sqrt_pd(__builtin_shufflevector(v, v, 0, 1, 2, 3)),
+                high = _mm256_sqrt_pd(__builtin_shufflevector(v, v, 4, 5, 6, 7));
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  for (int i = 0; i < lane_count; ++i) v[i] = std::sqrt(v[i]);
+  return v;
+#endif
 }
 
 /// Of all lanes, always in this order.

@@ -30,40 +30,6 @@ struct Sums {
 
 }  // namespace
 
-/// Springs unstretched by the step, and those assumed in the first solve: what acted in the last step.
-void OpenClose::start(const StepProblem& problem, std::span<const contact::Contact> contacts) {
-  const auto& rows = problem.rows();
-  springs_.resize(rows.size());
-  friction_.resize(rows.size());
-  cohesion_.resize(rows.size());
-  std::atomic<bool> any_bond = false;
-  const auto start_springs = [&](std::size_t begin, std::size_t end) {
-    bool any = false;
-    for (std::size_t c = begin; c < end; ++c) {
-      const StepProblem::Row& row = rows[c];
-      const contact::Spring& s = problem.springs()[c];
-      springs_.set(c, s, problem.depth(c, row.moved), problem.shear(c, row.moved));
-      friction_[c] = contacts[c].fused ? -1.0 : contacts[c].friction_coefficient;
-      cohesion_[c] = contacts[c].cohesion;
-      any = any || (contacts[c].memory.bonded && !contacts[c].fused);
-      Shear assumed = Shear::none;
-      if (s.bound() > 0.0) {
-        if (contacts[c].memory.state == contact::State::locked) {
-          assumed = Shear::held;
-        } else if (s.shear() != 0.0) {
-          assumed = s.shear() > 0.0 ? Shear::forward : Shear::backward;
-        }
-      }
-      springs_.piece[c] = {contacts[c].memory.state != contact::State::open || s.tensile(), assumed};
-    }
-    if (any) any_bond = true;
-  };
-  team_->for_range(rows.size(), contacts_worth_threads, start_springs);
-  any_bond_ = any_bond;
-  assembled_ = knows_relative_ = false;
-  bound_steps_.clear();
-}
-
 /// out += scale · ∂ψ/∂D for a contact whose springs push with `force`.
 void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                           std::span<double> out) {
@@ -79,19 +45,19 @@ Vec2 OpenClose::contact_gradient(const StepProblem& problem, std::size_t c, Forc
 
 /// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
 SpringArray::Force OpenClose::bend(std::size_t c, double alpha) const {
-  const double y = springs_.y[c] + alpha * springs_.dy[c], w = springs_.w[c] + alpha * springs_.dw[c];
-  return springs_.force_at(c, y, w) - springs_.force_on(c, springs_.piece[c], y, w);
+  const double y = springs_->y[c] + alpha * springs_->dy[c], w = springs_->w[c] + alpha * springs_->dw[c];
+  return springs_->force_at(c, y, w) - springs_->force_on(c, springs_->piece[c], y, w);
 }
 
 /// The matrix is ∇²Π on the pieces that the contacts are on.
 void OpenClose::assemble(const StepProblem& problem, linalg::BlockSolver& solver) {
   problem.assemble(solver);
   begin_factor(problem, solver);
-  factored_ = springs_.piece;
+  factored_ = springs_->piece;
   team_->for_range(factored_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      factor_.normal_stiffness[c] = springs_.normal_stiffness(c, factored_[c]);
-      factor_.shear_stiffness[c] = springs_.shear_stiffness(c, factored_[c]);
+      factor_.normal_stiffness[c] = springs_->normal_stiffness(c, factored_[c]);
+      factor_.shear_stiffness[c] = springs_->shear_stiffness(c, factored_[c]);
       factor_.places[c] = StepProblem::Place(contacts_[c]);
     }
   });
@@ -122,10 +88,10 @@ bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& s
   changes_.clear();
   find_bent();
   for (const std::size_t c : bends_) {
-    const Piece from = std::exchange(factored_[c], springs_.piece[c]), to = factored_[c];
+    const Piece from = std::exchange(factored_[c], springs_->piece[c]), to = factored_[c];
     if (from.same_springs(to)) continue;
     const bool had_spring = factor_.has_spring(c);
-    const double normal = springs_.normal_stiffness(c, to), shear = springs_.shear_stiffness(c, to),
+    const double normal = springs_->normal_stiffness(c, to), shear = springs_->shear_stiffness(c, to),
                  normal_before = std::exchange(factor_.normal_stiffness[c], normal),
                  shear_before = std::exchange(factor_.shear_stiffness[c], shear);
     if (normal == normal_before && shear == shear_before) continue;
@@ -179,8 +145,8 @@ void OpenClose::find_direction(const StepProblem& problem) {
   team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Vec2 r = problem.relative(rows[c], direction_);
-      springs_.dy[c] = -dot(rows[c].normal, r);
-      springs_.dw[c] = dot(rows[c].tangent(), r);
+      springs_->dy[c] = -dot(rows[c].normal, r);
+      springs_->dw[c] = dot(rows[c].tangent(), r);
     }
   });
 }
@@ -188,11 +154,11 @@ void OpenClose::find_direction(const StepProblem& problem) {
 /// Contacts that change piece between where they are and α along the direction.
 void OpenClose::find_bends(double alpha) {
   const auto bends = [&](std::size_t c) {
-    const Piece p =
-        springs_.piece_at(c, springs_.y[c] + alpha * springs_.dy[c], springs_.w[c] + alpha * springs_.dw[c]);
-    return p != springs_.piece[c];
+    const Piece p = springs_->piece_at(c, springs_->y[c] + alpha * springs_->dy[c],
+                                       springs_->w[c] + alpha * springs_->dw[c]);
+    return p != springs_->piece[c];
   };
-  find_all(*team_, springs_.size(), contacts_worth_threads, bends, bends_);
+  find_all(*team_, springs_->size(), contacts_worth_threads, bends, bends_);
 }
 
 /// dΠ(D + αp)/dα given the bends up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) but for the bends.
@@ -200,7 +166,7 @@ double OpenClose::slope(double alpha) const {
   double sum = slope_at_zero_ + alpha * curvature_;
   for (const std::size_t c : bends_) {
     const Force extra = bend(c, alpha);
-    sum += extra.normal * springs_.dy[c] + extra.shear * springs_.dw[c];
+    sum += extra.normal * springs_->dy[c] + extra.shear * springs_->dw[c];
   }
   return sum;
 }
@@ -226,10 +192,11 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
     }
   });
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
-  team_->for_range(springs_.size(), contacts_worth_threads,
-                   [&](std::size_t begin, std::size_t end) { springs_.go(alpha, begin, end); });
+  team_->for_range(springs_->size(), contacts_worth_threads,
+                   [&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); });
   knows_relative_ = false;
-  for (const std::size_t c : bends_) springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
+  for (const std::size_t c : bends_)
+    springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
 }
 
 /// From D along a Newton direction to the minimum. False when the linear system has no solution.
@@ -247,7 +214,7 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
 /// Contacts that are not on the straight lines of the factored matrix.
 std::size_t OpenClose::bent_contacts() const {
   std::size_t count = 0;
-  for (std::size_t c = 0; c < springs_.size(); ++c) count += springs_.piece[c] != factored_[c] ? 1 : 0;
+  for (std::size_t c = 0; c < springs_->size(); ++c) count += springs_->piece[c] != factored_[c] ? 1 : 0;
   return count;
 }
 
@@ -294,25 +261,22 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   return false;
 }
 
-/// Takes over the bound or bond of a spring that changed, and what that does to the gradient.
-void OpenClose::set_law(const StepProblem& problem, std::size_t c) {
-  const Force before = springs_.force(c);
-  springs_.set_law(c, problem.springs()[c]);
-  springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
-  add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
+/// Takes over what a change of a spring, which had the force `before`, does to its piece and to the gradient.
+void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force before) {
+  springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
+  add_force(problem, c, springs_->force(c) - before, 1.0, gradient_);
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
-  std::vector<contact::Spring>& of_contact = problem.springs();
   const auto bound = [&](std::size_t c) {
-    return friction_[c] * std::max(0.0, springs_.force(c).normal) + cohesion_[c];
+    return springs_->friction[c] * std::max(0.0, springs_->force(c).normal) + springs_->cohesion[c];
   };
   const auto [error, scale] =
-      sum_of<Sums>(*team_, of_contact.size(), contacts_worth_threads, [&](std::size_t c) {
-        if (friction_[c] < 0.0) return Sums{};
+      sum_of<Sums>(*team_, springs_->size(), contacts_worth_threads, [&](std::size_t c) {
+        if (springs_->friction[c] < 0.0) return Sums{};
         // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const double wanted = bound(c), elastic = springs_.ks[c] * springs_.w[c];
-        const double change = std::clamp(elastic, -wanted, wanted) - springs_.force(c).shear;
+        const double wanted = bound(c), elastic = springs_->ks[c] * springs_->w[c];
+        const double change = std::clamp(elastic, -wanted, wanted) - springs_->force(c).shear;
         return Sums{change * change, wanted * wanted};
       });
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
@@ -320,17 +284,18 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
-  bound_steps_.resize(of_contact.size());
-  for (std::size_t c = 0; c < of_contact.size(); ++c) {
-    if (friction_[c] < 0.0) continue;
-    const double missing = bound(c) - springs_.bound[c];
+  bound_steps_.resize(springs_->size());
+  for (std::size_t c = 0; c < springs_->size(); ++c) {
+    if (springs_->friction[c] < 0.0) continue;
+    const double missing = bound(c) - springs_->bound[c];
     const double gained = bound_steps_[c].missing - missing;
     double share = 1.0;
     if (!first && bound_steps_[c].taken * gained > 0.0)
       share = std::clamp(bound_steps_[c].taken / gained, least_share, 1.0);
     bound_steps_[c] = {missing, share * missing};
-    of_contact[c].set_bound(springs_.bound[c] + share * missing);
-    set_law(problem, c);
+    const Force before = springs_->force(c);
+    springs_->bound[c] += share * missing;
+    take_force(problem, c, before);
   }
   return true;
 }
@@ -339,52 +304,48 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
 /// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
 /// left alone.
 bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
-  std::vector<contact::Spring>& of_contact = problem.springs();
   double worst = 0.0;
-  shift_.assign(of_contact.size(), {});
-  for (std::size_t c = 0; c < of_contact.size(); ++c) {
-    const contact::Spring& spring = of_contact[c];
-    if (!springs_.piece[c].closed) continue;
+  shift_.assign(springs_->size(), {});
+  for (std::size_t c = 0; c < springs_->size(); ++c) {
+    if (!springs_->piece[c].closed) continue;
     // n·r and t·r, but for what multipliers have added.
-    const double normal = spring.depth() - springs_.y[c], slip = springs_.w[c] - spring.shear();
+    const StepProblem::Row& row = problem.rows()[c];
+    const double normal = springs_->y0[c] - springs_->y[c] + dot(row.normal, row.moved),
+                 slip = springs_->w[c] - springs_->w0[c] + dot(row.tangent(), row.moved);
     const double penetration = -(contacts[c].gap + normal) - std::max(0.0, contacts[c].memory.offset);
-    const double drift = springs_.piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
+    const double drift = springs_->piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
     worst = std::max({worst, std::abs(penetration), std::abs(drift)});
     // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
     const double inertia = problem.inertia_between(contacts[c]);
-    shift_[c] = {penetration * (1.0 + 0.25 * inertia / spring.normal_stiffness()),
-                 drift * (1.0 + 0.25 * inertia / spring.shear_stiffness())};
+    shift_[c] = {penetration * (1.0 + 0.25 * inertia / springs_->kn[c]),
+                 drift * (1.0 + 0.25 * inertia / springs_->ks[c])};
   }
   if (worst <= tolerance) return false;
   // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
   stalls_ = worst > 0.9 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;
   if (stalls_ == 3) return false;
-  for (std::size_t c = 0; c < of_contact.size(); ++c) {
+  for (std::size_t c = 0; c < springs_->size(); ++c) {
     if (shift_[c] == Vec2{}) continue;
-    of_contact[c].shift(shift_[c].x, shift_[c].y);
-    const Force before = springs_.force(c);
-    springs_.shift(c, shift_[c].x, shift_[c].y);
-    springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
-    add_force(problem, c, springs_.force(c) - before, 1.0, gradient_);
+    const Force before = springs_->force(c);
+    springs_->shift(c, shift_[c].x, shift_[c].y);
+    take_force(problem, c, before);
   }
   return true;
 }
 
 bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> contacts) {
-  if (!any_bond_) return false;
+  if (!problem.may_break()) return false;
   bool any = false;
-  std::vector<contact::Spring>& of_contact = problem.springs();
-  for (std::size_t c = 0; c < of_contact.size(); ++c) {
+  for (std::size_t c = 0; c < springs_->size(); ++c) {
     if (!contacts[c].memory.bonded || contacts[c].fused) continue;
-    contact::Spring& s = of_contact[c];
-    const double normal = springs_.force(c).normal;
-    if (-normal <= contacts[c].tension && s.locked(springs_.w[c])) continue;
+    const Force before = springs_->force(c);
+    const bool holds = std::abs(springs_->ks[c] * springs_->w[c]) <= springs_->bound[c];
+    if (-before.normal <= contacts[c].tension && holds) continue;
     contacts[c].memory.bonded = false;
-    cohesion_[c] = 0.0;
-    s.break_bond();
-    s.set_bound(contacts[c].friction_coefficient * std::max(0.0, normal));
-    set_law(problem, c);
+    springs_->cohesion[c] = 0.0;
+    springs_->set_law(c, contacts[c].friction_coefficient * std::max(0.0, before.normal), false);
+    take_force(problem, c, before);
     any = true;
   }
   return any;
@@ -402,7 +363,9 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   gradient_.resize(d.size());
   direction_.resize(d.size());
   residual_.assign(d.size(), 0.0);
-  start(problem, contacts);
+  springs_ = &problem.springs();
+  assembled_ = knows_relative_ = false;
+  bound_steps_.clear();
   try_factor(problem, solver);
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
@@ -436,12 +399,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     if (problem.residual_ratio(gradient_) < options.tolerance) break;
     enough = options.tolerance;
   }
-  if (!knows_relative_) {
-    team.for_range(rows, contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t c = begin; c < end; ++c)
-        r_[c] = problem.relative(problem.rows()[c], d) + problem.rows()[c].moved;
-    });
-  }
+  if (!knows_relative_) place(problem, d);
   result.residual_ratio = problem.residual_ratio(gradient_);
   result.finite = std::isfinite(sum_of<double>(team, gradient_.size(), coefficients_worth_threads,
                                                [&](std::size_t k) { return gradient_[k]; }));

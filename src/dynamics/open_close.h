@@ -68,7 +68,6 @@ class OpenClose {
   using Shear = SpringArray::Shear;
   using Force = SpringArray::Force;
 
-  void start(const StepProblem& problem, std::span<const contact::Contact> contacts);
   void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
   [[nodiscard]] bool carry_contacts();
@@ -100,7 +99,7 @@ class OpenClose {
   void find_bends(double alpha);
   [[nodiscard]] double slope(double alpha) const;
   void go(const StepProblem& problem, double alpha, std::span<double> d);
-  void set_law(const StepProblem& problem, std::size_t c);
+  void take_force(const StepProblem& problem, std::size_t c, Force before);
   static Vec2 contact_gradient(const StepProblem& problem, std::size_t c, Force force);
   static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                         std::span<double> out);
@@ -111,10 +110,7 @@ class OpenClose {
 
   ThreadTeam* team_ = nullptr;
   Profile* profile_ = nullptr;
-  SpringArray springs_;
-  std::vector<double> friction_;                ///< per contact, μ; −1: the bound is not Coulomb's
-  std::vector<double> cohesion_;                ///< N per thickness, per contact: of bonds
-  bool any_bond_ = false;                       ///< that may break in this step
+  SpringArray* springs_ = nullptr;              ///< of the problem
   std::vector<Piece> factored_;                 ///< per contact: what the matrix at hand was made with
   bool assembled_ = false;                      ///< in this step
   std::span<const contact::Contact> contacts_;  ///< of this step

@@ -17,8 +17,8 @@ constexpr double kept_share = 0.003;
 /// Half of D₀, where all springs are on the straight lines of the factored matrix.
 void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halves) {
   std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
-  for (std::size_t c = 0; c < springs_.size(); ++c)
-    add_force(problem, c, springs_.force_on(c, factored_[c], springs_.y0[c], springs_.w0[c]), -1.0,
+  for (std::size_t c = 0; c < springs_->size(); ++c)
+    add_force(problem, c, springs_->force_on(c, factored_[c], springs_->y0[c], springs_->w0[c]), -1.0,
               direction_);
   const Profile::Scope scope(*profile_, Phase::solution);
   halves.half_solve(std::span(direction_).first(problem.unknowns()), base_);
@@ -31,9 +31,9 @@ void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
     for (std::size_t c = begin; c < end; ++c) {
       const Vec2 r = problem.relative(rows[c], d);
       r_[c] = r + rows[c].moved;
-      springs_.y[c] = springs_.y0[c] - dot(rows[c].normal, r);
-      springs_.w[c] = springs_.w0[c] + dot(rows[c].tangent(), r);
-      springs_.piece[c] = springs_.piece_at(c, springs_.y[c], springs_.w[c]);
+      springs_->y[c] = springs_->y0[c] - dot(rows[c].normal, r);
+      springs_->w[c] = springs_->w0[c] + dot(rows[c].tangent(), r);
+      springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
     }
   });
   knows_relative_ = true;
@@ -41,15 +41,15 @@ void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
 
 /// Contacts that are not on the straight lines of the matrix, into bends_.
 void OpenClose::find_bent() {
-  const auto is_bent = [&](std::size_t c) { return springs_.piece[c] != factored_[c]; };
-  find_all(*team_, springs_.size(), contacts_worth_threads, is_bent, bends_);
+  const auto is_bent = [&](std::size_t c) { return springs_->piece[c] != factored_[c]; };
+  find_all(*team_, springs_->size(), contacts_worth_threads, is_bent, bends_);
 }
 
 /// Springs of the contacts in bends_ that are not corrected yet become so. How many there were; −1: too many.
 int OpenClose::correct_bends(const StepProblem& problem, linalg::HalfSolver& halves) {
   wanted_.clear();
   for (const std::size_t c : bends_) {
-    const Piece is = springs_.piece[c], line = factored_[c];
+    const Piece is = springs_->piece[c], line = factored_[c];
     for (const bool normal : {true, false}) {
       const Corrected spring{c, normal};
       if (normal ? is.closed == line.closed : is.shear == line.shear) continue;
@@ -77,17 +77,17 @@ bool OpenClose::find_corrections(const linalg::HalfSolver& halves) {
   for (const Corrected spring : corrected_) {
     const std::size_t c = spring.contact;
     const Piece line = factored_[c];
-    const Force constant = springs_.force_on(c, line, 0.0, 0.0);
+    const Force constant = springs_->force_on(c, line, 0.0, 0.0);
     // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D = 0 is right.
     const double in_matrix = spring.normal ? factor_.normal_stiffness[c] : factor_.shear_stiffness[c];
-    const double now = spring.normal ? springs_.kn[c] : springs_.ks[c];
+    const double now = spring.normal ? springs_->kn[c] : springs_->ks[c];
     const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
     if (spring.normal) {
-      laws_.push_back({stiffness, springs_.floor[c], HUGE_VAL, in_matrix, constant.normal});
-      stretch_.push_back(scale * springs_.y0[c]);
+      laws_.push_back({stiffness, springs_->floor[c], HUGE_VAL, in_matrix, constant.normal});
+      stretch_.push_back(scale * springs_->y0[c]);
     } else {
-      laws_.push_back({stiffness, -springs_.bound[c], springs_.bound[c], in_matrix, constant.shear});
-      stretch_.push_back(scale * springs_.w0[c]);
+      laws_.push_back({stiffness, -springs_->bound[c], springs_->bound[c], in_matrix, constant.shear});
+      stretch_.push_back(scale * springs_->w0[c]);
     }
   }
   return corrections_.solve(halves, base_, laws_, stretch_);
@@ -104,7 +104,7 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
   team_->for_range(gradient_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) gradient_[k] -= problem.right()[k];
   });
-  problem.add_contact_forces([&](std::size_t c) { return contact_gradient(problem, c, springs_.force(c)); },
+  problem.add_contact_forces([&](std::size_t c) { return contact_gradient(problem, c, springs_->force(c)); },
                              gradient_);
 }
 
@@ -112,7 +112,8 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
 void OpenClose::leave_out_bends(const StepProblem& problem) {
   for (const Corrected spring : wanted_) {
     const std::size_t c = spring.contact;
-    const Force bend = springs_.force(c) - springs_.force_on(c, factored_[c], springs_.y[c], springs_.w[c]);
+    const Force bend =
+        springs_->force(c) - springs_->force_on(c, factored_[c], springs_->y[c], springs_->w[c]);
     add_force(problem, c, {spring.normal ? bend.normal : 0.0, spring.normal ? 0.0 : bend.shear}, -1.0,
               gradient_);
   }
@@ -164,8 +165,8 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
   }
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
   for (const std::size_t c : bends_) {
-    const double y = springs_.y[c], w = springs_.w[c];
-    add_force(problem, c, springs_.force(c) - springs_.force_on(c, factored_[c], y, w), 1.0, gradient_);
+    const double y = springs_->y[c], w = springs_->w[c];
+    add_force(problem, c, springs_->force(c) - springs_->force_on(c, factored_[c], y, w), 1.0, gradient_);
   }
   for (std::size_t s = 0; s < corrections_.size(); ++s) {
     const double force = corrections_.forces()[s];

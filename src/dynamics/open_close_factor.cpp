@@ -93,9 +93,9 @@ void OpenClose::try_factor(const StepProblem& problem, linalg::BlockSolver& solv
   free_.clear();
   if (!kept_) return;
   // Pieces on which the same springs act have the same matrix.
-  team_->for_range(springs_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(springs_->size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      if (factored_[c].same_springs(springs_.piece[c])) factored_[c] = springs_.piece[c];
+      if (factored_[c].same_springs(springs_->piece[c])) factored_[c] = springs_->piece[c];
     }
   });
   find_free_blocks(problem);

@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/law.h"
-
 namespace keyblock::dynamics {
 
-/// The springs of all contacts of a step, by component: what an open-close iteration reads of them and how far they are
-/// stretched. Normal and shear spring of contact c give
+/// The springs of all contacts of a step (contact::Spring), by component: what an open-close iteration reads of them and how far they
+/// are stretched. Normal and shear spring of contact c give
 ///
 ///     N = k_n y  where y > floor, else 0          T = clamp(k_s w, ±bound)
 ///
@@ -35,26 +33,21 @@ class SpringArray {
   };
 
   void resize(std::size_t n) {
-    for (std::vector<double>* v : {&kn, &ks, &bound, &floor, &y0, &w0, &y, &w, &dy, &dw}) v->resize(n);
+    for (std::vector<double>* v :
+         {&kn, &ks, &bound, &floor, &friction, &cohesion, &y0, &w0, &y, &w, &dy, &dw})
+      v->resize(n);
     piece.resize(n);
   }
   [[nodiscard]] std::size_t size() const { return kn.size(); }
 
-  /// Takes over a spring at penetration y and shear displacement w for D = 0, and stays there.
-  void set(std::size_t c, const contact::Spring& spring, double penetration, double shear) {
-    kn[c] = spring.normal_stiffness();
-    ks[c] = spring.shear_stiffness();
-    y0[c] = y[c] = penetration;
-    w0[c] = w[c] = shear;
-    set_law(c, spring);
+  /// tensile: a bond, which pulls.
+  void set_law(std::size_t c, double largest_shear, bool tensile) {
+    bound[c] = largest_shear;
+    floor[c] = tensile ? -HUGE_VAL : 0.0;
   }
-  /// What changes in the course of a step: bound and bond.
-  void set_law(std::size_t c, const contact::Spring& spring) {
-    bound[c] = spring.bound();
-    floor[c] = spring.tensile() ? -HUGE_VAL : 0.0;
-  }
+  [[nodiscard]] bool is_tensile(std::size_t c) const { return floor[c] < 0.0; }
 
-  /// Adds what belongs to no displacement.
+  /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
   void shift(std::size_t c, double penetration, double shear) {
     y0[c] += penetration;
     w0[c] += shear;
@@ -96,6 +89,8 @@ class SpringArray {
 
   std::vector<double> kn, ks;        ///< N/m per thickness
   std::vector<double> bound, floor;  ///< N per thickness; m
+  std::vector<double> friction;      ///< μ; −1: the bound is not Coulomb's
+  std::vector<double> cohesion;      ///< N per thickness, of bonds
   std::vector<double> y0, w0;        ///< m, at D = 0
   std::vector<double> y, w;          ///< m, now
   std::vector<double> dy, dw;        ///< m, of the direction of search

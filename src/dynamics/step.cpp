@@ -238,8 +238,7 @@ bool Stepper::turned_too_far() const {
                                  spin_[b] * spin_[b] * model_.blocks[b].radius) +
                           std::abs(spin_[b] * dot(row.tangent(), r));
     if (missed <= tolerances_.turn) continue;
-    if (problem_.springs()[c].normal_force(problem_.depth(c, r)) > 0.0 ||
-        contacts_[c].gap + dot(row.normal, r) < missed)
+    if (problem_.springs().force(c).normal > 0.0 || contacts_[c].gap + dot(row.normal, r) < missed)
       return true;
   }
   return false;
@@ -273,10 +272,10 @@ bool Stepper::moved_too_far() {
 Stepper::ContactAccount Stepper::remember_contact(std::size_t c, bool is_static) {
   const bool augmented = model_.solver.contact == ContactMethod::augmented_lagrangian;
   const StepProblem::Row& row = problem_.rows()[c];
-  const contact::Spring s = problem_.springs()[c];  // by value: nothing that is written below changes it
+  const contact::Spring s = problem_.spring(contacts_[c], c);
   contact::Memory& memory = contacts_[c].memory;
   const Vec2 r = open_close_.relative()[c];
-  const double depth = problem_.depth(c, r), shear = problem_.shear(c, r),
+  const double depth = problem_.springs().y[c], shear = problem_.springs().w[c],
                normal_force = s.normal_force(depth);
   ContactAccount account;
   account.balance = augmented ? s.rigid_balance(depth, shear, dot(row.normal, r), dot(row.tangent(), r))

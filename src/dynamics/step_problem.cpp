@@ -26,12 +26,15 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     model_ = &model;
     h_first_.clear();
     coefficients_.clear();
+    bodies_.clear();
     largest_size_ = 0;
     std::size_t used = 0;
     for (const Block& block : model.blocks) {
       largest_size_ = std::max(largest_size_, block.size);
       h_first_.push_back(used);
       coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
+      bodies_.push_back({static_cast<std::uint32_t>(block.first), block.fixed ? 0 : block.size, block.unknown,
+                         block.fixed ? 0.0 : block.mass()});
       used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
     }
     h_.assign(used, 0.0);
@@ -123,70 +126,6 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
   }
 }
 
-void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
-                             std::span<const contact::Contact> contacts, std::span<const int> pairs) {
-  rows_.resize(contacts.size());
-  springs_.resize(contacts.size());
-  if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
-  phi_.resize(contacts.size() * at(2 * largest_size_));
-  team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      rows_[k].phi = static_cast<std::uint32_t>(k * at(2 * largest_size_));
-      build_row(drive, surface, contacts[k], rows_[k]);
-      build_spring(drive, contacts[k], k);
-      rows_[k].pair = pairs[at(contacts[k].candidate)];
-      if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
-    }
-  });
-}
-
-/// At a point of an edge, `position` from 0 to 1.
-void StepProblem::find_phi(const contact::Surface& surface, int edge, double position, int size,
-                           double* phi) {
-  const double* from = &surface.phi[surface.phi_begin[at(edge)]];
-  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(edge)])]];
-  for (int i = 0; i < size; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
-}
-
-void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
-                            Row& row) {
-  const Block& a = model_->blocks[at(c.block_a)];
-  const Block& b = model_->blocks[at(c.block_b)];
-  row.first_a = static_cast<std::uint32_t>(a.first);
-  row.first_b = static_cast<std::uint32_t>(b.first);
-  row.size_a = a.fixed ? 0 : a.size;
-  row.size_b = b.fixed ? 0 : b.size;
-  row.unknown_a = a.unknown;
-  row.unknown_b = b.unknown;
-  std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[row.phi]);
-  find_phi(surface, c.edge, c.position, row.size_b, &phi_[row.phi] + row.size_a);
-  row.normal = c.normal;
-  row.moved =
-      drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
-}
-
-void StepProblem::build_spring(const Drive& drive, const contact::Contact& c, std::size_t k) {
-  const contact::Memory& memory = c.memory;
-  const double mass = reduced_mass(c);
-  const double damping = drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step;
-  const auto dashpot = [&](double stiffness) { return damping * std::sqrt(stiffness * mass); };
-  springs_[k] =
-      contact::Spring({c.normal_stiffness, c.shear_stiffness, dashpot(c.normal_stiffness),
-                       dashpot(c.shear_stiffness), c.depth, memory.shear,
-                       c.fused ? HUGE_VAL : c.friction_coefficient * memory.bounding_force + c.cohesion,
-                       c.fused || (memory.bonded && c.tension > 0.0)});
-}
-
-double StepProblem::reduced_mass(const contact::Contact& c) const {
-  const Block &a = model_->blocks[at(c.block_a)], &b = model_->blocks[at(c.block_b)];
-  return a.fixed ? b.mass() : b.fixed ? a.mass() : a.mass() * b.mass() / (a.mass() + b.mass());
-}
-
-double StepProblem::inertia_between(const contact::Contact& c) const {
-  const std::size_t moves = at(model_->blocks[at(c.block_a)].fixed ? c.block_b : c.block_a);
-  return reduced_mass(c) * inertia_[moves] / model_->blocks[moves].material.density;
-}
-
 void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
                              std::vector<double>& b) const {
   const double* phi = &phi_[row.phi];
@@ -235,15 +174,15 @@ void StepProblem::solve_alone(std::size_t i, std::span<double> d) const {
   linalg::solve_block(n, &h_[h_first_[i]], &d[block.first]);  // H holds inertia, and is positive definite
 }
 
-void StepProblem::gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const {
+void StepProblem::gradient(std::span<const double> d, std::span<double> g) const {
   multiply(d, g);
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= b_[k];
   for (std::size_t c = 0; c < rows_.size(); ++c) {
     const Row& row = rows_[c];
-    const double normal = springs_[c].normal_force(depth(c, r[c]));
-    const double shear = springs_[c].shear_force(this->shear(c, r[c]));
-    if (normal == 0.0 && shear == 0.0) continue;
-    add_contact_force(row, shear * row.tangent() - normal * row.normal, g);
+    const Vec2 r = relative(row, d);
+    const SpringArray::Force force =
+        springs_.force_at(c, springs_.y0[c] - dot(row.normal, r), springs_.w0[c] + dot(row.tangent(), r));
+    if (!force.is_zero()) add_contact_force(row, force.shear * row.tangent() - force.normal * row.normal, g);
   }
 }
 

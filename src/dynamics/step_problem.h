@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "dynamics/integrator.h"
 #include "dynamics/model.h"
+#include "dynamics/spring_array.h"
 #include "dynamics/state.h"
 #include "linalg/block_solver.h"
 
@@ -61,16 +62,13 @@ class StepProblem {
 
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// Of every row.
-  [[nodiscard]] std::vector<contact::Spring>& springs() { return springs_; }
-  [[nodiscard]] const std::vector<contact::Spring>& springs() const { return springs_; }
-  /// y and w of the spring of a contact, given r.
-  [[nodiscard]] double depth(std::size_t contact, Vec2 r) const {
-    return springs_[contact].depth() - dot(rows_[contact].normal, r);
-  }
-  [[nodiscard]] double shear(std::size_t contact, Vec2 r) const {
-    return springs_[contact].shear() + dot(rows_[contact].tangent(), r);
-  }
+  /// Of every row. Built at D = 0, on the pieces that acted in the last step.
+  [[nodiscard]] SpringArray& springs() { return springs_; }
+  [[nodiscard]] const SpringArray& springs() const { return springs_; }
+  /// Whether there are bonds that may break in this step.
+  [[nodiscard]] bool may_break() const { return may_break_; }
+  /// The spring of contact c, whose `memory` is still that of the last step.
+  [[nodiscard]] contact::Spring spring(const contact::Contact& contact, std::size_t c) const;
   /// Unknowns come first among the coefficients; those of fixed blocks follow.
   [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
 
@@ -84,8 +82,8 @@ class StepProblem {
     return displacement(phi, row.size_a, &d[row.first_a]) -
            displacement(phi + row.size_a, row.size_b, &d[row.first_b]);
   }
-  /// g = ∇Π(D), given r of every contact; the open-close iteration updates g instead.
-  void gradient(std::span<const double> d, std::span<const Vec2> r, std::span<double> g) const;
+  /// g = ∇Π(D); the open-close iteration updates g instead.
+  void gradient(std::span<const double> d, std::span<double> g) const;
   /// The increment of a block on which no contact acts, into d.
   void solve_alone(std::size_t block, std::span<double> d) const;
   /// y = H x.
@@ -217,12 +215,23 @@ class StepProblem {
                   std::span<const contact::Contact> contacts, std::span<const int> pairs);
   static void find_phi(const contact::Surface& surface, int edge, double position, int size, double* phi);
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
-  void build_spring(const Drive& drive, const contact::Contact& c, std::size_t k);
+  [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
+  void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
+
+  /// What contacts read of a block: 24 bytes, which a cache has for all blocks.
+  struct Body {
+    std::uint32_t first;  ///< of its coefficients
+    int size;             ///< N; 0: fixed
+    int unknown;
+    double mass;  ///< kg/m; 0: fixed
+  };
 
   const Model* model_ = nullptr;
   ThreadTeam* team_ = nullptr;
+  std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
-  std::vector<contact::Spring> springs_;              ///< of every row
+  SpringArray springs_;  ///< of every row
+  bool may_break_ = false;
   std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
   std::vector<double> phi_;                           ///< of every row, twice largest_size_
   int largest_size_ = 0;                              ///< N

@@ -44,7 +44,7 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   bool any = false;
   for (const std::size_t c : fast) {
     const StepProblem::Row& row = problem_.rows()[c];
-    if (problem_.springs()[c].normal_force(problem_.depth(c, open_close_.relative()[c])) <= 0.0) continue;
+    if (problem_.springs().force(c).normal <= 0.0) continue;
     const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;
     if (-dot(row.normal, speed) <= least) continue;
     if (!rigid &&

@@ -1,0 +1,174 @@
+// The contacts of a step: what their relative displacement is made of, and their springs.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+
+#include "core/index.h"
+#include "core/lanes.h"
+#include "dynamics/step_problem.h"
+
+namespace keyblock::dynamics {
+
+void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
+                             std::span<const contact::Contact> contacts, std::span<const int> pairs) {
+  rows_.resize(contacts.size());
+  springs_.resize(contacts.size());
+  if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
+  phi_.resize(contacts.size() * at(2 * largest_size_));
+  std::atomic<bool> may_break = false;
+  team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    bool any = false;
+    for (std::size_t first = begin; first < end; first += lane_count) {
+      const std::size_t last = std::min(first + lane_count, end);
+      for (std::size_t k = first; k < last; ++k) {
+        rows_[k].phi = static_cast<std::uint32_t>(k * at(2 * largest_size_));
+        build_row(drive, surface, contacts[k], rows_[k]);
+        rows_[k].pair = pairs[at(contacts[k].candidate)];
+        any = any || (contacts[k].memory.bonded && !contacts[k].fused);
+        if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
+      }
+      build_springs(drive, contacts.subspan(first, last - first), first);
+    }
+    if (any) may_break = true;
+  });
+  may_break_ = may_break;
+}
+
+/// At a point of an edge, `position` from 0 to 1.
+void StepProblem::find_phi(const contact::Surface& surface, int edge, double position, int size,
+                           double* phi) {
+  const double* from = &surface.phi[surface.phi_begin[at(edge)]];
+  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(edge)])]];
+  for (int i = 0; i < size; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
+}
+
+void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
+                            Row& row) {
+  const Body &a = bodies_[at(c.block_a)], &b = bodies_[at(c.block_b)];
+  row.first_a = a.first;
+  row.first_b = b.first;
+  row.size_a = a.size;
+  row.size_b = b.size;
+  row.unknown_a = a.unknown;
+  row.unknown_b = b.unknown;
+  std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[row.phi]);
+  find_phi(surface, c.edge, c.position, row.size_b, &phi_[row.phi] + row.size_a);
+  row.normal = c.normal;
+  row.moved =
+      drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
+}
+
+namespace {
+
+/// What is read of eight contacts at once: by component, of as many numbers that stand together in each.
+struct Laws {
+  Lanes gap, length, depth, normal_stiffness, shear_stiffness, friction, cohesion, tension;
+};
+struct Memories {
+  Lanes offset, stiffness, shear, normal_force, bounding_force, multiplier, drift, stored;
+};
+
+template <typename Components, typename First>
+Components components(std::span<const contact::Contact> contacts, const First& first) {
+  static_assert(sizeof(Components) == lane_count * sizeof(Lanes));
+  Lanes lines[lane_count];
+  for (std::size_t i = 0; i < lane_count; ++i) lines[i] = load(first(contacts[i < contacts.size() ? i : 0]));
+  transpose(lines);
+  return {lines[0], lines[1], lines[2], lines[3], lines[4], lines[5], lines[6], lines[7]};
+}
+
+void store_first(double* p, Lanes v, std::size_t count) {
+  if (count == lane_count) return store(p, v);
+  for (std::size_t i = 0; i < count; ++i) p[i] = v[i];
+}
+
+}  // namespace
+
+/// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
+void StepProblem::build_springs(const Drive& drive, std::span<const contact::Contact> contacts,
+                                std::size_t first) {
+  static_assert(offsetof(contact::Contact, tension) - offsetof(contact::Contact, gap) == 7 * sizeof(double));
+  static_assert(offsetof(contact::Memory, stored) - offsetof(contact::Memory, offset) == 7 * sizeof(double));
+  const auto law = components<Laws>(contacts, [](const contact::Contact& c) { return &c.gap; });
+  const auto memory =
+      components<Memories>(contacts, [](const contact::Contact& c) { return &c.memory.offset; });
+  const auto of_each = [&](const auto& number) {
+    const auto of = [&](std::size_t i) { return number(contacts[i < contacts.size() ? i : 0]); };
+    return Lanes{of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)};
+  };
+  const Lanes a = of_each([&](const contact::Contact&c) { return bodies_[at(c.block_a)].mass; }),
+              b = of_each([&](const contact::Contact&c) { return bodies_[at(c.block_b)].mass; });
+  const Lanes mass = a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
+  const auto fused = of_each([](const contact::Contact&c) { return c.fused ? 1.0 : 0.0; }) > 0.0,
+             tensile =
+                 fused |
+                 ((of_each([](const contact::Contact&c) { return c.memory.bonded ? 1.0 : 0.0; }) > 0.0) &
+                  (law.tension > 0.0));
+  const Lanes zero{}, pressed = tensile | (law.depth > 0.0) ? law.depth : zero;
+  const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
+  const auto spring = contact::Spring::Shifted<AlignedLanes>::of(
+      law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
+      damping * square_root(law.shear_stiffness * mass), law.depth, pressed, memory.shear);
+  const std::size_t count = contacts.size();
+  const auto keep = [&](std::vector<double>& numbers, Lanes v) { store_first(&numbers[first], v, count); };
+  keep(springs_.kn, spring.normal_stiffness);
+  keep(springs_.ks, spring.shear_stiffness);
+  keep(springs_.bound, fused ? broadcast(HUGE_VAL) : law.friction * memory.bounding_force + law.cohesion);
+  keep(springs_.floor, tensile ? broadcast(-HUGE_VAL) : zero);
+  keep(springs_.friction, fused ? broadcast(-1.0) : law.friction);
+  keep(springs_.cohesion, law.cohesion);
+  for (std::size_t i = 0; i < count; ++i)
+    springs_.piece[first + i] = assumed_piece(contacts[i].memory.state, first + i, spring.shear[i]);
+  Lanes y = spring.depth, w = spring.shear;
+  if (!drive.prescribed.empty()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Row& row = rows_[first + i];
+      y[i] -= dot(row.normal, row.moved);
+      w[i] += dot(row.tangent(), row.moved);
+    }
+  }
+  keep(springs_.y0, y);
+  keep(springs_.y, y);
+  keep(springs_.w0, w);
+  keep(springs_.w, w);
+}
+
+/// The piece on which a contact was in the last step; origin: w of its spring, but for what blocks are moved by.
+SpringArray::Piece StepProblem::assumed_piece(contact::State state, std::size_t c, double origin) const {
+  using Shear = SpringArray::Shear;
+  Shear shear = Shear::none;
+  if (springs_.bound[c] > 0.0) {
+    if (state == contact::State::locked) {
+      shear = Shear::held;
+    } else if (origin != 0.0) {
+      shear = origin > 0.0 ? Shear::forward : Shear::backward;
+    }
+  }
+  return {state != contact::State::open || springs_.is_tensile(c), shear};
+}
+
+contact::Spring StepProblem::spring(const contact::Contact& contact, std::size_t c) const {
+  const Row& row = rows_[c];
+  const contact::Spring::Constants constants{.normal_stiffness = contact.normal_stiffness,
+                                             .shear_stiffness = contact.shear_stiffness,
+                                             .depth = contact.depth,
+                                             .shear = contact.memory.shear,
+                                             .bound = springs_.bound[c],
+                                             .tensile = springs_.is_tensile(c)};
+  return {constants,
+          {springs_.kn[c], springs_.ks[c], springs_.y0[c] + dot(row.normal, row.moved),
+           springs_.w0[c] - dot(row.tangent(), row.moved)}};
+}
+
+double StepProblem::reduced_mass(const contact::Contact& c) const {
+  const double a = bodies_[at(c.block_a)].mass, b = bodies_[at(c.block_b)].mass;
+  return a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
+}
+
+double StepProblem::inertia_between(const contact::Contact& c) const {
+  const std::size_t moves = at(model_->blocks[at(c.block_a)].fixed ? c.block_b : c.block_a);
+  return reduced_mass(c) * inertia_[moves] / model_->blocks[moves].material.density;
+}
+
+}  // namespace keyblock::dynamics
