@@ -43,6 +43,15 @@ inline Lanes square_root(Lanes v) {
 #endif
 }
 
+/// One or the other, of a number or of each lane.
+inline double where(bool condition, double yes, double no) {
+  return condition ? yes : no;
+}
+template <typename Condition>
+AlignedLanes where(Condition condition, AlignedLanes yes, AlignedLanes no) {
+  return condition ? yes : no;
+}
+
 /// Of all lanes, always in this order.
 template <typename Register>
 auto sum(Register v) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/lanes.h"
+
 namespace keyblock::dynamics {
 
 /// The springs of all contacts of a step (contact::Spring), by component: what an open-close iteration reads of them and how far they
@@ -33,12 +35,13 @@ class SpringArray {
   };
 
   void resize(std::size_t n) {
+    size_ = n;
     for (std::vector<double>* v :
          {&kn, &ks, &bound, &floor, &friction, &cohesion, &y0, &w0, &y, &w, &dy, &dw})
-      v->resize(n);
+      v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
     piece.resize(n);
   }
-  [[nodiscard]] std::size_t size() const { return kn.size(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
 
   /// tensile: a bond, which pulls.
   void set_law(std::size_t c, double largest_shear, bool tensile) {
@@ -95,6 +98,9 @@ class SpringArray {
   std::vector<double> y, w;          ///< m, now
   std::vector<double> dy, dw;        ///< m, of the direction of search
   std::vector<Piece> piece;          ///< of (y, w)
+
+ private:
+  std::size_t size_ = 0;
 };
 
 }  // namespace keyblock::dynamics

@@ -127,7 +127,8 @@ class Stepper {
     bool closed = false;         ///< at the end
     void enter(EnergyLedger& ledger) const;
   };
-  ContactAccount remember_contact(std::size_t c, bool is_static);
+  void remember_contacts(std::size_t first, bool is_static, std::span<ContactAccount> accounts);
+  void remember_multiplier(std::size_t c, ContactAccount& account);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);

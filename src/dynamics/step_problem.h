@@ -213,7 +213,15 @@ class StepProblem {
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
                   std::span<const contact::Contact> contacts, std::span<const int> pairs);
-  static void find_phi(const contact::Surface& surface, int edge, double position, int size, double* phi);
+  /// Basis functions at a point of an edge, `position` from 0 to 1.
+  template <typename Size>
+  static void find_phi(const contact::Surface& surface, int edge, double position, Size size, double* phi) {
+    const double* from = &surface.phi[surface.phi_begin[static_cast<std::size_t>(edge)]];
+    const double* to =
+        &surface
+             .phi[surface.phi_begin[static_cast<std::size_t>(surface.next[static_cast<std::size_t>(edge)])]];
+    for (int i = 0; i < size; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
+  }
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
   [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstddef>
 
 #include "core/index.h"
-#include "core/lanes.h"
+#include "core/known_size.h"
+#include "dynamics/contact_lanes.h"
 #include "dynamics/step_problem.h"
 
 namespace keyblock::dynamics {
@@ -35,14 +35,6 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
   may_break_ = may_break;
 }
 
-/// At a point of an edge, `position` from 0 to 1.
-void StepProblem::find_phi(const contact::Surface& surface, int edge, double position, int size,
-                           double* phi) {
-  const double* from = &surface.phi[surface.phi_begin[at(edge)]];
-  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(edge)])]];
-  for (int i = 0; i < size; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
-}
-
 void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
                             Row& row) {
   const Body &a = bodies_[at(c.block_a)], &b = bodies_[at(c.block_b)];
@@ -52,31 +44,18 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
   row.size_b = b.size;
   row.unknown_a = a.unknown;
   row.unknown_b = b.unknown;
-  std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], row.size_a, &phi_[row.phi]);
-  find_phi(surface, c.edge, c.position, row.size_b, &phi_[row.phi] + row.size_a);
+  with_known_size(row.size_a, [&](auto size) {
+    std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], static_cast<int>(size), &phi_[row.phi]);
+  });
+  with_known_size(row.size_b, [&](auto size) {
+    find_phi(surface, c.edge, c.position, size, &phi_[row.phi] + row.size_a);
+  });
   row.normal = c.normal;
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
 }
 
 namespace {
-
-/// What is read of eight contacts at once: by component, of as many numbers that stand together in each.
-struct Laws {
-  Lanes gap, length, depth, normal_stiffness, shear_stiffness, friction, cohesion, tension;
-};
-struct Memories {
-  Lanes offset, stiffness, shear, normal_force, bounding_force, multiplier, drift, stored;
-};
-
-template <typename Components, typename First>
-Components components(std::span<const contact::Contact> contacts, const First& first) {
-  static_assert(sizeof(Components) == lane_count * sizeof(Lanes));
-  Lanes lines[lane_count];
-  for (std::size_t i = 0; i < lane_count; ++i) lines[i] = load(first(contacts[i < contacts.size() ? i : 0]));
-  transpose(lines);
-  return {lines[0], lines[1], lines[2], lines[3], lines[4], lines[5], lines[6], lines[7]};
-}
 
 void store_first(double* p, Lanes v, std::size_t count) {
   if (count == lane_count) return store(p, v);
@@ -88,39 +67,31 @@ void store_first(double* p, Lanes v, std::size_t count) {
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
 void StepProblem::build_springs(const Drive& drive, std::span<const contact::Contact> contacts,
                                 std::size_t first) {
-  static_assert(offsetof(contact::Contact, tension) - offsetof(contact::Contact, gap) == 7 * sizeof(double));
-  static_assert(offsetof(contact::Memory, stored) - offsetof(contact::Memory, offset) == 7 * sizeof(double));
-  const auto law = components<Laws>(contacts, [](const contact::Contact& c) { return &c.gap; });
-  const auto memory =
-      components<Memories>(contacts, [](const contact::Contact& c) { return &c.memory.offset; });
-  const auto of_each = [&](const auto& number) {
-    const auto of = [&](std::size_t i) { return number(contacts[i < contacts.size() ? i : 0]); };
-    return Lanes{of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)};
-  };
-  const Lanes a = of_each([&](const contact::Contact&c) { return bodies_[at(c.block_a)].mass; }),
-              b = of_each([&](const contact::Contact&c) { return bodies_[at(c.block_b)].mass; });
+  using Spring = contact::BasicSpring<AlignedLanes>;
+  const LawLanes law = laws_of(contacts);
+  const MemoryLanes memory = memories_of(contacts);
+  const Lanes a = lanes_of(contacts, [&](const contact::Contact&c) { return bodies_[at(c.block_a)].mass; }),
+              b = lanes_of(contacts, [&](const contact::Contact&c) { return bodies_[at(c.block_b)].mass; });
   const Lanes mass = a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
-  const auto fused = of_each([](const contact::Contact&c) { return c.fused ? 1.0 : 0.0; }) > 0.0,
-             tensile =
-                 fused |
-                 ((of_each([](const contact::Contact&c) { return c.memory.bonded ? 1.0 : 0.0; }) > 0.0) &
-                  (law.tension > 0.0));
-  const Lanes zero{}, pressed = tensile | (law.depth > 0.0) ? law.depth : zero;
+  const auto fused = lanes_where(contacts, [](const contact::Contact&c) { return c.fused; }),
+             bonded = lanes_where(contacts, [](const contact::Contact&c) { return c.memory.bonded; }),
+             tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
-  const auto spring = contact::Spring::Shifted<AlignedLanes>::of(
+  const Lanes bound = fused ? broadcast(HUGE_VAL) : law.friction * memory.bounding_force + law.cohesion;
+  const Spring spring(Spring::Constants{
       law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
-      damping * square_root(law.shear_stiffness * mass), law.depth, pressed, memory.shear);
+      damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
   const std::size_t count = contacts.size();
   const auto keep = [&](std::vector<double>& numbers, Lanes v) { store_first(&numbers[first], v, count); };
-  keep(springs_.kn, spring.normal_stiffness);
-  keep(springs_.ks, spring.shear_stiffness);
-  keep(springs_.bound, fused ? broadcast(HUGE_VAL) : law.friction * memory.bounding_force + law.cohesion);
-  keep(springs_.floor, tensile ? broadcast(-HUGE_VAL) : zero);
+  keep(springs_.kn, spring.normal_stiffness());
+  keep(springs_.ks, spring.shear_stiffness());
+  keep(springs_.bound, bound);
+  keep(springs_.floor, tensile ? broadcast(-HUGE_VAL) : Lanes{});
   keep(springs_.friction, fused ? broadcast(-1.0) : law.friction);
   keep(springs_.cohesion, law.cohesion);
   for (std::size_t i = 0; i < count; ++i)
-    springs_.piece[first + i] = assumed_piece(contacts[i].memory.state, first + i, spring.shear[i]);
-  Lanes y = spring.depth, w = spring.shear;
+    springs_.piece[first + i] = assumed_piece(contacts[i].memory.state, first + i, spring.shear()[i]);
+  Lanes y = spring.depth(), w = spring.shear();
   if (!drive.prescribed.empty()) {
     for (std::size_t i = 0; i < count; ++i) {
       const Row& row = rows_[first + i];
@@ -150,13 +121,12 @@ SpringArray::Piece StepProblem::assumed_piece(contact::State state, std::size_t 
 
 contact::Spring StepProblem::spring(const contact::Contact& contact, std::size_t c) const {
   const Row& row = rows_[c];
-  const contact::Spring::Constants constants{.normal_stiffness = contact.normal_stiffness,
-                                             .shear_stiffness = contact.shear_stiffness,
-                                             .depth = contact.depth,
-                                             .shear = contact.memory.shear,
-                                             .bound = springs_.bound[c],
-                                             .tensile = springs_.is_tensile(c)};
-  return {constants,
+  return {{.normal_stiffness = contact.normal_stiffness,
+           .shear_stiffness = contact.shear_stiffness,
+           .depth = contact.depth,
+           .shear = contact.memory.shear,
+           .bound = springs_.bound[c],
+           .tensile = springs_.is_tensile(c)},
           {springs_.kn[c], springs_.ks[c], springs_.y0[c] + dot(row.normal, row.moved),
            springs_.w0[c] - dot(row.tangent(), row.moved)}};
 }
