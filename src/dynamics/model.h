@@ -82,7 +82,8 @@ struct Model {
   std::size_t unknowns = 0;      ///< coefficients of the blocks that are not fixed; they come first
   std::size_t coefficients = 0;  ///< of all blocks
 
-  [[nodiscard]] bool moves(std::size_t b) const { return !blocks[b].fixed && surface.present[b] != 0; }
+  /// Asked for all blocks in every step, of two short arrays.
+  [[nodiscard]] bool moves(std::size_t b) const { return surface.fixed[b] == 0 && surface.present[b] != 0; }
 };
 
 }  // namespace keyblock::dynamics

@@ -48,7 +48,9 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
                                               : HUGE_VAL),
       balance_(model.blocks.size()) {
   for (const Block& block : model.blocks) {
-    if (block.unknown >= 0) unknown_sizes_.push_back(2 * block.size);
+    if (block.unknown < 0) continue;
+    unknown_sizes_.push_back(2 * block.size);
+    largest_radius_ = std::max(largest_radius_, block.radius);
   }
 }
 
@@ -223,13 +225,11 @@ void Stepper::measure_spin(const State& state) {
 /// the straight way by ½ w² r, and the line of a turning edge moves away from a vertex that slides along it. That matters
 /// where a contact presses, and where it would come to press by that alone.
 bool Stepper::turned_too_far() const {
-  double turn = 0.0, radius = 0.0, moved = 0.0;
-  for (std::size_t b = 0; b < spin_.size(); ++b) {
-    turn = std::max(turn, std::abs(spin_[b]));
-    if (spin_[b] != 0.0) radius = std::max(radius, model_.blocks[b].radius);
-  }
+  double turn = 0.0, moved = 0.0;
+  for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   for (const Vec2 r : open_close_.relative()) moved = std::max(moved, squared_norm(r));
-  if (turn * (turn * radius + std::sqrt(moved)) <= tolerances_.turn) return false;  // as in most steps
+  if (turn * (turn * largest_radius_ + std::sqrt(moved)) <= tolerances_.turn)
+    return false;  // as in most steps
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
     const StepProblem::Row& row = problem_.rows()[c];

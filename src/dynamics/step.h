@@ -150,6 +150,7 @@ class Stepper {
   std::optional<double> products_;  ///< block products of a factorization with the pattern
   std::vector<contact::Contact> contacts_;
   std::vector<int> unknown_sizes_;
+  double largest_radius_ = 0.0;             ///< m, of the blocks that move
   std::vector<int> pair_of_candidate_;      ///< index into State::pattern, −1 with a fixed block
   bool has_places_ = false;                 ///< pair_of_candidate_ is that of the pattern
   std::vector<double> reach_, turn_, way_;  ///< m and rad, per block: Detection::Motion

@@ -27,11 +27,13 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     h_first_.clear();
     coefficients_.clear();
     bodies_.clear();
+    body_force_.clear();
     largest_size_ = 0;
     std::size_t used = 0;
     for (const Block& block : model.blocks) {
       largest_size_ = std::max(largest_size_, block.size);
       h_first_.push_back(used);
+      body_force_.push_back(block.body_force());
       coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
       bodies_.push_back({static_cast<std::uint32_t>(block.first), block.fixed ? 0 : block.size, block.unknown,
                          block.fixed ? 0.0 : block.mass()});
@@ -89,7 +91,7 @@ void StepProblem::build_blocks(const State& state, const Drive& drive) {
     }
   });
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) weight_[i] = model_->blocks[i].body_force() * g;
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i) weight_[i] = body_force_[i] * g;
   for (const GeneralizedLoad& load : model_->loads) {
     if (!model_->moves(at(load.block))) continue;
     const Block& block = model_->blocks[at(load.block)];

@@ -140,7 +140,7 @@ class StepProblem {
   /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
   [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
-  [[nodiscard]] int unknown(std::size_t block) const { return model_->blocks[block].unknown; }
+  [[nodiscard]] int unknown(std::size_t block) const { return bodies_[block].unknown; }
   [[nodiscard]] double block_size() const { return model_->block_size; }
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   /// Whether there is anything to measure residuals by: not without gravity, loads and shaking.
@@ -250,6 +250,7 @@ class StepProblem {
   std::vector<double> b_;
   std::vector<double> inertia_;      ///< per block, cρ/Δt²; 0: it does not move
   std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
+  std::vector<double> body_force_;   ///< per block, Block::body_force
   std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
   std::vector<ElasticLoss> losses_;  ///< scratch, per block
 };
