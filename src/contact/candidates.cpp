@@ -85,7 +85,13 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
   const bool changed = any && merge(collect(surface, dirty), dirty, list);
-  if (any || list.block_pairs.empty()) find_block_pairs(dirty, list);
+  if (changed || list.block_pairs.empty()) {
+    find_block_pairs(dirty, list);
+  } else if (any) {
+    for (BlockPair& pair : list.block_pairs) {
+      if (dirty[at(pair.block_a)] != 0 || dirty[at(pair.block_b)] != 0) pair.steady = -1.0;
+    }
+  }
   return changed;
 }
 

@@ -49,9 +49,8 @@ struct BlockPair {
   int first = 0;  ///< of its candidates; those of the next pair follow
   int block_a = 0, block_b = 0;
   int wait = 0;  ///< steps until it is looked again for how long its contacts stay the same
-  double steady =
-      -1.0;  ///< m: they do as long as the ways of both blocks (Detection::Motion) add up to no more,
-  double reach = 0.0;          ///< m: and their reaches to no more than this
+  // m: they do as long as the ways of both blocks, and their reaches (Detection::Motion), add up to no more than these.
+  double steady = -1.0, reach = 0.0;
   std::uint64_t contacts = 0;  ///< then: bit k for candidate first + k
 };
 
@@ -62,10 +61,12 @@ struct CandidateList {
   std::vector<BlockPair> block_pairs;  ///< derived; Candidates::update sees to it
   std::vector<int> tracked;            ///< contacts of the last step, into pairs; ascending
   std::vector<Memory> memory;          ///< of each of them
+  bool may_have_bonds = true;          ///< false: none of them is bonded. Derived; keep_memory sees to it
+
+  /// Of the candidates of a pair of blocks.
   [[nodiscard]] std::size_t end_of_pair(std::size_t p) const {
     return p + 1 < block_pairs.size() ? static_cast<std::size_t>(block_pairs[p + 1].first) : pairs.size();
   }
-  bool may_have_bonds = true;  ///< false: none of them is bonded. Derived; keep_memory sees to it
 
   /// Walks over the candidates in their order: where the memory of each is.
   class Finder {

@@ -185,27 +185,22 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
                               std::size_t last, std::vector<Found>& found) const {
   std::vector<Rival> rivals;
   find_rivals(surface, candidates, first, last, rivals);
-  const auto end_of = [&](std::size_t p) { return candidates.end_of_pair(p); };
-  for (auto r = rivals.begin(); r != rivals.end();) {
-    const int p = r->pair;
-    const auto next = std::find_if(r, rivals.end(), [p](const Rival& other) { return other.pair != p; });
-    decide(surface, candidates, candidates.block_pairs[at(p)], end_of(at(p)), {r, next});
-    r = next;
-  }
   found.clear();
   CandidateList::Finder memory_of(candidates, candidates.block_pairs[first].first);
   auto r = rivals.begin();
   for (std::size_t p = first; p < last; ++p) {
-    const BlockPair& pair = candidates.block_pairs[p];
-    const bool steady = is_steady(pair);
-    if (steady) {
+    BlockPair& pair = candidates.block_pairs[p];
+    if (is_steady(pair)) {
       for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1) {
         const int candidate = pair.first + std::countr_zero(left);
         found.push_back({candidate, memory_of(at(candidate))});
       }
+      continue;
     }
-    for (; r != rivals.end() && at(r->pair) == p; ++r) {
-      if (!steady && r->candidate >= 0) found.push_back({r->candidate, r->memory});
+    const auto next = std::find_if(r, rivals.end(), [&](const Rival& other) { return at(other.pair) != p; });
+    decide(surface, candidates, pair, candidates.end_of_pair(p), {r, next});
+    for (; r != next; ++r) {
+      if (r->candidate >= 0) found.push_back({r->candidate, r->memory});
     }
   }
 }
