@@ -46,13 +46,14 @@ Pose::Pose(const Polygon& region, const Basis& basis) : size_(basis.size()) {
 
 double Pose::area(const double* a) const {
   if (size_ == 3) return w12_ * (a[2] * a[5] - a[4] * a[3]);
-  const auto n = static_cast<std::size_t>(size_);
   double sum = 0.0;
-  for (std::size_t k = 1; k < n; ++k) {
-    double row = 0.0;
-    for (std::size_t l = 1; l < n; ++l) row += w_[k * n + l] * a[2 * l + 1];
-    sum += a[2 * k] * row;
-  }
+  with_known_size(size_, [&](auto size) {
+    for (int k = 1; k < size; ++k) {
+      double row = 0.0;
+      for (int l = 1; l < size; ++l) row += w_[at(k * size + l)] * a[2 * l + 1];
+      sum += a[2 * k] * row;
+    }
+  });
   return sum;
 }
 

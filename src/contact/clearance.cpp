@@ -2,15 +2,13 @@
 #include <cmath>
 
 #include "contact/candidates.h"
+#include "contact/line_motion.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
 
 double clearance(const Surface& surface, std::span<const Vec2> position, const Tolerances& tolerances,
                  int vertex, int edge) {
-  constexpr double turn =
-      2.2;  // turn of a line over the motion of its ends as a share of its length, rounded up
-  constexpr double largest = 0.05;  // of a length, the motion up to which that holds
   const int end = surface.next[at(edge)];
   const Vec2 a = position[at(edge)], v = position[at(vertex)], along_edge = position[at(end)] - a;
   const double length = norm(along_edge);
@@ -24,13 +22,13 @@ double clearance(const Surface& surface, std::span<const Vec2> position, const T
   };
   const double apart = std::max(
       {gap - tolerances.activation, -gap - deepest, -along - zone(edge), along - length - zone(end)});
-  double clear = std::min(apart / (4.0 + turn * norm(v - a) / length), largest * length);
+  double clear = std::min(apart / (4.0 + line_turn * norm(v - a) / length), largest_line_motion * length);
 
   for (const int other : {surface.previous[at(vertex)], surface.next[at(vertex)]}) {
     const Vec2 u = position[at(other)] - v;
     const double size = norm(u), shortest = std::min(size, length);
     const double inside = -dot(normal, u) / size - Tolerances::sine_inside;
-    clear = std::max(clear, std::min(inside / turn, largest) * shortest);
+    clear = std::max(clear, std::min(inside / line_turn, largest_line_motion) * shortest);
   }
   return std::max(0.0, clear);
 }

@@ -53,6 +53,9 @@ void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, T
 ///   - all lines parallel: the end of an edge-edge contact. The vertex that lies over the other's edge; the one that
 ///     already was in contact stays until it has clearly left, and then hands its memory over.
 ///   - otherwise corner to corner: the line of the largest gap is the shortest way out; none while that is a tie.
+///
+/// All this hangs on thresholds of a share of a block, while blocks in contact move by a millionth of one in a step. A pair of blocks
+/// is looked at when it may have passed one (BlockPair); of the others only the geometry of their contacts is computed.
 class Detection {
  public:
   /// penalty[b]: Pa/m, normal stiffness of joints of block b that give none; the softer of two blocks counts. laws[k]: by

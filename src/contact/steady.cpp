@@ -3,20 +3,17 @@
 #include <cmath>
 
 #include "contact/detection.h"
+#include "contact/line_motion.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
 
 namespace {
 
-/// Of a line of length L whose ends move by m: it turns by less than this times m / L, as long as m is at most
-constexpr double turn = 2.2;
-constexpr double largest = 0.05;  // of L
-
 /// How much a distance of a vertex from a line changes at most, over the motion m of both blocks together: n·(V − A) by 1 + 2.2
 /// |V − A| / L; the rest is room.
 double rate(double distance, double length) {
-  return 2.0 + turn * distance / length;
+  return 2.0 + line_turn * distance / length;
 }
 
 }  // namespace
@@ -62,7 +59,7 @@ double Detection::rival_margin(const Surface& surface, const Candidate& candidat
     const Vec2 u = surface.position[at(other)] - vertex.position;
     const double size = norm(u), shortest = std::min(size, length);
     const double outside = dot(line.normal(), u) / size + Tolerances::sine_inside;
-    margin = std::min(margin, std::min(outside / turn, largest) * shortest);
+    margin = std::min(margin, std::min(outside / line_turn, largest_line_motion) * shortest);
   }
 
   const double from_zone_start = (rival.along - zone - reach) / start_rate,
@@ -94,8 +91,9 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
       if (other == r) continue;
       const double sine = std::abs(cross(line(r).tangent, line(other).tangent)),
                    shortest = std::min(line(r).length, line(other).length);
-      margin = std::min(
-          margin, std::min(std::abs(sine - Tolerances::sine_parallel) / (2.0 * turn), largest) * shortest);
+      margin = std::min(margin, std::min(std::abs(sine - Tolerances::sine_parallel) / (2.0 * line_turn),
+                                         largest_line_motion) *
+                                    shortest);
       any_turned = any_turned || turned(line(r), line(other));
     }
     each_turned = each_turned && any_turned;

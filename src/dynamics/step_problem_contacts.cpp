@@ -70,12 +70,12 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   using Spring = contact::BasicSpring<AlignedLanes>;
   const LawLanes law = laws_of(contacts);
   const MemoryLanes memory = memories_of(contacts);
-  const Lanes a = lanes_of(contacts, [&](const contact::Contact&c) { return bodies_[at(c.block_a)].mass; }),
-              b = lanes_of(contacts, [&](const contact::Contact&c) { return bodies_[at(c.block_b)].mass; });
+  const Lanes a = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_a)].mass; });
+  const Lanes b = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_b)].mass; });
   const Lanes mass = a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
-  const auto fused = lanes_where(contacts, [](const contact::Contact&c) { return c.fused; }),
-             bonded = lanes_where(contacts, [](const contact::Contact&c) { return c.memory.bonded; }),
-             tensile = fused | (bonded & (law.tension > 0.0));
+  const auto fused = lanes_where(contacts, [](const contact::Contact& c) { return c.fused; });
+  const auto bonded = lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
+  const auto tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
   const Lanes bound = fused ? broadcast(HUGE_VAL) : law.friction * memory.bounding_force + law.cohesion;
   const Spring spring(Spring::Constants{

@@ -1,0 +1,137 @@
+// What is known of a contact, once it is one.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "contact/detection.h"
+#include "core/index.h"
+
+namespace keyblock::contact {
+
+namespace {
+
+Lanes least(Lanes a, Lanes b) {
+  return b < a ? b : a;
+}
+Lanes largest(Lanes a, Lanes b) {
+  return a < b ? b : a;
+}
+
+/// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
+/// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
+/// comes back from there when the joint gets shorter again.
+void keep_energy(Memory& memory, double gap, double stiffness) {
+  const double depth = -gap - memory.offset;
+  if (memory.multiplier > 0.0) {  // a force that belongs to no penetration stays
+    memory.multiplier *= memory.stiffness / stiffness;
+    memory.shear *= memory.stiffness / stiffness;
+  } else if (memory.stiffness > 0.0 && stiffness != memory.stiffness && depth > 0.0) {
+    const double scale = std::sqrt(memory.stiffness / stiffness);
+    memory.offset = std::max(-gap - scale * depth, std::min(memory.offset, 0.0));
+    memory.shear *= scale;
+  }
+  memory.stiffness = stiffness;
+}
+
+}  // namespace
+
+/// Eight at once, or fewer at the end.
+Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
+                                       std::span<const Found> found) const {
+  Lanes edge[lane_count], vertex[lane_count];
+  double to_x[2][lane_count], to_y[2][lane_count];  // from the vertex to the previous one, and to the next
+  for (std::size_t i = 0; i < lane_count; ++i) {
+    const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
+    const Corner& corner = corners_[at(c.vertex)];
+    edge[i] = load(&corners_[at(c.edge)].position.x);
+    vertex[i] = load(&corner.position.x);
+    const std::size_t others[2] = {at(surface.previous[at(c.vertex)]), at(surface.next[at(c.vertex)])};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec2 to = surface.position[others[k]] - corner.position;
+      to_x[k][i] = to.x;
+      to_y[k][i] = to.y;
+    }
+  }
+  transpose(edge);
+  transpose(vertex);
+  const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
+  const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
+  const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
+  // Length over the edge that an edge of the vertex shares with it, where they face each other.
+  const auto shared = [&](std::size_t k) {
+    const Lanes ux = load(to_x[k]), uy = load(to_y[k]), across = nx * ux + ny * uy,
+                to = along + (ux * tx + uy * ty);
+    const Lanes low = largest(Lanes{}, least(along, to)), high = least(length, largest(along, to));
+    const auto turned =
+        across * across > Tolerances::sine_facing * Tolerances::sine_facing * (ux * ux + uy * uy);
+    return turned ? Lanes{} : largest(Lanes{}, high - low);
+  };
+  return {gap, along / length, 0.5 * (shared(0) + shared(1))};
+}
+
+void Detection::give_law(const Surface& surface, Contact& contact) const {
+  const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
+  const double per_length = law.normal_stiffness > 0.0
+                                ? law.normal_stiffness
+                                : std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
+  contact.normal_stiffness = per_length * std::max(contact.length, tolerances_.least_length);
+  contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
+  contact.friction_coefficient = law.friction_coefficient;
+  contact.cohesion = contact.memory.bonded ? law.cohesion * contact.length : 0.0;
+  contact.tension = contact.memory.bonded ? law.tension * contact.length : 0.0;
+  contact.fused = contact.memory.bonded && law.fused;
+}
+
+void Detection::describe(const Surface& surface, const CandidateList& candidates,
+                         std::span<const Found> found, std::span<Contact> contacts) const {
+  for (std::size_t begin = 0; begin < found.size(); begin += lane_count) {
+    const std::size_t count = std::min(found.size() - begin, std::size_t{lane_count});
+    const Geometry geometry = measure(surface, candidates, found.subspan(begin, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Found& f = found[begin + i];
+      const Candidate& candidate = candidates.pairs[at(f.candidate)];
+      Contact& contact = contacts[begin + i];
+      contact.candidate = f.candidate;
+      contact.block_a = candidate.block_a;
+      contact.block_b = candidate.block_b;
+      contact.vertex = candidate.vertex;
+      contact.edge = candidate.edge;
+      contact.normal = corners_[at(candidate.edge)].normal();
+      contact.position = geometry.position[i];
+      contact.gap = geometry.gap[i];
+      contact.length = geometry.length[i];
+      Memory& memory = contact.memory;
+      if (f.memory < 0) {
+        memory = {};
+        memory.offset = std::max(0.0, -contact.gap);
+      } else {
+        memory = candidates.memory[at(f.memory)];
+        if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -contact.gap));
+      }
+      give_law(surface, contact);
+      keep_energy(memory, contact.gap, contact.normal_stiffness);
+      contact.depth = -contact.gap - memory.offset + memory.multiplier;
+    }
+  }
+}
+
+void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
+  candidates.tracked.resize(contacts.size());
+  candidates.memory.resize(contacts.size());
+  std::atomic<bool> any_bond = false;
+  team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    bool any = false;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Contact& c = contacts[k];
+      candidates.tracked[k] = c.candidate;
+      candidates.memory[k] = c.memory;
+      if (!c.memory.bonded) continue;
+      candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
+      any = true;
+    }
+    if (any) any_bond = true;
+  });
+  candidates.may_have_bonds = any_bond;
+}
+
+}  // namespace keyblock::contact
