@@ -1,7 +1,6 @@
 #include "dynamics/open_close.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 

@@ -67,7 +67,7 @@ class StepProblem {
   [[nodiscard]] const SpringArray& springs() const { return springs_; }
   /// Whether there are bonds that may break in this step.
   [[nodiscard]] bool may_break() const { return may_break_; }
-  /// The spring of contact c, whose `memory` is still that of the last step.
+  /// The spring of contact c, at the start of the step where its `memory` has it.
   [[nodiscard]] contact::Spring spring(const contact::Contact& contact, std::size_t c) const;
   /// Unknowns come first among the coefficients; those of fixed blocks follow.
   [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
@@ -213,15 +213,7 @@ class StepProblem {
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, const contact::Surface& surface,
                   std::span<const contact::Contact> contacts, std::span<const int> pairs);
-  /// Basis functions at a point of an edge, `position` from 0 to 1.
-  template <typename Size>
-  static void find_phi(const contact::Surface& surface, int edge, double position, Size size, double* phi) {
-    const double* from = &surface.phi[surface.phi_begin[static_cast<std::size_t>(edge)]];
-    const double* to =
-        &surface
-             .phi[surface.phi_begin[static_cast<std::size_t>(surface.next[static_cast<std::size_t>(edge)])]];
-    for (int i = 0; i < size; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
-  }
+  static void find_phi(const contact::Surface& surface, int edge, double position, int size, double* phi);
   void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
   [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);

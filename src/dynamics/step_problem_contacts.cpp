@@ -35,6 +35,16 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
   may_break_ = may_break;
 }
 
+/// At a point of an edge, `position` from 0 to 1.
+void StepProblem::find_phi(const contact::Surface& surface, int edge, double position, int size,
+                           double* phi) {
+  const double* from = &surface.phi[surface.phi_begin[at(edge)]];
+  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(edge)])]];
+  with_known_size(size, [&](auto known) {
+    for (int i = 0; i < known; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
+  });
+}
+
 void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
                             Row& row) {
   const Body &a = bodies_[at(c.block_a)], &b = bodies_[at(c.block_b)];
@@ -47,9 +57,7 @@ void StepProblem::build_row(const Drive& drive, const contact::Surface& surface,
   with_known_size(row.size_a, [&](auto size) {
     std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], static_cast<int>(size), &phi_[row.phi]);
   });
-  with_known_size(row.size_b, [&](auto size) {
-    find_phi(surface, c.edge, c.position, size, &phi_[row.phi] + row.size_a);
-  });
+  find_phi(surface, c.edge, c.position, row.size_b, &phi_[row.phi] + row.size_a);
   row.normal = c.normal;
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];

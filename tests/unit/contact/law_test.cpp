@@ -7,15 +7,21 @@
 namespace keyblock::contact {
 namespace {
 
-std::vector<Spring> springs() {
+std::vector<Spring::Constants> constants() {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<Spring> all;
-  for (int k = 0; k < 60; ++k) {
-    all.emplace_back(Spring::Constants{2.0 + uniform(random), 1.5 + uniform(random), k % 3 == 0 ? 0.0 : 0.5,
-                                       k % 3 == 0 ? 0.0 : 0.3, uniform(random), 0.2 * uniform(random),
-                                       k % 5 == 0 ? 0.0 : 0.4, k % 7 == 0});
+  std::vector<Spring::Constants> all;
+  for (int k = 0; k < 64; ++k) {
+    all.push_back({2.0 + uniform(random), 1.5 + uniform(random), k % 3 == 0 ? 0.0 : 0.5,
+                   k % 3 == 0 ? 0.0 : 0.3, uniform(random), 0.2 * uniform(random), k % 5 == 0 ? 0.0 : 0.4,
+                   k % 7 == 0});
   }
+  return all;
+}
+
+std::vector<Spring> springs() {
+  std::vector<Spring> all;
+  for (const Spring::Constants& c : constants()) all.emplace_back(c);
   return all;
 }
 
@@ -47,6 +53,43 @@ TEST(Spring, EnergyIsAccountedForAndNothingIsGained) {
           EXPECT_NEAR(s.stored_at_start(), b.stored + work + b.friction + b.damping + b.numerical, 1e-12);
         }
         EXPECT_GE(b.friction + b.damping + b.numerical, -1e-12);
+      }
+    }
+  }
+}
+
+TEST(Spring, SeveralAtOnceAreThoseOneByOne) {
+  using Springs = BasicSpring<AlignedLanes>;
+  const std::vector<Spring::Constants> all = constants();
+  for (std::size_t first = 0; first < all.size(); first += lane_count) {
+    Springs::Constants together;
+    for (int k = 0; k < lane_count; ++k) {
+      const Spring::Constants& c = all[first + static_cast<std::size_t>(k)];
+      together.normal_stiffness[k] = c.normal_stiffness;
+      together.shear_stiffness[k] = c.shear_stiffness;
+      together.normal_damping[k] = c.normal_damping;
+      together.shear_damping[k] = c.shear_damping;
+      together.depth[k] = c.depth;
+      together.shear[k] = c.shear;
+      together.bound[k] = c.bound;
+      together.tensile[k] = c.tensile ? -1 : 0;
+    }
+    const Springs springs(together);
+    for (double y : {-0.7, 0.2}) {
+      for (double w : {-0.8, 0.05}) {
+        const Springs::Balance balance = springs.balance(broadcast(y), broadcast(w));
+        for (int k = 0; k < lane_count; ++k) {
+          const Spring one(all[first + static_cast<std::size_t>(k)]);
+          const Spring::Balance of_one = one.balance(y, w);
+          EXPECT_EQ(springs.normal_force(broadcast(y))[k], one.normal_force(y));
+          EXPECT_EQ(springs.shear_force(broadcast(w))[k], one.shear_force(w));
+          EXPECT_EQ(springs.closed(broadcast(y))[k] != 0, one.closed(y));
+          EXPECT_EQ(springs.locked(broadcast(w))[k] != 0, one.locked(w));
+          EXPECT_EQ(balance.stored[k], of_one.stored);
+          EXPECT_EQ(balance.friction[k], of_one.friction);
+          EXPECT_EQ(balance.damping[k], of_one.damping);
+          EXPECT_EQ(balance.numerical[k], of_one.numerical);
+        }
       }
     }
   }
