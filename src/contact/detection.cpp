@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t piece = 1'024;  // pairs of blocks
 
-Lanes least(Lanes a, Lanes b) {
-  return b < a ? b : a;
-}
-
 }  // namespace
 
 void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {

@@ -10,13 +10,6 @@ namespace keyblock::contact {
 
 namespace {
 
-Lanes least(Lanes a, Lanes b) {
-  return b < a ? b : a;
-}
-Lanes largest(Lanes a, Lanes b) {
-  return a < b ? b : a;
-}
-
 /// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
 /// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
 /// comes back from there when the joint gets shorter again.

@@ -125,5 +125,6 @@ class BasicSpring {
 };
 
 using Spring = BasicSpring<double>;
+using SpringLanes = BasicSpring<AlignedLanes>;
 
 }  // namespace keyblock::contact

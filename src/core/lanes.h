@@ -43,6 +43,14 @@ inline Lanes square_root(Lanes v) {
 #endif
 }
 
+/// Of each lane.
+inline Lanes least(Lanes a, Lanes b) {
+  return b < a ? b : a;
+}
+inline Lanes largest(Lanes a, Lanes b) {
+  return a < b ? b : a;
+}
+
 /// One or the other, of a number or of each lane.
 inline double where(bool condition, double yes, double no) {
   return condition ? yes : no;

@@ -10,8 +10,6 @@ namespace keyblock::dynamics {
 
 namespace {
 
-using Spring = contact::BasicSpring<AlignedLanes>;
-
 /// n·moved or t·moved of each row, moved: what fixed blocks are moved by.
 Lanes moved_along(std::span<const StepProblem::Row> rows, bool tangent) {
   Lanes along{};
@@ -36,17 +34,18 @@ void Stepper::remember_contacts(std::size_t first, bool is_static, std::span<Con
     moved_shear = moved_along(rows, true);
   }
   const Lanes bound = at_first(springs.bound), y = at_first(springs.y), w = at_first(springs.w);
-  const Spring s(Spring::Constants{.normal_stiffness = law.normal_stiffness,
-                                   .shear_stiffness = law.shear_stiffness,
-                                   .depth = law.depth,
-                                   .shear = memory.shear,
-                                   .bound = bound,
-                                   .tensile = at_first(springs.floor) < 0.0},
-                 Spring::Shifted{at_first(springs.kn), at_first(springs.ks),
-                                 at_first(springs.y0) + moved_normal, at_first(springs.w0) - moved_shear});
+  const contact::SpringLanes s(
+      contact::SpringLanes::Constants{.normal_stiffness = law.normal_stiffness,
+                                      .shear_stiffness = law.shear_stiffness,
+                                      .depth = law.depth,
+                                      .shear = memory.shear,
+                                      .bound = bound,
+                                      .tensile = at_first(springs.floor) < 0.0},
+      contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
+                                    at_first(springs.y0) + moved_normal, at_first(springs.w0) - moved_shear});
   const Lanes zero{}, normal = s.normal_force(y), shear = s.shear_force(w), penetration = s.penetration(y),
                       input = -(normal * moved_normal - shear * moved_shear), stored_before = memory.stored;
-  const Spring::Balance balance = s.balance(y, w);
+  const contact::SpringLanes::Balance balance = s.balance(y, w);
   const auto closed = s.closed(y), locked = s.locked(w);
   const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
   memory.normal_force = memory.bounding_force = pressure;

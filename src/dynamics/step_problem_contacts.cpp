@@ -75,7 +75,6 @@ void store_first(double* p, Lanes v, std::size_t count) {
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
 void StepProblem::build_springs(const Drive& drive, std::span<const contact::Contact> contacts,
                                 std::size_t first) {
-  using Spring = contact::BasicSpring<AlignedLanes>;
   const LawLanes law = laws_of(contacts);
   const MemoryLanes memory = memories_of(contacts);
   const Lanes a = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_a)].mass; });
@@ -86,7 +85,7 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   const auto tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
   const Lanes bound = fused ? broadcast(HUGE_VAL) : law.friction * memory.bounding_force + law.cohesion;
-  const Spring spring(Spring::Constants{
+  const contact::SpringLanes spring(contact::SpringLanes::Constants{
       law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
       damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
   const std::size_t count = contacts.size();

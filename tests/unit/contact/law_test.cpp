@@ -59,10 +59,9 @@ TEST(Spring, EnergyIsAccountedForAndNothingIsGained) {
 }
 
 TEST(Spring, SeveralAtOnceAreThoseOneByOne) {
-  using Springs = BasicSpring<AlignedLanes>;
   const std::vector<Spring::Constants> all = constants();
   for (std::size_t first = 0; first < all.size(); first += lane_count) {
-    Springs::Constants together;
+    SpringLanes::Constants together;
     for (int k = 0; k < lane_count; ++k) {
       const Spring::Constants& c = all[first + static_cast<std::size_t>(k)];
       together.normal_stiffness[k] = c.normal_stiffness;
@@ -74,10 +73,10 @@ TEST(Spring, SeveralAtOnceAreThoseOneByOne) {
       together.bound[k] = c.bound;
       together.tensile[k] = c.tensile ? -1 : 0;
     }
-    const Springs springs(together);
+    const SpringLanes springs(together);
     for (double y : {-0.7, 0.2}) {
       for (double w : {-0.8, 0.05}) {
-        const Springs::Balance balance = springs.balance(broadcast(y), broadcast(w));
+        const SpringLanes::Balance balance = springs.balance(broadcast(y), broadcast(w));
         for (int k = 0; k < lane_count; ++k) {
           const Spring one(all[first + static_cast<std::size_t>(k)]);
           const Spring::Balance of_one = one.balance(y, w);
