@@ -62,7 +62,7 @@ double Pose::mean_spin(const double* increment, const double* a) const {
     const double curl = increment[2] * a[4] + increment[3] * a[5] - increment[4] * a[2] - increment[5] * a[3];
     return 0.5 * w12_ * curl / area(a);
   }
-  double sum = 0.0;
+  double sum = 0.0, current_area = 0.0;
   with_known_size(size_, [&](auto size) {
     for (int k = 1; k < size; ++k) {
       const double* w = &w_[at(k * size)];
@@ -72,9 +72,10 @@ double Pose::mean_spin(const double* increment, const double* a) const {
         row_y += w[l] * a[2 * l + 1];
       }
       sum += increment[2 * k] * row_x + increment[2 * k + 1] * row_y;
+      current_area += a[2 * k] * row_y;
     }
   });
-  return 0.5 * sum / area(a);
+  return 0.5 * sum / current_area;
 }
 
 double Pose::update(const double* increment, double* a, double* v) const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <cstddef>
 #if defined(__AVX__)
 #include <immintrin.h>
 #endif
@@ -49,6 +50,11 @@ inline Lanes least(Lanes a, Lanes b) {
 }
 inline Lanes largest(Lanes a, Lanes b) {
   return a < b ? b : a;
+}
+
+/// Whether a lane is one of the first `count`.
+inline auto first_lanes(std::size_t count) {
+  return Lanes{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0} < broadcast(static_cast<double>(count));
 }
 
 /// One or the other, of a number or of each lane.

@@ -18,9 +18,10 @@ constexpr double rough_share =
 constexpr double least_share = 0.25;  // of the way to a new bound
 
 /// Two sums over the same.
+template <typename Number>
 struct Sums {
-  double first = 0.0, second = 0.0;
-  Sums& operator+=(Sums other) {
+  Number first{}, second{};
+  Sums& operator+=(const Sums& other) {
     first += other.first;
     second += other.second;
     return *this;
@@ -33,13 +34,8 @@ struct Sums {
 void OpenClose::add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                           std::span<double> out) {
   if (force.is_zero()) return;
-  problem.add_contact_force(problem.rows()[c], scale * contact_gradient(problem, c, force), out);
-}
-
-/// ∂ψ/∂r of a contact whose springs push with `force`.
-Vec2 OpenClose::contact_gradient(const StepProblem& problem, std::size_t c, Force force) {
   const StepProblem::Row& row = problem.rows()[c];
-  return force.shear * row.tangent() - force.normal * row.normal;
+  problem.add_contact_force(row, scale * row.gradient(force), out);
 }
 
 /// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
@@ -96,11 +92,11 @@ bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& s
     if (normal == normal_before && shear == shear_before) continue;
     const StepProblem::Place now(contacts_[c]), before = std::exchange(factor_.places[c], now);
     if (now == before) {
-      changes_.push_back({c, contacts_[c].edge, now, normal - normal_before, shear - shear_before});
+      changes_.push_back({c, now, normal - normal_before, shear - shear_before});
     } else {
       // Of an earlier step: what it has there is taken away as it was, or the matrix would not stay positive definite.
-      changes_.push_back({c, contacts_[c].edge, before, -normal_before, -shear_before});
-      changes_.push_back({c, contacts_[c].edge, now, normal, shear});
+      changes_.push_back({c, before, -normal_before, -shear_before});
+      changes_.push_back({c, now, normal, shear});
     }
     hold(problem, c, static_cast<int>(factor_.has_spring(c)) - static_cast<int>(had_spring));
     if (rows[c].unknown_a >= 0) solver.touch(rows[c].unknown_a);
@@ -141,9 +137,10 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
 /// What the direction of search does to every spring.
 void OpenClose::find_direction(const StepProblem& problem) {
   const auto& rows = problem.rows();
+  problem.displace(direction_, displacement_);
   team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Vec2 r = problem.relative(rows[c], direction_);
+      const Vec2 r = rows[c].relative(displacement_);
       springs_->dy[c] = -dot(rows[c].normal, r);
       springs_->dw[c] = dot(rows[c].tangent(), r);
     }
@@ -172,8 +169,8 @@ double OpenClose::slope(double alpha) const {
 
 double OpenClose::search_line() {
   const auto [from_gradient, from_residual] =
-      sum_of<Sums>(*team_, direction_.size(), coefficients_worth_threads, [&](std::size_t k) {
-        return Sums{gradient_[k] * direction_[k], residual_[k] * direction_[k]};
+      sum_of<Sums<double>>(*team_, direction_.size(), coefficients_worth_threads, [&](std::size_t k) {
+        return Sums<double>{gradient_[k] * direction_[k], residual_[k] * direction_[k]};
       });
   slope_at_zero_ = from_gradient;
   curvature_ = -from_residual - from_gradient;
@@ -267,19 +264,27 @@ void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force befo
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
+  const auto [errors, scales] = sum_of<Sums<AlignedLanes>>(
+      *team_, (springs_->size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
+      [&](std::size_t group) {
+        const std::size_t c = group * lane_count;
+        const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
+        const Lanes zero{}, y = at_c(springs_->y), mu = at_c(springs_->friction);
+        const Lanes normal = y > at_c(springs_->floor) ? at_c(springs_->kn) * y : zero;
+        // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
+        const Lanes wanted = mu * largest(normal, zero) + at_c(springs_->cohesion),
+                    elastic = at_c(springs_->ks) * at_c(springs_->w), bound_now = at_c(springs_->bound),
+                    change = largest(least(elastic, wanted), -wanted) -
+                             largest(least(elastic, bound_now), -bound_now);
+        const auto counts = (mu >= zero) & first_lanes(springs_->size() - c);
+        return Sums<AlignedLanes>{counts ? change * change : zero, counts ? wanted * wanted : zero};
+      });
+  const double error = sum(errors), scale = sum(scales);
+  const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
+  if (ratio <= tolerance) return false;
   const auto bound = [&](std::size_t c) {
     return springs_->friction[c] * std::max(0.0, springs_->force(c).normal) + springs_->cohesion[c];
   };
-  const auto [error, scale] =
-      sum_of<Sums>(*team_, springs_->size(), contacts_worth_threads, [&](std::size_t c) {
-        if (springs_->friction[c] < 0.0) return Sums{};
-        // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const double wanted = bound(c), elastic = springs_->ks[c] * springs_->w[c];
-        const double change = std::clamp(elastic, -wanted, wanted) - springs_->force(c).shear;
-        return Sums{change * change, wanted * wanted};
-      });
-  const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
-  if (ratio <= tolerance) return false;
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();

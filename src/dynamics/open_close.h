@@ -53,6 +53,8 @@ class OpenClose {
                         linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
                         Profile& profile, std::span<double> d);
 
+  /// m, of every vertex of the surface at the solution.
+  [[nodiscard]] std::span<const Vec2> displacement() const { return displacement_; }
   /// r of every row at the solution.
   [[nodiscard]] std::span<const Vec2> relative() const { return r_; }
   [[nodiscard]] std::span<const double> gradient() const { return gradient_; }
@@ -100,7 +102,6 @@ class OpenClose {
   [[nodiscard]] double slope(double alpha) const;
   void go(const StepProblem& problem, double alpha, std::span<double> d);
   void take_force(const StepProblem& problem, std::size_t c, Force before);
-  static Vec2 contact_gradient(const StepProblem& problem, std::size_t c, Force force);
   static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                         std::span<double> out);
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
@@ -152,6 +153,8 @@ class OpenClose {
   std::vector<double> stretch_, part_a_, part_b_;
   std::vector<double> base_;        ///< half of D₀ of the corrections
   std::vector<double> refinement_;  ///< scratch: half of what is taken off D₀
+  std::vector<Vec2> displacement_;  ///< m, of vertices: of D, or of the direction of search
+  std::vector<Vec2> vertex_force_;  ///< scratch
   std::vector<Vec2> r_;
   bool knows_relative_ = false;  ///< r_ is that of the springs
   std::vector<Vec2> shift_;      ///< m, of springs: normal, shear

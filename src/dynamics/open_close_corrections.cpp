@@ -17,9 +17,11 @@ constexpr double kept_share = 0.003;
 /// Half of D₀, where all springs are on the straight lines of the factored matrix.
 void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halves) {
   std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
-  for (std::size_t c = 0; c < springs_->size(); ++c)
-    add_force(problem, c, springs_->force_on(c, factored_[c], springs_->y0[c], springs_->w0[c]), -1.0,
-              direction_);
+  const auto minus_gradient = [&](std::size_t c) {
+    return -1.0 *
+           problem.rows()[c].gradient(springs_->force_on(c, factored_[c], springs_->y0[c], springs_->w0[c]));
+  };
+  problem.add_contact_forces(minus_gradient, vertex_force_, direction_);
   const Profile::Scope scope(*profile_, Phase::solution);
   halves.half_solve(std::span(direction_).first(problem.unknowns()), base_);
 }
@@ -27,9 +29,10 @@ void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halve
 /// Springs and their pieces at D.
 void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
   const auto& rows = problem.rows();
+  problem.displace(d, displacement_);
   team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Vec2 r = problem.relative(rows[c], d);
+      const Vec2 r = rows[c].relative(displacement_);
       r_[c] = r + rows[c].moved;
       springs_->y[c] = springs_->y0[c] - dot(rows[c].normal, r);
       springs_->w[c] = springs_->w0[c] + dot(rows[c].tangent(), r);
@@ -104,8 +107,8 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
   team_->for_range(gradient_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) gradient_[k] -= problem.right()[k];
   });
-  problem.add_contact_forces([&](std::size_t c) { return contact_gradient(problem, c, springs_->force(c)); },
-                             gradient_);
+  problem.add_contact_forces([&](std::size_t c) { return problem.rows()[c].gradient(springs_->force(c)); },
+                             vertex_force_, gradient_);
 }
 
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.

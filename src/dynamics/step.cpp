@@ -11,13 +11,6 @@ namespace keyblock::dynamics {
 
 namespace {
 
-/// x(X) at a vertex from the coefficients of its block.
-Vec2 map_point(const double* phi, int size, const double* a) {
-  Vec2 x;
-  for (int k = 0; k < size; ++k) x += phi[k] * Vec2{a[2 * k], a[2 * k + 1]};
-  return x;
-}
-
 std::vector<double> penalties(const Model& model) {
   std::vector<double> stiffness;
   for (const Block& block : model.blocks) stiffness.push_back(model.solver.penalty * block.material.young);
@@ -60,13 +53,11 @@ void Stepper::place(State& state) {
     for (std::size_t b = begin; b < end; ++b) {
       const Block& block = model_.blocks[b];
       double moved = 0.0;
-      for (std::size_t v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
-        const Vec2 x =
-            map_point(&surface.phi[surface.phi_begin[v]], block.size, &state.position[block.first]);
+      for_vertex_values(surface, b, block.size, &state.position[block.first], [&](std::size_t v, Vec2 x) {
         const double squared = squared_norm(x - surface.position[v]);
         if (!(squared <= moved)) moved = squared;  // nor if it is not a number
         surface.position[v] = x;
-      }
+      });
       state.moved[b] = std::sqrt(moved);
       way_[b] += state.moved[b];
     }
@@ -155,10 +146,9 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
       return;
     }
     double fastest = 0.0;
-    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
-      fastest = std::max(fastest, squared_norm(map_point(&model_.surface.phi[model_.surface.phi_begin[v]],
-                                                         block.size, &state.velocity[block.first])));
-    }
+    for_vertex_values(
+        model_.surface, b, block.size, &state.velocity[block.first],
+        [&](std::size_t /*v*/, Vec2 velocity) { fastest = std::max(fastest, squared_norm(velocity)); });
     speed_[b] = std::sqrt(fastest);
     reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
     const double spin = block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
@@ -250,10 +240,8 @@ bool Stepper::moved_too_far() {
   for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
     double moved = 0.0;
-    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v) {
-      moved = std::max(moved, squared_norm(map_point(&model_.surface.phi[model_.surface.phi_begin[v]],
-                                                     block.size, &increment_[block.first])));
-    }
+    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
+      moved = std::max(moved, squared_norm(open_close_.displacement()[v]));
     moved = std::sqrt(moved);
     if (moved > reach_[b] + 0.5 * tolerances_.activation) {
       reach_[b] = 1.5 * moved;

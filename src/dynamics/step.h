@@ -118,17 +118,20 @@ class Stepper {
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
-  /// Where the energy of a contact went in the step, and how deep it is.
-  struct ContactAccount {
-    contact::Spring::Balance balance;
-    double stored_before = 0.0;  ///< J per thickness, at the start
-    double input = 0.0;          ///< J per thickness, by what fixed blocks are moved
-    double penetration = 0.0;    ///< m
-    bool closed = false;         ///< at the end
+  /// Where the energy of as many contacts as there are lanes went in the step, and how deep they are.
+  struct ContactAccounts {
+    contact::SpringLanes::Balance balance;
+    AlignedLanes stored_before{};  ///< J per thickness, at the start
+    AlignedLanes input{};          ///< J per thickness, by what fixed blocks are moved
+    AlignedLanes penetration{};    ///< m
+    AlignedLanes closed{};         ///< at the end: 1, else 0
+    void add(const ContactAccounts& other);
+    /// Zero where a lane is none of the first `count`.
+    void leave_out_beyond(std::size_t count);
     void enter(EnergyLedger& ledger) const;
   };
-  void remember_contacts(std::size_t first, bool is_static, std::span<ContactAccount> accounts);
-  void remember_multiplier(std::size_t c, ContactAccount& account);
+  void remember_contacts(std::size_t first, std::size_t count, bool is_static, ContactAccounts& accounts);
+  void remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
@@ -164,7 +167,7 @@ class Stepper {
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
   double impact_speed_;                  ///< m/s
   std::vector<Force> forces_;
-  std::vector<ContactAccount> accounts_;  ///< scratch
+  std::vector<ContactAccounts> accounts_;  ///< scratch
   /// J per thickness.
   struct BlockWork {
     double numerical = 0.0, input = 0.0;

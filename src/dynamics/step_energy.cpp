@@ -78,12 +78,29 @@ void Stepper::account(State& state, const Drive& drive) {
   }
 }
 
-void Stepper::ContactAccount::enter(EnergyLedger& ledger) const {
-  ledger.numerical -= stored_before;
-  ledger.friction += balance.friction;
-  ledger.input += input;
-  ledger.damping += balance.damping;
-  ledger.numerical += balance.numerical;
+void Stepper::ContactAccounts::add(const ContactAccounts& other) {
+  balance.stored += other.balance.stored;
+  balance.friction += other.balance.friction;
+  balance.damping += other.balance.damping;
+  balance.numerical += other.balance.numerical;
+  stored_before += other.stored_before;
+  input += other.input;
+  penetration = largest(penetration, AlignedLanes(other.penetration));
+  closed += other.closed;
+}
+
+void Stepper::ContactAccounts::leave_out_beyond(std::size_t count) {
+  if (count >= lane_count) return;
+  for (AlignedLanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
+                              &stored_before, &input, &penetration, &closed})
+    *lanes = where(first_lanes(count), *lanes, AlignedLanes{});
+}
+
+void Stepper::ContactAccounts::enter(EnergyLedger& ledger) const {
+  ledger.friction += sum(balance.friction);
+  ledger.input += sum(input);
+  ledger.damping += sum(balance.damping);
+  ledger.numerical += sum(balance.numerical) - sum(stored_before);
 }
 
 double Stepper::kinetic_energy(const State& state) const {

@@ -20,10 +20,11 @@ Lanes moved_along(std::span<const StepProblem::Row> rows, bool tangent) {
 
 }  // namespace
 
-/// Of as many contacts as there are accounts, at most the number of lanes, the first being contact `first`.
-void Stepper::remember_contacts(std::size_t first, bool is_static, std::span<ContactAccount> accounts) {
-  const std::span<contact::Contact> contacts = std::span(contacts_).subspan(first, accounts.size());
-  const std::span<const StepProblem::Row> rows = std::span(problem_.rows()).subspan(first, accounts.size());
+/// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
+void Stepper::remember_contacts(std::size_t first, std::size_t count, bool is_static,
+                                ContactAccounts& accounts) {
+  const std::span<contact::Contact> contacts = std::span(contacts_).subspan(first, count);
+  const std::span<const StepProblem::Row> rows = std::span(problem_.rows()).subspan(first, count);
   const SpringArray& springs = problem_.springs();
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
   const LawLanes law = laws_of(contacts);
@@ -43,10 +44,14 @@ void Stepper::remember_contacts(std::size_t first, bool is_static, std::span<Con
                                       .tensile = at_first(springs.floor) < 0.0},
       contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
                                     at_first(springs.y0) + moved_normal, at_first(springs.w0) - moved_shear});
-  const Lanes zero{}, normal = s.normal_force(y), shear = s.shear_force(w), penetration = s.penetration(y),
-                      input = -(normal * moved_normal - shear * moved_shear), stored_before = memory.stored;
-  const contact::SpringLanes::Balance balance = s.balance(y, w);
+  const Lanes zero{}, normal = s.normal_force(y), shear = s.shear_force(w);
   const auto closed = s.closed(y), locked = s.locked(w);
+  accounts = {.balance = s.balance(y, w),
+              .stored_before = memory.stored,
+              .input = -(normal * moved_normal - shear * moved_shear),
+              .penetration = s.penetration(y),
+              .closed = closed ? broadcast(1.0) : zero};
+  accounts.leave_out_beyond(count);
   const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
   memory.normal_force = memory.bounding_force = pressure;
   if (!is_static && model_.solver.contact == ContactMethod::penalty) {
@@ -54,7 +59,7 @@ void Stepper::remember_contacts(std::size_t first, bool is_static, std::span<Con
     memory.bounding_force = where(ahead > zero, ahead, zero);
   }
   memory.shear = where(closed, s.elastic_shear(w), zero);
-  memory.stored = balance.stored;
+  memory.stored = accounts.balance.stored;
   keep(memory, contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool is_closed = closed[i] != 0;
@@ -62,29 +67,27 @@ void Stepper::remember_contacts(std::size_t first, bool is_static, std::span<Con
                                : locked[i] != 0 ? contact::State::locked
                                                 : contact::State::sliding;
     forces_[first + i] = {normal[i], is_closed ? shear[i] : 0.0};
-    accounts[i] = {{balance.stored[i], balance.friction[i], balance.damping[i], balance.numerical[i]},
-                   stored_before[i],
-                   input[i],
-                   penetration[i],
-                   is_closed};
   }
 }
 
 /// What is otherwise with an augmented Lagrangian.
-void Stepper::remember_multiplier(std::size_t c, ContactAccount& account) {
+void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts) {
   const StepProblem::Row& row = problem_.rows()[c];
   contact::Memory& memory = contacts_[c].memory;
   const contact::Spring s = problem_.spring(contacts_[c], c);
   const double y = problem_.springs().y[c], w = problem_.springs().w[c];
   const Vec2 r = open_close_.relative()[c];
-  account.balance = s.rigid_balance(y, w, dot(row.normal, r), dot(row.tangent(), r));
-  memory.stored = account.balance.stored;
+  const contact::Spring::Balance balance = s.rigid_balance(y, w, dot(row.normal, r), dot(row.tangent(), r));
+  accounts.balance.stored[lane] = memory.stored = balance.stored;
+  accounts.balance.friction[lane] = balance.friction;
+  accounts.balance.damping[lane] = balance.damping;
+  accounts.balance.numerical[lane] = balance.numerical;
   const double penetration = -(contacts_[c].gap + dot(row.normal, r));
   memory.offset = std::max(memory.offset, 0.0);
-  account.penetration = 0.0;
+  accounts.penetration[lane] = 0.0;
   memory.multiplier = 0.0;
-  if (account.closed) {
-    account.penetration = penetration - memory.offset;
+  if (accounts.closed[lane] != 0.0) {
+    accounts.penetration[lane] = penetration - memory.offset;
     memory.multiplier = s.normal_force(y) / contacts_[c].normal_stiffness;
     memory.shear = s.shear_force(w) / contacts_[c].shear_stiffness;
   }
@@ -96,30 +99,29 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
   state.ledger.numerical += contact_energy_;
-  contact_energy_ = 0.0;
-  // Of the contacts, whose accounts are kept at a time: as a cache has room for, or worth the threads.
-  const std::size_t piece = team_.size() == 1 ? 1 << 8 : 1 << 14;
-  for (std::size_t first = 0; first < contacts_.size(); first += piece) {
-    accounts_.resize(std::min(piece, contacts_.size() - first));
-    team_.for_range((accounts_.size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
+  ContactAccounts total;
+  // Groups of contacts, whose accounts are kept at a time: as a cache has room for, or worth the threads.
+  const std::size_t groups = (contacts_.size() + lane_count - 1) / lane_count,
+                    piece = (team_.size() == 1 ? 1 << 8 : 1 << 14) / lane_count;
+  for (std::size_t first = 0; first < groups; first += piece) {
+    accounts_.resize(std::min(piece, groups - first));
+    team_.for_range(accounts_.size(), contacts_worth_threads / lane_count,
                     [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t group = begin; group < end; ++group) {
-                        const std::size_t k = group * lane_count;
-                        const std::size_t count = std::min<std::size_t>(lane_count, accounts_.size() - k);
-                        const auto accounts = std::span(accounts_).subspan(k, count);
-                        remember_contacts(first + k, drive.is_static, accounts);
+                      for (std::size_t k = begin; k < end; ++k) {
+                        const std::size_t c = (first + k) * lane_count,
+                                          count = std::min<std::size_t>(lane_count, contacts_.size() - c);
+                        remember_contacts(c, count, drive.is_static, accounts_[k]);
                         if (model_.solver.contact == ContactMethod::penalty) continue;
-                        for (std::size_t i = 0; i < count; ++i)
-                          remember_multiplier(first + k + i, accounts[i]);
+                        for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts_[k]);
                       }
                     });
-    for (const ContactAccount& account : accounts_) {
-      account.enter(state.ledger);
-      contact_energy_ += account.balance.stored;
-      report.penetration = std::max(report.penetration, account.penetration);
-      if (account.closed) ++report.closed_contacts;
-    }
+    for (const ContactAccounts& accounts : accounts_) total.add(accounts);
   }
+  total.enter(state.ledger);
+  contact_energy_ = sum(total.balance.stored);
+  for (std::size_t i = 0; i < lane_count; ++i)
+    report.penetration = std::max(report.penetration, total.penetration[i]);
+  report.closed_contacts += static_cast<int>(sum(total.closed));
   contact::keep_memory(contacts_, state.contacts, team_);
   report.contact_energy = contact_energy();
 }

@@ -6,6 +6,7 @@
 
 #include "core/index.h"
 #include "core/known_size.h"
+#include "core/lanes.h"
 #include "linalg/block_kernels.h"
 #include "linalg/dense_block.h"
 
@@ -22,6 +23,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
                         const contact::Surface& surface, std::span<const contact::Contact> contacts,
                         std::span<const int> pairs, ThreadTeam& team) {
   team_ = &team;
+  surface_ = &surface;
   if (model_ != &model) {
     model_ = &model;
     h_first_.clear();
@@ -47,7 +49,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   }
   build_blocks(state, drive);
   add_supports(state, drive);
-  build_rows(drive, surface, contacts, pairs);
+  build_rows(drive, contacts, pairs);
 }
 
 template <typename Size>
@@ -80,6 +82,9 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
   block.elasticity.add_tangent(a, viscous_[i], geometric_floor * inertia_[i], h, stride);
   for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
+  for (int c = 1; c < n; ++c) {
+    for (int r = 0; r < c; ++r) h[c * stride + r] = h[r * stride + c];
+  }
 }
 
 void StepProblem::build_blocks(const State& state, const Drive& drive) {
@@ -120,7 +125,7 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
     double* h = &h_[h_first_[at(spring.block)]];
     for (int l = 0; l < block.size; ++l) {
       b_[block.first + at(2 * l + spring.axis)] += force * spring.phi[at(l)];
-      for (int k = l; k < block.size; ++k) {
+      for (int k = 0; k < block.size; ++k) {
         h[(2 * l + spring.axis) * stride + 2 * k + spring.axis] +=
             spring.stiffness * spring.phi[at(k)] * spring.phi[at(l)];
       }
@@ -130,28 +135,48 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 
 void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
                              std::vector<double>& b) const {
-  const double* phi = &phi_[row.phi];
-  a.assign(2 * at(row.size_a), 0.0);
-  b.assign(2 * at(row.size_b), 0.0);
-  add_scaled(phi, row.size_a, direction, a.data());
-  add_scaled(phi + row.size_a, row.size_b, -1.0 * direction, b.data());
+  const auto add = [&](std::uint32_t v, Vec2 at_vertex, std::vector<double>& part) {
+    add_at(phi_of(v), body_of(v).size, at_vertex, part.data());
+  };
+  a.assign(2 * at(body_of(row.vertex).size), 0.0);
+  b.assign(2 * at(body_of(row.from).size), 0.0);
+  add(row.vertex, direction, a);
+  add(row.from, -(1.0 - row.position) * direction, b);
+  add(row.to, -row.position * direction, b);
+}
+
+void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) const {
+  u.resize(surface_->position.size());
+  team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      for_vertex_values(*surface_, b, bodies_[b].size, &d[bodies_[b].first],
+                        [&](std::size_t v, Vec2 x) { u[v] = x; });
+    }
+  });
+}
+
+/// Adds what the forces at the vertices do to the coefficients of each block.
+void StepProblem::add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const {
+  team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      with_known_size(bodies_[b].size, [&](auto size) {
+        for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
+          add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], &out[bodies_[b].first]);
+      });
+    }
+  });
 }
 
 namespace {
 
-/// y = H x of one block, H by its lower triangle.
+/// y = H x of one block, eight rows at once.
 template <typename Size>
 void multiply_block(Size size, const double* h, const double* x, double* y) {
   const int n = 2 * size, stride = linalg::padded_rows(n);
-  std::fill(y, y + n, 0.0);
-  for (int c = 0; c < n; ++c) {
-    const double* column = h + c * stride;
-    double sum = column[c] * x[c];
-    for (int r = c + 1; r < n; ++r) {
-      y[r] += column[r] * x[c];
-      sum += column[r] * x[r];
-    }
-    y[c] += sum;
+  for (int first = 0; first < n; first += lane_count) {
+    Lanes rows{};
+    for (int c = 0; c < n; ++c) rows += load(h + c * stride + first) * broadcast(x[c]);
+    for (int r = first; r < std::min(n, first + lane_count); ++r) y[r] = rows[r - first];
   }
 }
 
@@ -184,7 +209,7 @@ void StepProblem::gradient(std::span<const double> d, std::span<double> g) const
     const Vec2 r = relative(row, d);
     const SpringArray::Force force =
         springs_.force_at(c, springs_.y0[c] - dot(row.normal, r), springs_.w0[c] + dot(row.tangent(), r));
-    if (!force.is_zero()) add_contact_force(row, force.shear * row.tangent() - force.normal * row.normal, g);
+    if (!force.is_zero()) add_contact_force(row, row.gradient(force), g);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "dynamics/model.h"
 #include "dynamics/spring_array.h"
 #include "dynamics/state.h"
+#include "dynamics/vertex_field.h"
 #include "linalg/block_solver.h"
 
 namespace keyblock::dynamics {
@@ -41,18 +42,25 @@ struct Drive {
 /// Π is convex and piecewise quadratic. This class holds its data and evaluates it; it does not know how to minimize.
 class StepProblem {
  public:
-  /// r_c = φ_V · D_a − φ_P · D_b + moved; a fixed block contributes what it is moved by, nothing else. A cache line: every
-  /// evaluation of the contacts reads it, and little else.
+  /// r_c = u(V) − (1 − s) u(A) − s u(B) + moved, u: displacement of vertices, zero on fixed blocks. A cache line: every evaluation
+  /// of the contacts reads it, and little else.
   struct alignas(64) Row {
-    std::uint32_t first_a, first_b;  ///< of the block's coefficients
-    std::uint32_t phi;   ///< into phi_: N values of a at its vertex, N of b at the point of its edge
-    int size_a, size_b;  ///< N; 0: fixed
-    int unknown_a, unknown_b;
-    int pair = -1;  ///< of the solver's pattern; −1: one block is fixed
+    std::uint32_t vertex, from, to;  ///< V of block a; A and B, the ends of the edge of block b
+    int unknown_a, unknown_b;        ///< −1: fixed
+    int pair = -1;                   ///< of the solver's pattern; −1: one block is fixed
+    double position;                 ///< s
     Vec2 normal;
     Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b
 
     [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
+    /// ∂ψ/∂r where the springs push with `force`.
+    [[nodiscard]] Vec2 gradient(SpringArray::Force force) const {
+      return force.shear * tangent() - force.normal * normal;
+    }
+    /// r, but for the known part.
+    [[nodiscard]] Vec2 relative(std::span<const Vec2> u) const {
+      return u[vertex] - lerp(u[from], u[to], position);
+    }
   };
   static_assert(sizeof(Row) == 64);
 
@@ -76,11 +84,15 @@ class StepProblem {
   [[nodiscard]] double inertia_between(const contact::Contact& c) const;
   /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
+  /// u of increment D, m, at every vertex of the surface.
+  void displace(std::span<const double> d, std::vector<Vec2>& u) const;
   /// r of a contact for increment D, but for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
-    const double* phi = &phi_[row.phi];
-    return displacement(phi, row.size_a, &d[row.first_a]) -
-           displacement(phi + row.size_a, row.size_b, &d[row.first_b]);
+    const auto displacement = [&](std::uint32_t v) {
+      const Body& body = body_of(v);
+      return field_at(phi_of(v), body.size, &d[body.first]);
+    };
+    return displacement(row.vertex) - lerp(displacement(row.from), displacement(row.to), row.position);
   }
   /// g = ∇Π(D); the open-close iteration updates g instead.
   void gradient(std::span<const double> d, std::span<double> g) const;
@@ -97,13 +109,13 @@ class StepProblem {
     Vec2 normal;
     double position = 0.0;
     explicit Place(const contact::Contact& c) : normal(c.normal), position(c.position) {}
+    explicit Place(const Row& row) : normal(row.normal), position(row.position) {}
     Place() = default;
     friend bool operator==(const Place&, const Place&) = default;
   };
   /// Springs at a contact, N/m per thickness; negative: taken away.
   struct SpringChange {
     std::size_t contact;
-    int edge;
     Place place;
     double normal, shear;
   };
@@ -115,25 +127,32 @@ class StepProblem {
   void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.
   void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
-    const double* phi = &phi_[row.phi];
-    add_scaled(phi, row.size_a, force, &out[row.first_a]);
-    add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
+    const auto add = [&](std::uint32_t v, Vec2 at_vertex) {
+      const Body& body = body_of(v);
+      add_at(phi_of(v), body.size, at_vertex, &out[body.first]);
+    };
+    add(row.vertex, force);
+    add(row.from, -(1.0 - row.position) * force);
+    add(row.to, -row.position * force);
   }
 
-  /// The same for all contacts, with force_of(c).
+  /// The same for all contacts, with force_of(c). at_vertices: scratch.
   template <typename ForceOf>
-  void add_contact_forces(const ForceOf& force_of, std::span<double> out) const {
+  void add_contact_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices,
+                          std::span<double> out) const {
+    at_vertices.assign(surface_->position.size(), Vec2{});
     for_owned_contacts(
         rows_.size(), [](std::size_t c) { return c; },
         [&](std::size_t c, Owner owner) {
           const Row& row = rows_[c];
           const Vec2 force = force_of(c);
           if (force == Vec2{}) return;
-          const double* phi = &phi_[row.phi];
-          if (owner.has(row.unknown_a)) add_scaled(phi, row.size_a, force, &out[row.first_a]);
-          if (owner.has(row.unknown_b))
-            add_scaled(phi + row.size_a, row.size_b, -1.0 * force, &out[row.first_b]);
+          if (owner.has(row.unknown_a)) at_vertices[row.vertex] += force;
+          if (!owner.has(row.unknown_b)) return;
+          at_vertices[row.from] -= (1.0 - row.position) * force;
+          at_vertices[row.to] -= row.position * force;
         });
+    add_vertex_forces(at_vertices, out);
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
@@ -158,29 +177,23 @@ class StepProblem {
                                          std::span<const double> spin);
 
  private:
-  /// Σ φ_k d_k of a block; N = 3 is order 1.
-  static Vec2 displacement(const double* phi, int size, const double* d) {
-    if (size == 3) {
-      return {phi[0] * d[0] + phi[1] * d[2] + phi[2] * d[4], phi[0] * d[1] + phi[1] * d[3] + phi[2] * d[5]};
-    }
-    Vec2 u;
-    for (int k = 0; k < size; ++k) u += phi[k] * Vec2{d[2 * k], d[2 * k + 1]};
-    return u;
+  /// What contacts read of a block: 24 bytes, which a cache has for all blocks.
+  struct Body {
+    std::uint32_t first;  ///< of its coefficients
+    int size;             ///< N; 0: fixed
+    int unknown;
+    double mass;  ///< kg/m; 0: fixed
+  };
+
+  void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
+  [[nodiscard]] const Body& body_of(std::uint32_t vertex) const {
+    return bodies_[at(surface_->block[vertex])];
   }
-  /// out_k += φ_k force.
-  static void add_scaled(const double* phi, int size, Vec2 force, double* out) {
-    const auto add = [&](int k) {
-      out[2 * k] += phi[k] * force.x;
-      out[2 * k + 1] += phi[k] * force.y;
-    };
-    if (size == 3) {
-      add(0);
-      add(1);
-      add(2);
-      return;
-    }
-    for (int k = 0; k < size; ++k) add(k);
+  [[nodiscard]] const double* phi_of(std::uint32_t vertex) const {
+    return &surface_->phi[surface_->phi_begin[vertex]];
   }
+  template <typename Do>
+  void with_phi(const Row& row, double position, const Do& what) const;
   /// Some of the unknown blocks, those of a thread. What contacts add to a block is added by its owner, in the order of the contacts,
   /// so that the sums are the same for any number of threads.
   struct Owner {
@@ -202,7 +215,7 @@ class StepProblem {
       }
     });
   }
-  void add_spring(const Row& row, Vec2 normal, const double* phi_b, double kn, double ks, Owner owner,
+  void add_spring(const Row& row, const Place& place, double kn, double ks, Owner owner,
                   linalg::BlockSolver& solver) const;
   template <typename Size>
   void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);
@@ -211,34 +224,24 @@ class StepProblem {
                                        double spin, double* turn, double* product) const;
   void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
-  void build_rows(const Drive& drive, const contact::Surface& surface,
-                  std::span<const contact::Contact> contacts, std::span<const int> pairs);
-  static void find_phi(const contact::Surface& surface, int edge, double position, int size, double* phi);
-  void build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c, Row& row);
+  void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs);
+  void build_row(const Drive& drive, const contact::Contact& c, Row& row) const;
   [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
 
-  /// What contacts read of a block: 24 bytes, which a cache has for all blocks.
-  struct Body {
-    std::uint32_t first;  ///< of its coefficients
-    int size;             ///< N; 0: fixed
-    int unknown;
-    double mass;  ///< kg/m; 0: fixed
-  };
-
   const Model* model_ = nullptr;
+  const contact::Surface* surface_ = nullptr;
   ThreadTeam* team_ = nullptr;
   std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
   SpringArray springs_;  ///< of every row
   bool may_break_ = false;
   std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
-  std::vector<double> phi_;                           ///< of every row, twice largest_size_
   int largest_size_ = 0;                              ///< N
   /// Per block: the first of its coefficients, and where they end.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coefficients_;
   std::vector<std::size_t> h_first_;  ///< per block, into h_
-  std::vector<double> h_;             ///< lower triangles, stride padded_rows(2N)
+  std::vector<double> h_;             ///< H of each, columns of padded_rows(2N)
   std::vector<double> b_;
   std::vector<double> inertia_;      ///< per block, cρ/Δt²; 0: it does not move
   std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness

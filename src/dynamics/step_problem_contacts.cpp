@@ -4,26 +4,23 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "core/known_size.h"
 #include "dynamics/contact_lanes.h"
 #include "dynamics/step_problem.h"
 
 namespace keyblock::dynamics {
 
-void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface,
-                             std::span<const contact::Contact> contacts, std::span<const int> pairs) {
+void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contact> contacts,
+                             std::span<const int> pairs) {
   rows_.resize(contacts.size());
   springs_.resize(contacts.size());
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
-  phi_.resize(contacts.size() * at(2 * largest_size_));
   std::atomic<bool> may_break = false;
   team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     bool any = false;
     for (std::size_t first = begin; first < end; first += lane_count) {
       const std::size_t last = std::min(first + lane_count, end);
       for (std::size_t k = first; k < last; ++k) {
-        rows_[k].phi = static_cast<std::uint32_t>(k * at(2 * largest_size_));
-        build_row(drive, surface, contacts[k], rows_[k]);
+        build_row(drive, contacts[k], rows_[k]);
         rows_[k].pair = pairs[at(contacts[k].candidate)];
         any = any || (contacts[k].memory.bonded && !contacts[k].fused);
         if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
@@ -35,29 +32,13 @@ void StepProblem::build_rows(const Drive& drive, const contact::Surface& surface
   may_break_ = may_break;
 }
 
-/// At a point of an edge, `position` from 0 to 1.
-void StepProblem::find_phi(const contact::Surface& surface, int edge, double position, int size,
-                           double* phi) {
-  const double* from = &surface.phi[surface.phi_begin[at(edge)]];
-  const double* to = &surface.phi[surface.phi_begin[at(surface.next[at(edge)])]];
-  with_known_size(size, [&](auto known) {
-    for (int i = 0; i < known; ++i) phi[i] = (1.0 - position) * from[i] + position * to[i];
-  });
-}
-
-void StepProblem::build_row(const Drive& drive, const contact::Surface& surface, const contact::Contact& c,
-                            Row& row) {
-  const Body &a = bodies_[at(c.block_a)], &b = bodies_[at(c.block_b)];
-  row.first_a = a.first;
-  row.first_b = b.first;
-  row.size_a = a.size;
-  row.size_b = b.size;
-  row.unknown_a = a.unknown;
-  row.unknown_b = b.unknown;
-  with_known_size(row.size_a, [&](auto size) {
-    std::copy_n(&surface.phi[surface.phi_begin[at(c.vertex)]], static_cast<int>(size), &phi_[row.phi]);
-  });
-  find_phi(surface, c.edge, c.position, row.size_b, &phi_[row.phi] + row.size_a);
+void StepProblem::build_row(const Drive& drive, const contact::Contact& c, Row& row) const {
+  row.vertex = static_cast<std::uint32_t>(c.vertex);
+  row.from = static_cast<std::uint32_t>(c.edge);
+  row.to = static_cast<std::uint32_t>(surface_->next[at(c.edge)]);
+  row.position = c.position;
+  row.unknown_a = bodies_[at(c.block_a)].unknown;
+  row.unknown_b = bodies_[at(c.block_b)].unknown;
   row.normal = c.normal;
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];

@@ -1,8 +1,12 @@
 // The matrix of a step: stiffness and inertia of its blocks, and springs of its contacts.
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <type_traits>
+#include <vector>
 
 #include "core/index.h"
+#include "core/known_size.h"
 #include "core/lanes.h"
 #include "dynamics/step_problem.h"
 #include "linalg/block_kernels.h"
@@ -89,19 +93,11 @@ void StepProblem::assemble_block(std::size_t i, linalg::BlockSolver& solver) con
 }
 
 void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
-  const auto size = at(largest_size_);
-  std::vector<double> phi_b(changes.size() * size);
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    const SpringChange& change = changes[k];
-    find_phi(model_->surface, change.edge, change.place.position, rows_[change.contact].size_b,
-             &phi_b[k * size]);
-  }
   for_owned_contacts(
       changes.size(), [&](std::size_t k) { return changes[k].contact; },
       [&](std::size_t k, Owner owner) {
         const SpringChange& change = changes[k];
-        add_spring(rows_[change.contact], change.place.normal, &phi_b[k * size], change.normal, change.shear,
-                   owner, solver);
+        add_spring(rows_[change.contact], change.place, change.normal, change.shear, owner, solver);
       });
 }
 
@@ -111,31 +107,52 @@ void StepProblem::add_springs(std::span<const double> normal, std::span<const do
       rows_.size(), [](std::size_t c) { return c; },
       [&](std::size_t c, Owner owner) {
         if (normal[c] == 0.0 && shear[c] == 0.0) return;
-        const Row& row = rows_[c];
-        add_spring(row, row.normal, &phi_[row.phi] + row.size_a, normal[c], shear[c], owner, solver);
+        add_spring(rows_[c], Place(rows_[c]), normal[c], shear[c], owner, solver);
       });
 }
 
-void StepProblem::add_spring(const Row& row, Vec2 n, const double* phi_b, double kn, double ks, Owner owner,
+/// Calls what(φ) with the basis functions of block b at a point of its edge.
+template <typename Do>
+void StepProblem::with_phi(const Row& row, double position, const Do& what) const {
+  const double *from = phi_of(row.from), *to = phi_of(row.to);
+  const auto fill = [&](auto size, double* phi) {
+    for (int k = 0; k < size; ++k) phi[k] = (1.0 - position) * from[k] + position * to[k];
+    what(phi);
+  };
+  with_known_size(body_of(row.from).size, [&](auto size) {
+    if constexpr (std::is_same_v<decltype(size), int>) {
+      std::vector<double> phi(at(size));
+      fill(size, phi.data());
+    } else {
+      std::array<double, decltype(size)::value> phi;
+      fill(size, phi.data());
+    }
+  });
+}
+
+void StepProblem::add_spring(const Row& row, const Place& place, double kn, double ks, Owner owner,
                              linalg::BlockSolver& solver) const {
-  const Vec2 t = contact::tangent_of(n);
+  const Vec2 n = place.normal, t = contact::tangent_of(n);
   const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
                     kn * n.y * n.y + ks * t.y * t.y};
-  const double* phi_a = &phi_[row.phi];
+  const double* phi_a = phi_of(row.vertex);
+  const int size_a = body_of(row.vertex).size, size_b = body_of(row.from).size;
   const auto add_diagonal = [&](const double* phi, int size, int unknown) {
     if (size > 0 && owner.has(unknown))
       add_block(phi, size, phi, size, k, 1.0, solver.diagonal(unknown), linalg::padded_rows(2 * size));
   };
-  add_diagonal(phi_a, row.size_a, row.unknown_a);
-  add_diagonal(phi_b, row.size_b, row.unknown_b);
-  if (row.pair < 0) return;
-  const linalg::BlockSlot slot = solver.slot(row.pair);
-  if (!owner.has(slot.row)) return;
-  if (slot.row == row.unknown_a) {
-    add_block(phi_a, row.size_a, phi_b, row.size_b, k, -1.0, slot.values, slot.stride);
-  } else {
-    add_block(phi_b, row.size_b, phi_a, row.size_a, k, -1.0, slot.values, slot.stride);
-  }
+  add_diagonal(phi_a, size_a, row.unknown_a);
+  with_phi(row, place.position, [&](const double* phi_b) {
+    add_diagonal(phi_b, size_b, row.unknown_b);
+    if (row.pair < 0) return;
+    const linalg::BlockSlot slot = solver.slot(row.pair);
+    if (!owner.has(slot.row)) return;
+    if (slot.row == row.unknown_a) {
+      add_block(phi_a, size_a, phi_b, size_b, k, -1.0, slot.values, slot.stride);
+    } else {
+      add_block(phi_b, size_b, phi_a, size_a, k, -1.0, slot.values, slot.stride);
+    }
+  });
 }
 
 }  // namespace keyblock::dynamics

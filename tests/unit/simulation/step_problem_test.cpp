@@ -84,8 +84,8 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
     const SpringArray& of_contact = problem.springs();
     const SpringArray::Piece piece = of_contact.piece_at(c, of_contact.y0[c] - dot(row.normal, r),
                                                          of_contact.w0[c] + dot(row.tangent(), r));
-    springs.push_back({c, contacts[c].edge, StepProblem::Place(contacts[c]),
-                       of_contact.normal_stiffness(c, piece), of_contact.shear_stiffness(c, piece)});
+    springs.push_back({c, StepProblem::Place(contacts[c]), of_contact.normal_stiffness(c, piece),
+                       of_contact.shear_stiffness(c, piece)});
   }
   problem.add_springs(springs, *solver);
   ASSERT_TRUE(solver->factor());
