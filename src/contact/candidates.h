@@ -63,6 +63,11 @@ struct CandidateList {
   std::vector<Memory> memory;          ///< of each of them
   bool may_have_bonds = true;          ///< false: none of them is bonded. Derived; keep_memory sees to it
 
+  /// For what so many contacts remember.
+  void make_room(std::size_t contacts) {
+    tracked.resize(contacts);
+    memory.resize(contacts);
+  }
   /// Of the candidates of a pair of blocks.
   [[nodiscard]] std::size_t end_of_pair(std::size_t p) const {
     return p + 1 < block_pairs.size() ? static_cast<std::size_t>(block_pairs[p + 1].first) : pairs.size();

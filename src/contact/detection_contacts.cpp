@@ -31,35 +31,27 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
 /// Eight at once, or fewer at the end.
 Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
                                        std::span<const Found> found) const {
-  Lanes edge[lane_count], vertex[lane_count];
-  double to_x[2][lane_count], to_y[2][lane_count];  // from the vertex to the previous one, and to the next
+  Lanes edge[lane_count], vertex[lane_count], length_before{};
   for (std::size_t i = 0; i < lane_count; ++i) {
     const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
-    const Corner& corner = corners_[at(c.vertex)];
     edge[i] = load(&corners_[at(c.edge)].position.x);
-    vertex[i] = load(&corner.position.x);
-    const std::size_t others[2] = {at(surface.previous[at(c.vertex)]), at(surface.next[at(c.vertex)])};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Vec2 to = surface.position[others[k]] - corner.position;
-      to_x[k][i] = to.x;
-      to_y[k][i] = to.y;
-    }
+    vertex[i] = load(&corners_[at(c.vertex)].position.x);
+    length_before[i] = corners_[at(surface.previous[at(c.vertex)])].length;
   }
   transpose(edge);
   transpose(vertex);
   const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
-  // Length over the edge that an edge of the vertex shares with it, where they face each other.
-  const auto shared = [&](std::size_t k) {
-    const Lanes ux = load(to_x[k]), uy = load(to_y[k]), across = nx * ux + ny * uy,
-                to = along + (ux * tx + uy * ty);
+  // Length over the edge that an edge of the vertex, of direction u, shares with it, where they face each other.
+  const auto shared = [&](Lanes ux, Lanes uy, Lanes length_of_other) {
+    const Lanes across = nx * ux + ny * uy, to = along + (ux * tx + uy * ty) * length_of_other;
     const Lanes low = largest(Lanes{}, least(along, to)), high = least(length, largest(along, to));
-    const auto turned =
-        across * across > Tolerances::sine_facing * Tolerances::sine_facing * (ux * ux + uy * uy);
+    const auto turned = across * across > Tolerances::sine_facing * Tolerances::sine_facing;
     return turned ? Lanes{} : largest(Lanes{}, high - low);
   };
-  return {gap, along / length, 0.5 * (shared(0) + shared(1))};
+  return {gap, along / length,
+          0.5 * (shared(vertex[2], vertex[3], vertex[6]) + shared(vertex[4], vertex[5], -length_before))};
 }
 
 void Detection::give_law(const Surface& surface, Contact& contact) const {
@@ -108,21 +100,25 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
   }
 }
 
+bool keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
+                 CandidateList& candidates) {
+  bool any_bond = false;
+  for (std::size_t k = first; k < last; ++k) {
+    const Contact& c = contacts[k];
+    candidates.tracked[k] = c.candidate;
+    candidates.memory[k] = c.memory;
+    if (!c.memory.bonded) continue;
+    candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
+    any_bond = true;
+  }
+  return any_bond;
+}
+
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
-  candidates.tracked.resize(contacts.size());
-  candidates.memory.resize(contacts.size());
+  candidates.make_room(contacts.size());
   std::atomic<bool> any_bond = false;
   team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    bool any = false;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Contact& c = contacts[k];
-      candidates.tracked[k] = c.candidate;
-      candidates.memory[k] = c.memory;
-      if (!c.memory.bonded) continue;
-      candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
-      any = true;
-    }
-    if (any) any_bond = true;
+    if (keep_memory(contacts, begin, end, candidates)) any_bond = true;
   });
   candidates.may_have_bonds = any_bond;
 }

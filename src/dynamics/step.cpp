@@ -272,15 +272,18 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     const double* d = &increment_[block.first];
     double* v = &state.velocity[block.first];
     double squared = 0.0;
-    for (int k = 0; k < 2 * block.size; ++k) {
-      squared += d[k] * d[k];
-      const std::size_t i = block.first + at(k);
-      const Motion end = drive.is_static ? Motion{} : rule_[b].end(motion(state, i), d[k], drive.step);
-      v[k] = end.velocity;
-      if (state.acceleration.empty()) continue;
-      state.acceleration[i] = end.acceleration;
-      state.force[i] = end.force;
-    }
+    with_known_size(block.size, [&](auto size) {
+      const Integrator rule = rule_[b];
+      for (int k = 0; k < 2 * size; ++k) {
+        squared += d[k] * d[k];
+        const std::size_t i = block.first + at(k);
+        const Motion end = drive.is_static ? Motion{} : rule.end(motion(state, i), d[k], drive.step);
+        v[k] = end.velocity;
+        if (state.acceleration.empty()) continue;
+        state.acceleration[i] = end.acceleration;
+        state.force[i] = end.force;
+      }
+    });
     if (drive.is_static) {
       const double weight = std::max(problem_.weight(b), 1e-300);
       balance_[b] = {problem_.inertia(b) * std::sqrt(squared) / weight,

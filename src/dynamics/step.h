@@ -114,7 +114,10 @@ class Stepper {
   [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();
   void choose_rules(const State& state, const Drive& drive);
-  static Motion motion(const State& state, std::size_t coefficient);
+  static Motion motion(const State& state, std::size_t coefficient) {
+    if (state.acceleration.empty()) return {state.velocity[coefficient], 0.0, 0.0};
+    return {state.velocity[coefficient], state.acceleration[coefficient], state.force[coefficient]};
+  }
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);

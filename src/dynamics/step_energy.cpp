@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "core/known_size.h"
 #include "dynamics/step.h"
 
 namespace keyblock::dynamics {
@@ -38,15 +39,19 @@ void Stepper::account(State& state, const Drive& drive) {
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
     const double* v = &state.velocity[block.first];
-    if (drive.is_static) {
-      for (int k = 0; k < 2 * block.size; ++k) work.numerical += problem_.inertia(b) * d[k] * d[k];
-    } else {  // work of the forces at the end of the step, less what became kinetic energy
-      for (int k = 0; k < 2 * block.size; ++k) {
-        const Motion start = motion(state, block.first + at(k)), end = rule_[b].end(start, d[k], drive.step);
-        work.numerical +=
-            block.material.density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
+    with_known_size(block.size, [&](auto size) {
+      if (drive.is_static) {
+        for (int k = 0; k < 2 * size; ++k) work.numerical += problem_.inertia(b) * d[k] * d[k];
+        return;
       }
-    }
+      // Work of the forces at the end of the step, less what became kinetic energy.
+      const double density = block.material.density;
+      const Integrator rule = rule_[b];
+      for (int k = 0; k < 2 * size; ++k) {
+        const Motion end = rule.end(motion(state, block.first + at(k)), d[k], drive.step);
+        work.numerical += density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
+      }
+    });
     work.input = -block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
   });
   for (const BlockWork& work : block_work_) {

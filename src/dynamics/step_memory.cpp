@@ -1,5 +1,6 @@
 // What contacts remember for the next step, and where their energy went.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/index.h"
@@ -99,6 +100,8 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
   state.ledger.numerical += contact_energy_;
+  state.contacts.make_room(contacts_.size());
+  std::atomic<bool> any_bond = false;
   ContactAccounts total;
   // Groups of contacts, whose accounts are kept at a time: as a cache has room for, or worth the threads.
   const std::size_t groups = (contacts_.size() + lane_count - 1) / lane_count,
@@ -107,13 +110,17 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
     accounts_.resize(std::min(piece, groups - first));
     team_.for_range(accounts_.size(), contacts_worth_threads / lane_count,
                     [&](std::size_t begin, std::size_t end) {
+                      bool any = false;
                       for (std::size_t k = begin; k < end; ++k) {
                         const std::size_t c = (first + k) * lane_count,
                                           count = std::min<std::size_t>(lane_count, contacts_.size() - c);
                         remember_contacts(c, count, drive.is_static, accounts_[k]);
-                        if (model_.solver.contact == ContactMethod::penalty) continue;
-                        for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts_[k]);
+                        if (model_.solver.contact != ContactMethod::penalty) {
+                          for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts_[k]);
+                        }
+                        any |= contact::keep_memory(contacts_, c, c + count, state.contacts);
                       }
+                      if (any) any_bond = true;
                     });
     for (const ContactAccounts& accounts : accounts_) total.add(accounts);
   }
@@ -122,7 +129,7 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   for (std::size_t i = 0; i < lane_count; ++i)
     report.penetration = std::max(report.penetration, total.penetration[i]);
   report.closed_contacts += static_cast<int>(sum(total.closed));
-  contact::keep_memory(contacts_, state.contacts, team_);
+  state.contacts.may_have_bonds = any_bond;
   report.contact_energy = contact_energy();
 }
 

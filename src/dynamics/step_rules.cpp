@@ -34,10 +34,11 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
       rigid ? std::min(impact_speed_, 1e-4 * norm(model_.gravity) * drive.step) : impact_speed_;
   // A point of an edge, and a little beyond its ends, is not much faster than its vertices.
   const auto may_be_fast = [&](std::size_t k) {
-    const contact::Contact& c = contacts_[k];
-    const double beyond = std::max({0.0, -c.position, c.position - 1.0});
+    const StepProblem::Row& row = problem_.rows()[k];
+    const std::vector<int>& block = model_.surface.block;
+    const double beyond = std::max({0.0, -row.position, row.position - 1.0});
     return !prescribed_.empty() ||
-           speed_[at(c.block_a)] + (1.0 + 2.0 * beyond) * speed_[at(c.block_b)] > 0.999 * least;
+           speed_[at(block[row.vertex])] + (1.0 + 2.0 * beyond) * speed_[at(block[row.from])] > 0.999 * least;
   };
   std::vector<std::size_t> fast;
   find_all(team_, contacts_.size(), contacts_worth_threads, may_be_fast, fast);
@@ -58,11 +59,6 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
     }
   }
   return any;
-}
-
-Motion Stepper::motion(const State& state, std::size_t coefficient) {
-  if (state.acceleration.empty()) return {state.velocity[coefficient], 0.0, 0.0};
-  return {state.velocity[coefficient], state.acceleration[coefficient], state.force[coefficient]};
 }
 
 }  // namespace keyblock::dynamics

@@ -123,13 +123,17 @@ int BlockCholesky::divide(std::size_t j, int c) {
 
 /// Brings x into the order of elimination.
 void BlockCholesky::take(std::span<const double> x) {
-  for (std::size_t j = 0; j < size_.size(); ++j)
-    std::copy_n(&x[offset_[j]], size_[j], &work_[work_start_[j]]);
+  for_equal_size([&]<int equal>() {
+    for (std::size_t j = 0; j < size_.size(); ++j)
+      std::copy_n(&x[offset_[j]], size<equal>(j), &work_[work_start_[j]]);
+  });
 }
 
 void BlockCholesky::give(std::span<double> x) const {
-  for (std::size_t j = 0; j < size_.size(); ++j)
-    std::copy_n(&work_[work_start_[j]], size_[j], &x[offset_[j]]);
+  for_equal_size([&]<int equal>() {
+    for (std::size_t j = 0; j < size_.size(); ++j)
+      std::copy_n(&work_[work_start_[j]], size<equal>(j), &x[offset_[j]]);
+  });
 }
 
 /// y ← L_jj⁻¹ y for column j, and what the rows i below, at of_row(i), lose by it.
