@@ -236,11 +236,9 @@ void BlockConjugateGradient::find_residual(std::span<double> residual) {
     const auto multiply_columns = [&](Range range) {
       for (std::size_t j = range.last; j-- > range.first;) {
         subtract_above(layout, j, above_.data() + above_start_[j], r_.data(), q_.data());
-        // C v = A_jj C⁻ᵀ v
-        unscale(layout, j, q_, wide_, product_);
-        double* product = &wide_[layout.start(j)];
-        multiply(layout.stride(j) / row_padding, layout.size(j), &matrix_[diagonal_[j]],
-                 &product_[layout.start(j)], product);
+        float* product = &t_[layout.start(j)];
+        multiply(layout.stride(j) / row_padding, layout.size(j), &scale_[inverse_start_[j]],
+                 &q_[layout.start(j)], product);
         for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] = -product[c];
       }
     };
@@ -309,7 +307,7 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
 /// Conjugate gradients from r_ on, to z_. Returns how many iterations that took.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
-/// factor of ten and more, the one way or the other. As it costs two or three iterations it is looked at when it should be small
+/// factor of ten and more, the one way or the other. As it costs more than an iteration it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
 int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most) {
   double alpha = 0.0, beta = 0.0, wanted = 0.0, most_rr = HUGE_VAL;

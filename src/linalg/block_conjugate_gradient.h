@@ -109,7 +109,7 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<std::size_t> own_start_;      ///< likewise: the first whose row lies in the same range
   std::vector<std::size_t> diagonal_;       ///< per column, into matrix_: A_jj, followed by what is above it
   std::vector<std::size_t> above_start_;    ///< per column, into above_
-  std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_
+  std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_ and scale_
   /// A block of a row between the parts whose column lies in one of them.
   struct RowEntry {
     std::size_t column;
@@ -120,6 +120,7 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<BlockSlot> slots_;
   WideVector matrix_;   ///< A
   WideVector inverse_;  ///< C_j⁻¹
+  Vector scale_;        ///< C_j
   Vector above_;        ///< U
   std::vector<std::uint8_t> stale_;
   int largest_ = 0;               ///< stride of a block

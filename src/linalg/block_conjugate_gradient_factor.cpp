@@ -37,7 +37,7 @@ void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const dou
 bool BlockConjugateGradient::factor() {
   std::vector<std::uint8_t> good(begin_.size() - 1, 1);
   for_ranges([&](std::size_t k, Range range) {
-    WideVector scratch(at(largest_));
+    WideVector scratch(at(largest_ * largest_));
     for (std::size_t j = range.first; j < range.last && good[k] != 0; ++j) {
       if (stale_[j] == 0) continue;
       double* diagonal = &matrix_[diagonal_[j]];
@@ -47,6 +47,16 @@ bool BlockConjugateGradient::factor() {
       double* inverse = &inverse_[inverse_start_[j]];
       std::copy_n(diagonal, stride_[j] * size_[j], inverse);
       good[k] = size_[j] == 6 ? invert_factor<6>(inverse) : invert_factor(size_[j], inverse, scratch.data());
+      // C = A C⁻ᵀ
+      const std::size_t count = at(stride_[j] * size_[j]);
+      std::copy_n(diagonal, count, scratch.data());
+      if (size_[j] == 6) {
+        multiply_right<6>(inverse, scratch.data());
+      } else {
+        multiply_right(stride_[j] / row_padding, size_[j], inverse, scratch.data());
+      }
+      for (std::size_t i = 0; i < count; i += row_padding)
+        store(&scale_[inverse_start_[j] + i], narrow(load(&scratch[i])));
     }
   });
   if (std::find(good.begin(), good.end(), 0) != good.end()) return false;

@@ -91,6 +91,7 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
   }
   matrix_.assign(used, 0.0);
   inverse_.assign(inverse, 0.0);
+  scale_.assign(inverse, 0.0F);
   above_.assign(scaled, 0.0F);
   stale_.assign(n, 1);
   return values;

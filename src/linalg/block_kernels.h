@@ -285,10 +285,11 @@ void multiply_right(const double* inverse, double* x) {
 }
 
 /// y = A x; y and x are not the same.
-inline void multiply(int lanes, int columns, const double* a, const double* x, double* y) {
+template <typename Number>
+void multiply(int lanes, int columns, const Number* a, const Number* x, Number* y) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < stride; l += row_padding) {
-    Lanes t{};
+    decltype(load(a)) t{};
     for (int j = 0; j < columns; ++j) t = add_product(load(a + j * stride + l), broadcast(x[j]), t);
     store(y + l, t);
   }
