@@ -45,6 +45,22 @@ bool lies_in_a_hole(const Ring& points, const Polygon& polygon) {
                      [&](const Ring& hole) { return lies_in_hole(points, hole); });
 }
 
+// Whether no two edges of a ring that do not follow each other meet.
+bool is_simple(const Ring& ring) {
+  const auto vertex = [&](std::size_t k) { return ring[k % ring.size()]; };
+  const auto apart = [&](std::size_t i, std::size_t j) {  // the ends of edge j, on one side of edge i
+    const Vec2 a = vertex(i), edge = vertex(i + 1) - a;
+    return cross(edge, vertex(j) - a) * cross(edge, vertex(j + 1) - a) > 0.0;
+  };
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const std::size_t last = i == 0 ? ring.size() - 1 : ring.size();
+    for (std::size_t j = i + 2; j < last; ++j) {
+      if (!apart(i, j) && !apart(j, i)) return false;
+    }
+  }
+  return true;
+}
+
 struct Pair {
   double bound = 0.0;  // of the depth, from above
   int a = 0, b = 0;
@@ -53,7 +69,10 @@ struct Pair {
 class Finder {
  public:
   explicit Finder(std::span<const Polygon> blocks)
-      : blocks_(blocks), context_(GEOS_init_r(), GEOS_finish_r), geometries_(blocks.size()) {
+      : blocks_(blocks),
+        context_(GEOS_init_r(), GEOS_finish_r),
+        geometries_(blocks.size()),
+        parts_(blocks.size()) {
     for (const Polygon& block : blocks) {
       boxes_.push_back(bounds(block));
       hulls_.push_back(convex_hull(block.outer));
@@ -61,8 +80,8 @@ class Finder {
     }
   }
 
-  // Pairs whose hulls overlap by more than `least`, widest bound first.
-  [[nodiscard]] std::vector<Pair> candidates(double least) const;
+  // Pairs that may overlap by more than `least`, widest bound first.
+  [[nodiscard]] std::vector<Pair> candidates(double least);
   // Connected regions that a pair shares.
   // Depths up to `least` need not be exact, as long as they are not more.
   std::vector<Overlap> regions(const Pair& pair, double least);
@@ -73,7 +92,8 @@ class Finder {
   [[nodiscard]] Geometry own(GEOSGeometry* geometry) const {
     return {geometry, GeometryDeleter{context_.get()}};
   }
-  [[nodiscard]] double upper_bound(std::size_t a, std::size_t b) const;
+  [[nodiscard]] double upper_bound(std::size_t a, std::size_t b, double least);
+  const std::vector<Ring>& parts(std::size_t block);
   [[nodiscard]] GEOSGeometry* geos_ring(const Ring& ring) const;
   const GEOSGeometry* geometry(int block);
   Ring read_ring(const GEOSGeometry* ring) const;
@@ -88,15 +108,45 @@ class Finder {
   std::vector<std::optional<Geometry>> geometries_;
   std::vector<Box> boxes_;
   std::vector<Ring> hulls_;
+  std::vector<std::optional<std::vector<Ring>>> parts_;
   double largest_ = 0.0;
 };
 
-double Finder::upper_bound(std::size_t a, std::size_t b) const {
-  if (lies_in_a_hole(hulls_[a], blocks_[b]) || lies_in_a_hole(hulls_[b], blocks_[a])) return 0.0;
-  return hull_penetration(hulls_[a], hulls_[b]);
+// Convex parts of a block; none where it is not worth it, or cannot be had.
+const std::vector<Ring>& Finder::parts(std::size_t block) {
+  constexpr std::size_t most_vertices = 64;
+  std::optional<std::vector<Ring>>& known = parts_[block];
+  if (known) return *known;
+  known.emplace();
+  const Polygon& polygon = blocks_[block];
+  if (hulls_[block].size() == polygon.outer.size()) {
+    known->push_back(hulls_[block]);
+  } else if (polygon.holes.empty() && polygon.outer.size() <= most_vertices && is_simple(polygon.outer)) {
+    try {
+      *known = convex_parts(polygon);
+    } catch (const std::invalid_argument&) {
+      // Too thin to be cut up.
+    }
+  }
+  return *known;
 }
 
-std::vector<Pair> Finder::candidates(double least) const {
+// Where hulls overlap by more than `least`, convex parts know more: what blocks share is covered by what pairs of parts share, and a
+// convex body that planks cover is no wider than they are together (Bang 1951).
+double Finder::upper_bound(std::size_t a, std::size_t b, double least) {
+  if (lies_in_a_hole(hulls_[a], blocks_[b]) || lies_in_a_hole(hulls_[b], blocks_[a])) return 0.0;
+  const double of_hulls = hull_penetration(hulls_[a], hulls_[b]);
+  if (of_hulls <= least) return of_hulls;
+  const std::vector<Ring>&of_a = parts(a), &of_b = parts(b);
+  if (of_a.empty() || of_b.empty() || of_a.size() * of_b.size() == 1) return of_hulls;
+  double together = resolution();
+  for (const Ring& part : of_a) {
+    for (const Ring& other : of_b) together += std::max(0.0, hull_penetration(part, other));
+  }
+  return std::min(of_hulls, together);
+}
+
+std::vector<Pair> Finder::candidates(double least) {
   std::vector<int> order(blocks_.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
   const auto box = [this](int k) -> const Box& { return boxes_[static_cast<std::size_t>(k)]; };
@@ -109,7 +159,7 @@ std::vector<Pair> Finder::candidates(double least) const {
     for (std::size_t j = i + 1; j < order.size() && box(order[j]).min.x < box(a).max.x; ++j) {
       const int b = order[j];
       if (!box(a).overlaps(box(b))) continue;
-      const double bound = upper_bound(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+      const double bound = upper_bound(static_cast<std::size_t>(a), static_cast<std::size_t>(b), least);
       if (bound > least) pairs.push_back({bound, std::min(a, b), std::max(a, b)});
     }
   }

@@ -24,7 +24,7 @@ struct Overlap {
 /// in its hole, is cut into convex parts, of which the widest counts (its hull would be as wide as the block).
 ///
 /// Pairs are taken in the order of an upper bound, the smallest penetration of their convex hulls along an edge
-/// normal, until the bound falls below the depth found. So polygons that merely touch cost little. Depths below
+/// normal or the sum of those of their convex parts, until the bound falls below the depth found. So polygons that merely touch cost little. Depths below
 /// 16 ε times the largest coordinate (4e-14 m at 10 m) cannot be told from touching and count as none.
 ///
 /// Polygons that cross themselves are read by the even-odd rule. Where no exact intersection can be had, the

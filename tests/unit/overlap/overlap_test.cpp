@@ -212,6 +212,54 @@ TEST(Overlap, RandomConvexPairsAgreeWithClipping) {
   EXPECT_GT(overlapping, 200);
 }
 
+/// A star about a point, with corners that point inwards.
+Polygon random_star(std::mt19937& random, Vec2 centre) {
+  std::uniform_real_distribution<double> uniform(0.15, 1.0);
+  Ring points;
+  for (int k = 0; k < 9; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / 9;
+    points.push_back(centre + uniform(random) * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return {points, {}};
+}
+
+// The bound by convex parts may leave out no region, nor be less than the depth of one that is convex.
+TEST(Overlap, RandomStarsShareWhatTheirPartsDo) {
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> uniform(-1.2, 1.2);
+  int apart = 0, thin = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const Polygon a = random_star(random, {}), b = random_star(random, {uniform(random), uniform(random)});
+    double expected = 0.0;
+    for (const Ring& part : convex_parts(a)) {
+      for (const Ring& other : convex_parts(b)) {
+        const Ring shared = clipped(part, other);
+        if (shared.size() >= 3) expected += signed_area(shared);
+      }
+    }
+    const auto regions = all_overlaps(std::vector<Polygon>{a, b}, 0.0);
+    double found = 0.0;
+    for (const Overlap& o : regions) found += o.area;
+    EXPECT_NEAR(found, expected, 1e-12);
+    apart += expected == 0.0 && hull_penetration(convex_hull(a.outer), convex_hull(b.outer)) > 0.0 ? 1 : 0;
+    // Alone, a region has the bound of its own pair of parts.
+    if (regions.size() != 1 || convex_parts(a).size() * convex_parts(b).size() < 2) continue;
+    double widest = 0.0;
+    for (const Ring& part : convex_parts(a)) {
+      for (const Ring& other : convex_parts(b)) {
+        const Ring shared = convex_hull(clipped(part, other));
+        if (shared.size() >= 3 && std::abs(signed_area(shared) - expected) < 1e-13)
+          widest = convex_width(shared);
+      }
+    }
+    if (widest == 0.0) continue;
+    ++thin;
+    EXPECT_NEAR(regions.front().depth, widest, 1e-12);
+  }
+  EXPECT_GT(apart, 50);
+  EXPECT_GT(thin, 50);
+}
+
 TEST(Overlap, PruningLosesNothing) {
   std::mt19937 random(12);
   for (int round = 0; round < 20; ++round) {
