@@ -49,8 +49,10 @@ struct BlockPair {
   int first = 0;  ///< of its candidates; those of the next pair follow
   int block_a = 0, block_b = 0;
   int wait = 0;  ///< steps until it is looked again for how long its contacts stay the same
-  // m: they do as long as the ways of both blocks, and their reaches (Detection::Motion), add up to no more than these.
+  // m: they do as long as how far the blocks have come from `apart`, with the ways of both, and their reaches (Detection::Motion),
+  // add up to no more than these.
   double steady = -1.0, reach = 0.0;
+  Vec2 apart;  ///< m, from the first vertex of block a to that of block b, when they were looked at
   std::uint64_t contacts = 0;  ///< then: bit k for candidate first + k
 };
 

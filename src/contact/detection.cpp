@@ -94,7 +94,7 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
   };
   for (std::size_t p = first; p < last; ++p) {
     const BlockPair& pair = candidates.block_pairs[p];
-    if (is_steady(pair)) continue;
+    if (is_steady(surface, pair)) continue;
     const std::size_t begin = at(pair.first), end = candidates.end_of_pair(p), a = at(pair.block_a),
                       b = at(pair.block_b);
     const double reach = motion_.reach[a] + motion_.reach[b], turn = motion_.turn[a] + motion_.turn[b],
@@ -160,15 +160,24 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   }
   pair.steady = motion_.way[at(pair.block_a)] + motion_.way[at(pair.block_b)] + margin;
   pair.reach = reach_share * reach;
+  pair.apart = apart(surface, pair);
   pair.contacts = 0;
   for (const Rival& r : rivals) {
     if (r.candidate >= 0) pair.contacts |= std::uint64_t{1} << (r.candidate - pair.first);
   }
 }
 
-bool Detection::is_steady(const BlockPair& pair) const {
+Vec2 Detection::apart(const Surface& surface, const BlockPair& pair) {
+  const auto first = [&](int block) { return surface.position[at(surface.block_begin[at(block)])]; };
+  return first(pair.block_b) - first(pair.block_a);
+}
+
+/// Blocks that go together, as where the rock sways, have not moved.
+bool Detection::is_steady(const Surface& surface, const BlockPair& pair) const {
   const std::size_t a = at(pair.block_a), b = at(pair.block_b);
-  return motion_.way[a] + motion_.way[b] <= pair.steady && motion_.reach[a] + motion_.reach[b] <= pair.reach;
+  const double left = pair.steady - motion_.way[a] - motion_.way[b];
+  return left >= 0.0 && squared_norm(apart(surface, pair) - pair.apart) <= left * left &&
+         motion_.reach[a] + motion_.reach[b] <= pair.reach;
 }
 
 /// The contacts among the candidates of pairs of blocks [first, last).
@@ -181,7 +190,7 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
   auto r = rivals.begin();
   for (std::size_t p = first; p < last; ++p) {
     BlockPair& pair = candidates.block_pairs[p];
-    if (is_steady(pair)) {
+    if (is_steady(surface, pair)) {
       for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1) {
         const int candidate = pair.first + std::countr_zero(left);
         found.push_back({candidate, memory_of(at(candidate))});

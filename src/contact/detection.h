@@ -72,7 +72,8 @@ class Detection {
     std::span<const double> reach;  ///< m, in the step
     std::span<const double> turn;   ///< rad, in the step
     std::span<const double> away;   ///< m, Candidates::away
-    /// m, per block: length of the way that it has gone since some time in the past, by the vertex that moved furthest in each step.
+    /// m, per block: length of the way that its vertices have gone against its first one since some time in the past, by the one
+    /// that moved furthest in each step.
     std::span<const double> way;
   };
   /// Contacts of the step in the order of the candidates.
@@ -113,7 +114,9 @@ class Detection {
                    std::size_t last, std::vector<Rival>& rivals) const;
   void decide(const Surface& surface, const CandidateList& candidates, BlockPair& pair, std::size_t end,
               std::span<Rival> rivals) const;
-  [[nodiscard]] bool is_steady(const BlockPair& pair) const;
+  [[nodiscard]] bool is_steady(const Surface& surface, const BlockPair& pair) const;
+  // m, from the first vertex of block a to that of block b.
+  [[nodiscard]] static Vec2 apart(const Surface& surface, const BlockPair& pair);
   /// Which of the candidates for one pair of corners is the contact.
   struct Outcome {
     Rival* winner = nullptr;   ///< null: none

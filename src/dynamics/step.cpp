@@ -52,14 +52,19 @@ void Stepper::place(State& state) {
   team_.for_range(model_.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const Block& block = model_.blocks[b];
-      double moved = 0.0;
+      const std::size_t first = at(surface.block_begin[b]);
+      double moved = 0.0, against_first = 0.0;
+      Vec2 of_first;
       for_vertex_values(surface, b, block.size, &state.position[block.first], [&](std::size_t v, Vec2 x) {
-        const double squared = squared_norm(x - surface.position[v]);
+        const Vec2 u = x - surface.position[v];
+        if (v == first) of_first = u;
+        const double squared = squared_norm(u);
         if (!(squared <= moved)) moved = squared;  // nor if it is not a number
+        against_first = std::max(against_first, squared_norm(u - of_first));
         surface.position[v] = x;
       });
       state.moved[b] = std::sqrt(moved);
-      way_[b] += state.moved[b];
+      way_[b] += std::sqrt(against_first);
     }
   });
 }
