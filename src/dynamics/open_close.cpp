@@ -357,7 +357,8 @@ bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> co
 
 OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contact> contacts,
                                  linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
-                                 Profile& profile, std::span<double> d) {
+                                 Profile& profile, std::span<double> d,
+                                 const std::function<bool()>& gives_up) {
   team_ = &team;
   contacts_ = contacts;
   profile_ = &profile;
@@ -394,9 +395,11 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
       continue;
     }
     const double tolerance =
-        result.bound_updates == 0 && !augmented ? options.bound_tolerance : options.bound_accuracy;
+        springs_->bounds_updated || augmented ? options.bound_accuracy : options.bound_tolerance;
     if (result.bound_updates < options.max_bound_updates && update_bounds(problem, tolerance)) {
-      ++result.bound_updates;
+      springs_->bounds_updated = true;
+      result.given_up = ++result.bound_updates == 1 && gives_up && gives_up();
+      if (result.given_up) break;
       enough = std::max(options.tolerance, rough_share * problem.residual_ratio(gradient_));
       continue;
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ struct OpenCloseResult {
   int refinements = 0;          ///< corrections of what the factor of an earlier step gets wrong
   int multiplier_updates = 0;   ///< of an augmented Lagrangian
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
+  bool given_up = false;        ///< at the first of them
   double residual_ratio = 0.0;  ///< at the end
 };
 
@@ -48,10 +50,11 @@ struct OpenCloseResult {
 class OpenClose {
  public:
   /// d: the increment; a guess, for solvers without a factor to start from, and then the solution. Bonds that break are cleared
-  /// in the memory of the contacts (one per row) and in the rows of the problem.
+  /// in the memory of the contacts (one per row) and in the rows of the problem. gives_up: asked once bounds have to be taken anew,
+  /// which is most of the work then; whether the step has to be taken again whatever comes of it.
   OpenCloseResult solve(StepProblem& problem, std::span<contact::Contact> contacts,
                         linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
-                        Profile& profile, std::span<double> d);
+                        Profile& profile, std::span<double> d, const std::function<bool()>& gives_up = {});
 
   /// m, of every vertex of the surface at the solution.
   [[nodiscard]] std::span<const Vec2> displacement() const { return displacement_; }

@@ -40,6 +40,7 @@ class SpringArray {
          {&kn, &ks, &bound, &floor, &friction, &cohesion, &y0, &w0, &y, &w, &dy, &dw})
       v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
     piece.resize(n);
+    bounds_updated = false;
   }
   [[nodiscard]] std::size_t size() const { return size_; }
 
@@ -98,6 +99,7 @@ class SpringArray {
   std::vector<double> y, w;          ///< m, now
   std::vector<double> dy, dw;        ///< m, of the direction of search
   std::vector<Piece> piece;          ///< of (y, w)
+  bool bounds_updated = false;       ///< bounds are no more those of the last step
 
  private:
   std::size_t size_ = 0;

@@ -163,17 +163,20 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
     reach_[at(motion.block)] = norm(drive.prescribed[at(motion.block)]);
 }
 
-void Stepper::detect(State& state) {
+/// Whether the candidates are others.
+bool Stepper::detect(State& state) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
   detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
                   contacts_);
   ensure_pattern(state, changed);
+  return changed;
 }
 
 void Stepper::build_problem(const State& state, const Drive& drive) {
   const Profile::Scope scope(profile_, Phase::terms);
   problem_.build(model_, state, drive, model_.surface, contacts_, pair_of_candidate_, team_);
+  earlier_look_.give(contacts_, problem_.springs());
 }
 
 bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
@@ -183,14 +186,16 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   predict_reach(state, drive);
   constexpr int looks = 4;
   bool must_be_direct = false;
+  earlier_look_.forget();
   for (int look = 1; look <= looks;) {
-    detect(state);
+    if (detect(state)) earlier_look_.forget();
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     guessed_ = chosen.halves() == nullptr;
-    if (guessed_) history_.extrapolate(drive.step, increment_);
-    const OpenCloseResult result =
-        open_close_.solve(problem_, contacts_, chosen, model_.solver, team_, profile_, increment_);
+    if (guessed_ && look == 1) history_.extrapolate(drive.step, increment_);
+    const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
+    const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,
+                                                     profile_, increment_, meets_impacts);
     report.iterations += result.iterations;
     if (!result.finite)
       throw RunError("the forces of the step to " + std::to_string(drive.end_time) + " s are not finite");
@@ -201,8 +206,9 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     measure_spin(state);
     if (!result.converged) return false;
     if (turned_too_far()) return false;
-    const bool moved = moved_too_far(), impact = look < looks && meet_impacts(state, drive);
+    const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
     if (!moved && !impact) return true;
+    earlier_look_.keep(contacts_, problem_.springs());
     ++look;
   }
   return true;

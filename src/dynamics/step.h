@@ -7,6 +7,7 @@
 #include "contact/detection.h"
 #include "core/parallel.h"
 #include "core/profile.h"
+#include "dynamics/earlier_look.h"
 #include "dynamics/increment_history.h"
 #include "dynamics/model.h"
 #include "dynamics/open_close.h"
@@ -102,7 +103,7 @@ class Stepper {
   void move_prescribed(State& state, const Drive& drive);
   void build_problem(const State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
-  void detect(State& state);
+  bool detect(State& state);
   void ensure_pattern(State& state, bool candidates_changed);
   linalg::BlockSolver& solver(const State& state, bool is_static, bool must_be_direct);
   bool attempt(State& state, Drive& drive, StepReport& report);
@@ -146,6 +147,7 @@ class Stepper {
   contact::Candidates candidates_;
   contact::Detection detection_;
   StepProblem problem_;
+  EarlierLook earlier_look_;
   OpenClose open_close_;
   /// A solver, and whether it knows the pattern.
   struct Linear {

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <random>
 
+#include "dynamics/earlier_look.h"
 #include "scene.h"
 
 namespace keyblock::dynamics {
@@ -129,6 +133,58 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
       for (std::size_t k = block.first; k < block.first + 2 * static_cast<std::size_t>(block.size); ++k)
         EXPECT_NEAR(g[k], iteration.gradient()[k], 1e-8 * problem.weight(b)) << k;
     }
+  }
+}
+
+// A look that is given up when bounds have to be taken anew comes to the same end in the next one; one that has come to its end
+// leaves nothing to do.
+TEST_P(StepProblemOrder, AnotherLookGoesOnFromTheOneBefore) {
+  simulation::Simulator s(small_wall(20.0, GetParam()));
+  s.run(0.05, 0.005);
+  s.state.velocity[s.model.blocks[3].first] += 0.5;
+  s.state.velocity[s.model.blocks[3].first + 1] -= 0.5;
+  simulation::settle_bounds(s.model.solver);
+  Drive drive;
+  drive.step = 0.005;
+  drive.end_time = s.state.time + drive.step;
+  const std::vector<Integrator> rule(s.model.blocks.size());
+  drive.rule = rule;
+  EarlierLook earlier;
+  const auto solve = [&](const std::function<bool()>& gives_up, std::vector<double>& d) {
+    std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
+    StepProblem problem;
+    problem.build(s.model, s.state, drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    earlier.give(contacts, problem.springs());
+    const auto solver = linalg::make_block_cholesky();
+    analyse(s.model, problem, *solver);
+    d.assign(s.model.coefficients, 0.0);
+    OpenClose iteration;
+    const OpenCloseResult result =
+        iteration.solve(problem, contacts, *solver, s.model.solver, s.team, s.profile, d, gives_up);
+    earlier.keep(contacts, problem.springs());
+    return result;
+  };
+  std::vector<double> whole, first, second, third;
+  const OpenCloseResult at_once = solve({}, whole);
+  EXPECT_FALSE(at_once.given_up);
+  EXPECT_GT(at_once.bound_updates, 1);
+  earlier.forget();
+  int asked = 0;
+  const OpenCloseResult stopped = solve([&] { return ++asked > 0; }, first);
+  EXPECT_TRUE(stopped.given_up);
+  EXPECT_EQ(stopped.bound_updates, 1);
+  EXPECT_EQ(asked, 1);
+  const OpenCloseResult again = solve([&] { return ++asked < 0; }, second);
+  EXPECT_FALSE(again.given_up);
+  EXPECT_EQ(asked, 2);
+  const OpenCloseResult settled = solve({}, third);
+  EXPECT_EQ(settled.bound_updates, 0);
+  EXPECT_EQ(settled.iterations, 1);
+  double largest = 0.0;
+  for (const double x : whole) largest = std::max(largest, std::abs(x));
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    EXPECT_NEAR(second[k], whole[k], 1e-7 * largest) << k;
+    EXPECT_NEAR(third[k], whole[k], 1e-7 * largest) << k;
   }
 }
 

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "contact/detection.h"
+#include "dynamics/spring_array.h"
+
+namespace keyblock::dynamics {
+
+/// The springs at the end of a look at a step that has to be taken again, with other rules of integration or a longer reach: the
+/// pieces and the friction bounds that it came to are nearer to those of the next look than what contacts remember of the last step.
+class EarlierLook {
+ public:
+  void forget() { candidates_.clear(); }
+
+  void keep(std::span<const contact::Contact> contacts, const SpringArray& springs) {
+    candidates_.clear();
+    for (const contact::Contact& c : contacts) candidates_.push_back(c.candidate);
+    piece_ = springs.piece;
+    bound_ = springs.bound;
+    bounds_updated_ = springs.bounds_updated;
+  }
+
+  /// Bonds are begun anew: that they broke is for the next look to find.
+  void give(std::span<const contact::Contact> contacts, SpringArray& springs) const {
+    if (candidates_.empty()) return;
+    std::size_t k = 0;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      while (k < candidates_.size() && candidates_[k] < contacts[c].candidate) ++k;
+      if (k == candidates_.size()) break;
+      if (candidates_[k] != contacts[c].candidate || contacts[c].memory.bonded) continue;
+      springs.piece[c] = piece_[k];
+      springs.bound[c] = bound_[k];
+    }
+    springs.bounds_updated = bounds_updated_;
+  }
+
+ private:
+  std::vector<int> candidates_;  ///< of its contacts; empty: there was no earlier look
+  std::vector<SpringArray::Piece> piece_;
+  std::vector<double> bound_;
+  bool bounds_updated_ = false;
+};
+
+}  // namespace keyblock::dynamics
