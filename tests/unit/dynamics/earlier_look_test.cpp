@@ -1,0 +1,56 @@
+#include "dynamics/earlier_look.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace keyblock::dynamics {
+namespace {
+
+using Shear = SpringArray::Shear;
+constexpr SpringArray::Piece open{}, held{true, Shear::held}, slips{true, Shear::forward};
+
+std::vector<contact::Contact> contacts_of(const std::vector<int>& candidates) {
+  std::vector<contact::Contact> contacts(candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) contacts[c].candidate = candidates[c];
+  return contacts;
+}
+
+SpringArray springs_of(const std::vector<SpringArray::Piece>& pieces, const std::vector<double>& bounds) {
+  SpringArray springs;
+  springs.resize(pieces.size());
+  springs.piece = pieces;
+  for (std::size_t c = 0; c < bounds.size(); ++c) springs.bound[c] = bounds[c];
+  return springs;
+}
+
+TEST(EarlierLook, SpringsOfTheSameContactsGoOn) {
+  SpringArray before = springs_of({held, slips, slips}, {1.0, 2.0, 3.0});
+  before.bounds_updated = true;
+  EarlierLook look;
+  look.keep(contacts_of({3, 5, 9}), before);
+
+  // 5 has gone, 4 and 12 have come.
+  const SpringArray fresh = springs_of({open, open, open, open}, {7.0, 7.0, 7.0, 7.0});
+  auto contacts = contacts_of({3, 4, 9, 12});
+  SpringArray springs = fresh;
+  look.give(contacts, springs);
+  EXPECT_EQ(springs.piece, (std::vector{held, open, slips, open}));
+  EXPECT_EQ(std::vector(springs.bound.begin(), springs.bound.begin() + 4), (std::vector{1.0, 7.0, 3.0, 7.0}));
+  EXPECT_TRUE(springs.bounds_updated);
+
+  contacts[0].memory.bonded = true;
+  springs = fresh;
+  look.give(contacts, springs);
+  EXPECT_EQ(springs.piece, (std::vector{open, open, slips, open})) << "a bond is begun anew";
+
+  look.forget();
+  springs = fresh;
+  look.give(contacts, springs);
+  EXPECT_EQ(springs.piece, fresh.piece);
+  EXPECT_EQ(springs.bound, fresh.bound);
+  EXPECT_FALSE(springs.bounds_updated);
+}
+
+}  // namespace
+}  // namespace keyblock::dynamics
