@@ -129,8 +129,11 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
   const std::span<double> x = std::span(direction_).first(n);
   // The springs that act are not known better than to a share of what is out of balance.
   const double enough = std::max(linear_share * tolerance, forcing * problem.residual_ratio(x));
-  solver.solve(x, std::span(residual_).first(n),
-               [&](std::span<const double> residual) { return problem.residual_ratio(residual) / enough; });
+  // With a kept matrix the gradient is found anew before it counts as settled.
+  solver.solve(
+      x, std::span(residual_).first(n),
+      [&](std::span<const double> residual) { return problem.residual_ratio(residual) / enough; },
+      kept_ ? linalg::BlockSolver::Residual::estimated : linalg::BlockSolver::Residual::exact);
   return solver.solved();
 }
 

@@ -169,7 +169,8 @@ void BlockCholesky::backward() {
   }
 }
 
-void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/) {
+void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/,
+                          Residual /*kind*/) {
   std::fill(residual.begin(), residual.end(), 0.0);
   take(x);
   for_equal_size([&]<int equal>() {

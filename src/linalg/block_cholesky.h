@@ -23,7 +23,7 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   BlockSlot slot(int pair) override { return slots_[at(pair)]; }
   void touch(int block) override { stale_[position_[at(block)]] = 1; }
   bool factor() override;
-  void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
+  void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   HalfSolver* halves() override { return this; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
   void half_solve(Part a, Part b, HalfSolution& half) override;

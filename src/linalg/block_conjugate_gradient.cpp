@@ -120,8 +120,10 @@ void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, cons
 }
 
 /// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of a range.
+/// No calls within: they would keep vectors from staying in registers.
 template <typename Layout>
-void BlockConjugateGradient::go_forward(Layout layout, Range range, float alpha, float beta) {
+[[gnu::flatten]] void BlockConjugateGradient::go_forward(Layout layout, Range range, float alpha,
+                                                         float beta) {
   const NarrowLanes a = broadcast(alpha), b = broadcast(beta);
   for (std::size_t j = range.first; j < range.last; ++j) {
     store_transposed(layout, j, t_.data(), q_.data());
@@ -137,7 +139,8 @@ void BlockConjugateGradient::go_forward(Layout layout, Range range, float alpha,
 
 /// q ← (1 + U)⁻¹ q and t ← t + q of a range, but for what columns of other ranges add to its rows.
 template <typename Layout>
-BlockConjugateGradient::Dots BlockConjugateGradient::go_backward(Layout layout, Range range) {
+[[gnu::flatten]] BlockConjugateGradient::Dots BlockConjugateGradient::go_backward(Layout layout,
+                                                                                  Range range) {
   Lanes rr{}, pq{}, rq{}, qq{};
   for (std::size_t j = range.last; j-- > range.first;) {
     subtract_above(layout, j, above_.data() + above_start_[j], q_.data(), q_.data());
@@ -272,15 +275,16 @@ void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
   }
 }
 
-/// x += C⁻ᵀ (1 + Uᵀ)⁻¹ z, and residual −= A times that.
-void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> residual) {
+/// x += C⁻ᵀ (1 + Uᵀ)⁻¹ z, and residual −= A times that, or residual ← the estimate at hand.
+void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> residual, Residual kind) {
+  const bool exact = kind == Residual::exact;
   with_layout([&](auto layout) {
     const auto solve = [&](Range range) {
       for (std::size_t j = range.first; j < range.last; ++j) {
         store_transposed(layout, j, z_.data(), q_.data());
         for_registers(layout, j, [&](std::size_t k) { store(&z_[k], load(&z_[k]) - load(&q_[k])); });
         unscale(layout, j, z_, product_, wide_);
-        for_registers(layout, j, [&](std::size_t k) { store(&product_[k], Lanes{}); });
+        if (exact) for_registers(layout, j, [&](std::size_t k) { store(&product_[k], Lanes{}); });
         const double* correction = &wide_[layout.start(j)];
         for (int c = 0; c < layout.size(j); ++c) x[offset_[j] + at(c)] += correction[c];
       }
@@ -291,8 +295,12 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
     solve(between());
     for_parts([&](std::size_t, Range range) {
       solve(range);
-      multiply_columns(range);
+      if (exact) multiply_columns(range);
     });
+    if (!exact) {
+      std::copy(estimate_.begin(), estimate_.end(), residual.begin());
+      return;
+    }
     subtract_from_parts<&RowEntry::values>(layout, matrix_.data(), wide_.data(), product_.data());
     multiply_columns(between());
     for_ranges([&](std::size_t, Range range) {
@@ -304,17 +312,18 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
   });
 }
 
-/// Conjugate gradients from r_ on, to z_. Returns how many iterations that took.
+/// Conjugate gradients from r_ on, to z_.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
 /// factor of ten and more, the one way or the other. As it costs more than an iteration it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
-int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int most) {
+BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_large, const Excess& excess,
+                                                                   int most) {
   double alpha = 0.0, beta = 0.0, wanted = 0.0, most_rr = HUGE_VAL;
   for (int iterations = 1;; ++iterations) {
     const Dots dots = apply(alpha, beta);
     // Nothing is left of p in single precision, or the matrix is not positive definite.
-    if (!(dots.pq > 0.0 && dots.rr < most_rr)) return iterations;
+    if (!(dots.pq > 0.0 && dots.rr < most_rr)) return {iterations, false};
     if (iterations == 1) {
       wanted = dots.rr / (too_large * std::sqrt(too_large));
       most_rr = most_growth * most_growth * dots.rr;
@@ -325,15 +334,16 @@ int BlockConjugateGradient::iterate(double too_large, const Excess& excess, int 
     if (rr > wanted && iterations < most) continue;
     go(alpha);
     alpha = 0.0;
-    if (iterations == most) return iterations;
+    if (iterations == most) return {iterations, false};
     find_residual(estimate_);
     too_large = excess(estimate_);
-    if (too_large <= well_enough) return iterations;
+    if (too_large <= well_enough) return {iterations, true};
     wanted = 0.5 * rr / (too_large * too_large);
   }
 }
 
-void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess) {
+void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
+                                   Residual kind) {
   std::copy(x.begin(), x.end(), residual.begin());
   std::fill(x.begin(), x.end(), 0.0);
   solved_ = true;
@@ -347,8 +357,13 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
     }
     most = most_growth * too_large;
     start(residual);
-    iterations += iterate(too_large, excess, most_iterations - iterations);
-    take_over(x, residual);
+    const Iterations taken = iterate(too_large, excess, most_iterations - iterations);
+    iterations += taken.count;
+    if (taken.enough && kind == Residual::estimated) {
+      take_over(x, residual, kind);
+      return;
+    }
+    take_over(x, residual, Residual::exact);
   }
 }
 

@@ -33,7 +33,7 @@ class BlockConjugateGradient final : public BlockSolver {
   BlockSlot slot(int pair) override { return slots_[at(pair)]; }
   void touch(int block) override { stale_[place_[at(block)]] = 1; }
   bool factor() override;
-  void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
+  void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
 
@@ -91,9 +91,14 @@ class BlockConjugateGradient final : public BlockSolver {
   template <typename Layout>
   void subtract_product_of(Layout layout, std::size_t j);
   void find_residual(std::span<double> residual);
-  void take_over(std::span<double> x, std::span<double> residual);
+  void take_over(std::span<double> x, std::span<double> residual, Residual kind);
   void scale_block(std::size_t i, std::size_t j, const double* a, double* scaled) const;
-  int iterate(double too_large, const Excess& excess, int most);
+  /// What iterate() took, and whether the estimate of the residual is small enough.
+  struct Iterations {
+    int count;
+    bool enough;
+  };
+  Iterations iterate(double too_large, const Excess& excess, int most);
 
   // Everything is by place in the order of the partition, but for the slots.
   ThreadTeam* team_;

@@ -60,9 +60,14 @@ bool BlockConjugateGradient::factor() {
     }
   });
   if (std::find(good.begin(), good.end(), 0) != good.end()) return false;
+  const auto touched = [&](std::size_t j) {
+    return stale_[j] != 0 || std::any_of(rows_.data() + column_start_[j], rows_.data() + column_start_[j + 1],
+                                         [&](std::uint32_t i) { return stale_[i] != 0; });
+  };
   for_ranges([&](std::size_t, Range range) {
     WideVector scratch(at(largest_ * largest_));
     for (std::size_t j = range.first; j < range.last; ++j) {
+      if (!touched(j)) continue;
       const double* values = &matrix_[diagonal_[j]] + at(stride_[j] * size_[j]);
       float* above = above_.data() + above_start_[j];
       for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {

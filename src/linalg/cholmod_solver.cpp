@@ -31,7 +31,7 @@ class Cholmod final : public BlockSolver {
   BlockSlot slot(int pair) override { return slots_[static_cast<std::size_t>(pair)]; }
   void touch(int) override {}
   bool factor() override;
-  void solve(std::span<double> x, std::span<double> residual, const Excess& excess) override;
+  void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
 
  private:
   void release() {
@@ -108,7 +108,8 @@ bool Cholmod::factor() {
   return common_.status == CHOLMOD_OK;
 }
 
-void Cholmod::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/) {
+void Cholmod::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/,
+                    Residual /*kind*/) {
   std::fill(residual.begin(), residual.end(), 0.0);
   cholmod_dense* right = cholmod_allocate_dense(x.size(), 1, x.size(), CHOLMOD_REAL, &common_);
   std::copy(x.begin(), x.end(), static_cast<double*>(right->x));
