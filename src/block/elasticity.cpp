@@ -1,6 +1,5 @@
 #include "block/elasticity.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <type_traits>
 
@@ -161,65 +160,6 @@ void Elasticity::add_force(const double* a, double* force) const {
   });
 }
 
-namespace {
-
-/// Whether a + shift · 1 has a Cholesky factor; a is overwritten.
-template <typename Matrix>
-bool is_positive_definite(Matrix& a, double shift) {
-  const Eigen::Index n = a.rows();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double pivot = a(j, j) + shift;
-    if (!(pivot > 0.0)) return false;
-    for (Eigen::Index q = j + 1; q < n; ++q) {
-      const double factor = a(q, j) / pivot;
-      for (Eigen::Index r = q; r < n; ++r) a(r, q) -= factor * a(r, j);
-    }
-  }
-  return true;
-}
-
-/// Raises the eigenvalues of a symmetric 2 × 2 matrix (lower triangle, by columns) to at least −floor.
-void floor_eigenvalues(double* g, double floor) {
-  const double mean = 0.5 * (g[0] + g[3]), half = 0.5 * (g[0] - g[3]);
-  const double radius = std::sqrt(half * half + g[1] * g[1]);
-  if (mean - radius >= -floor) return;
-  const double high = std::max(mean + radius, -floor);
-  // What differs from a multiple of 1 keeps its directions.
-  const double scale = radius > 0.0 ? 0.5 * (high + floor) / radius : 0.0, middle = 0.5 * (high - floor);
-  g[0] = middle + scale * half;
-  g[3] = middle - scale * half;
-  g[1] *= scale;
-}
-
-/// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor; does nothing when a
-/// bound shows that none is below. Matrix: of Eigen, n × n.
-template <typename Matrix>
-void floor_eigenvalues(double* g, int n, double floor) {
-  const auto entry = [&](int r, int c) -> double& { return g[r >= c ? c * n + r : r * n + c]; };
-  double bound = 0.0;
-  for (int i = 0; i < n; ++i) {
-    double others = 0.0;
-    for (int k = 0; k < n; ++k) others += k == i ? 0.0 : std::abs(entry(i, k));
-    bound = std::max(bound, others - entry(i, i));
-  }
-  if (bound <= floor) return;
-  Matrix whole(n, n);
-  for (int c = 0; c < n; ++c) {
-    for (int r = 0; r < n; ++r) whole(r, c) = entry(r, c);
-  }
-  Matrix reduced = whole;
-  if (is_positive_definite(reduced, floor)) return;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(whole);
-  if (solver.eigenvalues().minCoeff() >= -floor) return;
-  const auto& vectors = solver.eigenvectors();
-  whole = vectors * solver.eigenvalues().cwiseMax(-floor).asDiagonal() * vectors.transpose();
-  for (int c = 0; c < n; ++c) {
-    for (int r = c; r < n; ++r) entry(r, c) = whole(r, c);
-  }
-}
-
-}  // namespace
-
 /// The geometric part to `geometric`, (N − 1)², lower triangle, and the rest to the tangent.
 template <typename Number, typename Size>
 void Elasticity::add_tangent_at(Size size, std::span<const Point<Number>> points,
@@ -293,22 +233,15 @@ void Elasticity::add_tangent_at(Size size, std::span<const Point<Number>> points
   }
 }
 
-void Elasticity::add_tangent(const double* a, double viscous, double floor, double* tangent,
-                             int stride) const {
-  constexpr std::size_t few = 5;  // order 2
-  const std::size_t m = at(size_) - 1;
-  std::array<double, few * few> few_geometric;
-  std::vector<double> many_geometric(m > few ? m * m : 0);
-  double* geometric = m > few ? many_geometric.data() : few_geometric.data();
+void Elasticity::add_material_tangent(const double* a, double viscous, double* tangent, int stride,
+                                      double* geometric) const {
   with_points([&](auto size, auto points, const auto* gradients) {
     add_tangent_at(size, points, gradients, a, viscous, geometric, tangent, stride);
-    if constexpr (std::is_same_v<decltype(size), int>) {
-      floor_eigenvalues<Eigen::MatrixXd>(geometric, size - 1, floor);
-    } else if constexpr (size == 3) {
-      floor_eigenvalues(geometric, floor);
-    } else {
-      floor_eigenvalues<Eigen::Matrix<double, size - 1, size - 1>>(geometric, size - 1, floor);
-    }
+  });
+}
+
+void Elasticity::add_geometric_tangent(const double* geometric, double* tangent, int stride) const {
+  with_known_size(size_, [&](auto size) {
     for (int l = 1; l < size; ++l) {
       for (int k = l; k < size; ++k) {
         const double value = geometric[(l - 1) * (size - 1) + k - 1];

@@ -37,11 +37,13 @@ class Elasticity {
   [[nodiscard]] double energy(const double* a) const;
   /// force[2k + c] += f_k.
   void add_force(const double* a, double* force) const;
-  /// The material part is multiplied by 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt.
-  /// tangent: 2N × 2N with leading dimension `stride`, lower triangle added to (symmetric). The geometric
-  /// part is kept above −floor (1/s² · kg/m³, as inertia): a block under extreme pressure then keeps a
-  /// positive definite step.
-  void add_tangent(const double* a, double viscous, double floor, double* tangent, int stride) const;
+  /// The first integral of K, times 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt. tangent: 2N × 2N with leading
+  /// dimension `stride`, lower triangle added to (symmetric). geometric: room for the (N − 1)² numbers ∫ ∇φ_k · S ∇φ_l dA of the
+  /// second, k and l from 1 on; their lower triangle, by columns.
+  void add_material_tangent(const double* a, double viscous, double* tangent, int stride,
+                            double* geometric) const;
+  /// The second integral, given these numbers.
+  void add_geometric_tangent(const double* geometric, double* tangent, int stride) const;
   /// ∫ δE : C : δE dA with δE the linear part of the strain that increment d adds at a: dᵀ (material part of K) d. J.
   [[nodiscard]] double material_work(const double* a, const double* d) const;
   /// ∫ |S(a) − S(b)|² dA of the second Piola-Kirchhoff stress, Pa² m²; with a null b, of S(a) itself.

@@ -31,55 +31,45 @@ void rotation(double w, double& cosine, double& sine) {
 }
 
 Pose::Pose(const Polygon& region, const Basis& basis) : size_(basis.size()) {
-  const auto n = static_cast<std::size_t>(size_);
-  w_.assign(n * n, 0.0);
-  std::vector<Vec2> g(n);
+  std::vector<Vec2> g(at(size_));
+  w_.assign(at((size_ - 1) * (size_ - 2) / 2), 0.0);
   const int degree = 2 * (basis.order() - 1);
-  for (const WeightedPoint& w : thinned_rule(polygon_rule(region, degree), degree)) {
-    basis.gradients(w.point, g.data());
-    for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t l = 0; l < n; ++l) w_[k * n + l] += w.weight * cross(g[k], g[l]);
+  for (const WeightedPoint& point : thinned_rule(polygon_rule(region, degree), degree)) {
+    basis.gradients(point.point, g.data());
+    double* w = w_.data();
+    for (std::size_t k = 1; k < g.size(); ++k) {
+      for (std::size_t l = k + 1; l < g.size(); ++l) *w++ += point.weight * cross(g[k], g[l]);
     }
   }
-  w12_ = w_[n + 2];
+  w12_ = w_[0];
 }
 
-double Pose::area(const double* a) const {
-  if (size_ == 3) return w12_ * (a[2] * a[5] - a[4] * a[3]);
+template <typename Of>
+double Pose::sum_of_pairs(const Of& of) const {
+  if (size_ == 3) return w12_ * of(1, 2);
   double sum = 0.0;
   with_known_size(size_, [&](auto size) {
+    const double* w = w_.data();
     for (int k = 1; k < size; ++k) {
-      double row = 0.0;
-      for (int l = 1; l < size; ++l) row += w_[at(k * size + l)] * a[2 * l + 1];
-      sum += a[2 * k] * row;
+      for (int l = k + 1; l < size; ++l) sum += *w++ * of(k, l);
     }
   });
   return sum;
 }
 
-double Pose::mean_spin(const double* increment, const double* a) const {
-  if (size_ == 3) {
-    const double curl = increment[2] * a[4] + increment[3] * a[5] - increment[4] * a[2] - increment[5] * a[3];
-    return 0.5 * w12_ * curl / area(a);
-  }
-  double sum = 0.0, current_area = 0.0;
-  with_known_size(size_, [&](auto size) {
-    for (int k = 1; k < size; ++k) {
-      const double* w = &w_[at(k * size)];
-      double row_x = 0.0, row_y = 0.0;
-      for (int l = 1; l < size; ++l) {
-        row_x += w[l] * a[2 * l];
-        row_y += w[l] * a[2 * l + 1];
-      }
-      sum += increment[2 * k] * row_x + increment[2 * k + 1] * row_y;
-      current_area += a[2 * k] * row_y;
-    }
-  });
-  return 0.5 * sum / current_area;
+double Pose::area(const double* a) const {
+  return sum_of_pairs([&](int k, int l) { return a[2 * k] * a[2 * l + 1] - a[2 * l] * a[2 * k + 1]; });
 }
 
-double Pose::update(const double* increment, double* a, double* v) const {
-  const double w = mean_spin(increment, a);
+double Pose::mean_spin(const double* increment, const double* a) const {
+  const double curl = sum_of_pairs([&](int k, int l) {
+    return increment[2 * k] * a[2 * l] + increment[2 * k + 1] * a[2 * l + 1] - increment[2 * l] * a[2 * k] -
+           increment[2 * l + 1] * a[2 * k + 1];
+  });
+  return 0.5 * curl / area(a);
+}
+
+void Pose::update(double w, const double* increment, double* a, double* v) const {
   double c, s;
   rotation(w, c, s);
   a[0] += increment[0];
@@ -93,7 +83,6 @@ double Pose::update(const double* increment, double* a, double* v) const {
     v[2 * k] = c * vx - s * vy;
     v[2 * k + 1] = s * vx + c * vy;
   }
-  return w;
 }
 
 void Pose::rotate(double w, double* u) const {

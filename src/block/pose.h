@@ -23,15 +23,19 @@ class Pose {
   /// Formulation, equation (5). With c the centroid and r = x − c, the increment is D = D_c + w × r + D_def,
   /// and
   ///     x ← c + D_c + R(w)(r + D_def),      relative part of v ← R(w) v.
-  /// a, v: coefficients of position and velocity (2N values each), changed in place. Returns w.
-  double update(const double* increment, double* a, double* v) const;
+  /// w: its mean spin. a, v: coefficients of position and velocity (2N values each), changed in place.
+  void update(double w, const double* increment, double* a, double* v) const;
   /// Turns the relative part of a vector of 2N coefficients by w.
   void rotate(double w, double* u) const;
 
  private:
+  /// Σ W_kl of(k, l) over k < l.
+  template <typename Of>
+  [[nodiscard]] double sum_of_pairs(const Of& of) const;
+
   int size_;
   double w12_ = 0.0;       ///< W_12: at order 1 all there is, and at hand
-  std::vector<double> w_;  ///< N × N
+  std::vector<double> w_;  ///< W_kl, 0 < k < l, row by row
 };
 
 }  // namespace keyblock::block

@@ -300,7 +300,8 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
       balance_[b] = {problem_.inertia(b) * std::sqrt(squared) / weight,
                      problem_.inertia(b) * dot(down, {d[0], d[1]}) / weight};
     }
-    const double w = block.pose.update(d, &state.position[block.first], v);
+    const double w = spin_[b];
+    block.pose.update(w, d, &state.position[block.first], v);
     if (state.acceleration.empty()) return;
     block.pose.rotate(w, &state.acceleration[block.first]);
     block.pose.rotate(w, &state.force[block.first]);

@@ -1,9 +1,12 @@
 #include "dynamics/step_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
+#include "block/eigenvalue_floor.h"
 #include "core/index.h"
 #include "core/known_size.h"
 #include "core/lanes.h"
@@ -52,9 +55,18 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   build_rows(drive, contacts, pairs);
 }
 
+/// Blocks of order 2 under so much pressure that the eigenvalues of their geometric stiffness are looked for: as many at once as there
+/// are lanes.
+struct StepProblem::PressedBlocks {
+  std::array<std::size_t, lane_count> block;
+  std::array<block::MatrixOfOrder2, lane_count> geometric;
+  std::array<double, lane_count> floor;
+  std::size_t count = 0;
+};
+
 template <typename Size>
 void StepProblem::build_block(Size size, std::size_t i, const State& state, const Drive& drive,
-                              Vec2 acceleration) {
+                              Vec2 acceleration, PressedBlocks& pressed) {
   const Block& block = model_->blocks[i];
   const int n = 2 * size, stride = linalg::padded_rows(n);
   double* b = &b_[block.first];
@@ -80,20 +92,55 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   const double frequency =
       std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
   viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
-  block.elasticity.add_tangent(a, viscous_[i], geometric_floor * inertia_[i], h, stride);
+  const int m = size - 1;
+  const double floor = geometric_floor * inertia_[i];
+  if constexpr (std::is_same_v<Size, std::integral_constant<int, 6>>) {
+    block::MatrixOfOrder2& geometric = pressed.geometric[pressed.count];
+    block.elasticity.add_material_tangent(a, viscous_[i], h, stride, geometric.data());
+    if (!block::may_lie_below(geometric.data(), m, floor)) return finish_block(size, i, geometric.data());
+    pressed.block[pressed.count] = i;
+    pressed.floor[pressed.count] = floor;
+    if (++pressed.count == lane_count) finish_blocks(pressed);
+  } else {
+    std::array<double, 4> of_order_1;
+    std::vector<double> many(m > 2 ? at(m * m) : 0);
+    double* geometric = m > 2 ? many.data() : of_order_1.data();
+    block.elasticity.add_material_tangent(a, viscous_[i], h, stride, geometric);
+    if (m == 2 || block::may_lie_below(geometric, m, floor)) block::raise_eigenvalues(geometric, m, floor);
+    finish_block(size, i, geometric);
+  }
+}
+
+/// What H has beside the material part: geometric stiffness (N − 1)², inertia, and the upper triangle.
+template <typename Size>
+void StepProblem::finish_block(Size size, std::size_t i, const double* geometric) {
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  double* h = &h_[h_first_[i]];
+  model_->blocks[i].elasticity.add_geometric_tangent(geometric, h, stride);
   for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
   for (int c = 1; c < n; ++c) {
     for (int r = 0; r < c; ++r) h[c * stride + r] = h[r * stride + c];
   }
 }
 
+void StepProblem::finish_blocks(PressedBlocks& pressed) {
+  block::raise_eigenvalues(std::span(pressed.geometric).first(pressed.count),
+                           std::span(pressed.floor).first(pressed.count));
+  for (std::size_t k = 0; k < pressed.count; ++k)
+    finish_block(std::integral_constant<int, 6>{}, pressed.block[k], pressed.geometric[k].data());
+  pressed.count = 0;
+}
+
 void StepProblem::build_blocks(const State& state, const Drive& drive) {
   const Vec2 acceleration = model_->gravity - drive.ground_acceleration;
   team_->for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    PressedBlocks pressed;
     for (std::size_t i = begin; i < end; ++i) {
       const Block& block = model_->blocks[i];
-      with_known_size(block.size, [&](auto size) { build_block(size, i, state, drive, acceleration); });
+      with_known_size(block.size,
+                      [&](auto size) { build_block(size, i, state, drive, acceleration, pressed); });
     }
+    finish_blocks(pressed);
   });
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
   for (std::size_t i = 0; i < model_->blocks.size(); ++i) weight_[i] = body_force_[i] * g;

@@ -217,8 +217,13 @@ class StepProblem {
   }
   void add_spring(const Row& row, const Place& place, double kn, double ks, Owner owner,
                   linalg::BlockSolver& solver) const;
+  struct PressedBlocks;
   template <typename Size>
-  void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration);
+  void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration,
+                   PressedBlocks& pressed);
+  template <typename Size>
+  void finish_block(Size size, std::size_t i, const double* geometric);
+  void finish_blocks(PressedBlocks& pressed);
   template <typename Size>
   [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
                                        double spin, double* turn, double* product) const;
