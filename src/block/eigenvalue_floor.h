@@ -9,7 +9,8 @@ namespace keyblock::block {
 /// −floor.
 [[nodiscard]] bool may_lie_below(const double* g, int n, double floor);
 
-/// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor.
+/// Raises the eigenvalues of a symmetric n × n matrix (lower triangle, by columns) to at least −floor. Of the geometric stiffness both are
+/// in kg/(m³ s²), as inertia per Δt².
 void raise_eigenvalues(double* g, int n, double floor);
 
 /// A matrix of the geometric stiffness of a block of order 2, lower triangle, by columns.

@@ -50,7 +50,7 @@ class OwnStrings {
   std::unique_ptr<Strings> strings_;
 };
 
-std::unique_ptr<geos::noding::SegmentString> to_string(const SourceLine& line) {
+std::unique_ptr<geos::noding::SegmentString> to_segment_string(const SourceLine& line) {
   const Vec2 a = to_vec2(line.a), b = to_vec2(line.b);
   auto points =
       std::make_unique<geos::geom::CoordinateArraySequence>(std::vector<Coordinate>{{a.x, a.y}, {b.x, b.y}});
@@ -68,7 +68,7 @@ GridPoint to_grid_point(const Coordinate& c) {
 std::vector<Segment> snap_round(const std::vector<SourceLine>& lines) try {
   const OwnStrings input;
   (*input).reserve(lines.size());
-  for (const SourceLine& line : lines) (*input).push_back(to_string(line).release());
+  for (const SourceLine& line : lines) (*input).push_back(to_segment_string(line).release());
   std::shuffle((*input).begin(), (*input).end(), std::mt19937());
 
   const geos::geom::PrecisionModel whole_numbers(1.0);

@@ -77,11 +77,11 @@ class BlockSolver {
   [[nodiscard]] virtual bool factor() = 0;
   /// How many times too large a residual (as long as x) is; up to 1 it is small enough.
   using Excess = std::function<double(std::span<const double>)>;
-  /// How well solve() is to know what it leaves over: by a product with the matrix, or as the iteration itself has it, when that is
-  /// looked at anyway in another way.
+  /// What solve() says of what it leaves over: by a product with the matrix, or as the iteration has it, which is enough where the
+  /// residual of something else is looked at next.
   enum class Residual { exact, estimated };
   /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j]. An iterative solver stops when `excess` is at most 1, and leaves
-  /// what is missing in `residual`: the x given less A times the x returned. A direct one leaves zeros there.
+  /// what is missing in `residual`: the x given less A times the x returned, or an estimate of it. A direct one leaves zeros there.
   virtual void solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                      Residual kind = Residual::exact) = 0;
   /// Null where this solver has none.

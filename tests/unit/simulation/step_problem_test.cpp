@@ -42,6 +42,20 @@ simulation::Scene small_wall(double friction, int order) {
 
 class StepProblemOrder : public ::testing::TestWithParam<int> {};
 
+/// Drives a scene on from where it is, by 5 ms.
+struct NextStep {
+  explicit NextStep(const simulation::Simulator& s) : rule(s.model.blocks.size()) {
+    drive.step = 0.005;
+    drive.end_time = s.state.time + drive.step;
+    drive.rule = rule;
+  }
+  NextStep(const NextStep&) = delete;
+  NextStep& operator=(const NextStep&) = delete;
+
+  std::vector<Integrator> rule;
+  Drive drive;
+};
+
 /// `analyse` says which they are.
 std::vector<int> no_pairs(std::span<const contact::Contact> contacts) {
   int most = -1;
@@ -55,13 +69,9 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   s.run(0.05, 0.005);
 
   StepProblem problem;
-  Drive drive;
-  drive.step = 0.005;
-  drive.end_time = s.state.time + drive.step;
-  const std::vector<Integrator> rule(s.model.blocks.size());
-  drive.rule = rule;
+  const NextStep next(s);
   const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-  problem.build(s.model, s.state, drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+  problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<double> d(s.model.coefficients, 0.0), direction(d.size(), 0.0);
@@ -116,12 +126,8 @@ TEST(StepProblem, EveryPressedBlockHasItsOwnTangent) {
     for (std::size_t k = 2; k < 2 * at(block.size); ++k) s.state.position[block.first + k] *= uniform(random);
   }
   StepProblem problem;
-  Drive drive;
-  drive.step = 0.005;
-  drive.end_time = s.state.time + drive.step;
-  const std::vector<Integrator> rule(s.model.blocks.size());
-  drive.rule = rule;
-  problem.build(s.model, s.state, drive, s.model.surface, {}, {}, s.team);
+  const NextStep next(s);
+  problem.build(s.model, s.state, next.drive, s.model.surface, {}, {}, s.team);
   int raised = 0;
   for (std::size_t i = 0; i < s.model.blocks.size(); ++i) {
     const Block& block = s.model.blocks[i];
@@ -160,13 +166,9 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
   s.state.velocity[s.model.blocks[3].first + 1] += 0.1;
   for (const bool iterative : {false, true}) {
     StepProblem problem;
-    Drive drive;
-    drive.step = 0.005;
-    drive.end_time = s.state.time + drive.step;
-    const std::vector<Integrator> rule(s.model.blocks.size());
-    drive.rule = rule;
+    const NextStep next(s);
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-    problem.build(s.model, s.state, drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
     const auto solver =
         iterative ? linalg::make_block_conjugate_gradient(&s.team) : linalg::make_block_cholesky();
     analyse(s.model, problem, *solver);
@@ -195,16 +197,12 @@ TEST_P(StepProblemOrder, AnotherLookGoesOnFromTheOneBefore) {
   s.state.velocity[s.model.blocks[3].first] += 0.5;
   s.state.velocity[s.model.blocks[3].first + 1] -= 0.5;
   simulation::settle_bounds(s.model.solver);
-  Drive drive;
-  drive.step = 0.005;
-  drive.end_time = s.state.time + drive.step;
-  const std::vector<Integrator> rule(s.model.blocks.size());
-  drive.rule = rule;
+  const NextStep next(s);
   EarlierLook earlier;
   const auto solve = [&](const std::function<bool()>& gives_up, std::vector<double>& d) {
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
     StepProblem problem;
-    problem.build(s.model, s.state, drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
     earlier.give(contacts, problem.springs());
     const auto solver = linalg::make_block_cholesky();
     analyse(s.model, problem, *solver);
