@@ -86,22 +86,13 @@ void BlockConjugateGradient::subtract_above(Layout layout, std::size_t j, const 
 template <auto place, typename Layout, typename Number>
 void BlockConjugateGradient::subtract_from_parts(Layout layout, const Number* values, const Number* x,
                                                  Number* y) const {
-  constexpr std::size_t worth_threads = 64;  // rows
-  const std::size_t rows = between().last;
-  const auto gather = [&](std::size_t from, std::size_t to) {
-    for (std::size_t row = from; row < to; ++row) {
-      for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
-        const RowEntry& entry = row_entries_[k];
-        subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), values + entry.*place,
-                       x + layout.start(entry.column), y + layout.start(row));
-      }
+  for_rows_between([&](std::size_t row) {
+    for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+      const RowEntry& entry = row_entries_[k];
+      subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), values + entry.*place,
+                     x + layout.start(entry.column), y + layout.start(row));
     }
-  };
-  if (team_ == nullptr) {
-    gather(0, rows);
-  } else {
-    team_->for_range(rows, worth_threads, gather);
-  }
+  });
 }
 
 /// y_j ← (Uᵀ x)_j.
@@ -166,7 +157,7 @@ BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double 
       go_forward(layout, range, a, b);
       dots_[k] = go_backward(layout, range);
     });
-    subtract_from_parts<&RowEntry::above>(layout, above_.data(), q_.data(), q_.data());
+    subtract_from_parts<&RowEntry::copy>(layout, above_by_rows_.data(), q_.data(), q_.data());
     dots_.front() = go_backward(layout, between());
     Dots total;
     for (const Dots& part : dots_) total += part;
@@ -209,7 +200,7 @@ void BlockConjugateGradient::start(std::span<const double> x) {
       scale(range);
       divide(range);
     });
-    subtract_from_parts<&RowEntry::above>(layout, above_.data(), r_.data(), r_.data());
+    subtract_from_parts<&RowEntry::copy>(layout, above_by_rows_.data(), r_.data(), r_.data());
     divide(between());
   });
 }
@@ -250,7 +241,7 @@ void BlockConjugateGradient::find_residual(std::span<double> residual) {
       copy(range);
       multiply_columns(range);
     });
-    subtract_from_parts<&RowEntry::above>(layout, above_.data(), r_.data(), q_.data());
+    subtract_from_parts<&RowEntry::copy>(layout, above_by_rows_.data(), r_.data(), q_.data());
     multiply_columns(between());
   });
 }

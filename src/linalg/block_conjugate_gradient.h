@@ -73,6 +73,19 @@ class BlockConjugateGradient final : public BlockSolver {
     for_parts(body);
   }
   [[nodiscard]] Range between() const { return {0, begin_[1]}; }
+  /// Calls body(row) for what lies between the parts; rows may go at the same time.
+  template <typename Body>
+  void for_rows_between(const Body& body) const {
+    constexpr std::size_t worth_threads = 64;
+    const auto some = [&](std::size_t from, std::size_t to) {
+      for (std::size_t row = from; row < to; ++row) body(row);
+    };
+    if (team_ == nullptr) {
+      some(0, between().last);
+    } else {
+      team_->for_range(between().last, worth_threads, some);
+    }
+  }
   template <typename Layout, typename Number>
   void subtract_above(Layout layout, std::size_t j, const Number* block, const Number* x, Number* y) const;
   template <auto place, typename Layout, typename Number>
@@ -93,6 +106,7 @@ class BlockConjugateGradient final : public BlockSolver {
   void find_residual(std::span<double> residual);
   void take_over(std::span<double> x, std::span<double> residual, Residual kind);
   void scale_block(std::size_t i, std::size_t j, const double* a, double* scaled) const;
+  void copy_rows_between();
   /// What iterate() took, and whether the estimate of the residual is small enough.
   struct Iterations {
     int count;
@@ -119,6 +133,7 @@ class BlockConjugateGradient final : public BlockSolver {
   struct RowEntry {
     std::size_t column;
     std::size_t values, above;  ///< into matrix_, above_
+    std::size_t copy;           ///< into above_by_rows_
   };
   std::vector<std::size_t> row_start_;  ///< per block between the parts, into row_entries_
   std::vector<RowEntry> row_entries_;   ///< of a row, by columns
@@ -127,6 +142,8 @@ class BlockConjugateGradient final : public BlockSolver {
   WideVector inverse_;  ///< C_j⁻¹
   Vector scale_;        ///< C_j
   Vector above_;        ///< U
+  /// That of row_entries_ once more, in their order: where rows gather from above_, they wait for the memory at each block.
+  Vector above_by_rows_;
   std::vector<std::uint8_t> stale_;
   int largest_ = 0;               ///< stride of a block
   Vector t_, z_, r_, p_, q_;      ///< padded; between iterations Â p is in t_

@@ -81,8 +81,20 @@ bool BlockConjugateGradient::factor() {
       }
     }
   });
+  copy_rows_between();
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
   return true;
+}
+
+/// Those that were scaled anew.
+void BlockConjugateGradient::copy_rows_between() {
+  for_rows_between([&](std::size_t row) {
+    for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+      const RowEntry& entry = row_entries_[k];
+      if (stale_[row] != 0 || stale_[entry.column] != 0)
+        std::copy_n(&above_[entry.above], stride_[row] * size_[entry.column], &above_by_rows_[entry.copy]);
+    }
+  });
 }
 
 }  // namespace keyblock::linalg

@@ -74,7 +74,7 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     for (const auto& [row, k] : above[j]) {
       rows_.push_back(static_cast<std::uint32_t>(row));
       if (row < between().last && j >= between().last) {
-        of_row[row].push_back({j, used, scaled});
+        of_row[row].push_back({j, used, scaled, 0});
         own_start_[j] = rows_.size();
       }
       values[k] = used;
@@ -85,14 +85,20 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
   }
   row_start_.assign(1, 0);
   row_entries_.clear();
-  for (const auto& row : of_row) {
-    row_entries_.insert(row_entries_.end(), row.begin(), row.end());
+  std::size_t copied = 0;
+  for (std::size_t row = 0; row < of_row.size(); ++row) {
+    for (RowEntry entry : of_row[row]) {
+      entry.copy = copied;
+      row_entries_.push_back(entry);
+      copied += at(stride_[row] * size_[entry.column]);
+    }
     row_start_.push_back(row_entries_.size());
   }
   matrix_.assign(used, 0.0);
   inverse_.assign(inverse, 0.0);
   scale_.assign(inverse, 0.0F);
   above_.assign(scaled, 0.0F);
+  above_by_rows_.assign(copied, 0.0F);
   stale_.assign(n, 1);
   return values;
 }

@@ -314,50 +314,104 @@ TEST(Partition, EndsWhereOneBlockTouchesAll) {
     EXPECT_LE(found.begin[p + 1] - found.begin[p], 1'000U);
 }
 
-TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
-  const Grid grid;
-  for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
+/// A system on that grid, of blocks of some of these sizes.
+struct GridProblem {
+  Grid grid;
+  std::vector<int> sizes;
+  std::vector<double> right;
+  std::vector<std::vector<double>> coupling;  ///< by rows of the first block of the pair
+  std::vector<double> diagonal;
+
+  explicit GridProblem(const std::vector<int>& choice) : diagonal(Grid::blocks, 4.0 * choice.back()) {
     std::mt19937 random(5);
-    std::vector<int> sizes;
     for (int b = 0; b < Grid::blocks; ++b) sizes.push_back(choice[random() % choice.size()]);
-    const auto size_of = [&](int block) { return sizes[static_cast<std::size_t>(block)]; };
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    std::vector<double> right(static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), 0)));
+    right.resize(static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), 0)));
     for (double& v : right) v = uniform(random);
-    std::vector<std::vector<double>> coupling;  // by rows of the first block of the pair
     for (const auto& [i, j] : grid.pairs) {
       coupling.emplace_back(static_cast<std::size_t>(size_of(i) * size_of(j)));
       for (double& v : coupling.back()) v = uniform(random);
     }
-    const auto solution = [&](BlockSolver& solver) {
-      solver.analyse(sizes, grid.pairs);
-      solver.clear();
-      for (int b = 0; b < Grid::blocks; ++b) {
-        const int size = size_of(b);
-        for (int k = 0; k < size; ++k) solver.diagonal(b)[k * padded_rows(size) + k] = 4.0 * choice.back();
+  }
+  [[nodiscard]] int size_of(int block) const { return sizes[static_cast<std::size_t>(block)]; }
+
+  void fill(BlockSolver& solver, std::size_t pair) const {
+    const BlockSlot slot = solver.slot(static_cast<int>(pair));
+    const auto [i, j] = grid.pairs[pair];
+    for (int r = 0; r < size_of(i); ++r) {
+      for (int c = 0; c < size_of(j); ++c) {
+        const bool turned = slot.row != i;
+        slot.values[turned ? r * slot.stride + c : c * slot.stride + r] =
+            coupling[pair][static_cast<std::size_t>(r * size_of(j) + c)];
       }
-      for (std::size_t p = 0; p < grid.pairs.size(); ++p) {
-        const BlockSlot slot = solver.slot(static_cast<int>(p));
-        const auto [i, j] = grid.pairs[p];
-        for (int r = 0; r < size_of(i); ++r) {
-          for (int c = 0; c < size_of(j); ++c) {
-            const bool turned = slot.row != i;
-            slot.values[turned ? r * slot.stride + c : c * slot.stride + r] =
-                coupling[p][static_cast<std::size_t>(r * size_of(j) + c)];
-          }
-        }
-      }
-      EXPECT_TRUE(solver.factor());
-      std::vector<double> x = right, residual(x.size());
-      solver.solve(x, residual, strict());
-      return x;
-    };
-    const auto expected = solution(*make_block_cholesky()), alone = solution(*make_iterative());
+    }
+  }
+  void fill_diagonal(BlockSolver& solver, int block) const {
+    const int size = size_of(block);
+    for (int k = 0; k < size; ++k)
+      solver.diagonal(block)[k * padded_rows(size) + k] = diagonal[static_cast<std::size_t>(block)];
+  }
+  void fill(BlockSolver& solver) const {
+    solver.analyse(sizes, grid.pairs);
+    solver.clear();
+    for (int b = 0; b < Grid::blocks; ++b) fill_diagonal(solver, b);
+    for (std::size_t k = 0; k < grid.pairs.size(); ++k) fill(solver, k);
+  }
+  [[nodiscard]] std::vector<double> factor_and_solve(BlockSolver& solver) const {
+    EXPECT_TRUE(solver.factor());
+    std::vector<double> x = right, residual(x.size());
+    solver.solve(x, residual, strict());
+    return x;
+  }
+  [[nodiscard]] std::vector<double> solution(BlockSolver& solver) const {
+    fill(solver);
+    return factor_and_solve(solver);
+  }
+};
+
+TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
+    const GridProblem problem(choice);
+    const auto expected = problem.solution(*make_block_cholesky()),
+               alone = problem.solution(*make_iterative());
     for (std::size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(alone[k], expected[k], 1e-10);
     for (const int threads : {2, 3, 8}) {
       ThreadTeam team(threads);
-      EXPECT_EQ(solution(*make_block_conjugate_gradient(&team)), alone) << threads;
+      EXPECT_EQ(problem.solution(*make_block_conjugate_gradient(&team)), alone) << threads;
     }
+  }
+}
+
+// Also where the one block lies between the parts, whose rows are kept twice.
+TEST(BlockSolver, PartsAreFactoredWhereTouchedOnly) {
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
+    GridProblem problem(choice);
+    const auto solver = make_iterative();
+    const auto before = problem.solution(*solver);
+    const Partition found = partition(Grid::blocks, problem.grid.pairs);
+    std::vector<bool> between(Grid::blocks, false);
+    for (std::size_t k = 0; k < found.begin[1]; ++k) between[static_cast<std::size_t>(found.order[k])] = true;
+    int changed = 0;
+    for (std::size_t k = 0; k < problem.grid.pairs.size(); ++k) {
+      const auto [i, j] = problem.grid.pairs[k];
+      if (between[static_cast<std::size_t>(i)] == between[static_cast<std::size_t>(j)]) continue;
+      ++changed;
+      if (changed % 7 == 0) {
+        problem.coupling[k].front() += 0.125;
+        problem.fill(*solver, k);
+        solver->touch(i);
+        solver->touch(j);
+      } else if (changed % 7 == 3) {
+        const int in_part = between[static_cast<std::size_t>(i)] ? j : i;
+        problem.diagonal[static_cast<std::size_t>(in_part)] += 0.125;
+        problem.fill_diagonal(*solver, in_part);
+        solver->touch(in_part);
+      }
+    }
+    EXPECT_GT(changed, 100);
+    const auto after = problem.factor_and_solve(*solver);
+    EXPECT_NE(after, before);
+    EXPECT_EQ(after, problem.solution(*make_iterative()));
   }
 }
 
