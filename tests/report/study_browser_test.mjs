@@ -206,6 +206,23 @@ const tests = {
     await close(page);
   },
 
+  async "points at one intensity stand over an axis with numbers"() {
+    const page = await open("study_one_intensity");
+    const at = study("study_one_intensity").fragility[0].points.intensity;
+    assert.equal(at.length, 1);
+    const numbers = await page.$$eval("#fragility .axes text", (all) =>
+      all
+        .filter((e) => e.getAttribute("text-anchor") === "middle")
+        .map((e) => Number(e.textContent))
+        .filter((x) => !Number.isNaN(x)),
+    );
+    assert.ok(numbers.length >= 2, numbers.join());
+    assert.ok(numbers[0] < at[0] && at[0] < numbers.at(-1), numbers.join());
+    assert.match(await text(page, "#fragility table"), /no curve: always/);
+    await shoot(page, "study_one_intensity-1400");
+    await close(page);
+  },
+
   async "a study without runs says so"() {
     const page = await open("study_empty");
     assert.match(await text(page, ".verdict"), /No run has ended/);

@@ -29,6 +29,13 @@ int main(int argc, char** argv) {
                         .levels = false,
                         .map = false,
                         .pictures = 0});
+  // All runs at the same intensity.
+  write("study_one_intensity", {.realizations = 12,
+                                .scales = {"1.0"},
+                                .orders = {"1"},
+                                .variants = false,
+                                .failures = false,
+                                .pictures = 0});
   // More pictures than a page holds.
   write("study_large", {.realizations = 190, .variants = false, .failures = false});
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "study_empty");

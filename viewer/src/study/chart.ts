@@ -281,7 +281,10 @@ function unshare(scale: Scale, t: number): number {
     : scale.min + t * (scale.max - scale.min);
 }
 
-/** Round values of an axis; on a logarithmic one of few decades 2 and 5 times the powers of ten, too. */
+/**
+ * Round values of an axis; on a logarithmic one of few decades 2 and 5 times the powers of ten, too, and at equal distances where
+ * there are none of these.
+ */
 function axisTicks(scale: Scale, wanted: number): number[] {
   if (!scale.logarithmic) return ticks(scale, wanted);
   const decades = Math.log10(scale.max / scale.min);
@@ -291,7 +294,7 @@ function axisTicks(scale: Scale, wanted: number): number[] {
     for (const f of factors)
       if (f * 10 ** k >= scale.min * (1 - 1e-9) && f * 10 ** k <= scale.max * (1 + 1e-9))
         found.push(f * 10 ** k);
-  return found;
+  return found.length < 2 ? ticks({ ...scale, logarithmic: false }, wanted) : found;
 }
 
 function valueAt(s: ChartSeries, x: number): number | null {

@@ -72,6 +72,7 @@ export class FragilityView {
     const kind = intensities.find((i) => i.name === this.intensity)!;
     const all = groups.flatMap((g) => [...g.points.intensity, ...g.curve.intensity]).filter((x) => x > 0);
     const [min, max] = all.length > 0 ? [Math.min(...all), Math.max(...all)] : [0.1, 10];
+    const room = Math.max(1.05, Math.sqrt((1.3 * min) / max));
     const series: ChartSeries[] = groups.flatMap((g, k) => {
       const color = curveColors[k % curveColors.length];
       const name = this.study.combinationName(g.values);
@@ -101,7 +102,7 @@ export class FragilityView {
       note: `over ${kind.title}`,
       xName: `${kind.title} (${kind.unit}), logarithmic`,
       yName: "probability",
-      x: { min: min / 1.05, max: Math.max(max, 1.2 * min) * 1.05, logarithmic: true },
+      x: { min: min / room, max: max * room, logarithmic: true },
       y: { min: 0, max: 1, logarithmic: false },
       percent: true,
       series,
