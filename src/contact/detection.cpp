@@ -77,10 +77,13 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   return count;
 }
 
-/// The candidates of pairs of blocks [first, last) that pass, but for steady pairs.
-void Detection::find_rivals(const Surface& surface, const CandidateList& candidates, std::size_t first,
-                            std::size_t last, std::vector<Rival>& rivals) const {
-  CandidateList::Finder bond_of(candidates, candidates.block_pairs[first].first);
+/// The candidates of these pairs of blocks, ascending, that pass.
+void Detection::find_rivals(const Surface& surface, const CandidateList& candidates,
+                            std::span<const std::size_t> pairs, std::vector<Rival>& rivals) const {
+  rivals.clear();
+  if (pairs.empty()) return;
+  const int first_candidate = candidates.block_pairs[pairs.front()].first;
+  CandidateList::Finder bond_of(candidates, first_candidate);
   const auto is_bonded = [&](std::size_t k) {
     const int memory = bond_of(k);
     return memory >= 0 && candidates.memory[at(memory)].bonded;
@@ -92,9 +95,8 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
     count += pass(candidates, group, &rivals[count]);
     group.size = 0;
   };
-  for (std::size_t p = first; p < last; ++p) {
+  for (const std::size_t p : pairs) {
     const BlockPair& pair = candidates.block_pairs[p];
-    if (is_steady(surface, pair)) continue;
     const std::size_t begin = at(pair.first), end = candidates.end_of_pair(p), a = at(pair.block_a),
                       b = at(pair.block_b);
     const double reach = motion_.reach[a] + motion_.reach[b], turn = motion_.turn[a] + motion_.turn[b],
@@ -115,7 +117,7 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
   if (group.size > 0) take();
   rivals.resize(count);
 
-  CandidateList::Finder memory_of(candidates, candidates.block_pairs[first].first);
+  CandidateList::Finder memory_of(candidates, first_candidate);
   for (Rival& r : rivals) {
     r.memory = memory_of(at(r.candidate));
     const Candidate& c = candidates.pairs[at(r.candidate)];
@@ -183,20 +185,26 @@ bool Detection::is_steady(const Surface& surface, const BlockPair& pair) const {
 /// The contacts among the candidates of pairs of blocks [first, last).
 void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates, std::size_t first,
                               std::size_t last, std::vector<Found>& found) const {
+  std::vector<std::size_t> unsteady;
+  for (std::size_t p = first; p < last; ++p) {
+    if (!is_steady(surface, candidates.block_pairs[p])) unsteady.push_back(p);
+  }
   std::vector<Rival> rivals;
-  find_rivals(surface, candidates, first, last, rivals);
+  find_rivals(surface, candidates, unsteady, rivals);
   found.clear();
   CandidateList::Finder memory_of(candidates, candidates.block_pairs[first].first);
   auto r = rivals.begin();
+  auto next_unsteady = unsteady.begin();
   for (std::size_t p = first; p < last; ++p) {
     BlockPair& pair = candidates.block_pairs[p];
-    if (is_steady(surface, pair)) {
+    if (next_unsteady == unsteady.end() || *next_unsteady != p) {
       for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1) {
         const int candidate = pair.first + std::countr_zero(left);
         found.push_back({candidate, memory_of(at(candidate))});
       }
       continue;
     }
+    ++next_unsteady;
     const auto next = std::find_if(r, rivals.end(), [&](const Rival& other) { return at(other.pair) != p; });
     decide(surface, candidates, pair, candidates.end_of_pair(p), {r, next});
     for (; r != next; ++r) {

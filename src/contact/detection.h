@@ -110,8 +110,8 @@ class Detection {
   void measure_corners(const Surface& surface, ThreadTeam& team);
   void look_at_pairs(const Surface& surface, CandidateList& candidates, std::size_t first, std::size_t last,
                      std::vector<Found>& found) const;
-  void find_rivals(const Surface& surface, const CandidateList& candidates, std::size_t first,
-                   std::size_t last, std::vector<Rival>& rivals) const;
+  void find_rivals(const Surface& surface, const CandidateList& candidates,
+                   std::span<const std::size_t> pairs, std::vector<Rival>& rivals) const;
   void decide(const Surface& surface, const CandidateList& candidates, BlockPair& pair, std::size_t end,
               std::span<Rival> rivals) const;
   [[nodiscard]] bool is_steady(const Surface& surface, const BlockPair& pair) const;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #if defined(__AVX__)
 #include <immintrin.h>
 #endif
@@ -25,6 +26,21 @@ inline void store(double* p, Lanes v) {
 }
 inline void store(float* p, NarrowLanes v) {
   *reinterpret_cast<NarrowLanes*>(p) = v;
+}
+/// Some of them, in the first lanes; the others are zero.
+inline Lanes load_first(const double* p, int count) {
+  Lanes v{};
+  std::memcpy(&v, p, static_cast<std::size_t>(count) * sizeof(double));
+  return v;
+}
+inline void store_first(double* p, Lanes v, int count) {
+  if (count == lane_count) return store(p, v);
+  std::memcpy(p, &v, static_cast<std::size_t>(count) * sizeof(double));
+}
+/// Calls what(first, count) for `n` numbers, as many at once as there are lanes.
+template <typename Do>
+void in_lanes(int n, const Do& what) {
+  for (int k = 0; k < n; k += lane_count) what(k, n - k < lane_count ? n - k : lane_count);
 }
 inline Lanes broadcast(double x) {
   return Lanes{x, x, x, x, x, x, x, x};

@@ -1,11 +1,12 @@
 #pragma once
+#include "core/lanes.h"
 
 namespace keyblock::dynamics {
 
-/// How one coefficient of a block moves: position increment D, velocity v, acceleration a, and F, the sum of all forces over the
-/// mass, which is a in schemes that balance them at the end of the step.
+/// How coefficients of a block move, one in each lane: velocity v, acceleration a, and F, the sum of all forces over the mass, which is
+/// a in schemes that balance them at the end of the step.
 struct Motion {
-  double velocity = 0.0, acceleration = 0.0, force = 0.0;
+  Lanes velocity{}, acceleration{}, force{};
 };
 
 /// A rule of time integration in the form that a step needs:
@@ -41,9 +42,9 @@ class Integrator {
   [[nodiscard]] double acceleration() const { return acceleration_; }  ///< c_a
   [[nodiscard]] double force() const { return force_; }                ///< c_F
 
-  /// The motion at the end of a step of length dt and increment d.
-  [[nodiscard]] Motion end(const Motion& start, double d, double dt) const {
-    const double jump = (d / dt - start.velocity) / dt;
+  /// The motion at the end of a step of length dt and increment D.
+  [[nodiscard]] Motion end(const Motion& start, Lanes d, double dt) const {
+    const Lanes jump = (d / dt - start.velocity) / dt;
     Motion m;
     m.force = inertia_ * jump - acceleration_ * start.acceleration - force_ * start.force;
     if (family_ == Family::shi) {

@@ -103,12 +103,9 @@ void OpenClose::forget_corrections() {
 
 /// ∇Π at D, where the springs are.
 void OpenClose::find_gradient(const StepProblem& problem, std::span<const double> d) {
-  problem.multiply(d, gradient_);
-  team_->for_range(gradient_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) gradient_[k] -= problem.right()[k];
-  });
-  problem.add_contact_forces([&](std::size_t c) { return problem.rows()[c].gradient(springs_->force(c)); },
-                             vertex_force_, gradient_);
+  problem.gradient(
+      d, [&](std::size_t c) { return problem.rows()[c].gradient(springs_->force(c)); }, vertex_force_,
+      gradient_);
 }
 
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.

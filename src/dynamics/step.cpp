@@ -107,7 +107,7 @@ void Stepper::start(State& state) {
     contact_energy_ += memory.stored;
   }
   contact::keep_memory(contacts_, state.contacts, team_);
-  ensure_pattern(state, true);
+  make_room(state);
 }
 
 void Stepper::resume(State& state) {
@@ -169,13 +169,17 @@ bool Stepper::detect(State& state) {
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
   detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
                   contacts_);
-  ensure_pattern(state, changed);
+  if (changed || !knows_pairs_) find_pairs(state);
   return changed;
 }
 
-void Stepper::build_problem(const State& state, const Drive& drive) {
+void Stepper::build_problem(State& state, const Drive& drive) {
   const Profile::Scope scope(profile_, Phase::terms);
   problem_.build(model_, state, drive, model_.surface, contacts_, pair_of_candidate_, team_);
+  if (problem_.lacks_room()) {
+    make_room(state);
+    problem_.set_pairs(contacts_, pair_of_candidate_);
+  }
   earlier_look_.give(contacts_, problem_.springs());
 }
 
@@ -282,20 +286,22 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
     double* v = &state.velocity[block.first];
-    double squared = 0.0;
     with_known_size(block.size, [&](auto size) {
       const Integrator rule = rule_[b];
-      for (int k = 0; k < 2 * size; ++k) {
-        squared += d[k] * d[k];
+      in_lanes(2 * size, [&](int k, int count) {
         const std::size_t i = block.first + at(k);
-        const Motion end = drive.is_static ? Motion{} : rule.end(motion(state, i), d[k], drive.step);
-        v[k] = end.velocity;
-        if (state.acceleration.empty()) continue;
-        state.acceleration[i] = end.acceleration;
-        state.force[i] = end.force;
-      }
+        const Motion end = drive.is_static
+                               ? Motion{}
+                               : rule.end(motion(state, i, count), load_first(d + k, count), drive.step);
+        store_first(v + k, end.velocity, count);
+        if (state.acceleration.empty()) return;
+        store_first(&state.acceleration[i], end.acceleration, count);
+        store_first(&state.force[i], end.force, count);
+      });
     });
     if (drive.is_static) {
+      double squared = 0.0;
+      for (int k = 0; k < 2 * block.size; ++k) squared += d[k] * d[k];
       const double weight = std::max(problem_.weight(b), 1e-300);
       balance_[b] = {problem_.inertia(b) * std::sqrt(squared) / weight,
                      problem_.inertia(b) * dot(down, {d[0], d[1]}) / weight};

@@ -101,23 +101,26 @@ class Stepper {
   [[nodiscard]] double support_energy(const State& state) const;
   void prescribe(const State& state, Drive& drive);
   void move_prescribed(State& state, const Drive& drive);
-  void build_problem(const State& state, const Drive& drive);
+  void build_problem(State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
   bool detect(State& state);
-  void ensure_pattern(State& state, bool candidates_changed);
+  void find_pairs(const State& state);
+  void make_room(State& state);
   linalg::BlockSolver& solver(const State& state, bool is_static, bool must_be_direct);
   bool attempt(State& state, Drive& drive, StepReport& report);
   void forget_pattern() {
-    has_places_ = direct_.analysed = iterative_.analysed = false;
+    knows_pairs_ = direct_.analysed = iterative_.analysed = false;
     products_.reset();
   }
   void measure_spin(const State& state);
   [[nodiscard]] bool turned_too_far() const;
   bool moved_too_far();
   void choose_rules(const State& state, const Drive& drive);
-  static Motion motion(const State& state, std::size_t coefficient) {
-    if (state.acceleration.empty()) return {state.velocity[coefficient], 0.0, 0.0};
-    return {state.velocity[coefficient], state.acceleration[coefficient], state.force[coefficient]};
+  /// Of `count` coefficients from `first` on.
+  static Motion motion(const State& state, std::size_t first, int count) {
+    if (state.acceleration.empty()) return {.velocity = load_first(&state.velocity[first], count)};
+    return {load_first(&state.velocity[first], count), load_first(&state.acceleration[first], count),
+            load_first(&state.force[first], count)};
   }
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
@@ -159,8 +162,8 @@ class Stepper {
   std::vector<contact::Contact> contacts_;
   std::vector<int> unknown_sizes_;
   double largest_radius_ = 0.0;             ///< m, of the blocks that move
-  std::vector<int> pair_of_candidate_;      ///< index into State::pattern, −1 with a fixed block
-  bool has_places_ = false;                 ///< pair_of_candidate_ is that of the pattern
+  std::vector<int> pair_of_candidate_;      ///< StepProblem::Row::pair
+  bool knows_pairs_ = false;                ///< of these candidates and this pattern
   std::vector<double> reach_, turn_, way_;  ///< m and rad, per block: Detection::Motion
   std::vector<double> increment_;
   IncrementHistory history_;             ///< of dynamic steps by solvers that start from a guess

@@ -47,10 +47,13 @@ void Stepper::account(State& state, const Drive& drive) {
       // Work of the forces at the end of the step, less what became kinetic energy.
       const double density = block.material.density;
       const Integrator rule = rule_[b];
-      for (int k = 0; k < 2 * size; ++k) {
-        const Motion end = rule.end(motion(state, block.first + at(k)), d[k], drive.step);
-        work.numerical += density * (end.force * d[k] - 0.5 * (end.velocity * end.velocity - v[k] * v[k]));
-      }
+      in_lanes(2 * size, [&](int k, int count) {
+        const Lanes moved = load_first(d + k, count), before = load_first(v + k, count);
+        const Motion end = rule.end(motion(state, block.first + at(k), count), moved, drive.step);
+        const Lanes lost =
+            density * (end.force * moved - 0.5 * (end.velocity * end.velocity - before * before));
+        for (int i = 0; i < count; ++i) work.numerical += lost[i];
+      });
     });
     work.input = -block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
   });

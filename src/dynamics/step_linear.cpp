@@ -9,43 +9,42 @@
 
 namespace keyblock::dynamics {
 
-/// Room in the matrix for every pair of blocks that has contacts. A pair without room has the matrix analysed anew; pairs that
-/// have contacts no more keep theirs until they are many.
-void Stepper::ensure_pattern(State& state, bool candidates_changed) {
-  using Pair = std::pair<int, int>;
-  constexpr int fixed = -1, missing = -2;
-  constexpr double most_idle = 0.15;
-  const auto pair_of = [&](int a, int b) {
-    return Pair(std::minmax(model_.blocks[at(a)].unknown, model_.blocks[at(b)].unknown));
-  };
-  const auto find_places = [&] {
-    const std::vector<contact::Candidate>& list = state.contacts.pairs;
-    pair_of_candidate_.resize(list.size());
-    Pair last{fixed, fixed};
-    int place = fixed;
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      if (const Pair pair = pair_of(list[k].block_a, list[k].block_b); pair != last) {
-        const auto found = std::lower_bound(state.pattern.begin(), state.pattern.end(), pair);
-        last = pair;
-        place = pair.first < 0 ? fixed
-                : found != state.pattern.end() && *found == pair
-                    ? static_cast<int>(found - state.pattern.begin())
-                    : missing;
-      }
-      pair_of_candidate_[k] = place;
+namespace {
+
+using Pair = std::pair<int, int>;  // unknowns of two blocks, the smaller first; −1: fixed
+
+Pair pair_of(const Model& model, int a, int b) {
+  return std::minmax(model.blocks[at(a)].unknown, model.blocks[at(b)].unknown);
+}
+
+}  // namespace
+
+/// Where the pair of blocks of every candidate is in the pattern.
+void Stepper::find_pairs(const State& state) {
+  const std::vector<contact::Candidate>& list = state.contacts.pairs;
+  pair_of_candidate_.resize(list.size());
+  Pair last{-1, -1};
+  int place = StepProblem::of_fixed;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (const Pair pair = pair_of(model_, list[k].block_a, list[k].block_b); pair != last) {
+      const auto found = std::lower_bound(state.pattern.begin(), state.pattern.end(), pair);
+      last = pair;
+      place = pair.first < 0 ? StepProblem::of_fixed
+              : found != state.pattern.end() && *found == pair
+                  ? static_cast<int>(found - state.pattern.begin())
+                  : StepProblem::without_room;
     }
-  };
-  if (candidates_changed || !has_places_) find_places();
-  has_places_ = true;
-  std::vector<std::size_t> without_room;
-  const auto has_none = [&](std::size_t c) {
-    return pair_of_candidate_[at(contacts_[c].candidate)] == missing;
-  };
-  find_all(team_, contacts_.size(), contacts_worth_threads, has_none, without_room);
-  if (without_room.empty()) return;
+    pair_of_candidate_[k] = place;
+  }
+  knows_pairs_ = true;
+}
+
+/// Room in the matrix for every pair of blocks that has contacts. Pairs that have contacts no more keep theirs until they are many.
+void Stepper::make_room(State& state) {
+  constexpr double most_idle = 0.15;
   std::vector<Pair> used;
   for (const contact::Contact& c : contacts_) {
-    const Pair pair = pair_of(c.block_a, c.block_b);
+    const Pair pair = pair_of(model_, c.block_a, c.block_b);
     if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
   }
   std::sort(used.begin(), used.end());
@@ -56,7 +55,7 @@ void Stepper::ensure_pattern(State& state, bool candidates_changed) {
   const bool idle =
       static_cast<double>(all.size() - used.size()) > most_idle * static_cast<double>(used.size());
   state.pattern = idle ? std::move(used) : std::move(all);
-  find_places();
+  find_pairs(state);
   direct_.analysed = iterative_.analysed = false;
   products_.reset();
 }

@@ -202,15 +202,18 @@ void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) cons
   });
 }
 
-/// Adds what the forces at the vertices do to the coefficients of each block.
+/// Adds what the forces at the vertices of a block do to its coefficients.
+void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
+                                    std::span<double> out) const {
+  with_known_size(bodies_[b].size, [&](auto size) {
+    for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
+      add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], &out[bodies_[b].first]);
+  });
+}
+
 void StepProblem::add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const {
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      with_known_size(bodies_[b].size, [&](auto size) {
-        for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
-          add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], &out[bodies_[b].first]);
-      });
-    }
+    for (std::size_t b = begin; b < end; ++b) add_vertex_forces(b, forces, out);
   });
 }
 
@@ -229,14 +232,20 @@ void multiply_block(Size size, const double* h, const double* x, double* y) {
 
 }  // namespace
 
-void StepProblem::multiply(std::span<const double> x, std::span<double> y) const {
-  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+void StepProblem::multiply(std::size_t i, std::span<const double> x, std::span<double> y) const {
+  const auto [first, end] = coefficients_[i];
+  if (!model_->moves(i)) return std::fill(&y[first], y.data() + end, 0.0);
+  with_known_size(static_cast<int>(end - first) / 2,
+                  [&](auto size) { multiply_block(size, &h_[h_first_[i]], &x[first], &y[first]); });
+}
+
+void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2> forces,
+                                std::span<double> g) const {
+  team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Block& block = model_->blocks[i];
-      with_known_size(block.size, [&](auto size) {
-        if (model_->moves(i)) return multiply_block(size, &h_[h_first_[i]], &x[block.first], &y[block.first]);
-        std::fill_n(&y[block.first], 2 * size, 0.0);
-      });
+      multiply(i, d, g);
+      for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k) g[k] -= b_[k];
+      add_vertex_forces(i, forces, g);
     }
   });
 }
@@ -249,7 +258,7 @@ void StepProblem::solve_alone(std::size_t i, std::span<double> d) const {
 }
 
 void StepProblem::gradient(std::span<const double> d, std::span<double> g) const {
-  multiply(d, g);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) multiply(i, d, g);
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= b_[k];
   for (std::size_t c = 0; c < rows_.size(); ++c) {
     const Row& row = rows_[c];

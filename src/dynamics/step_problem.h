@@ -42,12 +42,14 @@ struct Drive {
 /// Π is convex and piecewise quadratic. This class holds its data and evaluates it; it does not know how to minimize.
 class StepProblem {
  public:
+  /// In place of a pair of blocks in the solver's pattern: one is fixed; the pattern does not have it.
+  static constexpr int of_fixed = -1, without_room = -2;
   /// r_c = u(V) − (1 − s) u(A) − s u(B) + moved, u: displacement of vertices, zero on fixed blocks. A cache line: every evaluation
   /// of the contacts reads it, and little else.
   struct alignas(64) Row {
     std::uint32_t vertex, from, to;  ///< V of block a; A and B, the ends of the edge of block b
     int unknown_a, unknown_b;        ///< −1: fixed
-    int pair = -1;                   ///< of the solver's pattern; −1: one block is fixed
+    int pair = of_fixed;             ///< of the solver's pattern, or of_fixed, or without_room
     double position;                 ///< s
     Vec2 normal;
     Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b
@@ -64,9 +66,13 @@ class StepProblem {
   };
   static_assert(sizeof(Row) == 64);
 
-  /// pairs: of every candidate of contact, its pair of blocks in the solver's pattern, −1 with a fixed block.
+  /// pairs: Row::pair of every candidate of contact.
   void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,
              std::span<const contact::Contact> contacts, std::span<const int> pairs, ThreadTeam& team);
+
+  /// Whether there are contacts of pairs of blocks that the solver's pattern does not have; these come with set_pairs.
+  [[nodiscard]] bool lacks_room() const { return lacks_room_; }
+  void set_pairs(std::span<const contact::Contact> contacts, std::span<const int> pairs);
 
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
@@ -98,8 +104,8 @@ class StepProblem {
   void gradient(std::span<const double> d, std::span<double> g) const;
   /// The increment of a block on which no contact acts, into d.
   void solve_alone(std::size_t block, std::span<double> d) const;
-  /// y = H x.
-  void multiply(std::span<const double> x, std::span<double> y) const;
+  /// y = H x, of one block.
+  void multiply(std::size_t block, std::span<const double> x, std::span<double> y) const;
   /// Sets the solver's matrix to H. With add_springs for all that act at r it becomes ∇²Π there.
   void assemble(linalg::BlockSolver& solver) const;
   /// The same for the block on the diagonal that belongs to one.
@@ -140,19 +146,15 @@ class StepProblem {
   template <typename ForceOf>
   void add_contact_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices,
                           std::span<double> out) const {
-    at_vertices.assign(surface_->position.size(), Vec2{});
-    for_owned_contacts(
-        rows_.size(), [](std::size_t c) { return c; },
-        [&](std::size_t c, Owner owner) {
-          const Row& row = rows_[c];
-          const Vec2 force = force_of(c);
-          if (force == Vec2{}) return;
-          if (owner.has(row.unknown_a)) at_vertices[row.vertex] += force;
-          if (!owner.has(row.unknown_b)) return;
-          at_vertices[row.from] -= (1.0 - row.position) * force;
-          at_vertices[row.to] -= row.position * force;
-        });
+    gather_forces(force_of, at_vertices);
     add_vertex_forces(at_vertices, out);
+  }
+  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time. at_vertices: scratch.
+  template <typename ForceOf>
+  void gradient(std::span<const double> d, const ForceOf& force_of, std::vector<Vec2>& at_vertices,
+                std::span<double> g) const {
+    gather_forces(force_of, at_vertices);
+    gradient_with(d, at_vertices, g);
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
@@ -185,7 +187,25 @@ class StepProblem {
     double mass;  ///< kg/m; 0: fixed
   };
 
+  /// What the contacts do to every vertex.
+  template <typename ForceOf>
+  void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices) const {
+    at_vertices.assign(surface_->position.size(), Vec2{});
+    for_owned_contacts(
+        rows_.size(), [](std::size_t c) { return c; },
+        [&](std::size_t c, Owner owner) {
+          const Row& row = rows_[c];
+          const Vec2 force = force_of(c);
+          if (force == Vec2{}) return;
+          if (owner.has(row.unknown_a)) at_vertices[row.vertex] += force;
+          if (!owner.has(row.unknown_b)) return;
+          at_vertices[row.from] -= (1.0 - row.position) * force;
+          at_vertices[row.to] -= row.position * force;
+        });
+  }
+  void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
   void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
+  void gradient_with(std::span<const double> d, std::span<const Vec2> forces, std::span<double> g) const;
   [[nodiscard]] const Body& body_of(std::uint32_t vertex) const {
     return bodies_[at(surface_->block[vertex])];
   }
@@ -240,7 +260,7 @@ class StepProblem {
   std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
   SpringArray springs_;  ///< of every row
-  bool may_break_ = false;
+  bool may_break_ = false, lacks_room_ = false;
   std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
   int largest_size_ = 0;                              ///< N
   /// Per block: the first of its coefficients, and where they end.

@@ -14,22 +14,30 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
   rows_.resize(contacts.size());
   springs_.resize(contacts.size());
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
-  std::atomic<bool> may_break = false;
+  std::atomic<bool> may_break = false, lacks_room = false;
   team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    bool any = false;
+    bool any = false, without = false;
     for (std::size_t first = begin; first < end; first += lane_count) {
       const std::size_t last = std::min(first + lane_count, end);
       for (std::size_t k = first; k < last; ++k) {
         build_row(drive, contacts[k], rows_[k]);
         rows_[k].pair = pairs[at(contacts[k].candidate)];
         any = any || (contacts[k].memory.bonded && !contacts[k].fused);
+        without = without || rows_[k].pair == without_room;
         if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
       }
       build_springs(drive, contacts.subspan(first, last - first), first);
     }
     if (any) may_break = true;
+    if (without) lacks_room = true;
   });
   may_break_ = may_break;
+  lacks_room_ = lacks_room;
+}
+
+void StepProblem::set_pairs(std::span<const contact::Contact> contacts, std::span<const int> pairs) {
+  for (std::size_t c = 0; c < rows_.size(); ++c) rows_[c].pair = pairs[at(contacts[c].candidate)];
+  lacks_room_ = false;
 }
 
 void StepProblem::build_row(const Drive& drive, const contact::Contact& c, Row& row) const {
@@ -43,15 +51,6 @@ void StepProblem::build_row(const Drive& drive, const contact::Contact& c, Row& 
   row.moved =
       drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
 }
-
-namespace {
-
-void store_first(double* p, Lanes v, std::size_t count) {
-  if (count == lane_count) return store(p, v);
-  for (std::size_t i = 0; i < count; ++i) p[i] = v[i];
-}
-
-}  // namespace
 
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
 void StepProblem::build_springs(const Drive& drive, std::span<const contact::Contact> contacts,
@@ -70,7 +69,9 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
       law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
       damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
   const std::size_t count = contacts.size();
-  const auto keep = [&](std::vector<double>& numbers, Lanes v) { store_first(&numbers[first], v, count); };
+  const auto keep = [&](std::vector<double>& numbers, Lanes v) {
+    store_first(&numbers[first], v, static_cast<int>(count));
+  };
   keep(springs_.kn, spring.normal_stiffness());
   keep(springs_.ks, spring.shear_stiffness());
   keep(springs_.bound, bound);

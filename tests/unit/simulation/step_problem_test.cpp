@@ -144,7 +144,7 @@ TEST(StepProblem, EveryPressedBlockHasItsOwnTangent) {
     std::vector<double> x(s.model.coefficients), y(x.size());
     for (int c = 0; c < n; ++c) {
       x[block.first + at(c)] = 1.0;
-      problem.multiply(x, y);
+      problem.multiply(i, x, y);
       x[block.first + at(c)] = 0.0;
       for (int r = 0; r < n; ++r) {
         const double expected =
