@@ -1,7 +1,6 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #if defined(__AVX__)
 #include <immintrin.h>
 #endif
@@ -27,15 +26,22 @@ inline void store(double* p, Lanes v) {
 inline void store(float* p, NarrowLanes v) {
   *reinterpret_cast<NarrowLanes*>(p) = v;
 }
-/// Some of them, in the first lanes; the others are zero.
+/// Some of them, in the first lanes; the others are zero. Not by way of the stack, which would have a load wait for several stores.
 inline Lanes load_first(const double* p, int count) {
+#if defined(__AVX512F__)
+  return _mm512_maskz_loadu_pd(static_cast<__mmask8>((1U << count) - 1U), p);
+#else
   Lanes v{};
-  std::memcpy(&v, p, static_cast<std::size_t>(count) * sizeof(double));
+  for (int i = 0; i < count; ++i) v[i] = p[i];
   return v;
+#endif
 }
 inline void store_first(double* p, Lanes v, int count) {
-  if (count == lane_count) return store(p, v);
-  std::memcpy(p, &v, static_cast<std::size_t>(count) * sizeof(double));
+#if defined(__AVX512F__)
+  _mm512_mask_storeu_pd(p, static_cast<__mmask8>((1U << count) - 1U), v);
+#else
+  for (int i = 0; i < count; ++i) p[i] = v[i];
+#endif
 }
 /// Calls what(first, count) for `n` numbers, as many at once as there are lanes.
 template <typename Do>
