@@ -233,7 +233,7 @@ void multiply_block(Size size, const double* h, const double* x, double* y) {
 }  // namespace
 
 void StepProblem::multiply(std::size_t i, std::span<const double> x, std::span<double> y) const {
-  const auto [first, end] = coefficients_[i];
+  const std::size_t first = coefficients_[i].first, end = coefficients_[i].second;
   if (!model_->moves(i)) return std::fill(&y[first], y.data() + end, 0.0);
   with_known_size(static_cast<int>(end - first) / 2,
                   [&](auto size) { multiply_block(size, &h_[h_first_[i]], &x[first], &y[first]); });
