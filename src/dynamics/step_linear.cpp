@@ -11,7 +11,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
-using Pair = std::pair<int, int>;  // unknowns of two blocks, the smaller first; −1: fixed
+using Pair = std::pair<int, int>;  // Block::unknown of two blocks, the smaller first
 
 Pair pair_of(const Model& model, int a, int b) {
   return std::minmax(model.blocks[at(a)].unknown, model.blocks[at(b)].unknown);

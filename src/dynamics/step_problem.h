@@ -100,7 +100,7 @@ class StepProblem {
     };
     return displacement(row.vertex) - lerp(displacement(row.from), displacement(row.to), row.position);
   }
-  /// g = ∇Π(D); the open-close iteration updates g instead.
+  /// g = ∇Π(D), contact by contact: the oracle of what the open-close iteration does by way of the vertices.
   void gradient(std::span<const double> d, std::span<double> g) const;
   /// The increment of a block on which no contact acts, into d.
   void solve_alone(std::size_t block, std::span<double> d) const;
@@ -149,7 +149,7 @@ class StepProblem {
     gather_forces(force_of, at_vertices);
     add_vertex_forces(at_vertices, out);
   }
-  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time. at_vertices: scratch.
+  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time while a cache has it. at_vertices: scratch.
   template <typename ForceOf>
   void gradient(std::span<const double> d, const ForceOf& force_of, std::vector<Vec2>& at_vertices,
                 std::span<double> g) const {

@@ -88,6 +88,24 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   const double h = 1e-11;
   const std::vector<double> up = gradient(h), down = gradient(-h);
 
+  // The same by way of the vertices, a block at a time.
+  const std::vector<double> expected = gradient(0.0);
+  std::vector<double> by_vertices(d.size());
+  std::vector<Vec2> at_vertices;
+  const auto force_of = [&](std::size_t c) {
+    const StepProblem::Row& row = problem.rows()[c];
+    const Vec2 r = problem.relative(row, d);
+    const SpringArray& of_contact = problem.springs();
+    return row.gradient(of_contact.force_at(c, of_contact.y0[c] - dot(row.normal, r),
+                                            of_contact.w0[c] + dot(row.tangent(), r)));
+  };
+  problem.gradient(d, force_of, at_vertices, by_vertices);
+  double largest = 0.0;
+  for (const double g : expected) largest = std::max(largest, std::abs(g));
+  EXPECT_GT(largest, 0.0);
+  for (std::size_t k = 0; k < s.model.unknowns; ++k)
+    EXPECT_NEAR(by_vertices[k], expected[k], 1e-12 * largest);
+
   // K direction, by solving: K⁻¹ (∂g · direction) must give the direction back.
   const auto solver = linalg::make_block_cholesky();
   analyse(s.model, problem, *solver);
