@@ -40,9 +40,9 @@ struct Tolerances {
   /// Corners that miss each other by less still meet (0.7 µm): outlines may be given to few digits.
   double rounding;
 
-  /// A block in contact may turn in one step only so far that its vertices leave the straight way that the step is
-  /// linear in by this much, ½ w² r (0.03 mm); beyond, the step is cut. Larger: small spinning blocks are pressed into
-  /// others by the rotation and thrown out again.
+  /// Of the gap at the end of a step, what a contact may miss as its blocks turn and leave the straight way that the step is linear
+  /// in (0.03 mm); beyond, the step is taken again with what it missed. Larger: small spinning blocks are pressed into others by
+  /// the rotation and thrown out again.
   double turn;
 
   /// A vertex touches an edge only when both its own edges lie outside it, up to this angle (sin 2°).

@@ -1,7 +1,6 @@
 #include "dynamics/step.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "core/error.h"
@@ -188,15 +187,18 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   drive.rule = rule_;
   prescribe(state, drive);
   predict_reach(state, drive);
-  constexpr int looks = 4;
+  constexpr int looks = 4, most_turns = 4;
   bool must_be_direct = false;
+  int turns = 0;  // times the step was taken again because blocks turn
+  turned_.clear();
   earlier_look_.forget();
   for (int look = 1; look <= looks;) {
-    if (detect(state)) earlier_look_.forget();
+    if (turned_.empty() && detect(state)) earlier_look_.forget();
+    drive.turned = turned_;
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     guessed_ = chosen.halves() == nullptr;
-    if (guessed_ && look == 1) history_.extrapolate(drive.step, increment_);
+    if (guessed_ && look == 1 && turns == 0) history_.extrapolate(drive.step, increment_);
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
     const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,
                                                      profile_, increment_, meets_impacts);
@@ -209,66 +211,21 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     }
     measure_spin(state);
     if (!result.converged) return false;
-    if (turned_too_far()) return false;
+    const Turns turned = look_at_turns(state);
+    if (turned == Turns::are_too_far) return false;
     const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
-    if (!moved && !impact) return true;
+    if (!moved && !impact && turned == Turns::are_known) return true;
     earlier_look_.keep(contacts_, problem_.springs());
-    ++look;
+    if (moved || impact) {
+      ++look;
+      turned_.clear();
+    } else if (drive.is_static || ++turns > most_turns) {
+      return false;
+    } else {
+      turned_.swap(turned_now_);
+    }
   }
   return true;
-}
-
-void Stepper::measure_spin(const State& state) {
-  std::fill(spin_.begin(), spin_.end(), 0.0);
-  for_blocks([&](std::size_t b) {
-    const Block& block = model_.blocks[b];
-    spin_[b] = block.pose.mean_spin(&increment_[block.first], &state.position[block.first]);
-  });
-}
-
-/// Whether the step, linear in the displacement, misses the gap at its end by too much: vertices of a turning block leave
-/// the straight way by ½ w² r, and the line of a turning edge moves away from a vertex that slides along it. That matters
-/// where a contact presses, and where it would come to press by that alone.
-bool Stepper::turned_too_far() const {
-  double turn = 0.0, moved = 0.0;
-  for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
-  for (const Vec2 r : open_close_.relative()) moved = std::max(moved, squared_norm(r));
-  if (turn * (turn * largest_radius_ + std::sqrt(moved)) <= tolerances_.turn)
-    return false;  // as in most steps
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
-    const StepProblem::Row& row = problem_.rows()[c];
-    const Vec2 r = open_close_.relative()[c];
-    const double missed = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
-                                 spin_[b] * spin_[b] * model_.blocks[b].radius) +
-                          std::abs(spin_[b] * dot(row.tangent(), r));
-    if (missed <= tolerances_.turn) continue;
-    if (problem_.springs().force(c).normal > 0.0 || contacts_[c].gap + dot(row.normal, r) < missed)
-      return true;
-  }
-  return false;
-}
-
-/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised.
-bool Stepper::moved_too_far() {
-  std::atomic<bool> any = false;
-  for_blocks([&](std::size_t b) {
-    const Block& block = model_.blocks[b];
-    double moved = 0.0;
-    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
-      moved = std::max(moved, squared_norm(open_close_.displacement()[v]));
-    moved = std::sqrt(moved);
-    if (moved > reach_[b] + 0.5 * tolerances_.activation) {
-      reach_[b] = 1.5 * moved;
-      any = true;
-    }
-    if (std::abs(spin_[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside) {
-      turn_[b] = 1.5 * std::abs(spin_[b]);
-      reach_[b] = std::max(reach_[b], turn_[b] * block.radius);
-      any = true;
-    }
-  });
-  return any;
 }
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {

@@ -38,8 +38,9 @@ struct StepReport {
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
 ///
 /// A step, in order: detect contacts; build the minimization; open-close iteration; take over the increment (pose update,
-/// contact memory, energies). When the iteration does not settle, or a block in contact turns too far for a linear step,
-/// the step is cut in two from where it started.
+/// contact memory, energies). It is taken again where blocks meet at speed, went further than contacts were looked for, or turned so
+/// that contacts miss the gap at its end. When the iteration does not settle, or a block in contact turns by more than forces can keep
+/// their directions for, the step is cut in two from where it started.
 class Stepper {
  public:
   Stepper(Model& model, ThreadTeam& team, Profile& profile);
@@ -113,7 +114,11 @@ class Stepper {
     products_.reset();
   }
   void measure_spin(const State& state);
-  [[nodiscard]] bool turned_too_far() const;
+  /// How what blocks turned by in the step compares with what its contacts know of it.
+  enum class Turns { are_known, are_others, are_too_far };
+  Turns look_at_turns(const State& state);
+  [[nodiscard]] Vec2 at_end(const State& state, std::size_t vertex) const;
+  [[nodiscard]] double gap_at_end(const State& state, const StepProblem::Row& row) const;
   bool moved_too_far();
   void choose_rules(const State& state, const Drive& drive);
   /// Of `count` coefficients from `first` on.
@@ -137,8 +142,8 @@ class Stepper {
     void leave_out_beyond(std::size_t count);
     void enter(EnergyLedger& ledger) const;
   };
-  void remember_contacts(std::size_t first, std::size_t count, bool is_static, ContactAccounts& accounts);
-  void remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts);
+  void remember_contacts(std::size_t first, std::size_t count, const Drive& drive, ContactAccounts& accounts);
+  void remember_multiplier(std::size_t c, std::size_t lane, const Drive& drive, ContactAccounts& accounts);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
@@ -166,11 +171,13 @@ class Stepper {
   bool knows_pairs_ = false;                ///< of these candidates and this pattern
   std::vector<double> reach_, turn_, way_;  ///< m and rad, per block: Detection::Motion
   std::vector<double> increment_;
-  IncrementHistory history_;             ///< of dynamic steps by solvers that start from a guess
-  bool guessed_ = false;                 ///< the last attempt started from one
-  std::vector<double> speed_;            ///< m/s, per block: largest of its vertices at the start of the step
-  std::vector<double> spin_;             ///< rad, per block, of the last attempt
-  std::vector<Integrator> rule_;         ///< per block, of the last attempt
+  IncrementHistory history_;      ///< of dynamic steps by solvers that start from a guess
+  bool guessed_ = false;          ///< the last attempt started from one
+  std::vector<double> speed_;     ///< m/s, per block: largest of its vertices at the start of the step
+  std::vector<double> spin_;      ///< rad, per block, of the last attempt
+  std::vector<Integrator> rule_;  ///< per block, of the last attempt
+  std::vector<double> turned_,
+      turned_now_;  ///< m, per contact: Drive::turned, empty: of none; and as the last attempt shows it
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
   double impact_speed_;                  ///< m/s

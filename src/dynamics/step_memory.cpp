@@ -11,7 +11,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
-/// n·moved or t·moved of each row, moved: what fixed blocks are moved by.
+/// n·moved or t·moved of each row, moved: the known part of its r.
 Lanes moved_along(std::span<const StepProblem::Row> rows, bool tangent) {
   Lanes along{};
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -22,7 +22,7 @@ Lanes moved_along(std::span<const StepProblem::Row> rows, bool tangent) {
 }  // namespace
 
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
-void Stepper::remember_contacts(std::size_t first, std::size_t count, bool is_static,
+void Stepper::remember_contacts(std::size_t first, std::size_t count, const Drive& drive,
                                 ContactAccounts& accounts) {
   const std::span<contact::Contact> contacts = std::span(contacts_).subspan(first, count);
   const std::span<const StepProblem::Row> rows = std::span(problem_.rows()).subspan(first, count);
@@ -30,11 +30,12 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, bool is_st
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
   const LawLanes law = laws_of(contacts);
   MemoryLanes memory = memories_of(contacts);
-  Lanes moved_normal{}, moved_shear{};
-  if (!prescribed_.empty()) {
+  Lanes moved_normal{}, moved_shear{}, turned{};
+  if (drive.moves_contacts()) {
     moved_normal = moved_along(rows, false);
     moved_shear = moved_along(rows, true);
   }
+  if (!drive.turned.empty()) turned = load_first(&drive.turned[first], static_cast<int>(count));
   const Lanes bound = at_first(springs.bound), y = at_first(springs.y), w = at_first(springs.w);
   const contact::SpringLanes s(
       contact::SpringLanes::Constants{.normal_stiffness = law.normal_stiffness,
@@ -49,13 +50,14 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, bool is_st
   const auto closed = s.closed(y), locked = s.locked(w);
   accounts = {.balance = s.balance(y, w),
               .stored_before = memory.stored,
-              .input = -(normal * moved_normal - shear * moved_shear),
+              .input = -(normal * (moved_normal - turned) - shear * moved_shear),
               .penetration = s.penetration(y),
               .closed = closed ? broadcast(1.0) : zero};
+  accounts.balance.numerical += normal * turned;
   accounts.leave_out_beyond(count);
   const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
   memory.normal_force = memory.bounding_force = pressure;
-  if (!is_static && model_.solver.contact == ContactMethod::penalty) {
+  if (!drive.is_static && model_.solver.contact == ContactMethod::penalty) {
     const Lanes ahead = pressure + where(closed & ~locked & (bound > zero), change, zero);
     memory.bounding_force = where(ahead > zero, ahead, zero);
   }
@@ -72,7 +74,8 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, bool is_st
 }
 
 /// What is otherwise with an augmented Lagrangian.
-void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts) {
+void Stepper::remember_multiplier(std::size_t c, std::size_t lane, const Drive& drive,
+                                  ContactAccounts& accounts) {
   const StepProblem::Row& row = problem_.rows()[c];
   contact::Memory& memory = contacts_[c].memory;
   const contact::Spring s = problem_.spring(contacts_[c], c);
@@ -82,7 +85,8 @@ void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccoun
   accounts.balance.stored[lane] = memory.stored = balance.stored;
   accounts.balance.friction[lane] = balance.friction;
   accounts.balance.damping[lane] = balance.damping;
-  accounts.balance.numerical[lane] = balance.numerical;
+  accounts.balance.numerical[lane] =
+      balance.numerical + (drive.turned.empty() ? 0.0 : s.normal_force(y) * drive.turned[c]);
   const double penetration = -(contacts_[c].gap + dot(row.normal, r));
   memory.offset = std::max(memory.offset, 0.0);
   accounts.penetration[lane] = 0.0;
@@ -114,9 +118,10 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
                       for (std::size_t k = begin; k < end; ++k) {
                         const std::size_t c = (first + k) * lane_count,
                                           count = std::min<std::size_t>(lane_count, contacts_.size() - c);
-                        remember_contacts(c, count, drive.is_static, accounts_[k]);
+                        remember_contacts(c, count, drive, accounts_[k]);
                         if (model_.solver.contact != ContactMethod::penalty) {
-                          for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts_[k]);
+                          for (std::size_t i = 0; i < count; ++i)
+                            remember_multiplier(c + i, i, drive, accounts_[k]);
                         }
                         any |= contact::keep_memory(contacts_, c, c + count, state.contacts);
                       }

@@ -32,6 +32,17 @@ struct Drive {
   std::span<const Integrator> rule;  ///< of each block
   /// m, of each block: what a fixed block is moved by in the step; empty when none is.
   std::span<const Vec2> prescribed;
+  /// m, of each contact: by how much its gap at the end of the step is larger than linear in D, as its blocks turn; empty: by nothing.
+  std::span<const double> turned;
+
+  /// Whether there is a known part of the relative displacement of contacts.
+  [[nodiscard]] bool moves_contacts() const { return !prescribed.empty() || !turned.empty(); }
+  /// m, what block a is moved by less what block b is.
+  [[nodiscard]] Vec2 prescribed_between(const contact::Contact& c) const {
+    return prescribed.empty() ? Vec2{}
+                              : prescribed[static_cast<std::size_t>(c.block_a)] -
+                                    prescribed[static_cast<std::size_t>(c.block_b)];
+  }
 };
 
 /// The minimization that a step is (formulation, equation 3), with the Coulomb bounds frozen:
@@ -52,7 +63,7 @@ class StepProblem {
     int pair = of_fixed;             ///< of the solver's pattern, or of_fixed, or without_room
     double position;                 ///< s
     Vec2 normal;
-    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b
+    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b; Drive::turned along n
 
     [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
     /// ∂ψ/∂r where the springs push with `force`.

@@ -22,6 +22,7 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
       for (std::size_t k = first; k < last; ++k) {
         build_row(drive, contacts[k], rows_[k]);
         rows_[k].pair = pairs[at(contacts[k].candidate)];
+        if (!drive.turned.empty()) rows_[k].moved += drive.turned[k] * rows_[k].normal;
         any = any || (contacts[k].memory.bonded && !contacts[k].fused);
         without = without || rows_[k].pair == without_room;
         if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
@@ -48,8 +49,7 @@ void StepProblem::build_row(const Drive& drive, const contact::Contact& c, Row& 
   row.unknown_a = bodies_[at(c.block_a)].unknown;
   row.unknown_b = bodies_[at(c.block_b)].unknown;
   row.normal = c.normal;
-  row.moved =
-      drive.prescribed.empty() ? Vec2{} : drive.prescribed[at(c.block_a)] - drive.prescribed[at(c.block_b)];
+  row.moved = drive.prescribed_between(c);
 }
 
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
@@ -81,7 +81,7 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   for (std::size_t i = 0; i < count; ++i)
     springs_.piece[first + i] = assumed_piece(contacts[i].memory.state, first + i, spring.shear()[i]);
   Lanes y = spring.depth(), w = spring.shear();
-  if (!drive.prescribed.empty()) {
+  if (drive.moves_contacts()) {
     for (std::size_t i = 0; i < count; ++i) {
       const Row& row = rows_[first + i];
       y[i] -= dot(row.normal, row.moved);

@@ -46,7 +46,8 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   for (const std::size_t c : fast) {
     const StepProblem::Row& row = problem_.rows()[c];
     if (problem_.springs().force(c).normal <= 0.0) continue;
-    const Vec2 speed = problem_.relative(row, state.velocity) + row.moved / drive.step;
+    const Vec2 speed =
+        problem_.relative(row, state.velocity) + drive.prescribed_between(contacts_[c]) / drive.step;
     if (-dot(row.normal, speed) <= least) continue;
     if (!rigid &&
         contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))

@@ -1,0 +1,95 @@
+// How far blocks turned and moved in a look at a step, and whether that is what it was built for.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/index.h"
+#include "dynamics/step.h"
+
+namespace keyblock::dynamics {
+
+void Stepper::measure_spin(const State& state) {
+  std::fill(spin_.begin(), spin_.end(), 0.0);
+  for_blocks([&](std::size_t b) {
+    const Block& block = model_.blocks[b];
+    spin_[b] = block.pose.mean_spin(&increment_[block.first], &state.position[block.first]);
+  });
+}
+
+/// Where a vertex comes to be with the increment at hand: the pose update of its block (formulation, equation 5).
+Vec2 Stepper::at_end(const State& state, std::size_t vertex) const {
+  const std::size_t b = at(model_.surface.block[vertex]);
+  const Vec2 start = model_.surface.position[vertex];
+  if (!model_.moves(b)) return prescribed_.empty() ? start : start + prescribed_[b];
+  const Block& block = model_.blocks[b];
+  const auto centroid_of = [&](const std::vector<double>& coefficients) {
+    return Vec2{coefficients[block.first], coefficients[block.first + 1]} / std::sqrt(block.area);
+  };
+  const double w = spin_[b];
+  double cosine, sine;
+  block::rotation(w, cosine, sine);
+  const Vec2 centroid = centroid_of(state.position), moved = centroid_of(increment_), r = start - centroid,
+             p = r + open_close_.displacement()[vertex] - moved - w * Vec2{-r.y, r.x};
+  return centroid + moved + Vec2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
+}
+
+double Stepper::gap_at_end(const State& state, const StepProblem::Row& row) const {
+  const Vec2 from = at_end(state, row.from), along = at_end(state, row.to) - from;
+  return cross(at_end(state, row.vertex) - from, along) / norm(along);
+}
+
+/// The step is linear in the displacement, and misses the gap at its end: vertices of a turning block leave the straight way by ½ w² r,
+/// and the line of a turning edge moves away from a vertex that slides along it. That matters where a contact presses, and where it
+/// would come to press by that alone. What is missed goes into turned_now_, with which the step may be taken again; where blocks turn
+/// so far that forces have other directions at its end, the step is too long.
+Stepper::Turns Stepper::look_at_turns(const State& state) {
+  constexpr double most_turned = 0.1;  // rad
+  double turn = 0.0, moved = 0.0;
+  for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
+  for (const Vec2 r : open_close_.relative()) moved = std::max(moved, squared_norm(r));
+  if (turned_.empty() && turn * (turn * largest_radius_ + std::sqrt(moved)) <= tolerances_.turn)
+    return Turns::are_known;  // as in most steps
+  turned_now_.assign(contacts_.size(), 0.0);
+  bool are_known = true;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
+    const StepProblem::Row& row = problem_.rows()[c];
+    const Vec2 r = open_close_.relative()[c];
+    const double known = turned_.empty() ? 0.0 : turned_[c];
+    const double at_most = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
+                                  spin_[b] * spin_[b] * model_.blocks[b].radius) +
+                           std::abs(spin_[b] * dot(row.tangent(), r));
+    if (at_most <= tolerances_.turn && known == 0.0) continue;
+    const double gap = gap_at_end(state, row), linear = contacts_[c].gap + dot(row.normal, r) - known;
+    turned_now_[c] = gap - linear;
+    const bool presses = problem_.springs().force(c).normal > 0.0;
+    if (std::abs(turned_now_[c] - known) <= tolerances_.turn || (!presses && gap >= 0.0)) continue;
+    if (std::max(std::abs(spin_[a]), std::abs(spin_[b])) > most_turned) return Turns::are_too_far;
+    are_known = false;
+  }
+  return are_known ? Turns::are_known : Turns::are_others;
+}
+
+/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised.
+bool Stepper::moved_too_far() {
+  std::atomic<bool> any = false;
+  for_blocks([&](std::size_t b) {
+    const Block& block = model_.blocks[b];
+    double moved = 0.0;
+    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
+      moved = std::max(moved, squared_norm(open_close_.displacement()[v]));
+    moved = std::sqrt(moved);
+    if (moved > reach_[b] + 0.5 * tolerances_.activation) {
+      reach_[b] = 1.5 * moved;
+      any = true;
+    }
+    if (std::abs(spin_[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside) {
+      turn_[b] = 1.5 * std::abs(spin_[b]);
+      reach_[b] = std::max(reach_[b], turn_[b] * block.radius);
+      any = true;
+    }
+  });
+  return any;
+}
+
+}  // namespace keyblock::dynamics
