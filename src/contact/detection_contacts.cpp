@@ -12,16 +12,18 @@ namespace {
 
 /// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
 /// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
-/// comes back from there when the joint gets shorter again.
+/// comes back from there when the joint gets shorter again. What it has no room for is lost by a spring that gets softer.
 void keep_energy(Memory& memory, double gap, double stiffness) {
   const double depth = -gap - memory.offset;
   if (memory.multiplier > 0.0) {  // a force that belongs to no penetration stays
     memory.multiplier *= memory.stiffness / stiffness;
     memory.shear *= memory.stiffness / stiffness;
   } else if (memory.stiffness > 0.0 && stiffness != memory.stiffness && depth > 0.0) {
-    const double scale = std::sqrt(memory.stiffness / stiffness);
-    memory.offset = std::max(-gap - scale * depth, std::min(memory.offset, 0.0));
+    const double scale = std::sqrt(memory.stiffness / stiffness), wanted = scale * depth;
+    memory.offset = std::max(-gap - wanted, std::min(memory.offset, 0.0));
     memory.shear *= scale;
+    const double now = -gap - memory.offset;
+    if (now < wanted) memory.stored -= 0.5 * stiffness * (wanted * wanted - now * now);
   }
   memory.stiffness = stiffness;
 }

@@ -48,6 +48,29 @@ int count(const std::vector<Contact>& contacts, int a, int b) {
   }));
 }
 
+// A spring that gets softer, as its joint gets shorter, keeps its energy where its offset has room for it; the rest is lost.
+TEST(Detection, WhatASofterSpringCannotKeepIsLost) {
+  Surface surface;
+  const double depth = 1e-4;
+  add_block(surface, rectangle(0, 0, 2, 1));
+  add_block(surface, rectangle(0, 1 - depth, 2, 2));
+  for (const double offset : {0.5 * depth, 0.25 * depth, 0.0}) {
+    CandidateList list;
+    const double k = find(surface, list).front().normal_stiffness;
+    const auto stored_by = [](double stiffness, double x) { return 0.5 * stiffness * x * x; };
+    for (Memory& memory : list.memory) {
+      memory.stiffness = 4.0 * k;
+      memory.offset = offset;
+      memory.stored = stored_by(4.0 * k, depth - offset);
+    }
+    const double before = list.memory.front().stored;
+    const Contact contact = find(surface, list).front();
+    EXPECT_NEAR(contact.memory.stored, stored_by(k, contact.depth), 1e-12 * before) << offset;
+    EXPECT_NEAR(contact.depth, std::min(2.0 * (depth - offset), depth), 1e-15);
+    EXPECT_EQ(contact.memory.stored < before, offset < 0.5 * depth);
+  }
+}
+
 TEST(Detection, EdgeToEdgeIsTwoContactsThatShareItsLengthOnce) {
   // Equal faces, a block inside a longer face, and one that overhangs it.
   for (const auto& [x0, x1, shared] :
