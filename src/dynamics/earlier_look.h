@@ -8,8 +8,9 @@
 
 namespace keyblock::dynamics {
 
-/// The springs at the end of a look at a step that has to be taken again, with other rules of integration or a longer reach: the
-/// pieces and the friction bounds that it came to are nearer to those of the next look than what contacts remember of the last step.
+/// The springs at the end of a look at a step that has to be taken again, with other rules of integration, a longer reach or other
+/// gaps: the pieces and the friction bounds that it came to are nearer to those of the next look than what contacts remember of the
+/// last step.
 class EarlierLook {
  public:
   void forget() { candidates_.clear(); }

@@ -188,12 +188,14 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   prescribe(state, drive);
   predict_reach(state, drive);
   constexpr int looks = 4, most_turns = 4;
-  bool must_be_direct = false;
+  bool must_be_direct = false, same_contacts = false;
   int turns = 0;  // times the step was taken again because blocks turn
-  turned_.clear();
   earlier_look_.forget();
   for (int look = 1; look <= looks;) {
-    if (turned_.empty() && detect(state)) earlier_look_.forget();
+    if (!same_contacts) {
+      if (detect(state)) earlier_look_.forget();
+      turned_.clear();
+    }
     drive.turned = turned_;
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
@@ -216,13 +218,12 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
     if (!moved && !impact && turned == Turns::are_known) return true;
     earlier_look_.keep(contacts_, problem_.springs());
-    if (moved || impact) {
-      ++look;
-      turned_.clear();
-    } else if (drive.is_static || ++turns > most_turns) {
-      return false;
-    } else {
+    same_contacts = !moved && !impact;
+    if (same_contacts) {
+      if (drive.is_static || ++turns > most_turns) return false;
       turned_.swap(turned_now_);
+    } else {
+      ++look;
     }
   }
   return true;
