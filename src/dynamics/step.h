@@ -135,15 +135,16 @@ class Stepper {
     contact::SpringLanes::Balance balance;
     AlignedLanes stored_before{};  ///< J per thickness, at the start
     AlignedLanes input{};          ///< J per thickness, by what fixed blocks are moved
-    AlignedLanes penetration{};    ///< m
-    AlignedLanes closed{};         ///< at the end: 1, else 0
+    AlignedLanes turned{};  ///< J per thickness, of the normal force over Drive::turned: no block gets it
+    AlignedLanes penetration{};  ///< m
+    AlignedLanes closed{};       ///< at the end: 1, else 0
     void add(const ContactAccounts& other);
     /// Zero where a lane is none of the first `count`.
     void leave_out_beyond(std::size_t count);
     void enter(EnergyLedger& ledger) const;
   };
   void remember_contacts(std::size_t first, std::size_t count, const Drive& drive, ContactAccounts& accounts);
-  void remember_multiplier(std::size_t c, std::size_t lane, const Drive& drive, ContactAccounts& accounts);
+  void remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);

@@ -93,6 +93,7 @@ void Stepper::ContactAccounts::add(const ContactAccounts& other) {
   balance.numerical += other.balance.numerical;
   stored_before += other.stored_before;
   input += other.input;
+  turned += other.turned;
   penetration = largest(penetration, AlignedLanes(other.penetration));
   closed += other.closed;
 }
@@ -100,7 +101,7 @@ void Stepper::ContactAccounts::add(const ContactAccounts& other) {
 void Stepper::ContactAccounts::leave_out_beyond(std::size_t count) {
   if (count >= lane_count) return;
   for (AlignedLanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
-                              &stored_before, &input, &penetration, &closed})
+                              &stored_before, &input, &turned, &penetration, &closed})
     *lanes = where(first_lanes(count), *lanes, AlignedLanes{});
 }
 
@@ -108,7 +109,7 @@ void Stepper::ContactAccounts::enter(EnergyLedger& ledger) const {
   ledger.friction += sum(balance.friction);
   ledger.input += sum(input);
   ledger.damping += sum(balance.damping);
-  ledger.numerical += sum(balance.numerical) - sum(stored_before);
+  ledger.numerical += sum(balance.numerical) + sum(turned) - sum(stored_before);
 }
 
 double Stepper::kinetic_energy(const State& state) const {

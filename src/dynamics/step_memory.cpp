@@ -51,9 +51,9 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
   accounts = {.balance = s.balance(y, w),
               .stored_before = memory.stored,
               .input = -(normal * (moved_normal - turned) - shear * moved_shear),
+              .turned = normal * turned,
               .penetration = s.penetration(y),
               .closed = closed ? broadcast(1.0) : zero};
-  accounts.balance.numerical += normal * turned;
   accounts.leave_out_beyond(count);
   const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
   memory.normal_force = memory.bounding_force = pressure;
@@ -74,8 +74,7 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
 }
 
 /// What is otherwise with an augmented Lagrangian.
-void Stepper::remember_multiplier(std::size_t c, std::size_t lane, const Drive& drive,
-                                  ContactAccounts& accounts) {
+void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts) {
   const StepProblem::Row& row = problem_.rows()[c];
   contact::Memory& memory = contacts_[c].memory;
   const contact::Spring s = problem_.spring(contacts_[c], c);
@@ -85,8 +84,7 @@ void Stepper::remember_multiplier(std::size_t c, std::size_t lane, const Drive& 
   accounts.balance.stored[lane] = memory.stored = balance.stored;
   accounts.balance.friction[lane] = balance.friction;
   accounts.balance.damping[lane] = balance.damping;
-  accounts.balance.numerical[lane] =
-      balance.numerical + (drive.turned.empty() ? 0.0 : s.normal_force(y) * drive.turned[c]);
+  accounts.balance.numerical[lane] = balance.numerical;
   const double penetration = -(contacts_[c].gap + dot(row.normal, r));
   memory.offset = std::max(memory.offset, 0.0);
   accounts.penetration[lane] = 0.0;
@@ -120,8 +118,7 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
                                           count = std::min<std::size_t>(lane_count, contacts_.size() - c);
                         remember_contacts(c, count, drive, accounts_[k]);
                         if (model_.solver.contact != ContactMethod::penalty) {
-                          for (std::size_t i = 0; i < count; ++i)
-                            remember_multiplier(c + i, i, drive, accounts_[k]);
+                          for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts_[k]);
                         }
                         any |= contact::keep_memory(contacts_, c, c + count, state.contacts);
                       }

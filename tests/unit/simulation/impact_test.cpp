@@ -77,8 +77,8 @@ double depth_by_geometry(Simulator& s) {
 }
 
 // A pole that falls over its corner turns by 0.04 rad a step in the end, and the corner leaves the straight way that the step is linear in by
-// 0.4 mm. Contacts know the gap at the end of a step by that much better than linear, without cutting it, and the pole falls as one on a hinge
-// does, whether the floor stands still or is lifted.
+// 0.4 mm. Contacts know the gap that this leaves at the end of the step, which is not cut, and the pole falls as one on a hinge does, whether
+// the floor stands still or is lifted.
 TEST(Turn, IsKnownToContactsAtTheEndOfTheStep) {
   const double height = 1.0, width = 0.1, dt = 0.01;
   for (const auto& [lift, rigid] : {std::pair{0.0, false}, {0.5, false}, {0.5, true}}) {  // m/s
@@ -110,7 +110,7 @@ TEST(Turn, IsKnownToContactsAtTheEndOfTheStep) {
     }
     EXPECT_GT(pressed, 30);
     EXPECT_GT(missed, 10.0 * tolerance);
-    EXPECT_LT(largest_error, 0.025);  // by the length of the step: a quarter of it with half the step
+    EXPECT_LT(largest_error, 0.025);  // by the length of the step: a third to three fifths of it with half the step
     EXPECT_LT(std::abs(s.residual()), 1e-3 * s.stepper.kinetic_energy(s.state));
   }
 }
