@@ -147,7 +147,7 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
       if (rivals[k].corners == corners) meeting[size++] = &rivals[k];
     }
     const auto same = std::span(meeting).first(size);
-    const Outcome outcome = compete(same, candidates);
+    const Outcome outcome = compete(surface, same, candidates);
     if (margin > 0.0) margin = std::min(margin, outcome_margin(same, outcome, candidates));
     for (Rival* r : same) {
       r->corners = 0;
@@ -174,11 +174,17 @@ Vec2 Detection::apart(const Surface& surface, const BlockPair& pair) {
   return first(pair.block_b) - first(pair.block_a);
 }
 
-/// Blocks that go together, as where the rock sways, have not moved.
+/// Blocks that go together, as where the rock sways, have not moved. Nor may they with where they go in this step.
 bool Detection::is_steady(const Surface& surface, const BlockPair& pair) const {
   const std::size_t a = at(pair.block_a), b = at(pair.block_b);
-  const double left = pair.steady - motion_.way[a] - motion_.way[b];
-  return left >= 0.0 && squared_norm(apart(surface, pair) - pair.apart) <= left * left &&
+  double left = pair.steady - motion_.way[a] - motion_.way[b];
+  const Vec2 moved = apart(surface, pair) - pair.apart;
+  Vec2 will_have_moved = moved;
+  if (!motion_.ahead.empty()) {
+    left -= motion_.way_ahead[a] + motion_.way_ahead[b];
+    will_have_moved += motion_.ahead[at(surface.block_begin[b])] - motion_.ahead[at(surface.block_begin[a])];
+  }
+  return left >= 0.0 && std::max(squared_norm(moved), squared_norm(will_have_moved)) <= left * left &&
          motion_.reach[a] + motion_.reach[b] <= pair.reach;
 }
 
@@ -240,7 +246,47 @@ void Detection::find(const Surface& surface, const Motion& motion, CandidateList
   });
 }
 
-Detection::Outcome Detection::compete(std::span<Rival* const> rivals, const CandidateList& candidates) const {
+double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates) const {
+  const double depth = tolerances_.corner_depth;
+  if (rival.gap <= -depth) return 0.0;
+  if (motion_.ahead.empty()) return HUGE_VAL;
+  const Candidate& c = candidates.pairs[at(rival.candidate)];
+  const Corner& edge = corners_[at(c.edge)];
+  const Vec2 r =
+      motion_.ahead[at(c.vertex)] -
+      lerp(motion_.ahead[at(c.edge)], motion_.ahead[at(surface.next[at(c.edge)])], rival.along / edge.length);
+  const double approach = -dot(edge.normal(), r);
+  return rival.gap - approach < -depth ? (rival.gap + depth) / approach : HUGE_VAL;
+}
+
+/// Of two corners of which each has passed a line of the other, the one is in the other when it has passed the last: a corner that slides
+/// along a face and over the joint at its end passes the side of the next block, but not its face. Null: there is no telling.
+Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
+                                              const CandidateList& candidates) const {
+  const auto are_turned = [&](const Rival* one, const Rival* other) {
+    return turned(line(*one, candidates), line(*other, candidates));
+  };
+  std::array<double, 4> when{};
+  std::size_t last = 0, farthest = 0;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    when[i] = passing(surface, *rivals[i], candidates);
+    if (rivals[i]->gap > rivals[farthest]->gap) farthest = i;
+    if (when[i] > when[last] || (when[i] == when[last] && rivals[i]->gap > rivals[last]->gap)) last = i;
+  }
+  if (when[last] < HUGE_VAL) return rivals[last];
+  double second = -HUGE_VAL;
+  bool passes_another = false;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (are_turned(rivals[i], rivals[farthest])) second = std::max(second, rivals[i]->gap);
+    passes_another =
+        passes_another || (when[i] > 0.0 && when[i] < HUGE_VAL && are_turned(rivals[i], rivals[last]));
+  }
+  const bool is_tie = rivals[farthest]->gap - second < tolerances_.corner_tie;
+  return is_tie && !passes_another ? nullptr : rivals[last];
+}
+
+Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* const> rivals,
+                                      const CandidateList& candidates) const {
   const auto line = [&](const Rival& f) -> const Corner& { return this->line(f, candidates); };
   const auto over = [&](const Rival& f) { return inside(f.along, line(f).length); };
   const auto force = [&](const Rival& f) { return candidates.memory[at(f.memory)].normal_force; };
@@ -261,15 +307,7 @@ Detection::Outcome Detection::compete(std::span<Rival* const> rivals, const Cand
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {
-    for (Rival* f : rivals) {
-      if (winner == nullptr || f->gap > winner->gap) winner = f;
-    }
-    double second = -HUGE_VAL;
-    for (const Rival* f : rivals) {
-      if (turned(line(*f), line(*winner))) second = std::max(second, f->gap);
-    }
-    const double best = winner->gap;
-    if (best > -tolerances_.corner_depth && best - second < tolerances_.corner_tie) winner = nullptr;
+    winner = line_passed_last(surface, rivals, candidates);
   }
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.

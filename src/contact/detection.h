@@ -56,7 +56,8 @@ bool keep_memory(std::span<const Contact> contacts, std::size_t first, std::size
 /// corner pair; they compete, so that one contact remains (vertex-vertex contact with a unique entrance line):
 ///   - all lines parallel: the end of an edge-edge contact. The vertex that lies over the other's edge; the one that
 ///     already was in contact stays until it has clearly left, and then hands its memory over.
-///   - otherwise corner to corner: the line of the largest gap is the shortest way out; none while that is a tie.
+///   - otherwise corner to corner: the line that is passed last in the step, as the corners go now. Of lines that are not passed,
+///     or were before, that of the largest gap, which is the shortest way out; none while that is a tie.
 ///
 /// All this hangs on thresholds of a share of a block, while blocks in contact move by a millionth of one in a step. A pair of blocks
 /// is looked at when it may have passed one (BlockPair); of the others only the geometry of their contacts is computed.
@@ -75,6 +76,10 @@ class Detection {
     /// m, per block: length of the way that its vertices have gone against its first one since some time in the past, by the one
     /// that moved furthest in each step.
     std::span<const double> way;
+    /// m, per vertex: where its velocity takes it in the step, unless something stops it; and, per block, how far from where it takes
+    /// the first one at most. Empty: nowhere.
+    std::span<const Vec2> ahead = {};
+    std::span<const double> way_ahead = {};
   };
   /// Contacts of the step in the order of the candidates.
   void find(const Surface& surface, const Motion& motion, CandidateList& candidates, ThreadTeam& team,
@@ -123,7 +128,13 @@ class Detection {
     bool parallel = true;      ///< all their lines
     bool handed_over = false;  ///< the winner goes on with the memory of another
   };
-  [[nodiscard]] Outcome compete(std::span<Rival* const> rivals, const CandidateList& candidates) const;
+  [[nodiscard]] Outcome compete(const Surface& surface, std::span<Rival* const> rivals,
+                                const CandidateList& candidates) const;
+  [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
+                                        const CandidateList& candidates) const;
+  // When, as a share of the step, the vertex will be deeper than Tolerances::corner_depth; 0: it is; HUGE_VAL: not in this step.
+  [[nodiscard]] double passing(const Surface& surface, const Rival& rival,
+                               const CandidateList& candidates) const;
   // m by which both blocks of a pair together may move before its contacts are others; 0: not known. `reach`: m, what their reaches
   // add up to at most.
   [[nodiscard]] double candidate_margin(const Surface& surface, const CandidateList& candidates,

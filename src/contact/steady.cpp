@@ -71,7 +71,8 @@ double Detection::rival_margin(const Surface& surface, const Candidate& candidat
                                            : (zone - (length - rival.along)) / end_rate);
 }
 
-/// The rules of compete(), with the winner as the one that was in contact.
+/// The rules of compete(), with the winner as the one that was in contact. They hold where the corners are now and, as long as both
+/// are within the margin, where they will be.
 double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
                                  const CandidateList& candidates) const {
   if (outcome.handed_over) return 0.0;
@@ -111,6 +112,8 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
   }
   if (winner == nullptr) {  // a tie, whichever has the largest gap
     if (!each_turned) return 0.0;
+    for (const Rival* r : rivals)
+      margin = std::min(margin, std::abs(r->gap + tolerances_.corner_depth) / fastest);
     return std::min({margin, (largest_gap + tolerances_.corner_depth) / fastest,
                      (tolerances_.corner_tie - (largest_gap - least_gap)) / (2.0 * fastest)});
   }

@@ -30,6 +30,8 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       reach_(model.blocks.size(), 0.0),
       turn_(model.blocks.size(), 0.0),
       way_(model.blocks.size(), 0.0),
+      ahead_(model.surface.position.size()),
+      way_ahead_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
       speed_(model.blocks.size(), 0.0),
       spin_(model.blocks.size(), 0.0),
@@ -149,25 +151,39 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
       turn_[b] = reach_[b] / block.radius;
       return;
     }
-    double fastest = 0.0;
-    for_vertex_values(
-        model_.surface, b, block.size, &state.velocity[block.first],
-        [&](std::size_t /*v*/, Vec2 velocity) { fastest = std::max(fastest, squared_norm(velocity)); });
+    const std::size_t first = at(model_.surface.block_begin[b]);
+    double fastest = 0.0, against_first = 0.0;
+    for_vertex_values(model_.surface, b, block.size, &state.velocity[block.first],
+                      [&](std::size_t v, Vec2 velocity) {
+                        ahead_[v] = drive.step * velocity;
+                        fastest = std::max(fastest, squared_norm(velocity));
+                        against_first = std::max(against_first, squared_norm(ahead_[v] - ahead_[first]));
+                      });
     speed_[b] = std::sqrt(fastest);
+    way_ahead_[b] = std::sqrt(against_first);
     reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
     const double spin = block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
     turn_[b] = std::min(2.0 * std::abs(spin) * drive.step, reach_[b] / block.radius);
   });
-  for (const PrescribedMotion& motion : model_.motions)
-    reach_[at(motion.block)] = norm(drive.prescribed[at(motion.block)]);
+  for (const PrescribedMotion& motion : model_.motions) {
+    const std::size_t b = at(motion.block);
+    const Vec2 moved = drive.prescribed[b];
+    reach_[b] = norm(moved);
+    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
+      ahead_[v] = moved;
+  }
 }
 
 /// Whether the candidates are others.
-bool Stepper::detect(State& state) {
+bool Stepper::detect(State& state, bool is_static) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
-  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
-                  contacts_);
+  contact::Detection::Motion motion{reach_, turn_, candidates_.away(), way_};
+  if (!is_static) {
+    motion.ahead = ahead_;
+    motion.way_ahead = way_ahead_;
+  }
+  detection_.find(model_.surface, motion, state.contacts, team_, contacts_);
   if (changed || !knows_pairs_) find_pairs(state);
   return changed;
 }
@@ -193,7 +209,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   earlier_look_.forget();
   for (int look = 1; look <= looks;) {
     if (!same_contacts) {
-      if (detect(state)) earlier_look_.forget();
+      if (detect(state, drive.is_static)) earlier_look_.forget();
       turned_.clear();
     }
     drive.turned = turned_;

@@ -104,7 +104,7 @@ class Stepper {
   void move_prescribed(State& state, const Drive& drive);
   void build_problem(State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
-  bool detect(State& state);
+  bool detect(State& state, bool is_static);
   void find_pairs(const State& state);
   void make_room(State& state);
   linalg::BlockSolver& solver(const State& state, bool is_static, bool must_be_direct);
@@ -167,10 +167,13 @@ class Stepper {
   std::optional<double> products_;  ///< block products of a factorization with the pattern
   std::vector<contact::Contact> contacts_;
   std::vector<int> unknown_sizes_;
-  double largest_radius_ = 0.0;             ///< m, of the blocks that move
-  std::vector<int> pair_of_candidate_;      ///< StepProblem::Row::pair
-  bool knows_pairs_ = false;                ///< of these candidates and this pattern
-  std::vector<double> reach_, turn_, way_;  ///< m and rad, per block: Detection::Motion
+  double largest_radius_ = 0.0;         ///< m, of the blocks that move
+  std::vector<int> pair_of_candidate_;  ///< StepProblem::Row::pair
+  bool knows_pairs_ = false;            ///< of these candidates and this pattern
+  // Detection::Motion
+  std::vector<double> reach_, turn_, way_;  ///< m and rad, per block
+  std::vector<Vec2> ahead_;                 ///< m, per vertex
+  std::vector<double> way_ahead_;           ///< m, per block
   std::vector<double> increment_;
   IncrementHistory history_;      ///< of dynamic steps by solvers that start from a guess
   bool guessed_ = false;          ///< the last attempt started from one

@@ -152,12 +152,15 @@ struct Seen {
   long contacts = 0, skipped = 0, steady = 0;
 };
 
-bool is_steady(const BlockPair& pair, const Surface& surface, std::span<const double> way,
-               std::span<const double> reach) {
+bool is_steady(const BlockPair& pair, const Surface& surface, const Detection::Motion& motion) {
   const std::size_t a = at(pair.block_a), b = at(pair.block_b);
-  const auto first = [&](std::size_t block) { return surface.position[at(surface.block_begin[block])]; };
-  return norm(first(b) - first(a) - pair.apart) + way[a] + way[b] <= pair.steady &&
-         reach[a] + reach[b] <= pair.reach;
+  const auto first = [&](std::size_t block) { return at(surface.block_begin[block]); };
+  const Vec2 now = surface.position[first(b)] - surface.position[first(a)] - pair.apart,
+             then = now + motion.ahead[first(b)] - motion.ahead[first(a)];
+  return std::max(norm(now), norm(then)) + motion.way[a] + motion.way[b] + motion.way_ahead[a] +
+                 motion.way_ahead[b] <=
+             pair.steady &&
+         motion.reach[a] + motion.reach[b] <= pair.reach;
 }
 
 /// Compares with looking at every candidate in every step. The whole wall sways.
@@ -175,14 +178,28 @@ void compare_with_oracle(Surface surface, std::mt19937& random, Seen& seen) {
     std::vector<double> turns;  // half the diameter of the blocks is 0.7 m
     for (const double r : reach) turns.push_back(r / 0.7);
     candidates.update(surface, reach, list, alone);
-    const Detection::Motion motion{reach, turns, candidates.away(), way};
+    // Where blocks go in this step.
+    std::vector<Vec2> ahead(surface.position.size());
+    std::vector<double> furthest(64, 0.0);
+    for (std::size_t b = 0; b < 64; ++b) {
+      const double pace = b % 9 == 0 ? 0.004 : b % 3 == 0 ? 0.0004 : 0.00001;
+      const double turn = pace * uniform(random);
+      const Vec2 shift =
+          Vec2{1e-3 * std::sin(0.1 * step), 0.0} + Vec2{pace * uniform(random), pace * uniform(random)};
+      for (std::size_t v = 4 * b; v < 4 * b + 4; ++v) {
+        const Vec2 r = surface.position[v] - surface.position[4 * b], turned = turn * Vec2{-r.y, r.x};
+        ahead[v] = shift + turned;
+        furthest[b] = std::max(furthest[b], norm(turned));
+      }
+    }
+    const Detection::Motion motion{reach, turns, candidates.away(), way, ahead, furthest};
     CandidateList all = list;
     for (Candidate& c : all.pairs) {
       seen.skipped += candidates.away()[at(c.block_a)] + candidates.away()[at(c.block_b)] < c.clearance;
       c.clearance = 0.0;
     }
     for (BlockPair& pair : all.block_pairs) {
-      seen.steady += is_steady(pair, surface, way, reach);
+      seen.steady += is_steady(pair, surface, motion);
       pair.steady = -1.0;
     }
     std::vector<Contact> fast, slow, again;
@@ -201,19 +218,8 @@ void compare_with_oracle(Surface surface, std::mt19937& random, Seen& seen) {
     }
     seen.contacts += static_cast<long>(fast.size());
     keep_memory(fast, list, alone);
-    for (int b = 0; b < 64; ++b) {
-      const double pace = b % 9 == 0 ? 0.004 : b % 3 == 0 ? 0.0004 : 0.00001, turn = pace * uniform(random);
-      const Vec2 sway{1e-3 * std::sin(0.1 * step), 0.0},
-          first = surface.position[at(4 * b)],
-          shift = sway + Vec2{pace * uniform(random), pace * uniform(random)};
-      double furthest = 0.0;
-      for (int v = 4 * b; v < 4 * b + 4; ++v) {
-        const Vec2 r = surface.position[at(v)] - first, turned = turn * Vec2{-r.y, r.x};
-        surface.position[at(v)] += shift + turned;
-        furthest = std::max(furthest, norm(turned));
-      }
-      way[at(b)] += furthest;
-    }
+    for (std::size_t v = 0; v < ahead.size(); ++v) surface.position[v] += ahead[v];
+    for (std::size_t b = 0; b < 64; ++b) way[b] += furthest[b];
   }
 }
 
@@ -227,7 +233,7 @@ TEST(Detection, ClearancesAndSteadyPairsHideNoContact) {
   }
   EXPECT_GT(seen.contacts, 60'000);
   EXPECT_GT(seen.skipped, seen.contacts);  // most candidates are no contacts, and known not to be
-  EXPECT_GT(seen.steady, 60'000);          // that they sway together does not count
+  EXPECT_GT(seen.steady, 50'000);          // that they sway together does not count
 }
 
 TEST(Detection, MemoryMovesOverWhenVertexAndEdgeChangeSides) {

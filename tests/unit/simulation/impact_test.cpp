@@ -110,7 +110,8 @@ TEST(Turn, IsKnownToContactsAtTheEndOfTheStep) {
     }
     EXPECT_GT(pressed, 30);
     EXPECT_GT(missed, 10.0 * tolerance);
-    EXPECT_LT(largest_error, 0.025);  // by the length of the step: a third to three fifths of it with half the step
+    EXPECT_LT(largest_error,
+              0.025);  // by the length of the step: a third to three fifths of it with half the step
     EXPECT_LT(std::abs(s.residual()), 1e-3 * s.stepper.kinetic_energy(s.state));
   }
 }
@@ -153,6 +154,48 @@ TEST(Impact, CornersOfSpinningStonesDoNotGoThrough) {
     EXPECT_EQ(s.unconverged, 0) << k;
   }
   EXPECT_GT(fastest, 100.0);  // rad/s
+}
+
+/// What becomes of a sharp corner that slides at 4 m/s over the joint between two blocks of one flush face.
+struct Slide {
+  double overlap = 0.0;       ///< m, the largest there was
+  double slowest = HUGE_VAL;  ///< m/s, along the face
+};
+
+/// ahead: m, from the tip to the joint at the start; opening: degrees, between the lower face of the wedge and the face it slides on.
+Slide slide_over_joint(double ahead, double opening) {
+  Scene scene(3e9, 0.0, 2270.0);
+  scene.rectangle({-1.0, -1.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, -1.0}, 1.0, 1.0, 0.0, true);
+  const auto from_tip = [&](double length, double angle) {
+    return Vec2{-ahead, 1e-6} + length * Vec2{-std::cos(angle * degree), std::sin(angle * degree)};
+  };
+  const int wedge = scene.add({from_tip(0.0, 0.0), from_tip(0.25, opening + 34.0), from_tip(0.4, opening)});
+  scene.setup.properties[static_cast<std::size_t>(wedge)].velocity = {4.0, 0.0};
+  Simulator s(scene);
+  Slide slide;
+  for (int step = 0; step < 8; ++step) {
+    s.run(0.002, 0.002);
+    for (int bed = 0; bed < 2; ++bed) {
+      const std::vector<Polygon> two{deformed_polygon(s.model, static_cast<std::size_t>(bed)),
+                                     deformed_polygon(s.model, static_cast<std::size_t>(wedge))};
+      slide.overlap = std::max(slide.overlap, overlap::largest_overlap(two).depth);
+    }
+    slide.slowest = std::min(slide.slowest, s.velocity(wedge).x);
+  }
+  return slide;
+}
+
+// Where the blocks of a face meet, the line that a fast corner meets next is that of the other block's face, and not its side.
+TEST(Impact, FastCornersSlideOverFlushJoints) {
+  for (const double opening : {1.0, 5.0, 20.0}) {
+    for (int k = 0; k < 32; ++k) {
+      const double ahead = 0.02 + 0.00025 * k;
+      const Slide slide = slide_over_joint(ahead, opening);
+      EXPECT_LT(slide.overlap, 2e-4) << opening << " " << ahead;
+      EXPECT_GT(slide.slowest, 3.99) << opening << " " << ahead;
+    }
+  }
 }
 
 }  // namespace
