@@ -78,6 +78,12 @@ class SpringArray {
             std::clamp(ks[c] * displacement, -bound[c], bound[c])};
   }
   [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
+  /// N per thickness, of the contact that presses most; 0: none does.
+  [[nodiscard]] double largest_normal_force() const {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < size_; ++c) largest = std::max(largest, y[c] > floor[c] ? kn[c] * y[c] : 0.0);
+    return largest;
+  }
   /// On the straight line that goes on from a piece.
   [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {
     return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement

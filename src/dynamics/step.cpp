@@ -41,11 +41,16 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       impact_speed_(norm(model.gravity) > 0.0 ? 0.1 * std::sqrt(norm(model.gravity) * model.block_size)
                                               : HUGE_VAL),
       balance_(model.blocks.size()) {
+  double mass = 0.0;
   for (const Block& block : model.blocks) {
     if (block.unknown < 0) continue;
     unknown_sizes_.push_back(2 * block.size);
     largest_radius_ = std::max(largest_radius_, block.radius);
+    mass += block.mass();
   }
+  // A thousandth of what lifts a mean block by its size.
+  const double weight = norm(model.gravity) * mass / static_cast<double>(unknown_sizes_.size());
+  if (weight > 0.0) turn_work_ = 1e-3 * weight * model.block_size;
 }
 
 void Stepper::place(State& state) {
@@ -229,7 +234,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     }
     measure_spin(state);
     if (!result.converged) return false;
-    const Turns turned = look_at_turns(state);
+    const Turns turned = look_at_turns(state, drive.is_static);
     if (turned == Turns::are_too_far) return false;
     const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
     if (!moved && !impact && turned == Turns::are_known) return true;

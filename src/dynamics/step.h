@@ -116,7 +116,7 @@ class Stepper {
   void measure_spin(const State& state);
   /// How what blocks turned by in the step compares with what its contacts know of it.
   enum class Turns { are_known, are_others, are_too_far };
-  Turns look_at_turns(const State& state);
+  Turns look_at_turns(const State& state, bool is_static);
   [[nodiscard]] Vec2 at_end(const State& state, std::size_t vertex) const;
   [[nodiscard]] double gap_at_end(const State& state, const StepProblem::Row& row) const;
   bool moved_too_far();
@@ -185,6 +185,7 @@ class Stepper {
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
   double impact_speed_;                  ///< m/s
+  double turn_work_ = HUGE_VAL;  ///< J per thickness, that a contact may do over what turning makes it miss
   std::vector<Force> forces_;
   std::vector<ContactAccounts> accounts_;  ///< scratch
   /// J per thickness.

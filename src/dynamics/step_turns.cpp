@@ -40,31 +40,41 @@ double Stepper::gap_at_end(const State& state, const StepProblem::Row& row) cons
 
 /// The step is linear in the displacement, and misses the gap at its end: vertices of a turning block leave the straight way by ½ w² r,
 /// and the line of a turning edge moves away from a vertex that slides along it. That matters where a contact presses, and where it
-/// would come to press by that alone. What is missed goes into turned_now_, with which the step may be taken again; where blocks turn
-/// so far that forces have other directions at its end, the step is too long.
-Stepper::Turns Stepper::look_at_turns(const State& state) {
+/// would come to press by that alone: by the way, and by the work that the normal force does over it, which nobody would account for.
+/// What is missed goes into turned_now_, with which the step may be taken again; where blocks turn so far that forces have other
+/// directions at its end, the step is too long.
+Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
   constexpr double most_turned = 0.1;  // rad
   double turn = 0.0, moved = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   for (const Vec2 r : open_close_.relative()) moved = std::max(moved, squared_norm(r));
-  if (turned_.empty() && turn * (turn * largest_radius_ + std::sqrt(moved)) <= tolerances_.turn)
-    return Turns::are_known;  // as in most steps
+  moved = std::sqrt(moved);
+  const auto tolerated = [&](double force) {
+    return is_static ? tolerances_.turn : std::min(tolerances_.turn, turn_work_ / force);
+  };
+  const double least_tolerated = tolerated(problem_.springs().largest_normal_force());
+  const auto may_miss = [&](double spin) {
+    return spin * (spin * largest_radius_ + moved) > least_tolerated;
+  };
+  if (turned_.empty() && !may_miss(turn)) return Turns::are_known;  // as in most steps
   turned_now_.assign(contacts_.size(), 0.0);
   bool are_known = true;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
+    const double known = turned_.empty() ? 0.0 : turned_[c],
+                 spin = std::max(std::abs(spin_[a]), std::abs(spin_[b]));
+    if (known == 0.0 && !may_miss(spin)) continue;
     const StepProblem::Row& row = problem_.rows()[c];
     const Vec2 r = open_close_.relative()[c];
-    const double known = turned_.empty() ? 0.0 : turned_[c];
+    const double force = problem_.springs().force(c).normal, most_missed = tolerated(force);
     const double at_most = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
                                   spin_[b] * spin_[b] * model_.blocks[b].radius) +
                            std::abs(spin_[b] * dot(row.tangent(), r));
-    if (at_most <= tolerances_.turn && known == 0.0) continue;
+    if (at_most <= most_missed && known == 0.0) continue;
     const double gap = gap_at_end(state, row), linear = contacts_[c].gap + dot(row.normal, r) - known;
     turned_now_[c] = gap - linear;
-    const bool presses = problem_.springs().force(c).normal > 0.0;
-    if (std::abs(turned_now_[c] - known) <= tolerances_.turn || (!presses && gap >= 0.0)) continue;
-    if (std::max(std::abs(spin_[a]), std::abs(spin_[b])) > most_turned) return Turns::are_too_far;
+    if (std::abs(turned_now_[c] - known) <= most_missed || (force <= 0.0 && gap >= 0.0)) continue;
+    if (spin > most_turned) return Turns::are_too_far;
     are_known = false;
   }
   return are_known ? Turns::are_known : Turns::are_others;
