@@ -246,6 +246,21 @@ void Detection::find(const Surface& surface, const Motion& motion, CandidateList
   });
 }
 
+bool Detection::lies_outside(const Surface& surface, const Rival& rival,
+                             const CandidateList& candidates) const {
+  const Candidate& c = candidates.pairs[at(rival.candidate)];
+  const auto outside = [&](const auto& place) {
+    const Vec2 along = place(surface.next[at(c.edge)]) - place(c.edge), corner = place(c.vertex);
+    const auto is_outside = [&](int other) {
+      const Vec2 u = place(other) - corner;
+      return cross(u, along) >= -Tolerances::sine_inside * norm(u) * norm(along);
+    };
+    return is_outside(surface.previous[at(c.vertex)]) && is_outside(surface.next[at(c.vertex)]);
+  };
+  return outside([&](int v) { return surface.position[at(v)]; }) ||
+         outside([&](int v) { return surface.position[at(v)] + motion_.ahead[at(v)]; });
+}
+
 double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates) const {
   const double depth = tolerances_.corner_depth;
   if (rival.gap <= -depth) return 0.0;
@@ -261,11 +276,17 @@ double Detection::passing(const Surface& surface, const Rival& rival, const Cand
 
 /// Of two corners of which each has passed a line of the other, the one is in the other when it has passed the last: a corner that slides
 /// along a face and over the joint at its end passes the side of the next block, but not its face. Null: there is no telling.
-Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
+Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<Rival* const> all,
                                               const CandidateList& candidates) const {
   const auto are_turned = [&](const Rival* one, const Rival* other) {
     return turned(line(*one, candidates), line(*other, candidates));
   };
+  std::array<Rival*, 4> outside{};  // the others are there for turns that blocks might make
+  std::size_t count = 0;
+  for (Rival* r : all) {
+    if (!motion_.ahead.empty() && lies_outside(surface, *r, candidates)) outside[count++] = r;
+  }
+  const std::span<Rival* const> rivals = count > 0 ? std::span<Rival* const>(outside).first(count) : all;
   std::array<double, 4> when{};
   std::size_t last = 0, farthest = 0;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
