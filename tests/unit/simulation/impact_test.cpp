@@ -207,5 +207,30 @@ TEST(Impact, FastCornersSlideOverFlushJoints) {
   }
 }
 
+// A stone of which a face comes down on a corner of the bed, with its tip beyond. The stone turns the tip away from the bed, so that
+// the line that the tip could come to by the other turn does not keep the face out of the corner.
+TEST(Impact, FacesComeDownOnCornersBesideTheTip) {
+  for (int k = -7; k <= 8; ++k) {
+    Scene scene(3e9, 39.0, 2270.0);
+    scene.add({{0.0, 0.0}, {-0.13, -0.19}, {0.0, -0.56}, {0.95, -0.58}, {0.19, -0.143}, {0.0455, -0.0377}},
+              true);
+    const double shift = 0.0005 * k;
+    const int stone = scene.add({{0.0098 + shift, -0.0046},
+                                 {0.0343 + shift, 0.1311},
+                                 {0.0475 + shift, 0.1838},
+                                 {-0.1212 + shift, 0.08}});
+    BlockProperties& properties = scene.setup.properties[static_cast<std::size_t>(stone)];
+    properties.velocity = {2.34, -8.17};
+    properties.spin = 9.8;
+    Simulator s(scene);
+    for (int step = 0; step < 10; ++step) {
+      s.run(0.002, 0.002);
+      const std::vector<Polygon> two{deformed_polygon(s.model, 0), deformed_polygon(s.model, 1)};
+      const double depth = overlap::largest_overlap(two).depth;
+      EXPECT_LT(depth, 3e-4) << shift << ", step " << step;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
