@@ -140,7 +140,11 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   double margin = tries ? candidate_margin(surface, candidates, pair, end, rivals, reach_share * reach) : 0.0;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     const std::uint64_t corners = rivals[i].corners;
-    if (corners == 0) continue;
+    if (corners == 0) {
+      if (!rivals[i].disputed && has_come_in_elsewhere(surface, rivals[i], candidates))
+        rivals[i].candidate = -1;
+      continue;
+    }
     std::array<Rival*, 4> meeting{&rivals[i]};  // two edges end in each corner
     std::size_t size = 1;
     for (std::size_t k = i + 1; k < rivals.size() && size < meeting.size(); ++k) {
@@ -148,7 +152,7 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
     }
     const auto same = std::span(meeting).first(size);
     const Outcome outcome = compete(surface, same, candidates);
-    if (margin > 0.0) margin = std::min(margin, outcome_margin(same, outcome, candidates));
+    if (margin > 0.0) margin = std::min(margin, outcome_margin(surface, same, outcome, candidates));
     for (Rival* r : same) {
       r->corners = 0;
       if (r != outcome.winner) r->candidate = -1;
@@ -246,6 +250,33 @@ void Detection::find(const Surface& surface, const Motion& motion, CandidateList
   });
 }
 
+/// m, from a vertex to the nearest edge of the block of `edge` but this, without a reflex vertex between the two.
+double Detection::to_nearest_other_edge(const Surface& surface, const Candidate& candidate) const {
+  const Vec2 vertex = corners_[at(candidate.vertex)].position;
+  double nearest = HUGE_VAL;
+  const auto look_at = [&](int edge) {
+    const Corner& other = corners_[at(edge)];
+    const Vec2 from_start = vertex - other.position;
+    const double along = std::clamp(dot(other.tangent, from_start), 0.0, other.length);
+    nearest = std::min(nearest, squared_norm(from_start - along * other.tangent));
+  };
+  int edge = surface.next[at(candidate.edge)];
+  for (; edge != candidate.edge && surface.reflex[at(edge)] == 0; edge = surface.next[at(edge)])
+    look_at(edge);
+  if (edge != candidate.edge) {
+    for (edge = candidate.edge; surface.reflex[at(edge)] == 0;) look_at(edge = surface.previous[at(edge)]);
+  }
+  return std::sqrt(nearest);
+}
+
+/// Whether a vertex deep behind an edge is nearer to another: one that has come in by one face of a sharp corner, or is beside it, lies
+/// behind the other face, too.
+bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
+                                      const CandidateList& candidates) const {
+  return rival.gap < -deep(rival) &&
+         to_nearest_other_edge(surface, candidates.pairs[at(rival.candidate)]) < -rival.gap;
+}
+
 bool Detection::lies_outside(const Surface& surface, const Rival& rival,
                              const CandidateList& candidates) const {
   const Candidate& c = candidates.pairs[at(rival.candidate)];
@@ -318,6 +349,7 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
     if (f->memory >= 0 && (holder == nullptr || force(*f) > force(*holder))) holder = f;
   }
   Rival* winner = nullptr;
+  if (rivals.size() == 1 && has_come_in_elsewhere(surface, *rivals[0], candidates)) return {};
   if (parallel) {
     for (Rival* f : rivals) {
       if (winner == nullptr || over(*f) > over(*winner)) winner = f;

@@ -122,6 +122,14 @@ class Detection {
   [[nodiscard]] bool is_steady(const Surface& surface, const BlockPair& pair) const;
   // m, from the first vertex of block a to that of block b.
   [[nodiscard]] static Vec2 apart(const Surface& surface, const BlockPair& pair);
+  [[nodiscard]] double to_nearest_other_edge(const Surface& surface, const Candidate& candidate) const;
+  [[nodiscard]] bool has_come_in_elsewhere(const Surface& surface, const Rival& rival,
+                                           const CandidateList& candidates) const;
+  /// m, behind an edge, from which on it is asked where a vertex has come in. A tip that presses on the very end of a face is nearer to the
+  /// side below.
+  [[nodiscard]] double deep(const Rival& rival) const {
+    return rival.disputed ? tolerances_.end_zone : tolerances_.corner_depth;
+  }
   /// Which of the candidates for one pair of corners is the contact.
   struct Outcome {
     Rival* winner = nullptr;   ///< null: none
@@ -145,8 +153,10 @@ class Detection {
                                         double reach) const;
   [[nodiscard]] double rival_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
                                     double reach) const;
-  [[nodiscard]] double outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
-                                      const CandidateList& candidates) const;
+  [[nodiscard]] double depth_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
+                                    double gap_rate) const;
+  [[nodiscard]] double outcome_margin(const Surface& surface, std::span<Rival* const> rivals,
+                                      const Outcome& outcome, const CandidateList& candidates) const;
   /// Up to as many candidates as there are lanes, and what their two blocks together may do (Motion).
   struct Group {
     std::size_t size = 0;

@@ -227,7 +227,7 @@ TEST(Detection, ClearancesAndSteadyPairsHideNoContact) {
   std::mt19937 random(11);
   Seen seen;
   for (const double shift : {0.3, 0.0}) {
-    for (const double crooked : {0.004, 0.0004, 0.00002}) {
+    for (const double crooked : {0.012, 0.004, 0.0004, 0.00002}) {
       compare_with_oracle(crooked_wall(shift, crooked, random), random, seen);
     }
   }

@@ -232,5 +232,29 @@ TEST(Impact, FacesComeDownOnCornersBesideTheTip) {
   }
 }
 
+// A slender tip that has slid past a sharp corner, down one face or beside it, is behind the other face too, but not in contact with it;
+// nor is the corner with the far side of the tip. Nothing holds the stone without friction.
+TEST(Contact, TipsThatHavePassedASharpCornerAreFree) {
+  struct Place {
+    double below, beside;  // m, of the tip: the corner, the face
+  };
+  for (const double sharp : {10.0, 25.0, 40.0}) {  // degrees, of the corner
+    for (const Place place :
+         {Place{0.004, 1e-6}, {0.007, 1e-6}, {0.01, 1e-6}, {0.01, 0.003}, {0.003, 0.003}}) {
+      Scene scene(3e9, 0.0, 2270.0);
+      const auto along = [](double angle) {
+        return Vec2{std::sin(angle * degree), std::cos(angle * degree)};
+      };
+      scene.add({{0.0, 0.0}, -1.0 * along(sharp), {0.0, -1.0}}, true);
+      const Vec2 tip{place.beside, -place.below};
+      const int stone = scene.add({tip, tip + 0.5 * along(12.0), tip + 0.5 * along(2.0)});
+      Simulator s(scene);
+      s.run(0.06, 0.002);
+      EXPECT_NEAR(s.velocity(stone).y, -0.06 * g, 1e-6) << sharp << " " << place.below;
+      EXPECT_NEAR(spin(s, stone), 0.0, 1e-6) << sharp << " " << place.below;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
