@@ -138,13 +138,14 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   const double reach = motion_.reach[at(pair.block_a)] + motion_.reach[at(pair.block_b)];
   const bool tries = pair.wait == 0 && end - at(pair.first) <= most_candidates;
   double margin = tries ? candidate_margin(surface, candidates, pair, end, rivals, reach_share * reach) : 0.0;
+  for (Rival& r : rivals) {
+    if (!has_come_in_elsewhere(surface, r, candidates)) continue;
+    r.candidate = -1;
+    r.corners = 0;
+  }
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     const std::uint64_t corners = rivals[i].corners;
-    if (corners == 0) {
-      if (!rivals[i].disputed && has_come_in_elsewhere(surface, rivals[i], candidates))
-        rivals[i].candidate = -1;
-      continue;
-    }
+    if (corners == 0) continue;
     std::array<Rival*, 4> meeting{&rivals[i]};  // two edges end in each corner
     std::size_t size = 1;
     for (std::size_t k = i + 1; k < rivals.size() && size < meeting.size(); ++k) {
@@ -152,7 +153,7 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
     }
     const auto same = std::span(meeting).first(size);
     const Outcome outcome = compete(surface, same, candidates);
-    if (margin > 0.0) margin = std::min(margin, outcome_margin(surface, same, outcome, candidates));
+    if (margin > 0.0) margin = std::min(margin, outcome_margin(same, outcome, candidates));
     for (Rival* r : same) {
       r->corners = 0;
       if (r != outcome.winner) r->candidate = -1;
@@ -269,12 +270,19 @@ double Detection::to_nearest_other_edge(const Surface& surface, const Candidate&
   return std::sqrt(nearest);
 }
 
-/// Whether a vertex deep behind an edge is nearer to another: one that has come in by one face of a sharp corner, or is beside it, lies
-/// behind the other face, too.
+/// Whether a vertex deep behind an edge is nearer to another: one that has come in by one face of a sharp corner, or that has slid past a
+/// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face.
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                       const CandidateList& candidates) const {
-  return rival.gap < -deep(rival) &&
-         to_nearest_other_edge(surface, candidates.pairs[at(rival.candidate)]) < -rival.gap;
+  const Candidate& c = candidates.pairs[at(rival.candidate)];
+  if (rival.gap >= -deep(rival)) return false;
+  const Corner &vertex = corners_[at(c.vertex)], &edge = corners_[at(c.edge)];
+  const Vec2 inwards = rival.first_half ? edge.tangent : -1.0 * edge.tangent;
+  const auto lies_on_it = [&](Vec2 side) {
+    return dot(side, inwards) > 0.0 && std::abs(cross(side, inwards)) < Tolerances::sine_facing;
+  };
+  if (rival.disputed && (lies_on_it(vertex.tangent) || lies_on_it(-1.0 * vertex.before))) return false;
+  return to_nearest_other_edge(surface, c) < -rival.gap;
 }
 
 bool Detection::lies_outside(const Surface& surface, const Rival& rival,
@@ -349,7 +357,6 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
     if (f->memory >= 0 && (holder == nullptr || force(*f) > force(*holder))) holder = f;
   }
   Rival* winner = nullptr;
-  if (rivals.size() == 1 && has_come_in_elsewhere(surface, *rivals[0], candidates)) return {};
   if (parallel) {
     for (Rival* f : rivals) {
       if (winner == nullptr || over(*f) > over(*winner)) winner = f;

@@ -155,8 +155,8 @@ class Detection {
                                     double reach) const;
   [[nodiscard]] double depth_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
                                     double gap_rate) const;
-  [[nodiscard]] double outcome_margin(const Surface& surface, std::span<Rival* const> rivals,
-                                      const Outcome& outcome, const CandidateList& candidates) const;
+  [[nodiscard]] double outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
+                                      const CandidateList& candidates) const;
   /// Up to as many candidates as there are lanes, and what their two blocks together may do (Motion).
   struct Group {
     std::size_t size = 0;

@@ -62,7 +62,7 @@ double Detection::rival_margin(const Surface& surface, const Candidate& candidat
     margin = std::min(margin, std::min(outside / line_turn, largest_line_motion) * shortest);
   }
 
-  if (!rival.disputed) margin = std::min(margin, depth_margin(surface, candidate, rival, gap_rate));
+  margin = std::min(margin, depth_margin(surface, candidate, rival, gap_rate));
   const double from_zone_start = (rival.along - zone - reach) / start_rate,
                from_zone_end = (length - rival.along - zone - reach) / end_rate;
   if (from_zone_start > 0.0 && from_zone_end > 0.0) return std::min({margin, from_zone_start, from_zone_end});
@@ -77,6 +77,7 @@ double Detection::depth_margin(const Surface& surface, const Candidate& candidat
                                double gap_rate) const {
   const double too_deep = -rival.gap - deep(rival);
   if (too_deep < 0.0) return -too_deep / gap_rate;
+  if (rival.disputed) return 0.0;  // rare
   const double farther = to_nearest_other_edge(surface, candidate) + rival.gap,
                margin = std::abs(farther) / (1.0 + gap_rate);
   return farther < 0.0 ? std::min(margin, too_deep / gap_rate) : margin;
@@ -84,8 +85,8 @@ double Detection::depth_margin(const Surface& surface, const Candidate& candidat
 
 /// The rules of compete(), with the winner as the one that was in contact. They hold where the corners are now and, as long as both
 /// are within the margin, where they will be.
-double Detection::outcome_margin(const Surface& surface, std::span<Rival* const> rivals,
-                                 const Outcome& outcome, const CandidateList& candidates) const {
+double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
+                                 const CandidateList& candidates) const {
   if (outcome.handed_over) return 0.0;
   const auto line = [&](const Rival* r) -> const Corner& { return this->line(*r, candidates); };
   // Near an end of their lines, all of them.
@@ -114,11 +115,6 @@ double Detection::outcome_margin(const Surface& surface, std::span<Rival* const>
     largest_gap = std::max(largest_gap, r->gap);
   }
   const Rival* winner = outcome.winner;
-  if (rivals.size() == 1) {
-    const Rival& alone = *rivals[0];
-    margin = depth_margin(surface, candidates.pairs[at(alone.candidate)], alone, fastest);
-    if (has_come_in_elsewhere(surface, alone, candidates)) return margin;
-  }
   if (outcome.parallel) {
     if (winner != nullptr)
       return std::min(margin, (inside(winner->along, line(winner).length) - leave()) / over_rate(winner));

@@ -256,5 +256,25 @@ TEST(Contact, TipsThatHavePassedASharpCornerAreFree) {
   }
 }
 
+// Of four blocks about a crossing of joints, two that lie across from each other slide past each other along one joint. The faces on the
+// other joint do not catch, however far the corners have gone.
+TEST(Contact, BlocksAcrossFromEachOtherSlidePastTheirCorners) {
+  for (const double lean : {-20.0, 0.0, 20.0}) {               // degrees, of the joint that opens
+    for (const double passed : {0.0, 0.001, 0.0025, 0.006}) {  // m
+      Scene scene(3e9, 0.0, 2270.0);
+      const Vec2 up{std::sin(lean * degree), std::cos(lean * degree)}, right{1.0, 0.0};
+      scene.add({{0.0, 0.0}, -1.0 * up, -1.0 * up + right, right}, true);
+      const Vec2 corner = -1e-5 * right - passed * up;
+      const int block =
+          scene.add({corner, corner + 0.5 * up, corner + 0.5 * up - 0.5 * right, corner - 0.5 * right});
+      scene.setup.gravity = -9.81 * up;
+      Simulator s(scene);
+      s.run(0.06, 0.002);
+      EXPECT_NEAR(dot(s.velocity(block), up), -0.06 * 9.81, 1e-6) << lean << " " << passed;
+      EXPECT_NEAR(spin(s, block), 0.0, 1e-6) << lean << " " << passed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
