@@ -274,14 +274,12 @@ double Detection::to_nearest_other_edge(const Surface& surface, const Candidate&
 /// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face.
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                       const CandidateList& candidates) const {
-  const Candidate& c = candidates.pairs[at(rival.candidate)];
   if (rival.gap >= -deep(rival)) return false;
-  const Corner &vertex = corners_[at(c.vertex)], &edge = corners_[at(c.edge)];
-  const Vec2 inwards = rival.first_half ? edge.tangent : -1.0 * edge.tangent;
-  const auto lies_on_it = [&](Vec2 side) {
-    return dot(side, inwards) > 0.0 && std::abs(cross(side, inwards)) < Tolerances::sine_facing;
-  };
-  if (rival.disputed && (lies_on_it(vertex.tangent) || lies_on_it(-1.0 * vertex.before))) return false;
+  const Candidate& c = candidates.pairs[at(rival.candidate)];
+  for (const Vec2 side : sides(c)) {
+    const Vec2 inwards = line_inwards(rival, c);
+    if (dot(side, inwards) > 0.0 && std::abs(cross(side, inwards)) < Tolerances::sine_facing) return false;
+  }
   return to_nearest_other_edge(surface, c) < -rival.gap;
 }
 

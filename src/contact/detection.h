@@ -130,6 +130,15 @@ class Detection {
   [[nodiscard]] double deep(const Rival& rival) const {
     return rival.disputed ? tolerances_.end_zone : tolerances_.corner_depth;
   }
+  /// Directions of the edges of the vertex, away from it.
+  [[nodiscard]] std::array<Vec2, 2> sides(const Candidate& candidate) const {
+    const Corner& vertex = corners_[static_cast<std::size_t>(candidate.vertex)];
+    return {vertex.tangent, -1.0 * vertex.before};
+  }
+  /// Of the edge, away from the end that is nearer to the vertex.
+  [[nodiscard]] Vec2 line_inwards(const Rival& rival, const Candidate& candidate) const {
+    return (rival.first_half ? 1.0 : -1.0) * corners_[static_cast<std::size_t>(candidate.edge)].tangent;
+  }
   /// Which of the candidates for one pair of corners is the contact.
   struct Outcome {
     Rival* winner = nullptr;   ///< null: none

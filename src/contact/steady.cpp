@@ -16,6 +16,11 @@ double rate(double distance, double length) {
   return 2.0 + line_turn * distance / length;
 }
 
+/// How far two lines may move, as a share of the shorter, before the sine of the angle between them passes a threshold.
+double turn_margin(double sine, double threshold) {
+  return std::min(std::abs(sine - threshold) / (2.0 * line_turn), largest_line_motion);
+}
+
 }  // namespace
 
 /// Before another candidate of the pair passes, or one that does passes no more, or comes to meet other corners.
@@ -72,15 +77,24 @@ double Detection::rival_margin(const Surface& surface, const Candidate& candidat
                                            : (zone - (length - rival.along)) / end_rate);
 }
 
-/// The rule of has_come_in_elsewhere(): the vertex and the edges move by no more than the blocks do.
+/// The rule of has_come_in_elsewhere().
 double Detection::depth_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
                                double gap_rate) const {
   const double too_deep = -rival.gap - deep(rival);
   if (too_deep < 0.0) return -too_deep / gap_rate;
-  if (rival.disputed) return 0.0;  // rare
-  const double farther = to_nearest_other_edge(surface, candidate) + rival.gap,
-               margin = std::abs(farther) / (1.0 + gap_rate);
-  return farther < 0.0 ? std::min(margin, too_deep / gap_rate) : margin;
+  // The vertex and the other edges move by no more than the blocks do.
+  const double length = corners_[at(candidate.edge)].length,
+               farther = to_nearest_other_edge(surface, candidate) + rival.gap;
+  double margin = std::min({too_deep / gap_rate, std::abs(farther) / (1.0 + gap_rate),
+                            std::abs(rival.along - 0.5 * length) / rate(length, length)});
+  const int vertex = candidate.vertex;
+  const std::array<double, 2> sizes{corners_[at(vertex)].length,
+                                    corners_[at(surface.previous[at(vertex)])].length};
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const double sine = std::abs(cross(sides(candidate)[k], line_inwards(rival, candidate)));
+    margin = std::min(margin, turn_margin(sine, Tolerances::sine_facing) * std::min(length, sizes[k]));
+  }
+  return margin;
 }
 
 /// The rules of compete(), with the winner as the one that was in contact. They hold where the corners are now and, as long as both
@@ -104,9 +118,7 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
       if (other == r) continue;
       const double sine = std::abs(cross(line(r).tangent, line(other).tangent)),
                    shortest = std::min(line(r).length, line(other).length);
-      margin = std::min(margin, std::min(std::abs(sine - Tolerances::sine_parallel) / (2.0 * line_turn),
-                                         largest_line_motion) *
-                                    shortest);
+      margin = std::min(margin, turn_margin(sine, Tolerances::sine_parallel) * shortest);
       any_turned = any_turned || turned(line(r), line(other));
     }
     each_turned = each_turned && any_turned;

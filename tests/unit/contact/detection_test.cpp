@@ -280,6 +280,17 @@ TEST(Detection, VertexThatSlipsPastAConcaveCornerIsKept) {
   EXPECT_TRUE(side);
 }
 
+TEST(Detection, FacesDeepInEachOtherAreKept) {
+  for (const double shift : {0.0, 0.001, 0.005}) {  // m; deeper than far from their ends
+    Surface surface;
+    add_block(surface, rectangle(0, 0, 1, 1));
+    add_block(surface, rectangle(shift, 0.99, 1.0 + shift, 1.99));
+    const auto contacts = find(surface);
+    EXPECT_EQ(contacts.size(), 2u) << shift;
+    for (const Contact& c : contacts) EXPECT_NEAR(std::abs(c.normal.y), 1.0, 1e-12) << shift;
+  }
+}
+
 TEST(Detection, BornPenetratedContactsGetAnOffsetThatOnlyShrinks) {
   CandidateList list;
   const auto upper_at = [&](double y) {
