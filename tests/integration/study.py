@@ -98,7 +98,7 @@ class Runs(Study):
         self.assertEqual(self.summary("by-hand")["state_hash"], runs[1]["state_hash"])
 
     def test_until_an_interval_is_narrow(self):
-        until = 'until = { measure = "slipped_length_m", half_width = 0.75, minimum = 3, maximum = 12 }\n'
+        until = 'until = { measure = "slipped_length_m", width = 6.0, minimum = 3, maximum = 12 }\n'
         self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until + SCALES)
         said = self.run_study("until.toml").stdout
         self.assertRegex(said, r"enough: \d+ realizations")
@@ -111,7 +111,7 @@ class Runs(Study):
         self.run_study("until.toml", "--resume")
         self.assertEqual(self.done(), before)
         self.assertIn("does not ask for it", self.study("task", "one", 2 * enough).stdout)
-        self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until.replace("0.75", "0.0001") + SCALES)
+        self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until.replace("width = 6.0", "half_width = 0.0001") + SCALES)
         self.assertIn("24 of 24 runs done\n", self.run_study("until.toml", "--resume").stdout)
 
 
