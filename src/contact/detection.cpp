@@ -366,6 +366,8 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
     }
   } else {
     winner = line_passed_last(surface, rivals, candidates);
+    // Corners that press on each other may part in the step, where one of them meets a third block.
+    if (winner == nullptr && holder != nullptr && force(*holder) > 0.0) winner = holder;
   }
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.
