@@ -256,6 +256,29 @@ TEST(Contact, TipsThatHavePassedASharpCornerAreFree) {
   }
 }
 
+// The tip of a slab meets the corner of a stone and pushes it along a bed, both at one place on it, until the stone runs into a wall within
+// a step. All the while nothing tells which side of the stone the tip will pass; it does not go through.
+TEST(Contact, TipsStayOutOfCornersThatTheyPush) {
+  for (int k = 0; k < 8; ++k) {
+    Scene scene(3e9, 39.0, 2270.0);
+    scene.add({{-1.0, 0.0}, {-1.0, -0.5}, {1.0, -0.5}, {1.0, 0.0}}, true);
+    const double left = 0.0051 + 0.0005 * k;  // m, of the way to the wall
+    scene.add({{0.0756 + left, 0.1}, {0.0756 + left, 1e-4}, {0.5, 1e-4}, {0.5, 0.1}}, true);
+    const int slab = scene.add({{-1e-6, 1e-6}, {-0.030, 0.113}, {-0.302, 0.266}});
+    const int stone = scene.add({{0.0, 1e-6}, {0.0137, 0.0072}, {0.055, 0.0313}, {0.0753, 0.0035}});
+    scene.setup.solver.restitution = 0.0;
+    scene.setup.properties[static_cast<std::size_t>(slab)].velocity = {2.0, 0.0};
+    scene.setup.properties[static_cast<std::size_t>(stone)].velocity = {1.8, 0.0};
+    Simulator s(scene);
+    for (int step = 0; step < 10; ++step) {
+      s.run(0.002, 0.002);
+      std::vector<Polygon> all;
+      for (int block = 0; block < 4; ++block) all.push_back(deformed_polygon(s.model, block));
+      EXPECT_LT(overlap::largest_overlap(all).depth, 1e-4) << left << ", step " << step;
+    }
+  }
+}
+
 // Of four blocks about a crossing of joints, two that lie across from each other slide past each other along one joint. The faces on the
 // other joint do not catch, however far the corners have gone.
 TEST(Contact, BlocksAcrossFromEachOtherSlidePastTheirCorners) {
