@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "linalg/block_kernels.h"
+#include "linalg/paired_columns.h"
 
 namespace keyblock::linalg {
 
@@ -54,43 +55,55 @@ decltype(auto) BlockConjugateGradient::with_layout(const Body& body) const {
   return body(AnyBlocks{size_.data(), stride_.data(), start_.data()});
 }
 
-/// y −= S_j x_j of the rows of the same range, with S_j what stands above the diagonal in column j of U or of A, from `block` on.
+/// y −= S_j x_j of the rows of the same range, with S_j what stands above the diagonal in column j of A, from `block` on.
 template <typename Layout, typename Number>
 void BlockConjugateGradient::subtract_above(Layout layout, std::size_t j, const Number* block,
                                             const Number* x, Number* y) const {
   const Number* x_j = x + layout.start(j);
   for (std::size_t e = column_start_[j]; e < own_start_[j]; ++e)
     block += layout.stride(rows_[e]) * layout.size(j);
-  if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
-    decltype(load(x)) factor[6];
-#pragma GCC unroll 6
-    for (int c = 0; c < 6; ++c) factor[c] = broadcast(x_j[c]);
-    for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e, block += 6 * row_padding) {
-      Number* y_i = y + layout.start(rows_[e]);
-      auto t = load(y_i);
-#pragma GCC unroll 6
-      for (int c = 0; c < 6; ++c) t = subtract_product(load(block + c * row_padding), factor[c], t);
-      store(y_i, t);
-    }
-  } else {
-    for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e) {
-      const std::size_t i = rows_[e];
-      subtract_times(layout.stride(i) / row_padding, layout.size(j), block, x_j, y + layout.start(i));
-      block += layout.stride(i) * layout.size(j);
-    }
+  for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e) {
+    const std::size_t i = rows_[e];
+    subtract_times(layout.stride(i) / row_padding, layout.size(j), block, x_j, y + layout.start(i));
+    block += layout.stride(i) * layout.size(j);
   }
 }
 
-/// y −= S x of the rows between the parts, with S the blocks whose columns lie in parts; `place` says where in `values`. Rows gather, so
-/// that no two parts write to them.
-template <auto place, typename Layout, typename Number>
-void BlockConjugateGradient::subtract_from_parts(Layout layout, const Number* values, const Number* x,
-                                                 Number* y) const {
+/// The same with U.
+template <typename Layout>
+void BlockConjugateGradient::subtract_scaled(Layout layout, std::size_t j, const float* x, float* y) const {
+  const float* block = &above_[above_start_[j]];
+  if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
+    block += (own_start_[j] - column_start_[j]) * paired_columns::block_size;
+    const paired_columns::Factors factors(load(x + layout.start(j)));
+    for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e, block += paired_columns::block_size) {
+      float* y_i = y + layout.start(rows_[e]);
+      store(y_i, load(y_i) - paired_columns::product(block, factors));
+    }
+  } else {
+    subtract_above(layout, j, block, x, y);
+  }
+}
+
+/// y −= S x of the rows between the parts, with S the blocks whose columns lie in parts; subtract(entry, row) does it for one. Rows
+/// gather, so that no two parts write to them.
+template <typename Subtract>
+void BlockConjugateGradient::for_entries_between(const Subtract& subtract) const {
   for_rows_between([&](std::size_t row) {
-    for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
-      const RowEntry& entry = row_entries_[k];
-      subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), values + entry.*place,
-                     x + layout.start(entry.column), y + layout.start(row));
+    for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) subtract(row_entries_[k], row);
+  });
+}
+
+/// y −= U x of the rows between the parts, of columns in parts.
+template <typename Layout>
+void BlockConjugateGradient::subtract_scaled_of_parts(Layout layout, const float* x, float* y) const {
+  for_entries_between([&](const RowEntry& entry, std::size_t row) {
+    const float *block = &above_by_rows_[entry.copy], *x_j = x + layout.start(entry.column);
+    float* y_i = y + layout.start(row);
+    if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
+      store(y_i, load(y_i) - paired_columns::product(block, paired_columns::Factors(load(x_j))));
+    } else {
+      subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), block, x_j, y_i);
     }
   });
 }
@@ -98,16 +111,24 @@ void BlockConjugateGradient::subtract_from_parts(Layout layout, const Number* va
 /// y_j ← (Uᵀ x)_j.
 template <typename Layout>
 void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
-  in_sixes(layout.size(j), [&]<int width>(int c) {
-    NarrowLanes t[width]{};
-    const float* block = above_.data() + above_start_[j];
-    for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
-      const std::size_t i = rows_[e];
-      add_lane_products(layout.stride(i) / row_padding, block + c * layout.stride(i), x + layout.start(i), t);
-      block += layout.stride(i) * layout.size(j);
-    }
-    store_first<width>(y + layout.start(j) + at(c), layout.stride(j) - c, sums(t));
-  });
+  const float* block = above_.data() + above_start_[j];
+  if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
+    paired_columns::PairLanes t[3]{};
+    for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e, block += paired_columns::block_size)
+      paired_columns::add_row_products(block, paired_columns::for_both(load(x + layout.start(rows_[e]))), t);
+    store(y + layout.start(j), paired_columns::column_sums(t));
+  } else {
+    in_sixes(layout.size(j), [&]<int width>(int c) {
+      NarrowLanes t[width]{};
+      const float* values = block;
+      for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
+        const std::size_t i = rows_[e];
+        add_lane_products(layout.stride(i) / row_padding, values + c * layout.stride(i), x + layout.start(i), t);
+        values += layout.stride(i) * layout.size(j);
+      }
+      store_first<width>(y + layout.start(j) + at(c), layout.stride(j) - c, sums(t));
+    });
+  }
 }
 
 /// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of a range.
@@ -134,7 +155,7 @@ template <typename Layout>
                                                                                   Range range) {
   Lanes rr{}, pq{}, rq{}, qq{};
   for (std::size_t j = range.last; j-- > range.first;) {
-    subtract_above(layout, j, above_.data() + above_start_[j], q_.data(), q_.data());
+    subtract_scaled(layout, j, q_.data(), q_.data());
     for_registers(layout, j, [&](std::size_t k) {
       const NarrowLanes t = load(&t_[k]) + load(&q_[k]);
       store(&t_[k], t);
@@ -157,7 +178,7 @@ BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double 
       go_forward(layout, range, a, b);
       dots_[k] = go_backward(layout, range);
     });
-    subtract_from_parts<&RowEntry::copy>(layout, above_by_rows_.data(), q_.data(), q_.data());
+    subtract_scaled_of_parts(layout, q_.data(), q_.data());
     dots_.front() = go_backward(layout, between());
     Dots total;
     for (const Dots& part : dots_) total += part;
@@ -182,7 +203,7 @@ void BlockConjugateGradient::start(std::span<const double> x) {
   with_layout([&](auto layout) {
     const auto divide = [&](Range range) {
       for (std::size_t j = range.last; j-- > range.first;)
-        subtract_above(layout, j, above_.data() + above_start_[j], r_.data(), r_.data());
+        subtract_scaled(layout, j, r_.data(), r_.data());
     };
     const auto scale = [&](Range range) {
       for (std::size_t j = range.first; j < range.last; ++j) {
@@ -200,7 +221,7 @@ void BlockConjugateGradient::start(std::span<const double> x) {
       scale(range);
       divide(range);
     });
-    subtract_from_parts<&RowEntry::copy>(layout, above_by_rows_.data(), r_.data(), r_.data());
+    subtract_scaled_of_parts(layout, r_.data(), r_.data());
     divide(between());
   });
 }
@@ -229,7 +250,7 @@ void BlockConjugateGradient::find_residual(std::span<double> residual) {
     };
     const auto multiply_columns = [&](Range range) {
       for (std::size_t j = range.last; j-- > range.first;) {
-        subtract_above(layout, j, above_.data() + above_start_[j], r_.data(), q_.data());
+        subtract_scaled(layout, j, r_.data(), q_.data());
         float* product = &t_[layout.start(j)];
         multiply(layout.stride(j) / row_padding, layout.size(j), &scale_[inverse_start_[j]],
                  &q_[layout.start(j)], product);
@@ -241,7 +262,7 @@ void BlockConjugateGradient::find_residual(std::span<double> residual) {
       copy(range);
       multiply_columns(range);
     });
-    subtract_from_parts<&RowEntry::copy>(layout, above_by_rows_.data(), r_.data(), q_.data());
+    subtract_scaled_of_parts(layout, r_.data(), q_.data());
     multiply_columns(between());
   });
 }
@@ -292,7 +313,10 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
       std::copy(estimate_.begin(), estimate_.end(), residual.begin());
       return;
     }
-    subtract_from_parts<&RowEntry::values>(layout, matrix_.data(), wide_.data(), product_.data());
+    for_entries_between([&](const RowEntry& entry, std::size_t row) {
+      subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), &matrix_[entry.values],
+                     &wide_[layout.start(entry.column)], &product_[layout.start(row)]);
+    });
     multiply_columns(between());
     for_ranges([&](std::size_t, Range range) {
       for (std::size_t j = range.first; j < range.last; ++j) {

@@ -88,8 +88,12 @@ class BlockConjugateGradient final : public BlockSolver {
   }
   template <typename Layout, typename Number>
   void subtract_above(Layout layout, std::size_t j, const Number* block, const Number* x, Number* y) const;
-  template <auto place, typename Layout, typename Number>
-  void subtract_from_parts(Layout layout, const Number* values, const Number* x, Number* y) const;
+  template <typename Layout>
+  void subtract_scaled(Layout layout, std::size_t j, const float* x, float* y) const;
+  template <typename Subtract>
+  void for_entries_between(const Subtract& subtract) const;
+  template <typename Layout>
+  void subtract_scaled_of_parts(Layout layout, const float* x, float* y) const;
   template <typename Layout>
   void store_transposed(Layout layout, std::size_t j, const float* x, float* y) const;
   template <typename Layout>
@@ -105,7 +109,10 @@ class BlockConjugateGradient final : public BlockSolver {
   void subtract_product_of(Layout layout, std::size_t j);
   void find_residual(std::span<double> residual);
   void take_over(std::span<double> x, std::span<double> residual, Residual kind);
+  /// Numbers of block (i, j) of U.
+  [[nodiscard]] std::size_t scaled_count(std::size_t i, std::size_t j) const;
   void scale_block(std::size_t i, std::size_t j, const double* a, double* scaled) const;
+  void store_scaled(std::size_t i, std::size_t j, const double* scaled, float* above) const;
   void copy_rows_between();
   /// What iterate() took, and whether the estimate of the residual is small enough.
   struct Iterations {
@@ -141,7 +148,7 @@ class BlockConjugateGradient final : public BlockSolver {
   WideVector matrix_;   ///< A
   WideVector inverse_;  ///< C_j⁻¹
   Vector scale_;        ///< C_j
-  Vector above_;        ///< U
+  Vector above_;        ///< U, by paired_columns where all blocks have 6 unknowns
   /// That of row_entries_ once more, in their order: where rows gather from above_, they wait for the memory at each block.
   Vector above_by_rows_;
   std::vector<std::uint8_t> stale_;

@@ -3,6 +3,7 @@
 
 #include "linalg/block_conjugate_gradient.h"
 #include "linalg/block_kernels.h"
+#include "linalg/paired_columns.h"
 
 namespace keyblock::linalg {
 
@@ -31,6 +32,18 @@ void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const dou
   } else {
     multiply_left(stride_[i] / row_padding, size_[i], size_[j]);
     multiply_right(stride_[i] / row_padding, size_[j], right, scaled);
+  }
+}
+
+/// In single precision, as U has it.
+void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const double* scaled, float* above) const {
+  if (!same_) {
+    for (int k = 0; k < stride_[i] * size_[j]; k += row_padding) store(above + k, narrow(load(scaled + k)));
+    return;
+  }
+  for (int c = 0; c < paired_columns::rows; ++c) {
+    const NarrowLanes column = narrow(load(scaled + c * row_padding));
+    for (int r = 0; r < paired_columns::rows; ++r) above[c * paired_columns::rows + r] = column[r];
   }
 }
 
@@ -71,13 +84,13 @@ bool BlockConjugateGradient::factor() {
       const double* values = &matrix_[diagonal_[j]] + at(stride_[j] * size_[j]);
       float* above = above_.data() + above_start_[j];
       for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
-        const std::size_t i = rows_[e], count = at(stride_[i] * size_[j]);
+        const std::size_t i = rows_[e];
         if (stale_[i] != 0 || stale_[j] != 0) {
           scale_block(i, j, values, scratch.data());
-          for (std::size_t k = 0; k < count; k += row_padding) store(above + k, narrow(load(&scratch[k])));
+          store_scaled(i, j, scratch.data(), above);
         }
-        values += count;
-        above += count;
+        values += stride_[i] * size_[j];
+        above += scaled_count(i, j);
       }
     }
   });
@@ -92,7 +105,7 @@ void BlockConjugateGradient::copy_rows_between() {
     for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
       const RowEntry& entry = row_entries_[k];
       if (stale_[row] != 0 || stale_[entry.column] != 0)
-        std::copy_n(&above_[entry.above], stride_[row] * size_[entry.column], &above_by_rows_[entry.copy]);
+        std::copy_n(&above_[entry.above], scaled_count(row, entry.column), &above_by_rows_[entry.copy]);
     }
   });
 }

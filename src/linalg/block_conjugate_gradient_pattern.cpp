@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "linalg/block_conjugate_gradient.h"
+#include "linalg/paired_columns.h"
 #include "linalg/partition.h"
 
 namespace keyblock::linalg {
@@ -46,6 +47,10 @@ void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span
   for (WideVector* v : {&wide_, &product_}) v->assign(padded, 0.0);
 }
 
+std::size_t BlockConjugateGradient::scaled_count(std::size_t i, std::size_t j) const {
+  return same_ ? std::size_t{paired_columns::block_size} : at(stride_[i] * size_[j]);
+}
+
 /// Where the block of every pair is in matrix_.
 std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = size_.size();
@@ -79,7 +84,7 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
       }
       values[k] = used;
       used += at(stride_[row] * size_[j]);
-      scaled += at(stride_[row] * size_[j]);
+      scaled += scaled_count(row, j);
     }
     column_start_.push_back(rows_.size());
   }
@@ -90,15 +95,15 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     for (RowEntry entry : of_row[row]) {
       entry.copy = copied;
       row_entries_.push_back(entry);
-      copied += at(stride_[row] * size_[entry.column]);
+      copied += scaled_count(row, entry.column);
     }
     row_start_.push_back(row_entries_.size());
   }
   matrix_.assign(used, 0.0);
   inverse_.assign(inverse, 0.0);
   scale_.assign(inverse, 0.0F);
-  above_.assign(scaled, 0.0F);
-  above_by_rows_.assign(copied, 0.0F);
+  above_.assign(scaled + paired_columns::read_beyond, 0.0F);
+  above_by_rows_.assign(copied + paired_columns::read_beyond, 0.0F);
   stale_.assign(n, 1);
   return values;
 }
