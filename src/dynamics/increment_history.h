@@ -1,40 +1,50 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace keyblock::dynamics {
 
-/// The increments of the last two steps, and what they say of the next: it changes as much as the last one did. Velocities say less:
-/// contact springs that Δt does not resolve turn the sign of theirs in every step.
+/// The increments of the last steps, and what they say of the next: it changes as much as the last one did. Where no contact has changed
+/// its state for a while they go on as a polynomial through more of them does. Velocities say less: contact springs that Δt does not
+/// resolve turn the sign of theirs in every step.
 class IncrementHistory {
  public:
-  void forget() { known_ = 0; }
+  void forget() { known_ = quiet_ = 0; }
 
-  /// Of a step of length dt, s. Steps of another length are forgotten.
-  void add(std::span<const double> increment, double dt) {
-    known_ = dt == dt_ ? std::min(known_ + 1, 2) : 1;
+  /// Of a step of length dt, s; quiet: no contact changed its state in it, against what was expected. Steps of another length are
+  /// forgotten.
+  void add(std::span<const double> increment, double dt, bool quiet) {
+    if (dt != dt_) forget();
+    known_ = std::min(known_ + 1, most);
+    quiet_ = quiet ? std::min(quiet_ + 1, most) : 0;
     dt_ = dt;
-    std::swap(last_, before_);
-    last_.assign(increment.begin(), increment.end());
+    std::rotate(increments_.begin(), increments_.end() - 1, increments_.end());
+    increments_[0].assign(increment.begin(), increment.end());
   }
 
   /// Of the next step, of length dt, into `increment`: zero where nothing is known.
   void extrapolate(double dt, std::span<double> increment) const {
-    if (known_ == 0 || dt != dt_) {
-      std::fill(increment.begin(), increment.end(), 0.0);
-    } else if (known_ == 1) {
-      std::copy(last_.begin(), last_.end(), increment.begin());
-    } else {
-      for (std::size_t k = 0; k < increment.size(); ++k) increment[k] = 2.0 * last_[k] - before_[k];
+    std::fill(increment.begin(), increment.end(), 0.0);
+    if (dt != dt_) return;
+    // A change of state leaves no smooth curve through the increments before and after it.
+    const int points = std::min(known_, std::max(2, quiet_));
+    double weight = -1.0;  // (−1)^(k + 1) (points choose k)
+    for (int k = 1; k <= points; ++k) {
+      weight *= -static_cast<double>(points + 1 - k) / k;
+      const std::vector<double>& before = increments_[static_cast<std::size_t>(k - 1)];
+      for (std::size_t i = 0; i < increment.size(); ++i) increment[i] += weight * before[i];
     }
   }
 
  private:
-  int known_ = 0;  ///< of the two
+  /// Beyond, what is left of tolerances of the steps before, times the sum of the weights, is more than is gained.
+  static constexpr int most = 4;
+  int known_ = 0;  ///< increments
+  int quiet_ = 0;  ///< steps in a row
   double dt_ = 0.0;
-  std::vector<double> last_, before_;
+  std::array<std::vector<double>, most> increments_;  ///< the last one first
 };
 
 }  // namespace keyblock::dynamics

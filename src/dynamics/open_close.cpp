@@ -207,6 +207,7 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
   if (!solve_linear(problem, solver, tolerance)) return false;
   find_direction(problem);
   go(problem, search_line(), d);
+  result.bends += bends_.size();
   return true;
 }
 

@@ -22,6 +22,7 @@ struct OpenCloseResult {
   bool bond_broken = false;    ///< some contact lost its cohesion and tension on the way
   int iterations = 0;          ///< linear solves
   int factorizations = 0;
+  std::size_t bends = 0;        ///< contacts that changed piece on the way, as often as they did
   int refinements = 0;          ///< corrections of what the factor of an earlier step gets wrong
   int multiplier_updates = 0;   ///< of an augmented Lagrangian
   int bound_updates = 0;        ///< times the Coulomb bounds were taken anew

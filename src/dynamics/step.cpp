@@ -226,6 +226,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,
                                                      profile_, increment_, meets_impacts);
     report.iterations += result.iterations;
+    quiet_ = result.bends == 0;
     if (!result.finite)
       throw RunError("the forces of the step to " + std::to_string(drive.end_time) + " s are not finite");
     if (result.linear_failed && !must_be_direct) {
@@ -255,7 +256,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   const Profile::Scope scope(profile_, Phase::update);
   remember(state, drive, report);
   if (guessed_ && !drive.is_static) {
-    history_.add(increment_, drive.step);
+    history_.add(increment_, drive.step, quiet_);
   } else {
     history_.forget();
   }

@@ -177,6 +177,7 @@ class Stepper {
   std::vector<double> increment_;
   IncrementHistory history_;      ///< of dynamic steps by solvers that start from a guess
   bool guessed_ = false;          ///< the last attempt started from one
+  bool quiet_ = false;            ///< no contact changed its piece in it
   std::vector<double> speed_;     ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;      ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;  ///< per block, of the last attempt

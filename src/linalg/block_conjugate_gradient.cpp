@@ -16,6 +16,8 @@ constexpr int most_iterations = 400;
 constexpr double most_growth = 100.0;
 // Excess of the iteration's residual, with which that of the matrix is small enough.
 constexpr double well_enough = 0.9;
+// Share of the square of the residual asked for, at which it is looked at for the first time.
+constexpr double early = 0.5;
 
 /// Sizes of blocks and where they are in padded vectors.
 struct AnyBlocks {
@@ -331,18 +333,20 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
 /// factor of ten and more, the one way or the other. As it costs more than an iteration it is looked at when it should be small
-/// enough, going by how far it was away the last time; the first time, three quarters of the digits on the way.
+/// enough, going by how far it was away the last time; the first time by the last solutions, or three quarters of the digits on the way.
 BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_large, const Excess& excess,
                                                                    int most) {
-  double alpha = 0.0, beta = 0.0, wanted = 0.0, most_rr = HUGE_VAL;
+  const double start = too_large;
+  double alpha = 0.0, beta = 0.0, wanted = 0.0, first_rr = 0.0;
   for (int iterations = 1;; ++iterations) {
     const Dots dots = apply(alpha, beta);
-    // Nothing is left of p in single precision, or the matrix is not positive definite.
-    if (!(dots.pq > 0.0 && dots.rr < most_rr)) return {iterations, false};
     if (iterations == 1) {
-      wanted = dots.rr / (too_large * std::sqrt(too_large));
-      most_rr = most_growth * most_growth * dots.rr;
+      first_rr = dots.rr;
+      const double lag = *std::max_element(lag_.begin(), lag_.end()), three_quarters = std::sqrt(start);
+      wanted = first_rr * (lag > 0.0 ? std::min(three_quarters, early * lag) : three_quarters) / (start * start);
     }
+    // Nothing is left of p in single precision, or the matrix is not positive definite.
+    if (!(dots.pq > 0.0 && dots.rr <= most_growth * most_growth * first_rr)) return {iterations, false};
     alpha = dots.rr / dots.pq;
     const double rr = std::max(0.0, dots.rr - 2.0 * alpha * dots.rq + alpha * alpha * dots.qq);
     beta = rr / dots.rr;
@@ -352,7 +356,11 @@ BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_la
     if (iterations == most) return {iterations, false};
     find_residual(estimate_);
     too_large = excess(estimate_);
-    if (too_large <= well_enough) return {iterations, true};
+    if (too_large <= well_enough) {
+      std::copy_backward(lag_.begin(), lag_.end() - 1, lag_.end());
+      lag_.front() = rr / first_rr * (start * start) / (too_large * too_large);
+      return {iterations, true};
+    }
     wanted = 0.5 * rr / (too_large * too_large);
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -157,6 +158,9 @@ class BlockConjugateGradient final : public BlockSolver {
   WideVector wide_, product_;     ///< padded: scratch
   std::vector<double> estimate_;  ///< of the residual
   std::vector<Dots> dots_;        ///< per range
+  /// Of the last solutions with this matrix: by how much less the square of the residual fell than that of its norm in the scaled
+  /// system; 0: not known.
+  std::array<double, 3> lag_{};
   bool solved_ = true;
 };
 

@@ -8,6 +8,7 @@
 namespace keyblock::linalg {
 
 void BlockConjugateGradient::clear() {
+  lag_ = {};
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
   // Each diagonal block is followed by those above it, and these by the next diagonal block.
   const auto start = [&](std::size_t place) {
