@@ -74,16 +74,15 @@ void BlockConjugateGradient::subtract_above(Layout layout, std::size_t j, const 
 /// The same with U.
 template <typename Layout>
 void BlockConjugateGradient::subtract_scaled(Layout layout, std::size_t j, const float* x, float* y) const {
-  const float* block = &above_[above_start_[j]];
   if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
-    block += (own_start_[j] - column_start_[j]) * paired_columns::block_size;
+    const float* block = &above_[std::size_t{own_start_[j]} * paired_columns::block_size];
     const paired_columns::Factors factors(load(x + layout.start(j)));
     for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e, block += paired_columns::block_size) {
       float* y_i = y + layout.start(rows_[e]);
       store(y_i, load(y_i) - paired_columns::product(block, factors));
     }
   } else {
-    subtract_above(layout, j, block, x, y);
+    subtract_above(layout, j, &above_[above_start_[j]], x, y);
   }
 }
 
@@ -113,8 +112,8 @@ void BlockConjugateGradient::subtract_scaled_of_parts(Layout layout, const float
 /// y_j ← (Uᵀ x)_j.
 template <typename Layout>
 void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
-  const float* block = above_.data() + above_start_[j];
   if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
+    const float* block = &above_[std::size_t{column_start_[j]} * paired_columns::block_size];
     paired_columns::PairLanes t[3]{};
     for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e, block += paired_columns::block_size)
       paired_columns::add_row_products(block, paired_columns::for_both(load(x + layout.start(rows_[e]))), t);
@@ -122,7 +121,7 @@ void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, cons
   } else {
     in_sixes(layout.size(j), [&]<int width>(int c) {
       NarrowLanes t[width]{};
-      const float* values = block;
+      const float* values = &above_[above_start_[j]];
       for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
         const std::size_t i = rows_[e];
         add_lane_products(layout.stride(i) / row_padding, values + c * layout.stride(i), x + layout.start(i), t);

@@ -132,8 +132,8 @@ class BlockConjugateGradient final : public BlockSolver {
   bool same_ = false;                ///< all blocks have 6 unknowns
   /// Blocks above the diagonal, column by column, first those of rows between the parts.
   std::vector<std::uint32_t> rows_;         ///< of each, < column
-  std::vector<std::size_t> column_start_;   ///< per column, into rows_
-  std::vector<std::size_t> own_start_;      ///< likewise: the first whose row lies in the same range
+  std::vector<std::uint32_t> column_start_;  ///< per column, into rows_
+  std::vector<std::uint32_t> own_start_;     ///< likewise: the first whose row lies in the same range
   std::vector<std::size_t> diagonal_;       ///< per column, into matrix_: A_jj, followed by what is above it
   std::vector<std::size_t> above_start_;    ///< per column, into above_
   std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_ and scale_

@@ -75,18 +75,18 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     used += at(stride_[j] * size_[j]);
     inverse += at(stride_[j] * size_[j]);
     std::sort(above[j].begin(), above[j].end());
-    own_start_.push_back(rows_.size());
+    own_start_.push_back(static_cast<std::uint32_t>(rows_.size()));
     for (const auto& [row, k] : above[j]) {
       rows_.push_back(static_cast<std::uint32_t>(row));
       if (row < between().last && j >= between().last) {
         of_row[row].push_back({j, used, scaled, 0});
-        own_start_[j] = rows_.size();
+        own_start_[j] = static_cast<std::uint32_t>(rows_.size());
       }
       values[k] = used;
       used += at(stride_[row] * size_[j]);
       scaled += scaled_count(row, j);
     }
-    column_start_.push_back(rows_.size());
+    column_start_.push_back(static_cast<std::uint32_t>(rows_.size()));
   }
   row_start_.assign(1, 0);
   row_entries_.clear();
