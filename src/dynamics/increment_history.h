@@ -4,6 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/parallel.h"
+#include "dynamics/step_problem.h"
+
 namespace keyblock::dynamics {
 
 /// The increments of the last steps, and what they say of the next: it changes as much as the last one did. Where no contact has changed
@@ -15,30 +18,49 @@ class IncrementHistory {
 
   /// Of a step of length dt, s; quiet: no contact changed its state in it, against what was expected. Steps of another length are
   /// forgotten.
-  void add(std::span<const double> increment, double dt, bool quiet) {
+  void add(std::span<const double> increment, double dt, bool quiet, ThreadTeam& team) {
     if (dt != dt_) forget();
     known_ = std::min(known_ + 1, most);
     quiet_ = quiet ? std::min(quiet_ + 1, most) : 0;
     dt_ = dt;
     std::rotate(increments_.begin(), increments_.end() - 1, increments_.end());
-    increments_[0].assign(increment.begin(), increment.end());
+    increments_[0].resize(increment.size());
+    team.for_range(increment.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+      std::copy(increment.begin() + static_cast<std::ptrdiff_t>(begin),
+                increment.begin() + static_cast<std::ptrdiff_t>(end), &increments_[0][begin]);
+    });
   }
 
   /// Of the next step, of length dt, into `increment`: zero where nothing is known.
-  void extrapolate(double dt, std::span<double> increment) const {
-    std::fill(increment.begin(), increment.end(), 0.0);
-    if (dt != dt_) return;
+  void extrapolate(double dt, std::span<double> increment, ThreadTeam& team) const {
+    if (known_ == 0 || dt != dt_) return std::fill(increment.begin(), increment.end(), 0.0);
     // A change of state leaves no smooth curve through the increments before and after it.
     const int points = std::min(known_, std::max(2, quiet_));
-    double weight = -1.0;  // (−1)^(k + 1) (points choose k)
-    for (int k = 1; k <= points; ++k) {
-      weight *= -static_cast<double>(points + 1 - k) / k;
-      const std::vector<double>& before = increments_[static_cast<std::size_t>(k - 1)];
-      for (std::size_t i = 0; i < increment.size(); ++i) increment[i] += weight * before[i];
+    switch (points) {
+      case 1:
+        return combine<1>({1.0}, increment, team);
+      case 2:
+        return combine<2>({2.0, -1.0}, increment, team);
+      case 3:
+        return combine<3>({3.0, -3.0, 1.0}, increment, team);
+      default:
+        return combine<4>({4.0, -6.0, 4.0, -1.0}, increment, team);
     }
   }
 
  private:
+  /// Σ weights_k increments_k
+  template <std::size_t count>
+  void combine(std::array<double, count> weights, std::span<double> sum, ThreadTeam& team) const {
+    team.for_range(sum.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        double x = weights[0] * increments_[0][i];
+        for (std::size_t k = 1; k < count; ++k) x += weights[k] * increments_[k][i];
+        sum[i] = x;
+      }
+    });
+  }
+
   /// Beyond, what is left of tolerances of the steps before, times the sum of the weights, is more than is gained.
   static constexpr int most = 4;
   int known_ = 0;  ///< increments

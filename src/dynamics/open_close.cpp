@@ -122,18 +122,35 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
   return solver.factor();
 }
 
+/// Largest residual ratio of a block by the gradient at hand.
+double OpenClose::out_of_balance(const StepProblem& problem) {
+  if (!out_of_balance_) out_of_balance_ = problem.residual_ratio(gradient_);
+  return *out_of_balance_;
+}
+
+linalg::BlockSolver::Excess OpenClose::excess_over(const StepProblem& problem, double enough) {
+  return [&problem, enough](std::span<const double> residual) {
+    return problem.residual_ratio(residual) / enough;
+  };
+}
+
 /// direction_ ← A⁻¹ direction_, but for what is left in residual_. False when it cannot be had.
 bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance) {
   const Profile::Scope scope(*profile_, Phase::solution);
   const std::size_t n = problem.unknowns();
   const std::span<double> x = std::span(direction_).first(n);
   // The springs that act are not known better than to a share of what is out of balance.
-  const double enough = std::max(linear_share * tolerance, forcing * problem.residual_ratio(x));
-  // With a kept matrix the gradient is found anew before it counts as settled.
-  solver.solve(
-      x, std::span(residual_).first(n),
-      [&](std::span<const double> residual) { return problem.residual_ratio(residual) / enough; },
-      kept_ ? linalg::BlockSolver::Residual::estimated : linalg::BlockSolver::Residual::exact);
+  const double enough = std::max(linear_share * tolerance, forcing * out_of_balance(problem));
+  solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind());
+  return solver.solved();
+}
+
+/// Takes what the last linear solution left over below the share of the tolerance. False when it cannot be had.
+bool OpenClose::improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance) {
+  const Profile::Scope scope(*profile_, Phase::solution);
+  const std::size_t n = problem.unknowns();
+  solver.improve(std::span(direction_).first(n), std::span(residual_).first(n),
+                 excess_over(problem, linear_share * tolerance), residual_kind());
   return solver.solved();
 }
 
@@ -190,6 +207,7 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
       gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
     }
   });
+  out_of_balance_.reset();
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
   team_->for_range(springs_->size(), contacts_worth_threads,
                    [&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); });
@@ -198,15 +216,25 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
     springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
 }
 
-/// From D along a Newton direction to the minimum. False when the linear system has no solution.
+/// From D along a Newton direction to the minimum. False when the linear system has no solution. enough: residual ratio that is small
+/// enough after it.
 bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                            std::span<double> d, OpenCloseResult& result) {
+                            double enough, std::span<double> d, OpenCloseResult& result) {
   ++result.iterations;
   if (!factor(problem, solver, result)) return false;
-  for (std::size_t k = 0; k < direction_.size(); ++k) direction_[k] = -gradient_[k];
+  team_->for_range(direction_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
+  });
   if (!solve_linear(problem, solver, tolerance)) return false;
   find_direction(problem);
-  go(problem, search_line(), d);
+  double alpha = search_line();
+  // Where no contact changes, what the system left over is all that is.
+  if (bends_.empty() && problem.residual_ratio(residual_) >= enough) {
+    if (!improve_linear(problem, solver, tolerance)) return false;
+    find_direction(problem);
+    alpha = search_line();
+  }
+  go(problem, alpha, d);
   result.bends += bends_.size();
   return true;
 }
@@ -225,13 +253,13 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   constexpr int most_tries = 4;
   const int limit = result.iterations + options.max_iterations;
   const bool corrects = solver.halves() != nullptr;
-  const auto settled = [&] { return problem.residual_ratio(gradient_) < options.tolerance; };
+  const auto settled = [&] { return out_of_balance(problem) < options.tolerance; };
   if (!warm && corrects) {
     if (!kept_ && !factor(problem, solver, result)) return false;
   } else if (!warm) {
     place(problem, d);
     find_gradient(problem, d);
-    if (problem.residual_ratio(gradient_) <= linear_share * options.tolerance) return true;
+    if (out_of_balance(problem) <= linear_share * options.tolerance) return true;
   }
   for (int tries = corrects ? most_tries : 0; result.iterations < limit;) {
     // Before the first correction there is no D to go on from; later it is worth trying where few springs differ from the matrix.
@@ -244,16 +272,16 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
         continue;
       }
     }
-    if (!newton_step(problem, solver, options.tolerance, d, result)) {
+    if (!newton_step(problem, solver, options.tolerance, enough, d, result)) {
       if (!kept_) return false;
       assembled_ = kept_ = false;
-    } else if (problem.residual_ratio(gradient_) < enough) {
+    } else if (out_of_balance(problem) < enough) {
       if (!kept_) return true;
       // The gradient itself shows what the matrix of an earlier step got wrong. Where that is too much, another Newton step takes
       // it off, and the matrix of the next time step is its own.
       place(problem, d);
       find_gradient(problem, d);
-      if (problem.residual_ratio(gradient_) < enough) return true;
+      if (out_of_balance(problem) < enough) return true;
       factor_.solver = nullptr;
       if (result.refinements++ > 0) assembled_ = kept_ = false;
     }
@@ -265,6 +293,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
 void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force before) {
   springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
   add_force(problem, c, springs_->force(c) - before, 1.0, gradient_);
+  out_of_balance_.reset();
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
@@ -372,6 +401,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   gradient_.resize(d.size());
   direction_.resize(d.size());
   residual_.assign(d.size(), 0.0);
+  out_of_balance_.reset();
   springs_ = &problem.springs();
   assembled_ = knows_relative_ = false;
   bound_steps_.clear();
@@ -404,14 +434,14 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
       springs_->bounds_updated = true;
       result.given_up = ++result.bound_updates == 1 && gives_up && gives_up();
       if (result.given_up) break;
-      enough = std::max(options.tolerance, rough_share * problem.residual_ratio(gradient_));
+      enough = std::max(options.tolerance, rough_share * out_of_balance(problem));
       continue;
     }
-    if (problem.residual_ratio(gradient_) < options.tolerance) break;
+    if (out_of_balance(problem) < options.tolerance) break;
     enough = options.tolerance;
   }
   if (!knows_relative_) place(problem, d);
-  result.residual_ratio = problem.residual_ratio(gradient_);
+  result.residual_ratio = out_of_balance(problem);
   result.finite = std::isfinite(sum_of<double>(team, gradient_.size(), coefficients_worth_threads,
                                                [&](std::size_t k) { return gradient_[k]; }));
   judge_factor(result);

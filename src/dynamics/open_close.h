@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -83,6 +84,13 @@ class OpenClose {
   bool change_matrix(const StepProblem& problem, linalg::BlockSolver& solver);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
+  bool improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
+  [[nodiscard]] double out_of_balance(const StepProblem& problem);
+  [[nodiscard]] static linalg::BlockSolver::Excess excess_over(const StepProblem& problem, double enough);
+  /// With a kept matrix the gradient is found anew before it counts as settled.
+  [[nodiscard]] linalg::BlockSolver::Residual residual_kind() const {
+    return kept_ ? linalg::BlockSolver::Residual::estimated : linalg::BlockSolver::Residual::exact;
+  }
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
   void solve_base(const StepProblem& problem, linalg::HalfSolver& halves);
@@ -97,7 +105,7 @@ class OpenClose {
   void hold(const StepProblem& problem, std::size_t c, int count);
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
                OpenCloseResult& result);
-  bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+  bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, double enough,
                    std::span<double> d, OpenCloseResult& result);
   [[nodiscard]] std::size_t bent_contacts() const;
   void find_direction(const StepProblem& problem);
@@ -171,7 +179,8 @@ class OpenClose {
   std::vector<BoundStep>
       bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
-  std::vector<double> residual_;  ///< ρ of the last linear solution: A p = −g − ρ
+  std::optional<double> out_of_balance_;  ///< by gradient_, where it is known
+  std::vector<double> residual_;          ///< ρ of the last linear solution: A p = −g − ρ
   double slope_at_zero_ = 0.0, curvature_ = 0.0;
 };
 

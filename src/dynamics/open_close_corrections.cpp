@@ -106,6 +106,7 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
   problem.gradient(
       d, [&](std::size_t c) { return problem.rows()[c].gradient(springs_->force(c)); }, vertex_force_,
       gradient_);
+  out_of_balance_.reset();
 }
 
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.
@@ -117,6 +118,7 @@ void OpenClose::leave_out_bends(const StepProblem& problem) {
     add_force(problem, c, {spring.normal ? bend.normal : 0.0, spring.normal ? 0.0 : bend.shear}, -1.0,
               gradient_);
   }
+  if (!wanted_.empty()) out_of_balance_.reset();
 }
 
 /// Goes to the minimum with the factor at hand, correcting the springs that act otherwise. They become more until no other does, so
@@ -154,7 +156,7 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
     if (!kept_ || (!done && refinements > 0)) continue;
     find_gradient(problem, d);
     if (!done) leave_out_bends(problem);
-    const bool fits = problem.residual_ratio(gradient_) <= kept_share * tolerance;
+    const bool fits = out_of_balance(problem) <= kept_share * tolerance;
     if (fits && done) return true;
     if (fits) continue;
     if (refinements++ == most_refinements) return false;
@@ -164,6 +166,7 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
     for (std::size_t k = 0; k < base_.size(); ++k) base_[k] -= refinement_[k];
   }
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
+  out_of_balance_.reset();
   for (const std::size_t c : bends_) {
     const double y = springs_->y[c], w = springs_->w[c];
     add_force(problem, c, springs_->force(c) - springs_->force_on(c, factored_[c], y, w), 1.0, gradient_);

@@ -221,7 +221,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     guessed_ = chosen.halves() == nullptr;
-    if (guessed_ && look == 1 && turns == 0) history_.extrapolate(drive.step, increment_);
+    if (guessed_ && look == 1 && turns == 0) history_.extrapolate(drive.step, increment_, team_);
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
     const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,
                                                      profile_, increment_, meets_impacts);
@@ -256,7 +256,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   const Profile::Scope scope(profile_, Phase::update);
   remember(state, drive, report);
   if (guessed_ && !drive.is_static) {
-    history_.add(increment_, drive.step, quiet_);
+    history_.add(increment_, drive.step, quiet_, team_);
   } else {
     history_.forget();
   }

@@ -124,7 +124,8 @@ void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, cons
       const float* values = &above_[above_start_[j]];
       for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
         const std::size_t i = rows_[e];
-        add_lane_products(layout.stride(i) / row_padding, values + c * layout.stride(i), x + layout.start(i), t);
+        add_lane_products(layout.stride(i) / row_padding, values + c * layout.stride(i), x + layout.start(i),
+                          t);
         values += layout.stride(i) * layout.size(j);
       }
       store_first<width>(y + layout.start(j) + at(c), layout.stride(j) - c, sums(t));
@@ -201,10 +202,10 @@ void BlockConjugateGradient::go(double alpha) {
 
 /// r ← (1 + U)⁻¹ C⁻¹ x, and everything else to zero.
 void BlockConjugateGradient::start(std::span<const double> x) {
+  beta_ = 0.0;
   with_layout([&](auto layout) {
     const auto divide = [&](Range range) {
-      for (std::size_t j = range.last; j-- > range.first;)
-        subtract_scaled(layout, j, r_.data(), r_.data());
+      for (std::size_t j = range.last; j-- > range.first;) subtract_scaled(layout, j, r_.data(), r_.data());
     };
     const auto scale = [&](Range range) {
       for (std::size_t j = range.first; j < range.last; ++j) {
@@ -328,7 +329,7 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
   });
 }
 
-/// Conjugate gradients from r_ on, to z_.
+/// Conjugate gradients from r_, p_ and beta_ on, to z_.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
 /// factor of ten and more, the one way or the other. As it costs more than an iteration it is looked at when it should be small
@@ -336,19 +337,21 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
 BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_large, const Excess& excess,
                                                                    int most) {
   const double start = too_large;
-  double alpha = 0.0, beta = 0.0, wanted = 0.0, first_rr = 0.0;
+  const bool goes_on = beta_ > 0.0;
+  double alpha = 0.0, wanted = 0.0, first_rr = 0.0;
   for (int iterations = 1;; ++iterations) {
-    const Dots dots = apply(alpha, beta);
+    const Dots dots = apply(alpha, beta_);
     if (iterations == 1) {
       first_rr = dots.rr;
       const double lag = *std::max_element(lag_.begin(), lag_.end()), three_quarters = std::sqrt(start);
-      wanted = first_rr * (lag > 0.0 ? std::min(three_quarters, early * lag) : three_quarters) / (start * start);
+      wanted =
+          first_rr * (lag > 0.0 ? std::min(three_quarters, early * lag) : three_quarters) / (start * start);
     }
     // Nothing is left of p in single precision, or the matrix is not positive definite.
     if (!(dots.pq > 0.0 && dots.rr <= most_growth * most_growth * first_rr)) return {iterations, false};
     alpha = dots.rr / dots.pq;
     const double rr = std::max(0.0, dots.rr - 2.0 * alpha * dots.rq + alpha * alpha * dots.qq);
-    beta = rr / dots.rr;
+    beta_ = rr / dots.rr;
     if (rr > wanted && iterations < most) continue;
     go(alpha);
     alpha = 0.0;
@@ -356,6 +359,7 @@ BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_la
     find_residual(estimate_);
     too_large = excess(estimate_);
     if (too_large <= well_enough) {
+      if (goes_on) return {iterations, true};
       std::copy_backward(lag_.begin(), lag_.end() - 1, lag_.end());
       lag_.front() = rr / first_rr * (start * start) / (too_large * too_large);
       return {iterations, true};
@@ -364,12 +368,9 @@ BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_la
   }
 }
 
-void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
-                                   Residual kind) {
-  std::copy(x.begin(), x.end(), residual.begin());
-  std::fill(x.begin(), x.end(), 0.0);
+void BlockConjugateGradient::approach(std::span<double> x, std::span<double> residual, const Excess& excess,
+                                      Residual kind, bool goes_on) {
   solved_ = true;
-  estimate_.resize(x.size());
   int iterations = 0;
   double most = HUGE_VAL;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
@@ -378,7 +379,8 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
       return;
     }
     most = most_growth * too_large;
-    start(residual);
+    if (!goes_on) start(residual);
+    goes_on = false;
     const Iterations taken = iterate(too_large, excess, most_iterations - iterations);
     iterations += taken.count;
     if (taken.enough && kind == Residual::estimated) {
@@ -387,6 +389,20 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
     }
     take_over(x, residual, Residual::exact);
   }
+}
+
+void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
+                                   Residual kind) {
+  std::copy(x.begin(), x.end(), residual.begin());
+  std::fill(x.begin(), x.end(), 0.0);
+  estimate_.resize(x.size());
+  approach(x, residual, excess, kind, false);
+}
+
+void BlockConjugateGradient::improve(std::span<double> x, std::span<double> residual, const Excess& excess,
+                                     Residual kind) {
+  std::fill(z_.begin(), z_.end(), 0.0F);
+  approach(x, residual, excess, kind, beta_ > 0.0);
 }
 
 std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {

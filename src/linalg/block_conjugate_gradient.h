@@ -35,6 +35,7 @@ class BlockConjugateGradient final : public BlockSolver {
   void touch(int block) override { stale_[place_[at(block)]] = 1; }
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
+  void improve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
 
@@ -121,6 +122,8 @@ class BlockConjugateGradient final : public BlockSolver {
     bool enough;
   };
   Iterations iterate(double too_large, const Excess& excess, int most);
+  void approach(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind,
+                bool goes_on);
 
   // Everything is by place in the order of the partition, but for the slots.
   ThreadTeam* team_;
@@ -131,12 +134,12 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<std::size_t> start_;   ///< into padded vectors
   bool same_ = false;                ///< all blocks have 6 unknowns
   /// Blocks above the diagonal, column by column, first those of rows between the parts.
-  std::vector<std::uint32_t> rows_;         ///< of each, < column
+  std::vector<std::uint32_t> rows_;          ///< of each, < column
   std::vector<std::uint32_t> column_start_;  ///< per column, into rows_
   std::vector<std::uint32_t> own_start_;     ///< likewise: the first whose row lies in the same range
-  std::vector<std::size_t> diagonal_;       ///< per column, into matrix_: A_jj, followed by what is above it
-  std::vector<std::size_t> above_start_;    ///< per column, into above_
-  std::vector<std::size_t> inverse_start_;  ///< per column, into inverse_ and scale_
+  std::vector<std::size_t> diagonal_;        ///< per column, into matrix_: A_jj, followed by what is above it
+  std::vector<std::size_t> above_start_;     ///< per column, into above_
+  std::vector<std::size_t> inverse_start_;   ///< per column, into inverse_ and scale_
   /// A block of a row between the parts whose column lies in one of them.
   struct RowEntry {
     std::size_t column;
@@ -161,6 +164,7 @@ class BlockConjugateGradient final : public BlockSolver {
   /// Of the last solutions with this matrix: by how much less the square of the residual fell than that of its norm in the scaled
   /// system; 0: not known.
   std::array<double, 3> lag_{};
+  double beta_ = 0.0;  ///< of the next iteration; 0: the first
   bool solved_ = true;
 };
 

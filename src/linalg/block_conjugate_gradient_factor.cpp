@@ -8,7 +8,6 @@
 namespace keyblock::linalg {
 
 void BlockConjugateGradient::clear() {
-  lag_ = {};
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
   // Each diagonal block is followed by those above it, and these by the next diagonal block.
   const auto start = [&](std::size_t place) {
@@ -37,7 +36,8 @@ void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const dou
 }
 
 /// In single precision, as U has it.
-void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const double* scaled, float* above) const {
+void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const double* scaled,
+                                          float* above) const {
   if (!same_) {
     for (int k = 0; k < stride_[i] * size_[j]; k += row_padding) store(above + k, narrow(load(scaled + k)));
     return;
@@ -49,6 +49,7 @@ void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const do
 }
 
 bool BlockConjugateGradient::factor() {
+  lag_ = {};
   std::vector<std::uint8_t> good(begin_.size() - 1, 1);
   for_ranges([&](std::size_t k, Range range) {
     WideVector scratch(at(largest_ * largest_));

@@ -28,7 +28,8 @@ inline PairLanes add_product(PairLanes a, PairLanes b, PairLanes c) {
 #elif defined(__FMA__)
   const auto low = [](PairLanes v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7); };
   const auto high = [](PairLanes v) { return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15); };
-  const NarrowLanes x = _mm256_fmadd_ps(low(a), low(b), low(c)), y = _mm256_fmadd_ps(high(a), high(b), high(c));
+  const NarrowLanes x = _mm256_fmadd_ps(low(a), low(b), low(c)),
+                    y = _mm256_fmadd_ps(high(a), high(b), high(c));
   return __builtin_shufflevector(x, y, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 #else
   for (int k = 0; k < 16; ++k) c[k] = std::fma(a[k], b[k], c[k]);
@@ -52,7 +53,8 @@ inline NarrowLanes column_sums(const PairLanes (&t)[3]) {
   PairLanes half[3];  // of either column, three sums of two
 #pragma GCC unroll 3
   for (int k = 0; k < 3; ++k)
-    half[k] = t[k] + __builtin_shufflevector(t[k], t[k], 3, 4, 5, 15, 15, 15, 9, 10, 11, 15, 15, 15, 15, 15, 15, 15);
+    half[k] = t[k] +
+              __builtin_shufflevector(t[k], t[k], 3, 4, 5, 15, 15, 15, 9, 10, 11, 15, 15, 15, 15, 15, 15, 15);
   const PairLanes four =
       __builtin_shufflevector(half[0], half[1], 0, 1, 2, 6, 7, 8, 16, 17, 18, 22, 23, 24, 15, 15, 15, 15);
   const auto of = [&]<int r>() {
@@ -64,14 +66,13 @@ inline NarrowLanes column_sums(const PairLanes (&t)[3]) {
 /// The numbers of x, each for all rows of its column.
 struct Factors {
   PairLanes of_pair[3];
-  explicit Factors(NarrowLanes x)
-      : of_pair{pair<0>(x), pair<2>(x), pair<4>(x)} {}
+  explicit Factors(NarrowLanes x) : of_pair{pair<0>(x), pair<2>(x), pair<4>(x)} {}
 
  private:
   template <int c>
   static PairLanes pair(NarrowLanes x) {
-    return __builtin_shufflevector(x, NarrowLanes{}, c, c, c, c, c, c, c + 1, c + 1, c + 1, c + 1, c + 1, c + 1, 8, 8,
-                                   8, 8);
+    return __builtin_shufflevector(x, NarrowLanes{}, c, c, c, c, c, c, c + 1, c + 1, c + 1, c + 1, c + 1,
+                                   c + 1, 8, 8, 8, 8);
   }
 };
 

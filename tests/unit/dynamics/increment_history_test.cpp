@@ -7,27 +7,56 @@
 namespace keyblock::dynamics {
 namespace {
 
-std::vector<double> guess(const IncrementHistory& history, double dt) {
-  std::vector<double> increment{9.0, 9.0};
-  history.extrapolate(dt, increment);
-  return increment;
-}
+using Increment = std::vector<double>;
+
+class History {
+ public:
+  void add(const Increment& increment, double dt, bool quiet = false) {
+    history_.add(increment, dt, quiet, team_);
+  }
+  void forget() { history_.forget(); }
+  [[nodiscard]] Increment guess(double dt) {
+    Increment increment{9.0, 9.0};
+    history_.extrapolate(dt, increment, team_);
+    return increment;
+  }
+
+ private:
+  ThreadTeam team_{1};
+  IncrementHistory history_;
+};
 
 TEST(IncrementHistory, GoesOnAsTheLastStepsDid) {
-  using Increment = std::vector<double>;
-  IncrementHistory history;
-  EXPECT_EQ(guess(history, 0.1), (Increment{0.0, 0.0}));
-  history.add(Increment{1.0, -1.0}, 0.1);
-  EXPECT_EQ(guess(history, 0.1), (Increment{1.0, -1.0}));
-  history.add(Increment{3.0, -1.5}, 0.1);
-  EXPECT_EQ(guess(history, 0.1), (Increment{5.0, -2.0}));
-  history.add(Increment{4.0, -1.5}, 0.1);
-  EXPECT_EQ(guess(history, 0.1), (Increment{5.0, -1.5}));
-  EXPECT_EQ(guess(history, 0.05), (Increment{0.0, 0.0})) << "a step of another length";
-  history.add(Increment{2.0, 2.0}, 0.05);
-  EXPECT_EQ(guess(history, 0.05), (Increment{2.0, 2.0})) << "only those of the same length";
+  History history;
+  EXPECT_EQ(history.guess(0.1), (Increment{0.0, 0.0}));
+  history.add({1.0, -1.0}, 0.1);
+  EXPECT_EQ(history.guess(0.1), (Increment{1.0, -1.0}));
+  history.add({3.0, -1.5}, 0.1);
+  EXPECT_EQ(history.guess(0.1), (Increment{5.0, -2.0}));
+  history.add({4.0, -1.5}, 0.1);
+  EXPECT_EQ(history.guess(0.1), (Increment{5.0, -1.5}));
+  EXPECT_EQ(history.guess(0.05), (Increment{0.0, 0.0})) << "a step of another length";
+  history.add({2.0, 2.0}, 0.05);
+  EXPECT_EQ(history.guess(0.05), (Increment{2.0, 2.0})) << "only those of the same length";
   history.forget();
-  EXPECT_EQ(guess(history, 0.05), (Increment{0.0, 0.0}));
+  EXPECT_EQ(history.guess(0.05), (Increment{0.0, 0.0}));
+}
+
+// Small whole numbers, so that nothing is rounded.
+TEST(IncrementHistory, FollowsACurveWhileNoContactChanges) {
+  const auto cubic = [](int k) { return Increment{2.0 * k * k * k - k * k + 3.0, 5.0 - k}; };
+  History history;
+  for (int k = 0; k < 6; ++k) {
+    history.add(cubic(k), 0.1, true);
+    if (k < 3) continue;
+    EXPECT_EQ(history.guess(0.1), cubic(k + 1)) << k;
+  }
+  const Increment last = cubic(5), jolt{100.0, -7.0};
+  history.add(jolt, 0.1, false);
+  EXPECT_EQ(history.guess(0.1), (Increment{2.0 * jolt[0] - last[0], 2.0 * jolt[1] - last[1]}));
+  // The jolt is one of the first three steps after it, and the curve does without what was before.
+  for (int k = 0; k < 4; ++k) history.add(cubic(k), 0.1, true);
+  EXPECT_EQ(history.guess(0.1), cubic(4));
 }
 
 }  // namespace

@@ -120,6 +120,43 @@ TEST(BlockSolver, ResidualIsWhatIsMissing) {
   EXPECT_LT(estimated, 1e-5);
 }
 
+// A solution that is not good enough after all goes on from where it ended, as if nothing had been in between.
+TEST(BlockSolver, SolutionsGoOnWhereTheyEnded) {
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12}}) {
+    const Problem p = random_problem(5, 30, choice);
+    const auto solver = make_iterative();
+    solver->analyse(p.sizes, p.pairs);
+    const auto exact = solve(*solver, p);
+    for (const auto kind : {BlockSolver::Residual::exact, BlockSolver::Residual::estimated}) {
+      std::vector<double> x(p.right.data(), p.right.data() + p.right.size()), residual(x.size());
+      int looks = 0;
+      const auto error = [&] {
+        double largest = 0.0;
+        for (std::size_t k = 0; k < x.size(); ++k)
+          largest = std::max(largest, std::abs(x[k] - exact[static_cast<Eigen::Index>(k)]));
+        return largest;
+      };
+      const auto excess_over = [&](double enough) {
+        return [&looks, enough](std::span<const double> r) {
+          ++looks;
+          double largest = 0.0;
+          for (const double v : r) largest = std::max(largest, std::abs(v));
+          return largest / enough;
+        };
+      };
+      solver->solve(x, residual, excess_over(1e-2), kind);
+      const double roughly = error();
+      EXPECT_GT(roughly, 1e-6);
+      solver->improve(x, residual, excess_over(1e-5), kind);
+      EXPECT_TRUE(solver->solved());
+      EXPECT_LT(error(), 1e-2 * roughly);
+      looks = 0;
+      solver->improve(x, residual, excess_over(1.0), kind);
+      EXPECT_EQ(looks, 1) << "nothing to do";
+    }
+  }
+}
+
 // What is factored in part is, bit for bit, what is factored as a whole.
 TEST(BlockSolver, FactorsWhatWasTouchedOnly) {
   for (const auto& make : {make_block_cholesky, make_cholmod, make_iterative}) {
