@@ -79,6 +79,20 @@ inline auto first_lanes(std::size_t count) {
   return Lanes{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0} < broadcast(static_cast<double>(count));
 }
 
+/// Whether any lane of the outcome of a comparison is true.
+template <typename Condition>
+bool any(Condition condition) {
+#if defined(__AVX512F__)
+  static_assert(sizeof(condition) == sizeof(__m512i));
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(condition), reinterpret_cast<__m512i>(condition)) !=
+         0;
+#else
+  auto one = condition[0];
+  for (int i = 1; i < lane_count; ++i) one |= condition[i];
+  return one != 0;
+#endif
+}
+
 /// One or the other, of a number or of each lane.
 inline double where(bool condition, double yes, double no) {
   return condition ? yes : no;
@@ -86,6 +100,13 @@ inline double where(bool condition, double yes, double no) {
 template <typename Condition>
 AlignedLanes where(Condition condition, AlignedLanes yes, AlignedLanes no) {
   return condition ? yes : no;
+}
+
+/// The largest of all lanes.
+inline double largest(Lanes v) {
+  double x = v[0];
+  for (int i = 1; i < lane_count; ++i) x = x < v[i] ? v[i] : x;
+  return x;
 }
 
 /// Of all lanes, always in this order.

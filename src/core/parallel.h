@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -28,27 +29,36 @@ class ThreadTeam {
   std::unique_ptr<Shared> shared_;
 };
 
-/// The i < n for which is(i), ascending. Piece by piece, by the threads of the team when n is at least `grain`.
+/// The i < n for which is(i), ascending. Piece by piece, by the threads of the team when n is at least `grain`. They are few: where none of
+/// i … i + group − 1 is, any_from(i), which may look beyond n, says so for most.
+template <std::size_t group, typename AnyFrom, typename Is>
+void find_few(ThreadTeam& team, std::size_t n, std::size_t grain, const AnyFrom& any_from, const Is& is,
+              std::vector<std::size_t>& found) {
+  const auto look_at = [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
+    for (std::size_t first = begin; first < end; first += group) {
+      if (!any_from(first)) continue;
+      for (std::size_t i = first; i < end && i < first + group; ++i) {
+        if (is(i)) out.push_back(i);
+      }
+    }
+  };
+  found.clear();
+  if (team.size() == 1 || n < grain) return look_at(0, n, found);
+  constexpr std::size_t piece = 4'096;
+  static_assert(piece % group == 0);
+  std::vector<std::vector<std::size_t>> of_piece((n + piece - 1) / piece);
+  team.for_range(of_piece.size(), 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) look_at(p * piece, std::min(n, (p + 1) * piece), of_piece[p]);
+  });
+  for (const auto& some : of_piece) found.insert(found.end(), some.begin(), some.end());
+}
+
+/// The i < n for which is(i), likewise, each looked at.
 template <typename Is>
 void find_all(ThreadTeam& team, std::size_t n, std::size_t grain, const Is& is,
               std::vector<std::size_t>& found) {
-  found.clear();
-  if (team.size() == 1 || n < grain) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (is(i)) found.push_back(i);
-    }
-    return;
-  }
-  constexpr std::size_t piece = 4'096;
-  std::vector<std::vector<std::size_t>> of_piece((n + piece - 1) / piece);
-  team.for_range(of_piece.size(), 2, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) {
-      for (std::size_t i = p * piece; i < n && i < (p + 1) * piece; ++i) {
-        if (is(i)) of_piece[p].push_back(i);
-      }
-    }
-  });
-  for (const auto& some : of_piece) found.insert(found.end(), some.begin(), some.end());
+  find_few<1>(
+      team, n, grain, [](std::size_t) { return true; }, is, found);
 }
 
 /// Σ of(i), i < n: piece by piece, which are the same for any number of threads. T: a number, or what has += and begins at zero.

@@ -174,7 +174,9 @@ void OpenClose::find_bends(double alpha) {
                                        springs_->w[c] + alpha * springs_->dw[c]);
     return p != springs_->piece[c];
   };
-  find_all(*team_, springs_->size(), contacts_worth_threads, bends, bends_);
+  find_few<lane_count>(
+      *team_, springs_->size(), contacts_worth_threads,
+      [&](std::size_t first) { return springs_->any_leaves(first, alpha); }, bends, bends_);
 }
 
 /// dΠ(D + αp)/dα given the bends up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) but for the bends.

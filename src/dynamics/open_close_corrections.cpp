@@ -1,6 +1,7 @@
 // Corrections of the open-close iteration: how the springs of a step that act otherwise than the matrix has them come to be known.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "dynamics/open_close.h"
 
@@ -44,8 +45,13 @@ void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
 
 /// Contacts that are not on the straight lines of the matrix, into bends_.
 void OpenClose::find_bent() {
+  constexpr std::size_t group = 32;
+  const auto any_bent_from = [&](std::size_t c) {
+    return std::memcmp(&springs_->piece[c], &factored_[c],
+                       std::min(group, factored_.size() - c) * sizeof(Piece)) != 0;
+  };
   const auto is_bent = [&](std::size_t c) { return springs_->piece[c] != factored_[c]; };
-  find_all(*team_, springs_->size(), contacts_worth_threads, is_bent, bends_);
+  find_few<group>(*team_, springs_->size(), contacts_worth_threads, any_bent_from, is_bent, bends_);
 }
 
 /// Springs of the contacts in bends_ that are not corrected yet become so. How many there were; −1: too many.

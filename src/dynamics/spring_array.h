@@ -1,7 +1,10 @@
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "core/lanes.h"
@@ -27,6 +30,7 @@ class SpringArray {
     }
     friend bool operator==(Piece, Piece) = default;
   };
+  static_assert(sizeof(Piece) == sizeof(std::uint16_t) && std::has_unique_object_representations_v<Piece>);
   /// N and T.
   struct Force {
     double normal = 0.0, shear = 0.0;
@@ -73,6 +77,20 @@ class SpringArray {
                                     : elastic < -bound[c] ? Shear::backward
                                                           : Shear::held};
   }
+  /// Whether one of as many contacts as there are lanes, from c on, leaves its `piece` by α along the direction of search; beyond the
+  /// last one it may say so of none.
+  [[nodiscard]] bool any_leaves(std::size_t c, double alpha) const {
+    const Lanes a = broadcast(alpha), penetration = load(&y[c]) + a * load(&dy[c]),
+                elastic = load(&ks[c]) * (load(&w[c]) + a * load(&dw[c])), most = load(&bound[c]);
+    const auto closed = penetration > load(&floor[c]), none = most <= 0.0, forward = ~none & (elastic > most),
+               backward = ~none & ~forward & (elastic < -most);
+    const auto code = [](Piece p) { return std::int64_t{std::bit_cast<std::uint16_t>(p)}; };
+    const auto now = (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
+                     (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
+    std::uint16_t codes __attribute__((vector_size(lane_count * sizeof(std::uint16_t)))) = {};
+    std::memcpy(&codes, &piece[c], std::min<std::size_t>(lane_count, size_ - c) * sizeof(Piece));
+    return any(now != __builtin_convertvector(codes, std::remove_const_t<decltype(now)>));
+  }
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
     return {penetration > floor[c] ? kn[c] * penetration : 0.0,
             std::clamp(ks[c] * displacement, -bound[c], bound[c])};
@@ -80,9 +98,14 @@ class SpringArray {
   [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
   /// N per thickness, of the contact that presses most; 0: none does.
   [[nodiscard]] double largest_normal_force() const {
-    double largest = 0.0;
-    for (std::size_t c = 0; c < size_; ++c) largest = std::max(largest, y[c] > floor[c] ? kn[c] * y[c] : 0.0);
-    return largest;
+    const Lanes zero{};
+    Lanes most{};
+    for (std::size_t c = 0; c < size_; c += lane_count) {
+      const Lanes penetration = load(&y[c]),
+                  force = penetration > load(&floor[c]) ? load(&kn[c]) * penetration : zero;
+      most = largest(most, first_lanes(size_ - c) ? force : zero);
+    }
+    return largest(most);
   }
   /// On the straight line that goes on from a piece.
   [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "core/lanes.h"
 #include "dynamics/step.h"
 
 namespace keyblock::dynamics {
@@ -38,6 +39,26 @@ double Stepper::gap_at_end(const State& state, const StepProblem::Row& row) cons
   return cross(at_end(state, row.vertex) - from, along) / norm(along);
 }
 
+namespace {
+
+/// m²
+double largest_squared_norm(std::span<const Vec2> vectors) {
+  static_assert(sizeof(Vec2) == 2 * sizeof(double));
+  double most = 0.0;
+  Lanes most_of_lanes{};
+  std::size_t i = 0;
+  for (; i + lane_count <= vectors.size(); i += lane_count) {
+    const Lanes first = load(&vectors[i].x), second = load(&vectors[i + lane_count / 2].x),
+                x = __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14),
+                y = __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15);
+    most_of_lanes = largest(most_of_lanes, x * x + y * y);
+  }
+  for (; i < vectors.size(); ++i) most = std::max(most, squared_norm(vectors[i]));
+  return std::max(most, largest(most_of_lanes));
+}
+
+}  // namespace
+
 /// The step is linear in the displacement, and misses the gap at its end: vertices of a turning block leave the straight way by ½ w² r,
 /// and the line of a turning edge moves away from a vertex that slides along it. That matters where a contact presses, and where it
 /// would come to press by that alone: by the way, and by the work that the normal force does over it, which nobody would account for.
@@ -45,10 +66,9 @@ double Stepper::gap_at_end(const State& state, const StepProblem::Row& row) cons
 /// directions at its end, the step is too long.
 Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
   constexpr double most_turned = 0.1;  // rad
-  double turn = 0.0, moved = 0.0;
+  double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
-  for (const Vec2 r : open_close_.relative()) moved = std::max(moved, squared_norm(r));
-  moved = std::sqrt(moved);
+  const double moved = std::sqrt(largest_squared_norm(open_close_.relative()));
   const auto tolerated = [&](double force) {
     return is_static ? tolerances_.turn : std::min(tolerances_.turn, turn_work_ / force);
   };
