@@ -402,7 +402,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   r_.resize(rows);
   gradient_.resize(d.size());
   direction_.resize(d.size());
-  residual_.assign(d.size(), 0.0);
+  residual_.resize(d.size(), 0.0);
   out_of_balance_.reset();
   springs_ = &problem.springs();
   assembled_ = knows_relative_ = false;

@@ -7,7 +7,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "contact/candidates.h"
 #include "core/lanes.h"
+#include "core/parallel.h"
 
 namespace keyblock::dynamics {
 
@@ -97,15 +99,15 @@ class SpringArray {
   }
   [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
   /// N per thickness, of the contact that presses most; 0: none does.
-  [[nodiscard]] double largest_normal_force() const {
-    const Lanes zero{};
-    Lanes most{};
-    for (std::size_t c = 0; c < size_; c += lane_count) {
-      const Lanes penetration = load(&y[c]),
-                  force = penetration > load(&floor[c]) ? load(&kn[c]) * penetration : zero;
-      most = largest(most, first_lanes(size_ - c) ? force : zero);
-    }
-    return largest(most);
+  [[nodiscard]] double largest_normal_force(ThreadTeam& team) const {
+    constexpr std::size_t width = lane_count;
+    return largest_of(
+        team, (size_ + width - 1) / width, contact::contacts_worth_threads / width, [&](std::size_t group) {
+          const std::size_t c = group * width;
+          const Lanes zero{}, penetration = load(&y[c]),
+                              force = penetration > load(&floor[c]) ? load(&kn[c]) * penetration : zero;
+          return largest(first_lanes(size_ - c) ? force : zero);
+        });
   }
   /// On the straight line that goes on from a piece.
   [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {

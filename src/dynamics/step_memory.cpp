@@ -104,28 +104,28 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   state.ledger.numerical += contact_energy_;
   state.contacts.make_room(contacts_.size());
   std::atomic<bool> any_bond = false;
+  // Piece by piece, which are the same for any number of threads.
+  constexpr std::size_t piece = 64 * lane_count;
+  accounts_.assign((contacts_.size() + piece - 1) / piece, {});
+  team_.for_range(accounts_.size(), contacts_worth_threads / piece, [&](std::size_t begin, std::size_t end) {
+    bool any = false;
+    for (std::size_t p = begin; p < end; ++p) {
+      const std::size_t last = std::min(contacts_.size(), (p + 1) * piece);
+      for (std::size_t c = p * piece; c < last; c += lane_count) {
+        const std::size_t count = std::min<std::size_t>(lane_count, last - c);
+        ContactAccounts accounts;
+        remember_contacts(c, count, drive, accounts);
+        if (model_.solver.contact != ContactMethod::penalty) {
+          for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts);
+        }
+        any |= contact::keep_memory(contacts_, c, c + count, state.contacts);
+        accounts_[p].add(accounts);
+      }
+    }
+    if (any) any_bond = true;
+  });
   ContactAccounts total;
-  // Groups of contacts, whose accounts are kept at a time: as a cache has room for, or worth the threads.
-  const std::size_t groups = (contacts_.size() + lane_count - 1) / lane_count,
-                    piece = (team_.size() == 1 ? 1 << 8 : 1 << 14) / lane_count;
-  for (std::size_t first = 0; first < groups; first += piece) {
-    accounts_.resize(std::min(piece, groups - first));
-    team_.for_range(accounts_.size(), contacts_worth_threads / lane_count,
-                    [&](std::size_t begin, std::size_t end) {
-                      bool any = false;
-                      for (std::size_t k = begin; k < end; ++k) {
-                        const std::size_t c = (first + k) * lane_count,
-                                          count = std::min<std::size_t>(lane_count, contacts_.size() - c);
-                        remember_contacts(c, count, drive, accounts_[k]);
-                        if (model_.solver.contact != ContactMethod::penalty) {
-                          for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts_[k]);
-                        }
-                        any |= contact::keep_memory(contacts_, c, c + count, state.contacts);
-                      }
-                      if (any) any_bond = true;
-                    });
-    for (const ContactAccounts& accounts : accounts_) total.add(accounts);
-  }
+  for (const ContactAccounts& accounts : accounts_) total.add(accounts);
   total.enter(state.ledger);
   contact_energy_ = sum(total.balance.stored);
   for (std::size_t i = 0; i < lane_count; ++i)

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -201,18 +202,19 @@ class StepProblem {
   /// What the contacts do to every vertex.
   template <typename ForceOf>
   void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices) const {
-    at_vertices.assign(surface_->position.size(), Vec2{});
-    for_owned_contacts(
-        rows_.size(), [](std::size_t c) { return c; },
-        [&](std::size_t c, Owner owner) {
-          const Row& row = rows_[c];
-          const Vec2 force = force_of(c);
-          if (force == Vec2{}) return;
-          if (owner.has(row.unknown_a)) at_vertices[row.vertex] += force;
-          if (!owner.has(row.unknown_b)) return;
-          at_vertices[row.from] -= (1.0 - row.position) * force;
-          at_vertices[row.to] -= row.position * force;
-        });
+    at_vertices.resize(surface_->position.size());
+    team_->for_range(at_vertices.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) at_vertices[v] = {};
+    });
+    for_owned_rows([&](std::size_t c, Owner owner) {
+      const Row& row = rows_[c];
+      const Vec2 force = force_of(c);
+      if (force == Vec2{}) return;
+      if (owner.has(row.unknown_a)) at_vertices[row.vertex] += force;
+      if (!owner.has(row.unknown_b)) return;
+      at_vertices[row.from] -= (1.0 - row.position) * force;
+      at_vertices[row.to] -= row.position * force;
+    });
   }
   void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
   void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
@@ -231,18 +233,23 @@ class StepProblem {
     int begin = -1, end = std::numeric_limits<int>::max();  ///< all, fixed ones too
     [[nodiscard]] bool has(int unknown) const { return unknown >= begin && unknown < end; }
   };
-  /// Calls add(k, owner) for the k < n whose contact, contact_of(k), is one of a block of the owner, for all owners.
-  template <typename ContactOf, typename Add>
-  void for_owned_contacts(std::size_t n, const ContactOf& contact_of, const Add& add) const {
+  /// Calls add(c, owner) for the contacts that have a block of the owner, for all owners. Rows come by their smaller block, so that most pieces of them are those of one owner.
+  template <typename Add>
+  void for_owned_rows(const Add& add) const {
+    const std::size_t n = rows_.size();
     if (team_->size() == 1 || n < contacts_worth_threads) {
-      for (std::size_t k = 0; k < n; ++k) add(k, Owner{});
+      for (std::size_t c = 0; c < n; ++c) add(c, Owner{});
       return;
     }
     team_->for_range(model_->blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
       const Owner owner{static_cast<int>(begin), static_cast<int>(end)};
-      for (std::size_t k = 0; k < n; ++k) {
-        const auto [a, b] = unknowns_of_row_[contact_of(k)];
-        if (owner.has(a) || owner.has(b)) add(k, owner);
+      for (std::size_t p = 0; p < unknowns_of_piece_.size(); ++p) {
+        const auto [least, most] = unknowns_of_piece_[p];
+        if (most < owner.begin || least >= owner.end) continue;
+        for (std::size_t c = p * rows_of_piece; c < std::min(n, (p + 1) * rows_of_piece); ++c) {
+          const auto [a, b] = unknowns_of_row_[c];
+          if (owner.has(a) || owner.has(b)) add(c, owner);
+        }
       }
     });
   }
@@ -262,6 +269,7 @@ class StepProblem {
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs);
   void build_row(const Drive& drive, const contact::Contact& c, Row& row) const;
+  void find_owners();
   [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
 
@@ -272,8 +280,11 @@ class StepProblem {
   std::vector<Row> rows_;
   SpringArray springs_;  ///< of every row
   bool may_break_ = false, lacks_room_ = false;
-  std::vector<std::pair<int, int>> unknowns_of_row_;  ///< the two of every row, to look through
-  int largest_size_ = 0;                              ///< N
+  // Of several threads alone.
+  static constexpr std::size_t rows_of_piece = 256;
+  std::vector<std::pair<int, int>> unknowns_of_row_;    ///< the two of every row, to look through
+  std::vector<std::pair<int, int>> unknowns_of_piece_;  ///< least and largest of so many rows
+  int largest_size_ = 0;                                ///< N
   /// Per block: the first of its coefficients, and where they end.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coefficients_;
   std::vector<std::size_t> h_first_;  ///< per block, into h_

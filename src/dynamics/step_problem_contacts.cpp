@@ -34,6 +34,26 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
   });
   may_break_ = may_break;
   lacks_room_ = lacks_room;
+  if (team_->size() > 1) find_owners();
+}
+
+/// The unknown blocks of pieces of the rows.
+void StepProblem::find_owners() {
+  unknowns_of_piece_.resize((rows_.size() + rows_of_piece - 1) / rows_of_piece);
+  team_->for_range(unknowns_of_piece_.size(), contacts_worth_threads / rows_of_piece,
+                   [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t p = begin; p < end; ++p) {
+                       std::pair<int, int> range{std::numeric_limits<int>::max(), -1};
+                       const std::size_t last = std::min(rows_.size(), (p + 1) * rows_of_piece);
+                       for (std::size_t c = p * rows_of_piece; c < last; ++c) {
+                         for (const int unknown : {unknowns_of_row_[c].first, unknowns_of_row_[c].second}) {
+                           if (unknown < 0) continue;  // fixed
+                           range = {std::min(range.first, unknown), std::max(range.second, unknown)};
+                         }
+                       }
+                       unknowns_of_piece_[p] = range;
+                     }
+                   });
 }
 
 void StepProblem::set_pairs(std::span<const contact::Contact> contacts, std::span<const int> pairs) {

@@ -93,22 +93,16 @@ void StepProblem::assemble_block(std::size_t i, linalg::BlockSolver& solver) con
 }
 
 void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
-  for_owned_contacts(
-      changes.size(), [&](std::size_t k) { return changes[k].contact; },
-      [&](std::size_t k, Owner owner) {
-        const SpringChange& change = changes[k];
-        add_spring(rows_[change.contact], change.place, change.normal, change.shear, owner, solver);
-      });
+  for (const SpringChange& change : changes)
+    add_spring(rows_[change.contact], change.place, change.normal, change.shear, Owner{}, solver);
 }
 
 void StepProblem::add_springs(std::span<const double> normal, std::span<const double> shear,
                               linalg::BlockSolver& solver) const {
-  for_owned_contacts(
-      rows_.size(), [](std::size_t c) { return c; },
-      [&](std::size_t c, Owner owner) {
-        if (normal[c] == 0.0 && shear[c] == 0.0) return;
-        add_spring(rows_[c], Place(rows_[c]), normal[c], shear[c], owner, solver);
-      });
+  for_owned_rows([&](std::size_t c, Owner owner) {
+    if (normal[c] == 0.0 && shear[c] == 0.0) return;
+    add_spring(rows_[c], Place(rows_[c]), normal[c], shear[c], owner, solver);
+  });
 }
 
 /// Calls what(φ) with the basis functions of block b at a point of its edge.

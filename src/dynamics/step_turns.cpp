@@ -42,19 +42,19 @@ double Stepper::gap_at_end(const State& state, const StepProblem::Row& row) cons
 namespace {
 
 /// m²
-double largest_squared_norm(std::span<const Vec2> vectors) {
+double largest_squared_norm(ThreadTeam& team, std::span<const Vec2> vectors) {
   static_assert(sizeof(Vec2) == 2 * sizeof(double));
-  double most = 0.0;
-  Lanes most_of_lanes{};
-  std::size_t i = 0;
-  for (; i + lane_count <= vectors.size(); i += lane_count) {
+  constexpr std::size_t width = lane_count;
+  const std::size_t groups = vectors.size() / width;
+  double most = largest_of(team, groups, contacts_worth_threads / width, [&](std::size_t group) {
+    const std::size_t i = group * width;
     const Lanes first = load(&vectors[i].x), second = load(&vectors[i + lane_count / 2].x),
                 x = __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14),
                 y = __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15);
-    most_of_lanes = largest(most_of_lanes, x * x + y * y);
-  }
-  for (; i < vectors.size(); ++i) most = std::max(most, squared_norm(vectors[i]));
-  return std::max(most, largest(most_of_lanes));
+    return largest(x * x + y * y);
+  });
+  for (const Vec2 v : vectors.subspan(groups * width)) most = std::max(most, squared_norm(v));
+  return most;
 }
 
 }  // namespace
@@ -68,11 +68,11 @@ Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
   constexpr double most_turned = 0.1;  // rad
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
-  const double moved = std::sqrt(largest_squared_norm(open_close_.relative()));
+  const double moved = std::sqrt(largest_squared_norm(team_, open_close_.relative()));
   const auto tolerated = [&](double force) {
     return is_static ? tolerances_.turn : std::min(tolerances_.turn, turn_work_ / force);
   };
-  const double least_tolerated = tolerated(problem_.springs().largest_normal_force());
+  const double least_tolerated = tolerated(problem_.springs().largest_normal_force(team_));
   const auto may_miss = [&](double spin) {
     return spin * (spin * largest_radius_ + moved) > least_tolerated;
   };

@@ -241,9 +241,6 @@ void BlockCholesky::finish(std::span<const double> half, std::span<const HalfSol
   give(x);
 }
 
-void BlockSolver::improve(std::span<double> /*x*/, std::span<double> /*residual*/, const Excess& /*excess*/,
-                          Residual /*kind*/) {}
-
 std::unique_ptr<BlockSolver> make_block_cholesky() {
   return std::make_unique<BlockCholesky>();
 }

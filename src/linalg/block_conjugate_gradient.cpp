@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "linalg/block_kernels.h"
 #include "linalg/paired_columns.h"
@@ -312,7 +313,7 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
       if (exact) multiply_columns(range);
     });
     if (!exact) {
-      std::copy(estimate_.begin(), estimate_.end(), residual.begin());
+      for_numbers(residual.size(), [&](std::size_t k) { residual[k] = estimate_[k]; });
       return;
     }
     for_entries_between([&](const RowEntry& entry, std::size_t row) {
@@ -393,15 +394,14 @@ void BlockConjugateGradient::approach(std::span<double> x, std::span<double> res
 
 void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                    Residual kind) {
-  std::copy(x.begin(), x.end(), residual.begin());
-  std::fill(x.begin(), x.end(), 0.0);
+  for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
   approach(x, residual, excess, kind, false);
 }
 
 void BlockConjugateGradient::improve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                      Residual kind) {
-  std::fill(z_.begin(), z_.end(), 0.0F);
+  for_numbers(z_.size(), [&](std::size_t k) { z_[k] = 0.0F; });
   approach(x, residual, excess, kind, beta_ > 0.0);
 }
 

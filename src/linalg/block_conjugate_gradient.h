@@ -88,6 +88,19 @@ class BlockConjugateGradient final : public BlockSolver {
       team_->for_range(between().last, worth_threads, some);
     }
   }
+  /// Calls body(k) for the numbers of a vector.
+  template <typename Body>
+  void for_numbers(std::size_t n, const Body& body) const {
+    constexpr std::size_t worth_threads = 20'000;
+    const auto some = [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) body(k);
+    };
+    if (team_ == nullptr) {
+      some(0, n);
+    } else {
+      team_->for_range(n, worth_threads, some);
+    }
+  }
   template <typename Layout, typename Number>
   void subtract_above(Layout layout, std::size_t j, const Number* block, const Number* x, Number* y) const;
   template <typename Layout>

@@ -86,8 +86,8 @@ class BlockSolver {
                      Residual kind = Residual::exact) = 0;
   /// Goes on from where the last solve() ended, with its x and residual, to a smaller excess: less work than to begin with the residual.
   /// A direct solver has nothing to improve.
-  virtual void improve(std::span<double> x, std::span<double> residual, const Excess& excess,
-                       Residual kind = Residual::exact);
+  virtual void improve(std::span<double> /*x*/, std::span<double> /*residual*/, const Excess& /*excess*/,
+                       Residual /*kind*/ = Residual::exact) {}
   /// Null where this solver has none.
   [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }
   /// Whether the matrix and what factor() made of it may serve later steps, corrected for what they get wrong.
