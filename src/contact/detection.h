@@ -57,7 +57,8 @@ bool keep_memory(std::span<const Contact> contacts, std::size_t first, std::size
 ///   - all lines parallel: the end of an edge-edge contact. The vertex that lies over the other's edge; the one that
 ///     already was in contact stays until it has clearly left, and then hands its memory over.
 ///   - otherwise corner to corner: the line that is passed last in the step, as the corners go now. Of lines that are not passed,
-///     or were before, that of the largest gap, which is the shortest way out; none while that is a tie.
+///     or were before, that of the largest gap, which is the shortest way out; while that is a tie
+///     none, or the one that presses.
 ///
 /// All this hangs on thresholds of a share of a block, while blocks in contact move by a millionth of one in a step. A pair of blocks
 /// is looked at when it may have passed one (BlockPair); of the others only the geometry of their contacts is computed.

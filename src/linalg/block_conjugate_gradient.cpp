@@ -369,9 +369,11 @@ BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_la
   }
 }
 
+/// From where the iteration is, or from the beginning where beta_ is 0.
 void BlockConjugateGradient::approach(std::span<double> x, std::span<double> residual, const Excess& excess,
-                                      Residual kind, bool goes_on) {
+                                      Residual kind) {
   solved_ = true;
+  bool goes_on = beta_ > 0.0;
   int iterations = 0;
   double most = HUGE_VAL;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
@@ -396,13 +398,14 @@ void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residu
                                    Residual kind) {
   for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
-  approach(x, residual, excess, kind, false);
+  beta_ = 0.0;
+  approach(x, residual, excess, kind);
 }
 
 void BlockConjugateGradient::improve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                      Residual kind) {
   for_numbers(z_.size(), [&](std::size_t k) { z_[k] = 0.0F; });
-  approach(x, residual, excess, kind, beta_ > 0.0);
+  approach(x, residual, excess, kind);
 }
 
 std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {

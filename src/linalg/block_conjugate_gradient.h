@@ -135,8 +135,7 @@ class BlockConjugateGradient final : public BlockSolver {
     bool enough;
   };
   Iterations iterate(double too_large, const Excess& excess, int most);
-  void approach(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind,
-                bool goes_on);
+  void approach(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind);
 
   // Everything is by place in the order of the partition, but for the slots.
   ThreadTeam* team_;
