@@ -90,7 +90,11 @@ class SpringArray {
     const auto now = (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
                      (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
     std::uint16_t codes __attribute__((vector_size(lane_count * sizeof(std::uint16_t)))) = {};
-    std::memcpy(&codes, &piece[c], std::min<std::size_t>(lane_count, size_ - c) * sizeof(Piece));
+    if (c + lane_count <= size_) {
+      std::memcpy(&codes, &piece[c], sizeof(codes));
+    } else {
+      std::memcpy(&codes, &piece[c], (size_ - c) * sizeof(Piece));
+    }
     return any(now != __builtin_convertvector(codes, std::remove_const_t<decltype(now)>));
   }
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {

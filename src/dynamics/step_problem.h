@@ -233,7 +233,8 @@ class StepProblem {
     int begin = -1, end = std::numeric_limits<int>::max();  ///< all, fixed ones too
     [[nodiscard]] bool has(int unknown) const { return unknown >= begin && unknown < end; }
   };
-  /// Calls add(c, owner) for the contacts that have a block of the owner, for all owners. Rows come by their smaller block, so that most pieces of them are those of one owner.
+  /// Calls add(c, owner) for the contacts that have a block of the owner, for all owners. Rows come by their smaller block, so that
+  /// most pieces of them are those of one owner.
   template <typename Add>
   void for_owned_rows(const Add& add) const {
     const std::size_t n = rows_.size();
