@@ -80,7 +80,7 @@ void BlockConjugateGradient::subtract_scaled(Layout layout, std::size_t j, const
     const paired_columns::Factors factors(load(x + layout.start(j)));
     for (std::size_t e = own_start_[j]; e < column_start_[j + 1]; ++e, block += paired_columns::block_size) {
       float* y_i = y + layout.start(rows_[e]);
-      store(y_i, load(y_i) - paired_columns::product(block, factors));
+      store(y_i, load(y_i) - factors.product(block));
     }
   } else {
     subtract_above(layout, j, &above_[above_start_[j]], x, y);
@@ -103,7 +103,7 @@ void BlockConjugateGradient::subtract_scaled_of_parts(Layout layout, const float
     const float *block = &above_by_rows_[entry.copy], *x_j = x + layout.start(entry.column);
     float* y_i = y + layout.start(row);
     if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
-      store(y_i, load(y_i) - paired_columns::product(block, paired_columns::Factors(load(x_j))));
+      store(y_i, load(y_i) - paired_columns::Factors(load(x_j)).product(block));
     } else {
       subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), block, x_j, y_i);
     }
@@ -115,10 +115,10 @@ template <typename Layout>
 void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
   if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
     const float* block = &above_[std::size_t{column_start_[j]} * paired_columns::block_size];
-    paired_columns::PairLanes t[3]{};
+    paired_columns::RowProducts products;
     for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e, block += paired_columns::block_size)
-      paired_columns::add_row_products(block, paired_columns::for_both(load(x + layout.start(rows_[e]))), t);
-    store(y + layout.start(j), paired_columns::column_sums(t));
+      products.add(block, paired_columns::Rows(load(x + layout.start(rows_[e]))));
+    store(y + layout.start(j), products.sums());
   } else {
     in_sixes(layout.size(j), [&]<int width>(int c) {
       NarrowLanes t[width]{};

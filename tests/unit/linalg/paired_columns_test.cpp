@@ -30,7 +30,7 @@ struct Sample {
 TEST(PairedColumns, ProductIsThatOfTheBlock) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Sample s(seed);
-    const NarrowLanes y = product(s.block.data(), Factors(load(s.x.data())));
+    const NarrowLanes y = Factors(load(s.x.data())).product(s.block.data());
     for (int r = 0; r < stride; ++r) {
       double expected = 0.0;
       for (int c = 0; r < rows && c < rows; ++c) expected += s.entry(r, c) * s.x_at(c);
@@ -42,10 +42,9 @@ TEST(PairedColumns, ProductIsThatOfTheBlock) {
 TEST(PairedColumns, RowProductsAddUpToThatOfTheTransposedBlock) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Sample s(seed), t(seed + 100);
-    PairLanes products[3]{};
-    for (const Sample* of : {&s, &t})
-      add_row_products(of->block.data(), for_both(load(of->x.data())), products);
-    const NarrowLanes y = column_sums(products);
+    RowProducts products;
+    for (const Sample* of : {&s, &t}) products.add(of->block.data(), Rows(load(of->x.data())));
+    const NarrowLanes y = products.sums();
     for (int c = 0; c < stride; ++c) {
       double expected = 0.0;
       for (int r = 0; c < rows && r < rows; ++r)
