@@ -10,6 +10,9 @@ import unittest
 
 FUSED = {"x86_64": re.compile(r"\tvfn?m(add|sub)"), "aarch64": re.compile(r"\tfn?m(add|sub|la|ls)\b")}
 
+# Of the namespace that has the kernels; some names of lambdas within lambdas are beyond objdump's demangling.
+KERNELS = re.compile(r"keyblock::linalg::|8keyblock6linalg")
+
 
 class Instructions(unittest.TestCase):
     @unittest.skipUnless(platform.machine() in FUSED, "no list of instructions for this machine")
@@ -27,7 +30,7 @@ class Instructions(unittest.TestCase):
                 function = line.split("<", 1)[1]
             elif fused.search(line):
                 found.setdefault(function, line)
-        elsewhere = {name: line for name, line in found.items() if "keyblock::linalg::" not in name}
+        elsewhere = {name: line for name, line in found.items() if not KERNELS.search(name)}
         self.assertEqual(elsewhere, {})
         if platform.machine() == "x86_64" and found:
             self.assertTrue(any("BlockCholesky" in name for name in found))
