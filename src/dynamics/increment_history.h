@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "dynamics/step_problem.h"
+#include "dynamics/worth_threads.h"
 
 namespace keyblock::dynamics {
 

@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "contact/candidates.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
+#include "dynamics/worth_threads.h"
 
 namespace keyblock::dynamics {
 
@@ -106,7 +106,7 @@ class SpringArray {
   [[nodiscard]] double largest_normal_force(ThreadTeam& team) const {
     constexpr std::size_t width = lane_count;
     return largest_of(
-        team, (size_ + width - 1) / width, contact::contacts_worth_threads / width, [&](std::size_t group) {
+        team, (size_ + width - 1) / width, contacts_worth_threads / width, [&](std::size_t group) {
           const std::size_t c = group * width;
           const Lanes zero{}, penetration = load(&y[c]),
                               force = penetration > load(&floor[c]) ? load(&kn[c]) * penetration : zero;

@@ -14,13 +14,10 @@
 #include "dynamics/spring_array.h"
 #include "dynamics/state.h"
 #include "dynamics/vertex_field.h"
+#include "dynamics/worth_threads.h"
 #include "linalg/block_solver.h"
 
 namespace keyblock::dynamics {
-
-using contact::blocks_worth_threads;
-using contact::contacts_worth_threads;
-inline constexpr std::size_t coefficients_worth_threads = 20'000;
 
 /// What drives one step.
 struct Drive {

@@ -273,7 +273,7 @@ TEST(Contact, TipsStayOutOfCornersThatTheyPush) {
     for (int step = 0; step < 10; ++step) {
       s.run(0.002, 0.002);
       std::vector<Polygon> all;
-      for (int block = 0; block < 4; ++block) all.push_back(deformed_polygon(s.model, block));
+      for (std::size_t block = 0; block < 4; ++block) all.push_back(deformed_polygon(s.model, block));
       EXPECT_LT(overlap::largest_overlap(all).depth, 1e-4) << left << ", step " << step;
     }
   }
