@@ -13,6 +13,10 @@ using Lanes = double __attribute__((vector_size(lane_count * sizeof(double)), al
 /// The same where it is stored by itself: compilers take no type of another alignment than its own for an argument of a template.
 using AlignedLanes = double __attribute__((vector_size(lane_count * sizeof(double))));
 using NarrowLanes = float __attribute__((vector_size(lane_count * sizeof(float)), aligned(4)));
+#if defined(__AVX512F__)
+/// As many as a register has room for; where it has less, the same is done in two.
+using SixteenLanes = float __attribute__((vector_size(16 * sizeof(float)), aligned(4)));
+#endif
 
 inline Lanes load(const double* p) {
   return *reinterpret_cast<const Lanes*>(p);

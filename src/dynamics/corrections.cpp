@@ -25,8 +25,6 @@ void Corrections::add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, li
   solver.half_solve(a, b, half_[size_]);
   compliance_.resize(size_ * (size_ + 1) / 2);
   for (std::size_t t = 0; t <= size_; ++t) compliance_.push_back(solver.product(half_[t], half_[size_]));
-  force_.resize(size_);
-  force_.push_back(0.0);
   ++size_;
 }
 
@@ -87,8 +85,8 @@ bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double
   missing_.resize(size_);
   piece_.resize(size_);
   step_.resize(size_);
-  for (std::size_t s = 0; s < size_; ++s)
-    stretch_[s] = stretch[s] + solver.product(half_[s], half) - compliance_times(s, force_);
+  force_.assign(size_, 0.0);
+  for (std::size_t s = 0; s < size_; ++s) stretch_[s] = stretch[s] + solver.product(half_[s], half);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     double largest = 0.0, missing = 0.0;
     for (std::size_t s = 0; s < size_; ++s) {

@@ -8,15 +8,16 @@ namespace keyblock::dynamics {
 
 /// The few springs of a step that act otherwise than the factored matrix has them, taken into account without factoring anew.
 ///
-/// With the others on the straight lines of the matrix A, and D₀ its solution, the increment is
+/// On the way δ from an increment D, all other springs stay on the straight lines of the matrix A. With g the gradient at D,
 ///
-///     D = D₀ − A⁻¹ Σ_s a_s φ_s,     φ_s = β_s(e_s),     e = e⁰ − C φ,     C_st = a_sᵀ A⁻¹ a_t = (L⁻¹ a_s)ᵀ (L⁻¹ a_t)
+///     δ = −A⁻¹ (g + Σ_s a_s φ_s),     φ_s = β_s(e_s),     e = e⁰ − C φ,     C_st = a_sᵀ A⁻¹ a_t = (L⁻¹ a_s)ᵀ (L⁻¹ a_t)
 ///
-/// where e_s is the stretch of spring s, e⁰ that at D₀, a_s = ∂e_s/∂D, and β_s by how much its force differs from its straight line (Woodbury's
-/// formula, with springs that may change their state). φ minimizes ½ φᵀ C φ + Σ ∫β_s de: as many unknowns as springs.
+/// where e_s is the stretch of spring s at D + δ, e⁰ that at D − A⁻¹ g, a_s = ∂e_s/∂D, and β_s by how much its force differs from the straight line
+/// through what g has of it (Woodbury's formula, with springs that may change their state). φ minimizes ½ φᵀ C φ + Σ ∫β_s de: as many
+/// unknowns as springs.
 class Corrections {
  public:
-  /// Force of a spring clamp(k e, low, high), and the straight line f₀ + k₀ e that the matrix has in its place; k₀ is 0 or k.
+  /// Force of a spring clamp(k e, low, high), and the straight line f₀ + k₀ e that goes on as the matrix has it in its place; k₀ is 0 or k.
   struct Law {
     double stiffness = 0.0, low = 0.0, high = 0.0;
     double line_stiffness = 0.0, line_force = 0.0;
@@ -31,11 +32,11 @@ class Corrections {
   [[nodiscard]] std::size_t size() const { return size_; }
   /// Adds a spring; a and b: the parts of a_s.
   void add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, linalg::HalfSolver::Part b);
-  /// φ, given half of D₀, the law of every spring and its stretch at D = 0. False when it is not found.
+  /// φ, given half of −A⁻¹ g, the law of every spring and its stretch at D. False when it is not found.
   [[nodiscard]] bool solve(const linalg::HalfSolver& solver, std::span<const double> half,
                            std::span<const Law> laws, std::span<const double> stretch);
   [[nodiscard]] std::span<const double> forces() const { return force_; }
-  /// D, given half of D₀.
+  /// δ, given half of −A⁻¹ g.
   void finish(linalg::HalfSolver& solver, std::span<const double> half, std::span<double> d);
 
  private:

@@ -16,6 +16,9 @@ class IncrementHistory {
  public:
   void forget() { known_ = quiet_ = 0; }
 
+  /// Whether no contact has changed its state for long enough to say where increments go on.
+  [[nodiscard]] bool is_smooth() const { return quiet_ >= 3; }
+
   /// Of a step of length dt, s; quiet: no contact changed its state in it, against what was expected. Steps of another length are
   /// forgotten.
   void add(std::span<const double> increment, double dt, bool quiet, ThreadTeam& team) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dynamics/line_search.h"
 
@@ -9,8 +10,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr double linear_share = 0.3;  // of the tolerance of a step, what its linear systems may leave over
-constexpr double forcing = 0.003;     // of what is out of balance, likewise
+constexpr double forcing = 0.003;  // of what is out of balance, likewise
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
@@ -147,7 +147,10 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
   team_->for_range(direction_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
   });
+  const auto is_exact = [&] { return solver.halves() == nullptr || solver.halves()->is_exact(); };
+  const bool was_exact = is_exact();
   if (!solve_linear(problem, solver, tolerance)) return false;
+  if (was_exact != is_exact()) forget_corrections();  // they are of another factor
   find_direction(problem);
   double alpha = search_line();
   // Where no contact changes, what the system left over is all that is.
@@ -176,18 +179,21 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   const int limit = result.iterations + options.max_iterations;
   const bool corrects = solver.halves() != nullptr;
   const auto settled = [&] { return out_of_balance(problem) < options.tolerance; };
-  if (!warm && corrects) {
-    if (!kept_ && !factor(problem, solver, result)) return false;
-  } else if (!warm) {
+  // Springs are built at D = 0.
+  bool from_zero = !warm && corrects && std::ranges::all_of(d, [](double v) { return v == 0.0; });
+  if (!warm && corrects && !kept_ && !factor(problem, solver, result)) return false;
+  if (!warm && !from_zero) {
     place(problem, d);
     find_gradient(problem, d);
-    if (out_of_balance(problem) <= linear_share * options.tolerance) return true;
+    if (!corrects && out_of_balance(problem) <= linear_share * options.tolerance) return true;
   }
   for (int tries = corrects ? most_tries : 0; result.iterations < limit;) {
-    // Before the first correction there is no D to go on from; later it is worth trying where few springs differ from the matrix.
+    // The first correction has the springs of the last step; later it is worth trying where few springs differ from the matrix.
     if (tries > 0 && (result.iterations == 0 || bent_contacts() <= most_corrected / 3)) {
       --tries;
-      if (correct(problem, solver, options.tolerance, d, result) && settled()) return true;
+      if (correct(problem, solver, options.tolerance, std::exchange(from_zero, false), d, result) &&
+          settled())
+        return true;
       if (kept_) {
         if (!factor(problem, solver, result)) return false;
         ++tries;

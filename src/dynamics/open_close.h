@@ -93,18 +93,20 @@ class OpenClose {
   }
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
-  void solve_base(const StepProblem& problem, linalg::HalfSolver& halves);
   void place(const StepProblem& problem, std::span<const double> d);
   void find_bent();
-  int correct_bends(const StepProblem& problem, linalg::HalfSolver& halves);
-  bool find_corrections(const linalg::HalfSolver& halves);
+  void start_on_lines(const StepProblem& problem, linalg::HalfSolver& halves);
+  void find_wanted();
+  void correct_wanted(const StepProblem& problem, linalg::HalfSolver& halves);
+  bool find_corrections(const linalg::HalfSolver& halves, std::size_t fresh);
+  void find_rest(const StepProblem& problem);
   void forget_corrections();
   void find_free_blocks(const StepProblem& problem);
   void leave_out_bends(const StepProblem& problem);
   void find_gradient(const StepProblem& problem, std::span<const double> d);
   void hold(const StepProblem& problem, std::size_t c, int count);
-  bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, std::span<double> d,
-               OpenCloseResult& result);
+  bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, bool from_zero,
+               std::span<double> d, OpenCloseResult& result);
   bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, double enough,
                    std::span<double> d, OpenCloseResult& result);
   [[nodiscard]] std::size_t bent_contacts() const;
@@ -154,6 +156,8 @@ class OpenClose {
     bool normal;
     friend bool operator==(Corrected, Corrected) = default;
   };
+  static constexpr double linear_share =
+      0.3;  ///< of the tolerance of a step, what its linear systems may leave over
   static constexpr std::size_t most_corrected = 64;  ///< springs, beyond which a factorization takes less
   static constexpr std::size_t most_kept =
       32;  ///< as many as are expected in the next step, with which a factor is worth keeping
@@ -163,8 +167,9 @@ class OpenClose {
   std::vector<Corrected> wanted_;             ///< scratch
   std::vector<Corrections::Law> laws_;
   std::vector<double> stretch_, part_a_, part_b_;
-  std::vector<double> base_;        ///< half of D₀ of the corrections
-  std::vector<double> refinement_;  ///< scratch: half of what is taken off D₀
+  std::vector<double>
+      correction_force_;      ///< N per thickness, per corrected spring: what it does otherwise than its line
+  std::vector<double> base_;  ///< half of the way from D on which no spring is corrected
   std::vector<Vec2> displacement_;  ///< m, of vertices: of D, or of the direction of search
   std::vector<Vec2> vertex_force_;  ///< scratch
   std::vector<Vec2> r_;

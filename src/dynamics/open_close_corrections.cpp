@@ -15,8 +15,8 @@ constexpr double kept_share = 0.003;
 
 }  // namespace
 
-/// Half of D₀, where all springs are on the straight lines of the factored matrix.
-void OpenClose::solve_base(const StepProblem& problem, linalg::HalfSolver& halves) {
+/// Half of the way from D = 0, on the straight lines of the factored matrix.
+void OpenClose::start_on_lines(const StepProblem& problem, linalg::HalfSolver& halves) {
   std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
   const auto minus_gradient = [&](std::size_t c) {
     return -1.0 *
@@ -54,8 +54,8 @@ void OpenClose::find_bent() {
   find_few<group>(*team_, springs_->size(), contacts_worth_threads, any_bent_from, is_bent, bends_);
 }
 
-/// Springs of the contacts in bends_ that are not corrected yet become so. How many there were; −1: too many.
-int OpenClose::correct_bends(const StepProblem& problem, linalg::HalfSolver& halves) {
+/// Springs of the contacts in bends_ that are not corrected yet, into wanted_.
+void OpenClose::find_wanted() {
   wanted_.clear();
   for (const std::size_t c : bends_) {
     const Piece is = springs_->piece[c], line = factored_[c];
@@ -66,7 +66,10 @@ int OpenClose::correct_bends(const StepProblem& problem, linalg::HalfSolver& hal
         wanted_.push_back(spring);
     }
   }
-  if (corrected_.size() + wanted_.size() > most_corrected) return -1;
+}
+
+/// Those in wanted_ are corrected from now on.
+void OpenClose::correct_wanted(const StepProblem& problem, linalg::HalfSolver& halves) {
   for (const Corrected spring : wanted_) {
     const StepProblem::Row& row = problem.rows()[spring.contact];
     problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), part_a_, part_b_);
@@ -76,30 +79,51 @@ int OpenClose::correct_bends(const StepProblem& problem, linalg::HalfSolver& hal
       return problem.unknown(b) == row.unknown_a || problem.unknown(b) == row.unknown_b;
     });
   }
-  return static_cast<int>(wanted_.size());
 }
 
-/// The forces of the springs that are corrected. False when they are not found.
-bool OpenClose::find_corrections(const linalg::HalfSolver& halves) {
+/// How the forces of the springs that are corrected change on the way from D. The last `fresh` of them are on the straight lines of the
+/// matrix so far. False when that is not found.
+bool OpenClose::find_corrections(const linalg::HalfSolver& halves, std::size_t fresh) {
   laws_.clear();
   stretch_.clear();
-  for (const Corrected spring : corrected_) {
-    const std::size_t c = spring.contact;
-    const Piece line = factored_[c];
-    const Force constant = springs_->force_on(c, line, 0.0, 0.0);
-    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D = 0 is right.
-    const double in_matrix = spring.normal ? factor_.normal_stiffness[c] : factor_.shear_stiffness[c];
-    const double now = spring.normal ? springs_->kn[c] : springs_->ks[c];
+  correction_force_.assign(corrected_.size(), 0.0);
+  for (std::size_t k = 0; k < corrected_.size(); ++k) {
+    const auto [c, normal] = corrected_[k];
+    const Force constant = springs_->force_on(c, factored_[c], 0.0, 0.0);
+    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D is right.
+    const double in_matrix = normal ? factor_.normal_stiffness[c] : factor_.shear_stiffness[c];
+    const double now = normal ? springs_->kn[c] : springs_->ks[c];
     const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
-    if (spring.normal) {
-      laws_.push_back({stiffness, springs_->floor[c], HUGE_VAL, in_matrix, constant.normal});
-      stretch_.push_back(scale * springs_->y0[c]);
-    } else {
-      laws_.push_back({stiffness, -springs_->bound[c], springs_->bound[c], in_matrix, constant.shear});
-      stretch_.push_back(scale * springs_->w0[c]);
-    }
+    stretch_.push_back(scale * (normal ? springs_->y[c] : springs_->w[c]));
+    Corrections::Law& law = laws_.emplace_back();
+    law.stiffness = stiffness;
+    law.low = normal ? springs_->floor[c] : -springs_->bound[c];
+    law.high = normal ? HUGE_VAL : springs_->bound[c];
+    law.line_stiffness = in_matrix;
+    law.line_force = normal ? constant.normal : constant.shear;
+    const bool is_fresh = k + fresh >= corrected_.size();
+    if (!is_fresh) correction_force_[k] = law.bend(stretch_.back());
+    law.line_force += correction_force_[k];
   }
-  return corrections_.solve(halves, base_, laws_, stretch_);
+  if (!corrections_.solve(halves, base_, laws_, stretch_)) return false;
+  for (std::size_t k = 0; k < corrected_.size(); ++k) correction_force_[k] += corrections_.forces()[k];
+  return true;
+}
+
+/// ∇Π where all but the springs that bend are on the straight lines of a matrix that has been solved exactly: what these do otherwise than
+/// they have been corrected to.
+void OpenClose::find_rest(const StepProblem& problem) {
+  std::fill(gradient_.begin(), gradient_.end(), 0.0);
+  out_of_balance_.reset();
+  for (const std::size_t c : bends_) {
+    const double y = springs_->y[c], w = springs_->w[c];
+    add_force(problem, c, springs_->force(c) - springs_->force_on(c, factored_[c], y, w), 1.0, gradient_);
+  }
+  for (std::size_t k = 0; k < corrected_.size(); ++k) {
+    const auto [c, normal] = corrected_[k];
+    const double force = correction_force_[k];
+    add_force(problem, c, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0, gradient_);
+  }
 }
 
 void OpenClose::forget_corrections() {
@@ -127,62 +151,73 @@ void OpenClose::leave_out_bends(const StepProblem& problem) {
   if (!wanted_.empty()) out_of_balance_.reset();
 }
 
-/// Goes to the minimum with the factor at hand, correcting the springs that act otherwise. They become more until no other does, so
-/// that this ends. False when they are too many, or their forces are not found; D and the gradient are then those of the corrections
-/// so far, or of none; and when the factor of an earlier step will not do.
+/// Goes from D, where springs and gradient are, to the minimum with the factor at hand, correcting the springs that act otherwise. They
+/// become more until no other does, so that this ends. False when they are too many, when their forces are not found, and when what the
+/// factor gets wrong is not refined away.
 bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                        std::span<double> d, OpenCloseResult& result) {
+                        bool from_zero, std::span<double> d, OpenCloseResult& result) {
   linalg::HalfSolver& halves = *solver.halves();
-  const std::span<double> unknown = d.first(problem.unknowns());
-  const auto finish = [&] {
-    ++result.iterations;
+  const std::size_t n = problem.unknowns();
+  const auto start = [&] {
     const Profile::Scope scope(*profile_, Phase::solution);
-    corrections_.finish(halves, base_, unknown);
-    for (const std::size_t b : free_) problem.solve_alone(b, unknown);
+    for (std::size_t k = 0; k < n; ++k) direction_[k] = -gradient_[k];
+    halves.half_solve(std::span(direction_).first(n), base_);
   };
-  solve_base(problem, halves);
-  std::fill(d.begin(), d.end(), 0.0);
-  bool done = false;
+  const auto give_up = [&] {
+    find_gradient(problem, d);
+    return false;
+  };
+  // Where what is solved is the matrix of this step, to all digits; and where a long way is gone with one that is not.
+  const bool exact = !kept_ && halves.is_exact(), far = !exact && (kept_ || from_zero);
+  const double enough = (kept_ ? kept_share : linear_share) * tolerance;
+  std::size_t fresh = 0;
+  if (from_zero) {
+    start_on_lines(problem, halves);
+    fresh = corrected_.size();
+  } else {
+    find_bent();
+    find_wanted();
+    leave_out_bends(problem);
+    start();
+  }
   for (int refinements = 0;;) {
-    if (corrections_.size() > 0 && !find_corrections(halves)) {
+    if (!find_corrections(halves, fresh)) {
       forget_corrections();
-      finish();
-      place(problem, d);
-      find_bent();
-      break;
+      return give_up();
     }
-    finish();
+    ++result.iterations;
+    {
+      const Profile::Scope scope(*profile_, Phase::solution);
+      corrections_.finish(halves, base_, std::span(direction_).first(n));
+      for (std::size_t k = 0; k < n; ++k) d[k] += direction_[k];
+      for (const std::size_t b : free_) problem.solve_alone(b, d);
+    }
     place(problem, d);
     find_bent();
-    const int added = correct_bends(problem, halves);
-    done = added == 0;
-    if (added < 0 || (done && !kept_)) break;
-    // What the factor of an earlier step gets wrong is refined away along with the first springs that come to be corrected,
-    // and at the end until nothing of it is left.
-    if (!kept_ || (!done && refinements > 0)) continue;
-    find_gradient(problem, d);
-    if (!done) leave_out_bends(problem);
-    const bool fits = out_of_balance(problem) <= kept_share * tolerance;
-    if (fits && done) return true;
-    if (fits) continue;
-    if (refinements++ == most_refinements) return false;
+    find_wanted();
+    if (corrected_.size() + wanted_.size() > most_corrected) return give_up();
+    correct_wanted(problem, halves);
+    fresh = wanted_.size();
+    // What the factor gets wrong is refined away along with the first springs that come to be corrected, and at the end until
+    // nothing of it is left.
+    const bool refines = fresh == 0 ? !exact : far && refinements == 0;
+    if (refines) {
+      find_gradient(problem, d);
+      leave_out_bends(problem);
+    }
+    const bool fits = !refines || out_of_balance(problem) <= enough;
+    if (fits && fresh == 0) break;
+    if (fits) {
+      std::fill(base_.begin(), base_.end(), 0.0);
+      continue;
+    }
+    if (refinements++ == most_refinements) return give_up();
     ++result.refinements;
-    const Profile::Scope scope(*profile_, Phase::solution);
-    halves.half_solve(std::span(gradient_).first(problem.unknowns()), refinement_);
-    for (std::size_t k = 0; k < base_.size(); ++k) base_[k] -= refinement_[k];
+    start();
   }
-  std::fill(gradient_.begin(), gradient_.end(), 0.0);
-  out_of_balance_.reset();
-  for (const std::size_t c : bends_) {
-    const double y = springs_->y[c], w = springs_->w[c];
-    add_force(problem, c, springs_->force(c) - springs_->force_on(c, factored_[c], y, w), 1.0, gradient_);
-  }
-  for (std::size_t s = 0; s < corrections_.size(); ++s) {
-    const double force = corrections_.forces()[s];
-    const bool normal = corrected_[s].normal;
-    add_force(problem, corrected_[s].contact, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0, gradient_);
-  }
-  return done;
+  if (exact) find_rest(problem);
+  result.bends += corrected_.size();
+  return true;
 }
 
 }  // namespace keyblock::dynamics

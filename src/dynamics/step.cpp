@@ -220,8 +220,13 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     drive.turned = turned_;
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
-    guessed_ = chosen.halves() == nullptr;
-    if (guessed_ && look == 1 && turns == 0) history_.extrapolate(drive.step, increment_, team_);
+    // Where there is a factor, only a curve through the last increments is a better beginning than none at all.
+    if (look == 1 && turns == 0) {
+      if (chosen.halves() == nullptr || history_.is_smooth())
+        history_.extrapolate(drive.step, increment_, team_);
+      else
+        std::fill(increment_.begin(), increment_.end(), 0.0);
+    }
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
     const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,
                                                      profile_, increment_, meets_impacts);
@@ -255,7 +260,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   account(state, drive);
   const Profile::Scope scope(profile_, Phase::update);
   remember(state, drive, report);
-  if (guessed_ && !drive.is_static) {
+  if (!drive.is_static) {
     history_.add(increment_, drive.step, quiet_, team_);
   } else {
     history_.forget();

@@ -175,8 +175,7 @@ class Stepper {
   std::vector<Vec2> ahead_;                 ///< m, per vertex
   std::vector<double> way_ahead_;           ///< m, per block
   std::vector<double> increment_;
-  IncrementHistory history_;      ///< of dynamic steps by solvers that start from a guess
-  bool guessed_ = false;          ///< the last attempt started from one
+  IncrementHistory history_;      ///< of dynamic steps
   bool quiet_ = false;            ///< no contact changed its piece in it
   std::vector<double> speed_;     ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;      ///< rad, per block, of the last attempt

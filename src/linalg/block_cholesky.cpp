@@ -1,248 +1,181 @@
 #include "linalg/block_cholesky.h"
 
 #include <algorithm>
+#include <memory>
 
+#include "core/index.h"
 #include "linalg/block_kernels.h"
 
 namespace keyblock::linalg {
 
-void BlockCholesky::load_column(std::size_t j) {
-  const std::size_t end = j + 1 < size_.size() ? column_value_[j + 1] : values_.size();
-  std::size_t filled = column_value_[j];
-  const auto clear_up_to = [&](std::size_t place) {
-    for (; filled < place; filled += row_padding) store(&values_[filled], Lanes{});
-  };
-  for (std::size_t k = source_start_[j]; k < source_start_[j + 1]; ++k) {
-    const Source& source = sources_[k];
-    clear_up_to(source.to);
-    for (std::size_t v = 0; v < source.count; v += row_padding)
-      store(&values_[source.to + v], load(&matrix_[source.from + v]));
-    filled += source.count;
-  }
-  clear_up_to(end);
+void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
+  // Coefficients of higher polynomials differ too much in what they do; and a small factor stays in a cache as it is.
+  constexpr int largest_single = 12;
+  constexpr std::size_t worth_single = std::size_t{1} << 18;  // numbers: 2 MB in double precision
+  pattern_ = BlockPattern(sizes, pairs);
+  matrix_ = BlockMatrix(pattern_, pairs);
+  single_.reset();
+  double_.reset();
+  const bool is_worth_it = pattern_.values >= worth_single &&
+                           std::ranges::all_of(sizes, [](int size) { return size <= largest_single; });
+  if (precision_ == Precision::single || (precision_ == Precision::automatic && is_worth_it))
+    single_.emplace(pattern_);
+  in_double_ = !single_;
+  work_.assign(pattern_.work_size, 0.0);
+  right_.assign(pattern_.work_size, 0.0);
+  solution_.assign(pattern_.work_size, 0.0);
 }
 
-/// A_ij −= Σ_k L_ik L_jkᵀ for all rows i of column j.
-template <int equal>
-void BlockCholesky::update_column(std::size_t j) {
-  target_[j] = &values_[column_value_[j]];
-  for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) target_[rows_[e]] = &values_[row_value_[e]];
-  for (std::size_t u = update_start_[j]; u < update_start_[j + 1]; ++u) {
-    const auto [k, first] = updates_[u];
-    const double* l_jk = &values_[row_value_[first]];
-    for (std::size_t e = first; e < row_start_[k + 1]; ++e) {
-      const std::size_t i = rows_[e];
-      if constexpr (equal > 0) {
-        subtract_block_product<equal>(&values_[row_value_[e]], l_jk, target_[i]);
-      } else {
-        subtract_block_product(stride_[i] / row_padding, size_[j], size_[k], &values_[row_value_[e]], l_jk,
-                               stride_[j], target_[i]);
-      }
-    }
-  }
+void BlockCholesky::clear() {
+  matrix_.clear();
+  if (single_) single_->make_stale();
+  if (double_) double_->make_stale();
+  in_double_ = !single_;
 }
 
-template <int equal>
-bool BlockCholesky::factor_columns() {
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    if (stale_[j] == 0) continue;
-    // What is eliminated later depends on this column through its parent in the elimination tree.
-    if (parent_[j] != none) stale_[parent_[j]] = 1;
-    load_column(j);
-    update_column<equal>(j);
-    double* inverse = &values_[column_value_[j]];
-    if constexpr (equal > 0) {
-      if (!invert_factor<equal>(inverse)) return false;
-    } else {
-      if (!invert_factor(size<equal>(j), inverse, scale_.data())) return false;
-    }
-    for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-      double* x = &values_[row_value_[e]];
-      if constexpr (equal > 0) {
-        multiply_right<equal>(inverse, x);
-      } else {
-        multiply_right(stride<equal>(rows_[e]) / row_padding, size<equal>(j), inverse, x);
-      }
-    }
-    stale_[j] = 0;
-  }
-  return true;
-}
-
-/// Calls what.template operator()<equal>().
+/// Calls what(factor) with that at hand.
 template <typename Do>
-void BlockCholesky::for_equal_size(const Do& what) const {
-  if (equal_size_ == 6) {
-    what.template operator()<6>();
-  } else if (equal_size_ == 12) {
-    what.template operator()<12>();
+void BlockCholesky::with_factor(const Do& what) {
+  if (in_double_) {
+    what(*double_);
   } else {
-    what.template operator()<0>();
+    what(*single_);
   }
+}
+
+void BlockCholesky::touch(int block) {
+  if (in_double_) {
+    if (double_) double_->make_stale(column(block));
+  } else {
+    single_->make_stale(column(block));
+  }
+}
+
+bool BlockCholesky::factor_in_double() {
+  if (!double_) double_.emplace(pattern_);
+  in_double_ = true;
+  return double_->factor(pattern_, matrix_, 0.0) == FactorOutcome::done;
 }
 
 bool BlockCholesky::factor() {
-  bool positive = false;
-  for_equal_size([&]<int equal>() { positive = factor_columns<equal>(); });
-  return positive;
-}
-
-/// y − Σ_i L_ijᵀ x_i for some unknowns of column j, from c on, into solved_. Returns their number.
-template <int equal, int columns>
-int BlockCholesky::gather(std::size_t j, int c) {
-  Lanes t[columns]{};
-  for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-    const std::size_t i = rows_[e];
-    const int rows = stride<equal>(i);
-    add_lane_products(rows / row_padding, &values_[row_value_[e] + at(c * rows)], &work_[work_start_[i]], t);
+  solved_ = true;
+  // A pivot that is the difference of numbers 10⁵ times as large has two digits left in single precision.
+  constexpr double least_pivot = 1e-5;
+  if (!in_double_) {
+    if (single_->factor(pattern_, matrix_, least_pivot) == FactorOutcome::done) return true;
+    if (double_) double_->make_stale();
   }
-  const double* y = &work_[work_start_[j] + at(c)];
-  double* out = &solved_[at(c)];
-  if constexpr (columns == 1) {
-    out[0] = y[0] - sum(t[0]);
-  } else {
-    store_first<columns>(out, stride<equal>(j) - c, load(y) - sums(t));
-  }
-  return columns;
-}
-
-/// L_jj⁻ᵀ y likewise.
-template <int equal, int columns>
-int BlockCholesky::divide(std::size_t j, int c) {
-  Lanes t[columns]{};
-  const int rows = stride<equal>(j);
-  add_lane_products(rows / row_padding, &values_[column_value_[j] + at(c * rows)], solved_.data(), t);
-  double* out = &work_[work_start_[j] + at(c)];
-  if constexpr (columns == 1) {
-    out[0] = sum(t[0]);
-  } else {
-    store_first<columns>(out, stride<equal>(j) - c, sums(t));
-  }
-  return columns;
+  return factor_in_double();
 }
 
 /// Brings x into the order of elimination.
-void BlockCholesky::take(std::span<const double> x) {
-  for_equal_size([&]<int equal>() {
-    for (std::size_t j = 0; j < size_.size(); ++j)
-      std::copy_n(&x[offset_[j]], size<equal>(j), &work_[work_start_[j]]);
+void BlockCholesky::take(std::span<const double> x, std::span<double> by_column) const {
+  for (std::size_t j = 0; j < pattern_.columns(); ++j)
+    std::copy_n(&x[pattern_.offset[j]], pattern_.size[j], &by_column[pattern_.work_start[j]]);
+}
+
+void BlockCholesky::give(std::span<const double> by_column, std::span<double> x) const {
+  for (std::size_t j = 0; j < pattern_.columns(); ++j)
+    std::copy_n(&by_column[pattern_.work_start[j]], pattern_.size[j], &x[pattern_.offset[j]]);
+}
+
+void BlockCholesky::solve_by_column(std::span<double> x) {
+  with_factor([&](auto& factor) {
+    factor.forward(pattern_, x);
+    factor.backward(pattern_, x);
   });
 }
 
-void BlockCholesky::give(std::span<double> x) const {
-  for_equal_size([&]<int equal>() {
-    for (std::size_t j = 0; j < size_.size(); ++j)
-      std::copy_n(&work_[work_start_[j]], size<equal>(j), &x[offset_[j]]);
-  });
-}
-
-/// y ← L_jj⁻¹ y for column j, and what the rows i below, at of_row(i), lose by it.
-template <int equal, typename OfRow>
-void BlockCholesky::eliminate(std::size_t j, double* y, const OfRow& of_row) {
-  const int size_j = size<equal>(j), rows = stride<equal>(j);
-  multiply(rows / row_padding, size_j, &values_[column_value_[j]], y, solved_.data());
-  for (int l = 0; l < rows; l += row_padding) store(y + l, load(&solved_[at(l)]));
-  for (std::size_t e = row_start_[j]; e < row_start_[j + 1]; ++e) {
-    const std::size_t i = rows_[e];
-    subtract_times(stride<equal>(i) / row_padding, size_j, &values_[row_value_[e]], y, of_row(i));
+/// Solutions in single precision, each of what the ones before left over. Whether the excess came down to 1.
+bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, const Excess& excess) {
+  constexpr int most = 5;
+  std::fill(solution_.begin(), solution_.end(), 0.0);
+  work_ = right_;
+  for (int round = 0; round < most; ++round) {
+    solve_by_column(work_);
+    for (std::size_t k = 0; k < work_.size(); ++k) solution_[k] += work_[k];
+    work_ = right_;
+    matrix_.subtract_product(pattern_, solution_, work_);
+    give(work_, residual);
+    if (excess(residual) > 1.0) continue;
+    give(solution_, x);
+    return true;
   }
+  return false;
 }
 
-template <int equal>
-void BlockCholesky::forward() {
-  const auto of_row = [&](std::size_t i) { return &work_[work_start_[i]]; };
-  for (std::size_t j = 0; j < size_.size(); ++j) {
-    double* y = of_row(j);
-    // Zero, as where a step has settled.
-    if (std::all_of(y, y + size<equal>(j), [](double v) { return v == 0.0; })) continue;
-    eliminate<equal>(j, y, of_row);
-  }
-}
-
-template <int equal>
-void BlockCholesky::backward() {
-  std::fill(solved_.begin(), solved_.end(), 0.0);
-  for (std::size_t j = size_.size(); j-- > 0;) {
-    const int size_j = size<equal>(j);
-    for (int c = 0; c < size_j;) c += size_j - c >= 6 ? gather<equal, 6>(j, c) : gather<equal, 1>(j, c);
-    for (int c = 0; c < size_j;) c += size_j - c >= 6 ? divide<equal, 6>(j, c) : divide<equal, 1>(j, c);
-  }
-}
-
-void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& /*excess*/,
+void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                           Residual /*kind*/) {
+  take(x, right_);
+  if (!in_double_) {
+    if (refine(x, residual, excess)) return;
+    if (double_) double_->make_stale();
+    solved_ = factor_in_double();
+    if (!solved_) return;
+  }
   std::fill(residual.begin(), residual.end(), 0.0);
-  take(x);
-  for_equal_size([&]<int equal>() {
-    forward<equal>();
-    backward<equal>();
-  });
-  give(x);
-}
-
-template <int equal>
-void BlockCholesky::half_forward(HalfSolution& half) {
-  const auto of_row = [&](std::size_t i) { return &half.values[above_[i]]; };
-  for (std::size_t j = at(half.column); j != none; j = parent_[j]) eliminate<equal>(j, of_row(j), of_row);
+  solve_by_column(right_);
+  give(right_, x);
 }
 
 void BlockCholesky::half_solve(Part a, Part b, HalfSolution& half) {
-  std::size_t first = none;
+  std::size_t first = BlockPattern::none;
   for (const Part& part : {a, b}) {
-    if (part.block >= 0) first = std::min(first, position_[at(part.block)]);
+    if (part.block >= 0) first = std::min(first, column(part.block));
   }
   half.column = static_cast<int>(first);
-  half.values.assign(above_[first] + at(stride_[first]), 0.0);
+  half.values.assign(pattern_.above[first] + at(pattern_.stride[first]), 0.0);
   for (const Part& part : {a, b}) {
     if (part.block >= 0)
-      std::copy(part.values.begin(), part.values.end(), &half.values[above_[position_[at(part.block)]]]);
+      std::copy(part.values.begin(), part.values.end(), &half.values[pattern_.above[column(part.block)]]);
   }
-  for_equal_size([&]<int equal>() { half_forward<equal>(half); });
+  with_factor([&](auto& factor) { factor.forward(pattern_, half); });
 }
 
 double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) const {
   // The ways have all in common from where they meet.
+  constexpr std::size_t none = BlockPattern::none;
   std::size_t i = at(x.column), j = at(y.column);
-  while (i != j && i != none && j != none) (i < j ? i : j) = parent_[std::min(i, j)];
+  while (i != j && i != none && j != none) (i < j ? i : j) = pattern_.parent[std::min(i, j)];
   if (i != j || i == none) return 0.0;
   Lanes t{};
-  for (std::size_t k = 0; k < above_[i] + at(stride_[i]); k += row_padding)
+  for (std::size_t k = 0; k < pattern_.above[i] + at(pattern_.stride[i]); k += row_padding)
     t = add_product(load(&x.values[k]), load(&y.values[k]), t);
   return sum(t);
 }
 
 double BlockCholesky::product(const HalfSolution& x, std::span<const double> y) const {
   Lanes t{};
-  for (std::size_t j = at(x.column); j != none; j = parent_[j]) {
-    for (std::size_t l = 0; l < at(stride_[j]); l += row_padding)
-      t = add_product(load(&x.values[above_[j] + l]), load(&y[work_start_[j] + l]), t);
+  for (std::size_t j = at(x.column); j != BlockPattern::none; j = pattern_.parent[j]) {
+    for (std::size_t l = 0; l < at(pattern_.stride[j]); l += row_padding)
+      t = add_product(load(&x.values[pattern_.above[j] + l]), load(&y[pattern_.work_start[j] + l]), t);
   }
   return sum(t);
 }
 
 void BlockCholesky::half_solve(std::span<const double> b, std::vector<double>& half) {
-  take(b);
-  for_equal_size([&]<int equal>() { forward<equal>(); });
-  half = work_;
+  half.resize(pattern_.work_size);
+  take(b, half);
+  with_factor([&](auto& factor) { factor.forward(pattern_, half); });
 }
 
 void BlockCholesky::finish(std::span<const double> half, std::span<const HalfSolution> halves,
                            std::span<const double> factor, std::span<double> x) {
   std::copy(half.begin(), half.end(), work_.begin());
   for (std::size_t k = 0; k < halves.size(); ++k) {
-    for (std::size_t j = at(halves[k].column); j != none; j = parent_[j]) {
-      double* y = &work_[work_start_[j]];
-      for (int l = 0; l < stride_[j]; l += row_padding)
-        store(y + l,
-              add_product(broadcast(factor[k]), load(&halves[k].values[above_[j] + at(l)]), load(y + l)));
+    for (std::size_t j = at(halves[k].column); j != BlockPattern::none; j = pattern_.parent[j]) {
+      double* y = &work_[pattern_.work_start[j]];
+      for (int l = 0; l < pattern_.stride[j]; l += row_padding)
+        store(y + l, add_product(broadcast(factor[k]), load(&halves[k].values[pattern_.above[j] + at(l)]),
+                                 load(y + l)));
     }
   }
-  for_equal_size([&]<int equal>() { backward<equal>(); });
-  give(x);
+  with_factor([&](auto& of) { of.backward(pattern_, work_); });
+  give(work_, x);
 }
 
-std::unique_ptr<BlockSolver> make_block_cholesky() {
-  return std::make_unique<BlockCholesky>();
+std::unique_ptr<BlockSolver> make_block_cholesky(Precision precision) {
+  return std::make_unique<BlockCholesky>(precision);
 }
 
 }  // namespace keyblock::linalg

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #if defined(__AVX512F__) || defined(__FMA__)
 #include <immintrin.h>
@@ -50,6 +51,11 @@ inline NarrowLanes add_product(NarrowLanes a, NarrowLanes b, NarrowLanes c) {
   return c;
 #endif
 }
+#if defined(__AVX512F__)
+inline SixteenLanes add_product(SixteenLanes a, SixteenLanes b, SixteenLanes c) {
+  return _mm512_fmadd_ps(a, b, c);
+}
+#endif
 /// c − a b, rounded once.
 template <typename Register>
 Register subtract_product(Register a, Register b, Register c) {
@@ -78,22 +84,22 @@ void in_sixes(int size, const Columns& columns) {
 }
 
 /// C −= A Bᵀ for `lanes` registers of rows and `columns` columns of C, all held in registers; A: rows × k, B: columns × k.
-template <int lanes, int columns>
-void subtract_tile(int k, const double* a, int a_stride, const double* b, int b_stride, double* c,
+template <int lanes, int columns, typename Number>
+void subtract_tile(int k, const Number* a, int a_stride, const Number* b, int b_stride, Number* c,
                    int c_stride) {
-  Lanes t[columns][lanes];
+  decltype(load(a)) t[columns][lanes];
 #pragma GCC unroll 8
   for (int j = 0; j < columns; ++j) {
 #pragma GCC unroll 4
     for (int l = 0; l < lanes; ++l) t[j][l] = load(c + j * c_stride + l * row_padding);
   }
   for (int q = 0; q < k; ++q) {
-    Lanes x[lanes];
+    decltype(load(a)) x[lanes];
 #pragma GCC unroll 4
     for (int l = 0; l < lanes; ++l) x[l] = -load(a + q * a_stride + l * row_padding);
 #pragma GCC unroll 8
     for (int j = 0; j < columns; ++j) {
-      const Lanes y = broadcast(b[q * b_stride + j]);
+      const auto y = broadcast(b[q * b_stride + j]);
 #pragma GCC unroll 4
       for (int l = 0; l < lanes; ++l) t[j][l] = add_product(x[l], y, t[j][l]);
     }
@@ -106,17 +112,18 @@ void subtract_tile(int k, const double* a, int a_stride, const double* b, int b_
 }
 
 /// C −= A Bᵀ of blocks: A: rows × k, B: columns × k, C: rows × columns; `lanes` registers per column of A and C.
-inline void subtract_block_product(int lanes, int columns, int k, const double* a, const double* b,
-                                   int b_stride, double* c) {
+template <typename Number>
+void subtract_block_product(int lanes, int columns, int k, const Number* a, const Number* b, int b_stride,
+                            Number* c) {
   const int stride = lanes * row_padding;
   const auto rows = [&]<int width>(int j) {
-    const double* b_j = b + j;
-    double* c_j = c + j * stride;
+    const Number* b_j = b + j;
+    Number* c_j = c + j * stride;
     int l = 0;
     for (; l + 4 <= lanes; l += 4)
       subtract_tile<4, width>(k, a + l * row_padding, stride, b_j, b_stride, c_j + l * row_padding, stride);
-    const double* a_l = a + l * row_padding;
-    double* c_l = c_j + l * row_padding;
+    const Number* a_l = a + l * row_padding;
+    Number* c_l = c_j + l * row_padding;
     if (lanes - l == 1) subtract_tile<1, width>(k, a_l, stride, b_j, b_stride, c_l, stride);
     if (lanes - l == 2) subtract_tile<2, width>(k, a_l, stride, b_j, b_stride, c_l, stride);
     if (lanes - l == 3) subtract_tile<3, width>(k, a_l, stride, b_j, b_stride, c_l, stride);
@@ -127,30 +134,51 @@ inline void subtract_block_product(int lanes, int columns, int k, const double* 
   if (j < columns) rows.template operator()<1>(j);
 }
 
+/// Registers for columns of `stride` numbers: as many floats at once as one has room for.
+template <typename Number, int stride>
+struct Columns {
+  using Register = decltype(load(static_cast<const Number*>(nullptr)));
+  static Register load_from(const Number* p) { return load(p); }
+  static void store_to(Number* p, Register v) { store(p, v); }
+  static Register all(Number x) { return broadcast(x); }
+};
+#if defined(__AVX512F__)
+template <>
+struct Columns<float, 16> {
+  using Register = SixteenLanes;
+  static Register load_from(const float* p) { return *reinterpret_cast<const SixteenLanes*>(p); }
+  static void store_to(float* p, Register v) { *reinterpret_cast<SixteenLanes*>(p) = v; }
+  static Register all(float x) { return _mm512_set1_ps(x); }
+};
+#endif
+
 /// The same for blocks of n rows and columns, n a multiple of 6.
-template <int n>
-void subtract_block_product(const double* a, const double* b, double* c) {
-  constexpr int stride = padded_rows(n), lanes = stride / row_padding, columns = 6;
+template <int n, typename Number>
+void subtract_block_product(const Number* a, const Number* b, Number* c) {
+  constexpr int stride = padded_rows(n);
+  using Of = Columns<Number, stride>;
+  using Register = typename Of::Register;
+  constexpr int width = sizeof(Register) / sizeof(Number), lanes = stride / width, columns = 6;
   for (int j = 0; j < n; j += columns) {
-    Lanes t[columns][lanes];
+    Register t[columns][lanes];
 #pragma GCC unroll 6
     for (int i = 0; i < columns; ++i) {
 #pragma GCC unroll 2
-      for (int l = 0; l < lanes; ++l) t[i][l] = load(c + (j + i) * stride + l * row_padding);
+      for (int l = 0; l < lanes; ++l) t[i][l] = Of::load_from(c + (j + i) * stride + l * width);
     }
 #pragma GCC unroll 12
     for (int q = 0; q < n; ++q) {
 #pragma GCC unroll 2
       for (int l = 0; l < lanes; ++l) {
-        const Lanes x = -load(a + q * stride + l * row_padding);
+        const auto x = -Of::load_from(a + q * stride + l * width);
 #pragma GCC unroll 6
-        for (int i = 0; i < columns; ++i) t[i][l] = add_product(x, broadcast(b[q * stride + j + i]), t[i][l]);
+        for (int i = 0; i < columns; ++i) t[i][l] = add_product(x, Of::all(b[q * stride + j + i]), t[i][l]);
       }
     }
 #pragma GCC unroll 6
     for (int i = 0; i < columns; ++i) {
 #pragma GCC unroll 2
-      for (int l = 0; l < lanes; ++l) store(c + (j + i) * stride + l * row_padding, t[i][l]);
+      for (int l = 0; l < lanes; ++l) Of::store_to(c + (j + i) * stride + l * width, t[i][l]);
     }
   }
 }
@@ -252,12 +280,13 @@ bool invert_factor(double* a) {
 }
 
 /// X ← X L⁻ᵀ for a block X of `lanes` registers per column; inverse: L⁻¹ by columns.
-inline void multiply_right(int lanes, int n, const double* inverse, double* x) {
+template <typename Number>
+void multiply_right(int lanes, int n, const Number* inverse, Number* x) {
   const int stride = lanes * row_padding, l_stride = padded_rows(n);
   for (int lane = 0; lane < lanes; ++lane) {
-    double* x_lane = x + lane * row_padding;
+    Number* x_lane = x + lane * row_padding;
     for (int j = n - 1; j >= 0; --j) {
-      Lanes t = load(x_lane + j * stride) * inverse[j * l_stride + j];
+      auto t = load(x_lane + j * stride) * inverse[j * l_stride + j];
       for (int q = 0; q < j; ++q)
         t = add_product(load(x_lane + q * stride), broadcast(inverse[q * l_stride + j]), t);
       store(x_lane + j * stride, t);
@@ -265,56 +294,71 @@ inline void multiply_right(int lanes, int n, const double* inverse, double* x) {
   }
 }
 /// The same for blocks of n columns and rows, held in registers.
-template <int n>
-void multiply_right(const double* inverse, double* x) {
+template <int n, typename Number>
+void multiply_right(const Number* inverse, Number* x) {
   constexpr int stride = padded_rows(n);
-  for (int l = 0; l < stride; l += row_padding) {
-    Lanes column[n];
+  using Of = Columns<Number, stride>;
+  using Register = typename Of::Register;
+  constexpr int width = sizeof(Register) / sizeof(Number);
+  for (int l = 0; l < stride; l += width) {
+    Register column[n];
 #pragma GCC unroll 12
-    for (int q = 0; q < n; ++q) column[q] = load(x + q * stride + l);
+    for (int q = 0; q < n; ++q) column[q] = Of::load_from(x + q * stride + l);
 #pragma GCC unroll 12
     for (int j = n - 1; j >= 0; --j) {
       column[j] = column[j] * inverse[j * stride + j];
 #pragma GCC unroll 12
       for (int q = 0; q < j; ++q)
-        column[j] = add_product(column[q], broadcast(inverse[q * stride + j]), column[j]);
+        column[j] = add_product(column[q], Of::all(inverse[q * stride + j]), column[j]);
     }
 #pragma GCC unroll 12
-    for (int q = 0; q < n; ++q) store(x + q * stride + l, column[q]);
+    for (int q = 0; q < n; ++q) Of::store_to(x + q * stride + l, column[q]);
+  }
+}
+
+/// Numbers of a matrix as those of a vector, which may have more digits.
+template <typename Number, typename Stored>
+auto load_as(const Stored* a) {
+  if constexpr (std::is_same_v<Number, Stored>) {
+    return load(a);
+  } else {
+    return widen(load(a));
   }
 }
 
 /// y = A x; y and x are not the same.
-template <typename Number>
-void multiply(int lanes, int columns, const Number* a, const Number* x, Number* y) {
+template <typename Stored, typename Number>
+void multiply(int lanes, int columns, const Stored* a, const Number* x, Number* y) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < stride; l += row_padding) {
-    decltype(load(a)) t{};
-    for (int j = 0; j < columns; ++j) t = add_product(load(a + j * stride + l), broadcast(x[j]), t);
+    decltype(load(x)) t{};
+    for (int j = 0; j < columns; ++j)
+      t = add_product(load_as<Number>(a + j * stride + l), broadcast(x[j]), t);
     store(y + l, t);
   }
 }
 
 /// y −= A x.
-template <typename Number>
-void subtract_times(int lanes, int columns, const Number* a, const Number* x, Number* y) {
+template <typename Stored, typename Number>
+void subtract_times(int lanes, int columns, const Stored* a, const Number* x, Number* y) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
     auto t = load(y + l * row_padding);
     for (int j = 0; j < columns; ++j)
-      t = subtract_product(load(a + j * stride + l * row_padding), broadcast(x[j]), t);
+      t = subtract_product(load_as<Number>(a + j * stride + l * row_padding), broadcast(x[j]), t);
     store(y + l * row_padding, t);
   }
 }
 
 /// t_j += A_j ∘ x, the products of column j of A with x lane by lane; their sum is (Aᵀ x)_j. As many columns as t has.
-template <typename Number, typename Register, int columns>
-void add_lane_products(int lanes, const Number* a, const Number* x, Register (&t)[columns]) {
+template <typename Stored, typename Number, typename Register, int columns>
+void add_lane_products(int lanes, const Stored* a, const Number* x, Register (&t)[columns]) {
   const int stride = lanes * row_padding;
   for (int l = 0; l < lanes; ++l) {
     const Register v = load(x + l * row_padding);
 #pragma GCC unroll 8
-    for (int j = 0; j < columns; ++j) t[j] = add_product(load(a + j * stride + l * row_padding), v, t[j]);
+    for (int j = 0; j < columns; ++j)
+      t[j] = add_product(load_as<Number>(a + j * stride + l * row_padding), v, t[j]);
   }
 }
 

@@ -36,6 +36,8 @@ struct HalfSolution {
 class HalfSolver {
  public:
   virtual ~HalfSolver() = default;
+  /// Whether the factor has the digits of double precision; where not, what is solved with it wants to be refined.
+  [[nodiscard]] virtual bool is_exact() const = 0;
   /// What belongs to a block, as long as its unknowns; block −1: nothing.
   struct Part {
     int block = -1;
@@ -96,9 +98,17 @@ class BlockSolver {
   [[nodiscard]] virtual bool solved() const { return true; }
 };
 
-/// The block Cholesky factorization of this project: left-looking by block columns, ordered by AMD on the
-/// graph of blocks.
-std::unique_ptr<BlockSolver> make_block_cholesky();
+/// Digits of a factor.
+enum class Precision {
+  automatic,  ///< single where that saves memory from being read, and the matrix leaves enough of them
+  single,     ///< where the matrix leaves enough of them
+  full,       ///< double
+};
+
+/// The block Cholesky factorization of this project: left-looking by block columns, ordered by AMD on the graph of blocks. A factor in single
+/// precision takes half the memory, by which solutions are bound; solve() refines what it gets by products with the matrix in double
+/// precision, and halves are those of a matrix that differs from it in the seventh digit.
+std::unique_ptr<BlockSolver> make_block_cholesky(Precision precision = Precision::automatic);
 
 /// Conjugate gradients with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat
 /// 1981). In a dynamic step inertia bounds the condition of the matrix, so that the iterations do not grow with the model.

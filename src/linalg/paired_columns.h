@@ -13,7 +13,7 @@ inline constexpr int rows = 6, block_size = rows * rows, read_beyond = 4;
 
 #if defined(__AVX512F__)
 
-using PairLanes = float __attribute__((vector_size(16 * sizeof(float)), aligned(4)));
+using PairLanes = SixteenLanes;
 
 inline PairLanes load_pair(const float* p) {
   return *reinterpret_cast<const PairLanes*>(p);

@@ -182,13 +182,16 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
   // A blow to the upper block: contacts open and slide.
   s.state.velocity[s.model.blocks[3].first] += 0.5;
   s.state.velocity[s.model.blocks[3].first + 1] += 0.1;
-  for (const bool iterative : {false, true}) {
+  enum class Solver { full, single, iterative };
+  for (const Solver kind : {Solver::full, Solver::single, Solver::iterative}) {
     StepProblem problem;
     const NextStep next(s);
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
     problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
-    const auto solver =
-        iterative ? linalg::make_block_conjugate_gradient(&s.team) : linalg::make_block_cholesky();
+    const auto solver = kind == Solver::iterative
+                            ? linalg::make_block_conjugate_gradient(&s.team)
+                            : linalg::make_block_cholesky(kind == Solver::full ? linalg::Precision::full
+                                                                               : linalg::Precision::single);
     analyse(s.model, problem, *solver);
     std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
     OpenClose iteration;
