@@ -55,7 +55,13 @@ void BlockFactor<Number>::update_column(const BlockPattern& pattern, std::size_t
   for (std::size_t u = pattern.update_start[j]; u < pattern.update_start[j + 1]; ++u) {
     const auto [k, first] = pattern.updates[u];
     const Number* l_jk = &values_[pattern.row_value[first]];
-    for (std::size_t e = first; e < pattern.row_start[k + 1]; ++e) {
+    std::size_t e = first;
+    if constexpr (equal == 6 && std::is_same_v<Number, float>) {
+      for (; e + 2 <= pattern.row_start[k + 1]; e += 2)
+        subtract_two_block_products<equal>(&values_[pattern.row_value[e]], l_jk, target_[pattern.rows[e]],
+                                           target_[pattern.rows[e + 1]]);
+    }
+    for (; e < pattern.row_start[k + 1]; ++e) {
       const std::size_t i = pattern.rows[e];
       if constexpr (equal > 0) {
         subtract_block_product<equal>(&values_[pattern.row_value[e]], l_jk, target_[i]);

@@ -183,6 +183,35 @@ void subtract_block_product(const Number* a, const Number* b, Number* c) {
   }
 }
 
+/// C −= A Bᵀ and D −= E Bᵀ for blocks of n columns and padded rows that fill half a register; the blocks A and E follow each other.
+template <int n>
+void subtract_two_block_products(const float* a_and_e, const float* b, float* c, float* d) {
+  constexpr int stride = padded_rows(n);
+#if defined(__AVX512F__)
+  static_assert(stride == 8);
+  const auto load_two = [](const float* p, const float* q) {
+    return __builtin_shufflevector(load(p), load(q), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  };
+  SixteenLanes t[n];
+#pragma GCC unroll 6
+  for (int i = 0; i < n; ++i) t[i] = load_two(c + i * stride, d + i * stride);
+#pragma GCC unroll 6
+  for (int q = 0; q < n; ++q) {
+    const SixteenLanes x = -load_two(a_and_e + q * stride, a_and_e + (n + q) * stride);
+#pragma GCC unroll 6
+    for (int i = 0; i < n; ++i) t[i] = add_product(x, SixteenLanes(_mm512_set1_ps(b[q * stride + i])), t[i]);
+  }
+#pragma GCC unroll 6
+  for (int i = 0; i < n; ++i) {
+    store(c + i * stride, __builtin_shufflevector(t[i], t[i], 0, 1, 2, 3, 4, 5, 6, 7));
+    store(d + i * stride, __builtin_shufflevector(t[i], t[i], 8, 9, 10, 11, 12, 13, 14, 15));
+  }
+#else
+  subtract_block_product<n>(a_and_e, b, c);
+  subtract_block_product<n>(a_and_e + n * stride, b, d);
+#endif
+}
+
 /// Replaces a symmetric positive definite block A = L Lᵀ (lower triangle) by L⁻¹ (its upper triangle zero). False when a pivot is
 /// not positive. By A = U D Uᵀ, U with a diagonal of ones: then no root is waited for.
 inline bool invert_factor(int n, double* a, double* scale) {
