@@ -61,7 +61,7 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
   const std::span<double> x = std::span(direction_).first(n);
   // The springs that act are not known better than to a share of what is out of balance.
   const double enough = std::max(linear_share * tolerance, forcing * out_of_balance(problem));
-  solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind());
+  solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind(solver));
   return solver.solved();
 }
 
@@ -70,7 +70,7 @@ bool OpenClose::improve_linear(const StepProblem& problem, linalg::BlockSolver& 
   const Profile::Scope scope(*profile_, Phase::solution);
   const std::size_t n = problem.unknowns();
   solver.improve(std::span(direction_).first(n), std::span(residual_).first(n),
-                 excess_over(problem, linear_share * tolerance), residual_kind());
+                 excess_over(problem, linear_share * tolerance), residual_kind(solver));
   return solver.solved();
 }
 
@@ -147,10 +147,9 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
   team_->for_range(direction_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
   });
-  const auto is_exact = [&] { return solver.halves() == nullptr || solver.halves()->is_exact(); };
-  const bool was_exact = is_exact();
+  const bool was_exact = is_exact(solver);
   if (!solve_linear(problem, solver, tolerance)) return false;
-  if (was_exact != is_exact()) forget_corrections();  // they are of another factor
+  if (was_exact != is_exact(solver)) forget_corrections();  // they are of another factor
   find_direction(problem);
   double alpha = search_line();
   // Where no contact changes, what the system left over is all that is.
@@ -204,14 +203,15 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
       if (!kept_) return false;
       assembled_ = kept_ = false;
     } else if (out_of_balance(problem) < enough) {
-      if (!kept_) return true;
-      // The gradient itself shows what the matrix of an earlier step got wrong. Where that is too much, another Newton step takes
-      // it off, and the matrix of the next time step is its own.
+      if (is_exact(solver)) return true;
+      // The gradient itself shows what the matrix of an earlier step, or one of few digits, got wrong. Where that is too much, another
+      // Newton step takes it off, and the matrix of the next time step is its own.
       place(problem, d);
       find_gradient(problem, d);
       if (out_of_balance(problem) < enough) return true;
-      factor_.solver = nullptr;
-      if (result.refinements++ > 0) assembled_ = kept_ = false;
+      if (kept_) factor_.solver = nullptr;
+      ++result.refinements;
+      if (misses_++ > 0) assembled_ = kept_ = false;
     }
   }
   return false;
@@ -332,6 +332,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   out_of_balance_.reset();
   springs_ = &problem.springs();
   assembled_ = knows_relative_ = false;
+  misses_ = 0;
   bound_steps_.clear();
   try_factor(problem, solver);
   OpenCloseResult result;

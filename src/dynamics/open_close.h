@@ -87,15 +87,19 @@ class OpenClose {
   bool improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   [[nodiscard]] double out_of_balance(const StepProblem& problem);
   [[nodiscard]] static linalg::BlockSolver::Excess excess_over(const StepProblem& problem, double enough);
-  /// With a kept matrix the gradient is found anew before it counts as settled.
-  [[nodiscard]] linalg::BlockSolver::Residual residual_kind() const {
-    return kept_ ? linalg::BlockSolver::Residual::estimated : linalg::BlockSolver::Residual::exact;
+  /// Whether what is solved is the matrix of this step, to all the digits that are asked for.
+  [[nodiscard]] bool is_exact(linalg::BlockSolver& solver) const {
+    return !kept_ && (solver.halves() == nullptr || solver.halves()->is_exact());
+  }
+  /// Where it is not, the gradient is found anew before it counts as settled.
+  [[nodiscard]] linalg::BlockSolver::Residual residual_kind(linalg::BlockSolver& solver) const {
+    return is_exact(solver) ? linalg::BlockSolver::Residual::exact : linalg::BlockSolver::Residual::estimated;
   }
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
   void place(const StepProblem& problem, std::span<const double> d);
   void find_bent();
-  void start_on_lines(const StepProblem& problem, linalg::HalfSolver& halves);
+  void start_on_lines(const StepProblem& problem);
   void find_wanted();
   void correct_wanted(const StepProblem& problem, linalg::HalfSolver& halves);
   bool find_corrections(const linalg::HalfSolver& halves, std::size_t fresh);
@@ -146,6 +150,7 @@ class OpenClose {
   bool kept_ = false;                 ///< it is that of an earlier step
   bool tried_ = false;                ///< it was so at the start of the step
   std::size_t corrected_before_ = 0;  ///< springs that it was corrected for then
+  int misses_ = 0;                    ///< Newton steps of this step that were not exact enough after all
   int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
   std::vector<std::size_t> free_;     ///< blocks that nothing holds
   std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of change_matrix

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "dynamics/open_close.h"
 
@@ -15,16 +16,14 @@ constexpr double kept_share = 0.003;
 
 }  // namespace
 
-/// Half of the way from D = 0, on the straight lines of the factored matrix.
-void OpenClose::start_on_lines(const StepProblem& problem, linalg::HalfSolver& halves) {
+/// −∇Π at D = 0 into direction_, with all springs on the straight lines of the factored matrix.
+void OpenClose::start_on_lines(const StepProblem& problem) {
   std::copy(problem.right().begin(), problem.right().end(), direction_.begin());
   const auto minus_gradient = [&](std::size_t c) {
     return -1.0 *
            problem.rows()[c].gradient(springs_->force_on(c, factored_[c], springs_->y0[c], springs_->w0[c]));
   };
   problem.add_contact_forces(minus_gradient, vertex_force_, direction_);
-  const Profile::Scope scope(*profile_, Phase::solution);
-  halves.half_solve(std::span(direction_).first(problem.unknowns()), base_);
 }
 
 /// Springs and their pieces at D.
@@ -151,56 +150,70 @@ void OpenClose::leave_out_bends(const StepProblem& problem) {
   if (!wanted_.empty()) out_of_balance_.reset();
 }
 
-/// Goes from D, where springs and gradient are, to the minimum with the factor at hand, correcting the springs that act otherwise. They
+/// Goes from D, where springs and gradient are, or from zero, where they need not be, to the minimum with the factor at hand, correcting the springs that act otherwise. They
 /// become more until no other does, so that this ends. False when they are too many, when their forces are not found, and when what the
 /// factor gets wrong is not refined away.
 bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                         bool from_zero, std::span<double> d, OpenCloseResult& result) {
   linalg::HalfSolver& halves = *solver.halves();
-  const std::size_t n = problem.unknowns();
-  const auto start = [&] {
-    const Profile::Scope scope(*profile_, Phase::solution);
-    for (std::size_t k = 0; k < n; ++k) direction_[k] = -gradient_[k];
-    halves.half_solve(std::span(direction_).first(n), base_);
-  };
+  const std::span<double> direction = std::span(direction_).first(problem.unknowns());
+  const double enough = (kept_ ? kept_share : linear_share) * tolerance;
   const auto give_up = [&] {
+    if (!knows_relative_) place(problem, d);
     find_gradient(problem, d);
     return false;
   };
-  // Where what is solved is the matrix of this step, to all digits; and where a long way is gone with one that is not.
-  const bool exact = !kept_ && halves.is_exact(), far = !exact && (kept_ || from_zero);
-  const double enough = (kept_ ? kept_share : linear_share) * tolerance;
-  std::size_t fresh = 0;
-  if (from_zero) {
-    start_on_lines(problem, halves);
-    fresh = corrected_.size();
-  } else {
-    find_bent();
-    find_wanted();
-    leave_out_bends(problem);
-    start();
-  }
-  for (int refinements = 0;;) {
-    if (!find_corrections(halves, fresh)) {
-      forget_corrections();
-      return give_up();
-    }
+  const auto go = [&] {
     ++result.iterations;
-    {
-      const Profile::Scope scope(*profile_, Phase::solution);
-      corrections_.finish(halves, base_, std::span(direction_).first(n));
-      for (std::size_t k = 0; k < n; ++k) d[k] += direction_[k];
-      for (const std::size_t b : free_) problem.solve_alone(b, d);
-    }
+    for (std::size_t k = 0; k < direction.size(); ++k) d[k] += direction[k];
+    for (const std::size_t b : free_) problem.solve_alone(b, d);
     place(problem, d);
     find_bent();
     find_wanted();
+  };
+  const auto prepare = [&] {
+    const Profile::Scope scope(*profile_, Phase::solution);
+    halves.half_solve(direction, base_);
+  };
+  const auto against_gradient = [&] {
+    std::ranges::transform(std::span(gradient_).first(direction.size()), direction.begin(), std::negate());
+  };
+  const auto solve_corrected = [&](std::size_t fresh) {
+    if (!find_corrections(halves, fresh)) {
+      forget_corrections();
+      return false;
+    }
+    const Profile::Scope scope(*profile_, Phase::solution);
+    corrections_.finish(halves, base_, direction);
+    return true;
+  };
+  if (from_zero && !kept_ && !halves.is_exact()) {
+    // A long way: what its last digits lack would have springs seem to act otherwise that do not.
+    start_on_lines(problem);
+    const Profile::Scope scope(*profile_, Phase::solution);
+    solver.solve(direction, std::span(residual_).first(direction.size()), excess_over(problem, enough),
+                 linalg::BlockSolver::Residual::estimated);
+    if (!solver.solved()) return give_up();
+  } else {
+    if (from_zero) {
+      start_on_lines(problem);
+    } else {
+      find_bent();
+      find_wanted();
+      leave_out_bends(problem);
+      against_gradient();
+    }
+    prepare();
+    if (!solve_corrected(from_zero ? corrected_.size() : 0)) return give_up();
+  }
+  go();
+  for (int refinements = 0;;) {
     if (corrected_.size() + wanted_.size() > most_corrected) return give_up();
     correct_wanted(problem, halves);
-    fresh = wanted_.size();
-    // What the factor gets wrong is refined away along with the first springs that come to be corrected, and at the end until
-    // nothing of it is left.
-    const bool refines = fresh == 0 ? !exact : far && refinements == 0;
+    const std::size_t fresh = wanted_.size();
+    // What the factor gets wrong is refined away at the end, until nothing of it is left, and what that of an earlier step does
+    // along with the first springs that come to be corrected.
+    const bool refines = fresh == 0 ? !is_exact(solver) : kept_ && refinements == 0;
     if (refines) {
       find_gradient(problem, d);
       leave_out_bends(problem);
@@ -208,14 +221,17 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
     const bool fits = !refines || out_of_balance(problem) <= enough;
     if (fits && fresh == 0) break;
     if (fits) {
-      std::fill(base_.begin(), base_.end(), 0.0);
-      continue;
+      std::ranges::fill(direction, 0.0);
+    } else {
+      if (refinements++ == most_refinements) return give_up();
+      ++result.refinements;
+      against_gradient();
     }
-    if (refinements++ == most_refinements) return give_up();
-    ++result.refinements;
-    start();
+    prepare();
+    if (!solve_corrected(fresh)) return give_up();
+    go();
   }
-  if (exact) find_rest(problem);
+  if (is_exact(solver)) find_rest(problem);
   result.bends += corrected_.size();
   return true;
 }

@@ -21,6 +21,7 @@ void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pai
   if (precision_ == Precision::single || (precision_ == Precision::automatic && is_worth_it))
     single_.emplace(pattern_);
   in_double_ = !single_;
+  share_left_ = 0.0;
   work_.assign(pattern_.work_size, 0.0);
   right_.assign(pattern_.work_size, 0.0);
   solution_.assign(pattern_.work_size, 0.0);
@@ -31,6 +32,7 @@ void BlockCholesky::clear() {
   if (single_) single_->make_stale();
   if (double_) double_->make_stale();
   in_double_ = !single_;
+  share_left_ = 0.0;
 }
 
 /// Calls what(factor) with that at hand.
@@ -87,17 +89,28 @@ void BlockCholesky::solve_by_column(std::span<double> x) {
 }
 
 /// Solutions in single precision, each of what the ones before left over. Whether the excess came down to 1.
-bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, const Excess& excess) {
+bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, const Excess& excess,
+                           Residual kind) {
   constexpr int most = 5;
+  constexpr double sure = 0.1;  // an excess that is estimated to be less needs no look
+  double left = excess(x);
   std::fill(solution_.begin(), solution_.end(), 0.0);
   work_ = right_;
   for (int round = 0; round < most; ++round) {
     solve_by_column(work_);
     for (std::size_t k = 0; k < work_.size(); ++k) solution_[k] += work_[k];
+    if (kind == Residual::estimated && share_left_ > 0.0 && share_left_ * left < sure) {
+      std::fill(residual.begin(), residual.end(), 0.0);
+      give(solution_, x);
+      return true;
+    }
     work_ = right_;
     matrix_.subtract_product(pattern_, solution_, work_);
     give(work_, residual);
-    if (excess(residual) > 1.0) continue;
+    const double now = excess(residual);
+    if (left > 0.0) share_left_ = std::max(share_left_, now / left);
+    left = now;
+    if (left > 1.0) continue;
     give(solution_, x);
     return true;
   }
@@ -105,10 +118,10 @@ bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, cons
 }
 
 void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
-                          Residual /*kind*/) {
+                          Residual kind) {
   take(x, right_);
   if (!in_double_) {
-    if (refine(x, residual, excess)) return;
+    if (refine(x, residual, excess, kind)) return;
     if (double_) double_->make_stale();
     solved_ = factor_in_double();
     if (!solved_) return;

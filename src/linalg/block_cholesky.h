@@ -43,7 +43,8 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   template <typename Do>
   void with_factor(const Do& what);
   void solve_by_column(std::span<double> x);
-  [[nodiscard]] bool refine(std::span<double> x, std::span<double> residual, const Excess& excess);
+  [[nodiscard]] bool refine(std::span<double> x, std::span<double> residual, const Excess& excess,
+                            Residual kind);
 
   Precision precision_;
   BlockPattern pattern_;
@@ -51,6 +52,8 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   std::optional<BlockFactor<float>> single_;   ///< where it may do
   std::optional<BlockFactor<double>> double_;  ///< once it is needed
   bool in_double_ = false;                     ///< the factor at hand
+  double share_left_ =
+      0.0;  ///< of an excess after one solution in single precision, the most that has been seen; 0: not known
   bool solved_ = true;
   // Scratch, by columns.
   std::vector<double> work_, right_, solution_;
