@@ -9,7 +9,7 @@
 #include "core/known_size.h"
 #include "core/lanes.h"
 #include "dynamics/step_problem.h"
-#include "linalg/block_kernels.h"
+#include "linalg/registers.h"
 
 namespace keyblock::dynamics {
 
@@ -39,25 +39,38 @@ void add_outer(const double* phi_r, int rows, const double* phi_c, int columns, 
 /// The same between two blocks of N basis functions, a column at once.
 template <int size>
 void add_outer(const double* phi_r, const double* phi_c, Stiffness k, double scale, double* target) {
-  constexpr int stride = linalg::padded_rows(2 * size), lanes = stride / linalg::row_padding;
+  constexpr int stride = linalg::padded_rows(2 * size);
+  using Of = linalg::Registers<double, stride>;
+  using Register = typename Of::Register;
+  constexpr int width = sizeof(Register) / sizeof(double), registers = stride / width;
   const auto phi = [&](int r) { return r < size ? phi_r[r] : 0.0; };
-  Lanes rows[lanes];
+  Register rows[registers], kx, ky;
+  if constexpr (width == 8) {
 #pragma GCC unroll 2
-  for (int l = 0; l < lanes; ++l) {
-    const double p0 = phi(4 * l), p1 = phi(4 * l + 1), p2 = phi(4 * l + 2), p3 = phi(4 * l + 3);
-    rows[l] = Lanes{p0, p0, p1, p1, p2, p2, p3, p3};
+    for (int l = 0; l < registers; ++l) {
+      const double p0 = phi(4 * l), p1 = phi(4 * l + 1), p2 = phi(4 * l + 2), p3 = phi(4 * l + 3);
+      rows[l] = Register{p0, p0, p1, p1, p2, p2, p3, p3};
+    }
+    kx = Register{k.xx, k.xy, k.xx, k.xy, k.xx, k.xy, k.xx, k.xy};
+    ky = Register{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, k.xy, k.yy};
+  } else {
+#pragma GCC unroll 4
+    for (int l = 0; l < registers; ++l) {
+      const double p0 = phi(2 * l), p1 = phi(2 * l + 1);
+      rows[l] = Register{p0, p0, p1, p1};
+    }
+    kx = Register{k.xx, k.xy, k.xx, k.xy};
+    ky = Register{k.xy, k.yy, k.xy, k.yy};
   }
-  const Lanes kx{k.xx, k.xy, k.xx, k.xy, k.xx, k.xy, k.xx, k.xy},
-      ky{k.xy, k.yy, k.xy, k.yy, k.xy, k.yy, k.xy, k.yy};
 #pragma GCC unroll 6
   for (int c = 0; c < size; ++c) {
-    const Lanes f = broadcast(scale * phi_c[c]), fx = f * kx, fy = f * ky;
+    const Register f = Of::all(scale * phi_c[c]), fx = f * kx, fy = f * ky;
     double* x = target + static_cast<std::ptrdiff_t>(2 * c) * stride;
     double* y = x + stride;
-#pragma GCC unroll 2
-    for (int l = 0; l < lanes; ++l) {
-      store(x + l * linalg::row_padding, load(x + l * linalg::row_padding) + rows[l] * fx);
-      store(y + l * linalg::row_padding, load(y + l * linalg::row_padding) + rows[l] * fy);
+#pragma GCC unroll 4
+    for (int l = 0; l < registers; ++l) {
+      Of::store_to(x + l * width, Of::load_from(x + l * width) + rows[l] * fx);
+      Of::store_to(y + l * width, Of::load_from(y + l * width) + rows[l] * fy);
     }
   }
 }

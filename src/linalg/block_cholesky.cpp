@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/index.h"
-#include "linalg/block_kernels.h"
+#include "linalg/registers.h"
 
 namespace keyblock::linalg {
 
@@ -151,17 +151,17 @@ double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) cons
   std::size_t i = at(x.column), j = at(y.column);
   while (i != j && i != none && j != none) (i < j ? i : j) = pattern_.parent[std::min(i, j)];
   if (i != j || i == none) return 0.0;
-  Lanes t{};
+  LaneProducts t{};
   for (std::size_t k = 0; k < pattern_.above[i] + at(pattern_.stride[i]); k += row_padding)
-    t = add_product(load(&x.values[k]), load(&y.values[k]), t);
+    add_lane_product(&x.values[k], &y.values[k], t);
   return sum(t);
 }
 
 double BlockCholesky::product(const HalfSolution& x, std::span<const double> y) const {
-  Lanes t{};
+  LaneProducts t{};
   for (std::size_t j = at(x.column); j != BlockPattern::none; j = pattern_.parent[j]) {
     for (std::size_t l = 0; l < at(pattern_.stride[j]); l += row_padding)
-      t = add_product(load(&x.values[pattern_.above[j] + l]), load(&y[pattern_.work_start[j] + l]), t);
+      add_lane_product(&x.values[pattern_.above[j] + l], &y[pattern_.work_start[j] + l], t);
   }
   return sum(t);
 }

@@ -237,7 +237,7 @@ void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector&
   const double *wide = &scratch[layout.start(j)], *inverse = &inverse_[inverse_start_[j]];
   const int stride = layout.stride(j);
   in_sixes(layout.size(j), [&]<int width>(int c) {
-    Lanes t[width]{};
+    LaneProducts t[width]{};
     add_lane_products(stride / row_padding, inverse + c * stride, wide, t);
     store_first<width>(&x[layout.start(j)] + c, stride - c, sums(t));
   });
@@ -282,7 +282,7 @@ void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
   for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
     const std::size_t i = rows_[e];
     in_sixes(size, [&]<int width>(int c) {
-      Lanes t[width]{};
+      LaneProducts t[width]{};
       add_lane_products(layout.stride(i) / row_padding, block + c * layout.stride(i), x + layout.start(i), t);
       subtract_first<width>(y_j + c, stride - c, sums(t));
     });

@@ -1,83 +1,17 @@
 #pragma once
-#include <algorithm>
 #include <cmath>
-#include <type_traits>
-
-#if defined(__AVX512F__) || defined(__FMA__)
-#include <immintrin.h>
-#endif
 
 #include "core/lanes.h"
 #include "linalg/block_solver.h"
+#include "linalg/registers.h"
 
 /// Dense kernels on blocks stored by columns with padded rows, the padding zero. Every lane is computed on its own, sums run in
 /// a fixed order and products are fused with sums by name, so that any instruction set gives the same bits.
 namespace keyblock::linalg {
 
-static_assert(row_padding == lane_count);
-
-inline Lanes widen(NarrowLanes v) {
-#if defined(__AVX512F__)
-  // One instruction; compilers make five of the general form.
-  return _mm512_maskz_cvtps_pd(0xff, v);
-#else
-  return __builtin_convertvector(v, Lanes);
-#endif
-}
-inline NarrowLanes narrow(Lanes v) {
-  return __builtin_convertvector(v, NarrowLanes);
-}
-
-/// c + a b, rounded once.
-inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
-#if defined(__AVX512F__)
-  return _mm512_fmadd_pd(a, b, c);
-#elif defined(__FMA__)
-  using Half = double __attribute__((vector_size(row_padding / 2 * sizeof(double))));
-  const auto low = [](Lanes v) { return Half{v[0], v[1], v[2], v[3]}; };
-  const auto high = [](Lanes v) { return Half{v[4], v[5], v[6], v[7]}; };
-  const Half x = _mm256_fmadd_pd(low(a), low(b), low(c)), y = _mm256_fmadd_pd(high(a), high(b), high(c));
-  return Lanes{x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3]};
-#else
-  for (int k = 0; k < row_padding; ++k) c[k] = std::fma(a[k], b[k], c[k]);
-  return c;
-#endif
-}
-inline NarrowLanes add_product(NarrowLanes a, NarrowLanes b, NarrowLanes c) {
-#if defined(__FMA__)
-  return _mm256_fmadd_ps(a, b, c);
-#else
-  for (int k = 0; k < row_padding; ++k) c[k] = std::fma(a[k], b[k], c[k]);
-  return c;
-#endif
-}
-#if defined(__AVX512F__)
-inline SixteenLanes add_product(SixteenLanes a, SixteenLanes b, SixteenLanes c) {
-  return _mm512_fmadd_ps(a, b, c);
-}
-#endif
-/// c − a b, rounded once.
-template <typename Register>
-Register subtract_product(Register a, Register b, Register c) {
-  return add_product(-a, b, c);
-}
-
-/// The first `count` numbers of v to `out`, where `room` numbers may be overwritten.
-template <int count, typename Number, typename Register>
-void store_first(Number* out, int room, Register v) {
-  if (room >= row_padding) return store(out, v);
-  for (int k = 0; k < count; ++k) out[k] = v[k];
-}
-/// The same, taken away from what is there.
-template <int count, typename Number, typename Register>
-void subtract_first(Number* out, int room, Register v) {
-  if (room >= row_padding) return store(out, load(out) - v);
-  for (int k = 0; k < count; ++k) out[k] -= v[k];
-}
-
 /// Calls columns<width>(c), six columns at a time and then one by one.
-template <typename Columns>
-void in_sixes(int size, const Columns& columns) {
+template <typename Do>
+void in_sixes(int size, const Do& columns) {
   int c = 0;
   for (; c + 6 <= size; c += 6) columns.template operator()<6>(c);
   for (; c < size; ++c) columns.template operator()<1>(c);
@@ -134,29 +68,11 @@ void subtract_block_product(int lanes, int columns, int k, const Number* a, cons
   if (j < columns) rows.template operator()<1>(j);
 }
 
-/// Registers for columns of `stride` numbers: as many floats at once as one has room for.
-template <typename Number, int stride>
-struct Columns {
-  using Register = decltype(load(static_cast<const Number*>(nullptr)));
-  static Register load_from(const Number* p) { return load(p); }
-  static void store_to(Number* p, Register v) { store(p, v); }
-  static Register all(Number x) { return broadcast(x); }
-};
-#if defined(__AVX512F__)
-template <>
-struct Columns<float, 16> {
-  using Register = SixteenLanes;
-  static Register load_from(const float* p) { return *reinterpret_cast<const SixteenLanes*>(p); }
-  static void store_to(float* p, Register v) { *reinterpret_cast<SixteenLanes*>(p) = v; }
-  static Register all(float x) { return _mm512_set1_ps(x); }
-};
-#endif
-
 /// The same for blocks of n rows and columns, n a multiple of 6.
 template <int n, typename Number>
 void subtract_block_product(const Number* a, const Number* b, Number* c) {
   constexpr int stride = padded_rows(n);
-  using Of = Columns<Number, stride>;
+  using Of = Registers<Number, stride>;
   using Register = typename Of::Register;
   constexpr int width = sizeof(Register) / sizeof(Number), lanes = stride / width, columns = 6;
   for (int j = 0; j < n; j += columns) {
@@ -256,54 +172,57 @@ inline bool invert_factor(int n, double* a, double* scale) {
 /// The same for blocks of n unknowns, held in registers.
 template <int n>
 bool invert_factor(double* a) {
-  constexpr int stride = padded_rows(n), lanes = stride / row_padding;
-  const Lanes first{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
-  Lanes column[n][lanes], scale[lanes]{};
+  constexpr int stride = padded_rows(n);
+  using Of = Registers<double, stride>;
+  using Register = typename Of::Register;
+  constexpr int width = sizeof(Register) / sizeof(double), lanes = stride / width;
+  Register first{}, column[n][lanes], scale[lanes]{};
+  for (int k = 0; k < width; ++k) first[k] = k;
 #pragma GCC unroll 12
   for (int j = 0; j < n; ++j) {
-#pragma GCC unroll 2
-    for (int l = 0; l < lanes; ++l) column[j][l] = load(a + j * stride + l * row_padding);
+#pragma GCC unroll 4
+    for (int l = 0; l < lanes; ++l) column[j][l] = Of::load_from(a + j * stride + l * width);
   }
-  const auto entry = [&](int row, int j) { return column[j][row / row_padding][row % row_padding]; };
+  const auto entry = [&](int row, int j) { return column[j][row / width][row % width]; };
 #pragma GCC unroll 12
   for (int j = 0; j < n; ++j) {
     const double pivot = entry(j, j);
     if (!(pivot > 0.0)) return false;
     const double inverse = 1.0 / pivot;
-    scale[j / row_padding][j % row_padding] = inverse;
+    scale[j / width][j % width] = inverse;
 #pragma GCC unroll 12
     for (int q = j + 1; q < n; ++q) {
-      const Lanes factor = broadcast(entry(q, j) * inverse);
-#pragma GCC unroll 2
-      for (int l = q / row_padding; l < lanes; ++l)
+      const Register factor = Of::all(entry(q, j) * inverse);
+#pragma GCC unroll 4
+      for (int l = q / width; l < lanes; ++l)
         column[q][l] = subtract_product(column[j][l], factor, column[q][l]);
     }
   }
 #pragma GCC unroll 12
   for (int j = 0; j < n; ++j) {
-    const Lanes factor = broadcast(scale[j / row_padding][j % row_padding]);
-#pragma GCC unroll 2
+    const Register factor = Of::all(scale[j / width][j % width]);
+#pragma GCC unroll 4
     for (int l = 0; l < lanes; ++l) {
-      const Lanes row = first + broadcast(static_cast<double>(l * row_padding - j));
-      column[j][l] = row > 0.0 ? column[j][l] * factor : row == 0.0 ? broadcast(1.0) : Lanes{};
+      const Register row = first + Of::all(l * width - j);
+      column[j][l] = row > 0.0 ? column[j][l] * factor : row == 0.0 ? Of::all(1.0) : Register{};
     }
   }
 #pragma GCC unroll 12
   for (int j = n - 1; j >= 0; --j) {
 #pragma GCC unroll 12
     for (int q = n - 1; q > j; --q) {
-      const Lanes factor = broadcast(entry(q, j));
-      column[j][q / row_padding][q % row_padding] = 0.0;
-#pragma GCC unroll 2
-      for (int l = q / row_padding; l < lanes; ++l)
+      const Register factor = Of::all(entry(q, j));
+      column[j][q / width][q % width] = 0.0;
+#pragma GCC unroll 4
+      for (int l = q / width; l < lanes; ++l)
         column[j][l] = subtract_product(column[q][l], factor, column[j][l]);
     }
   }
-#pragma GCC unroll 2
+#pragma GCC unroll 4
   for (int l = 0; l < lanes; ++l) {
-    for (int k = 0; k < row_padding; ++k) scale[l][k] = std::sqrt(scale[l][k]);
+    for (int k = 0; k < width; ++k) scale[l][k] = std::sqrt(scale[l][k]);
 #pragma GCC unroll 12
-    for (int j = 0; j < n; ++j) store(a + j * stride + l * row_padding, column[j][l] * scale[l]);
+    for (int j = 0; j < n; ++j) Of::store_to(a + j * stride + l * width, column[j][l] * scale[l]);
   }
   return true;
 }
@@ -326,7 +245,7 @@ void multiply_right(int lanes, int n, const Number* inverse, Number* x) {
 template <int n, typename Number>
 void multiply_right(const Number* inverse, Number* x) {
   constexpr int stride = padded_rows(n);
-  using Of = Columns<Number, stride>;
+  using Of = Registers<Number, stride>;
   using Register = typename Of::Register;
   constexpr int width = sizeof(Register) / sizeof(Number);
   for (int l = 0; l < stride; l += width) {
@@ -345,49 +264,40 @@ void multiply_right(const Number* inverse, Number* x) {
   }
 }
 
-/// Numbers of a matrix as those of a vector, which may have more digits.
-template <typename Number, typename Stored>
-auto load_as(const Stored* a) {
-  if constexpr (std::is_same_v<Number, Stored>) {
-    return load(a);
-  } else {
-    return widen(load(a));
-  }
-}
-
 /// y = A x; y and x are not the same.
 template <typename Stored, typename Number>
 void multiply(int lanes, int columns, const Stored* a, const Number* x, Number* y) {
+  using Of = Registers<Number, row_padding>;
+  constexpr int width = sizeof(typename Of::Register) / sizeof(Number);
   const int stride = lanes * row_padding;
-  for (int l = 0; l < stride; l += row_padding) {
-    decltype(load(x)) t{};
-    for (int j = 0; j < columns; ++j)
-      t = add_product(load_as<Number>(a + j * stride + l), broadcast(x[j]), t);
-    store(y + l, t);
+  for (int l = 0; l < stride; l += width) {
+    typename Of::Register t{};
+    for (int j = 0; j < columns; ++j) t = add_product(Of::load_from(a + j * stride + l), Of::all(x[j]), t);
+    Of::store_to(y + l, t);
   }
 }
 
 /// y −= A x.
 template <typename Stored, typename Number>
 void subtract_times(int lanes, int columns, const Stored* a, const Number* x, Number* y) {
+  using Of = Registers<Number, row_padding>;
+  constexpr int width = sizeof(typename Of::Register) / sizeof(Number);
   const int stride = lanes * row_padding;
-  for (int l = 0; l < lanes; ++l) {
-    auto t = load(y + l * row_padding);
+  for (int l = 0; l < stride; l += width) {
+    auto t = Of::load_from(y + l);
     for (int j = 0; j < columns; ++j)
-      t = subtract_product(load_as<Number>(a + j * stride + l * row_padding), broadcast(x[j]), t);
-    store(y + l * row_padding, t);
+      t = subtract_product(Of::load_from(a + j * stride + l), Of::all(x[j]), t);
+    Of::store_to(y + l, t);
   }
 }
 
 /// t_j += A_j ∘ x, the products of column j of A with x lane by lane; their sum is (Aᵀ x)_j. As many columns as t has.
-template <typename Stored, typename Number, typename Register, int columns>
-void add_lane_products(int lanes, const Stored* a, const Number* x, Register (&t)[columns]) {
+template <typename Stored, typename Number, typename Products, int columns>
+void add_lane_products(int lanes, const Stored* a, const Number* x, Products (&t)[columns]) {
   const int stride = lanes * row_padding;
-  for (int l = 0; l < lanes; ++l) {
-    const Register v = load(x + l * row_padding);
+  for (int l = 0; l < stride; l += row_padding) {
 #pragma GCC unroll 8
-    for (int j = 0; j < columns; ++j)
-      t[j] = add_product(load_as<Number>(a + j * stride + l * row_padding), v, t[j]);
+    for (int j = 0; j < columns; ++j) add_lane_product(a + j * stride + l, x + l, t[j]);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "core/lanes.h"
-#include "linalg/block_kernels.h"
+#include "linalg/registers.h"
 
 namespace keyblock::linalg {
 
