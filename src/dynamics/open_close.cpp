@@ -10,7 +10,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr double forcing = 0.003;  // of what is out of balance, likewise
+constexpr double forcing = 0.003;  // of what is out of balance, what its linear systems may leave over
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound

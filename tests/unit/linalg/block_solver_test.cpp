@@ -212,6 +212,39 @@ TEST(BlockSolver, DoublePrecisionWhereSingleHasTooFewDigits) {
   }
 }
 
+// What one solution in single precision leaves over is looked at once for a matrix, where an estimate will do.
+TEST(BlockSolver, LooksAtWhatSinglePrecisionLeavesOnce) {
+  const Problem p = random_problem(9, 30, {6, 12});
+  const auto solver = make_single();
+  solver->analyse(p.sizes, p.pairs);
+  for (int matrix = 0; matrix < 2; ++matrix) {
+    fill(*solver, p);
+    ASSERT_TRUE(solver->factor());
+    for (const auto& [kind, expected] : {std::pair(BlockSolver::Residual::estimated, 2),
+                                         {BlockSolver::Residual::estimated, 1},
+                                         {BlockSolver::Residual::exact, 2}}) {
+      std::vector<double> x(p.right.begin(), p.right.end()), residual(x.size(), 1.0);
+      int looks = 0;
+      const auto excess = [&](std::span<const double> r) {
+        ++looks;
+        return std::abs(std::ranges::max(r, {}, [](double v) { return std::abs(v); })) / 1e-4;
+      };
+      solver->solve(x, residual, excess, kind);
+      EXPECT_EQ(looks, expected) << matrix;
+      const Eigen::VectorXd missing =
+          p.right - p.dense * Eigen::Map<Eigen::VectorXd>(x.data(), p.right.size());
+      EXPECT_LT(missing.cwiseAbs().maxCoeff(), 1e-5);
+      EXPECT_GT(missing.cwiseAbs().maxCoeff(), 1e-10);  // not in double precision
+      if (looks == 1) {
+        EXPECT_TRUE(std::ranges::all_of(residual, [](double v) { return v == 0.0; }));
+      } else {
+        for (std::size_t k = 0; k < residual.size(); ++k)
+          EXPECT_NEAR(residual[k], missing[static_cast<Eigen::Index>(k)], 1e-13);
+      }
+    }
+  }
+}
+
 TEST(BlockSolver, SaysWhenAMatrixIsNotPositiveDefinite) {
   for (const auto& make : {make_full, make_single, make_cholmod}) {
     const auto solver = make();
