@@ -9,10 +9,6 @@
 namespace keyblock::linalg {
 namespace {
 
-std::unique_ptr<BlockSolver> make_iterative() {
-  return make_block_conjugate_gradient(nullptr);
-}
-
 // What an iterative solver leaves is what it says; without a look at the matrix, but for what single precision leaves.
 TEST(BlockSolver, ResidualIsWhatIsMissing) {
   const Problem p = random_problem(5, 30, {6, 12});

@@ -18,10 +18,6 @@ std::unique_ptr<BlockSolver> make_full() {
 std::unique_ptr<BlockSolver> make_single() {
   return make_block_cholesky(Precision::single);
 }
-std::unique_ptr<BlockSolver> make_iterative() {
-  return make_block_conjugate_gradient(nullptr);
-}
-
 // What is factored in part is, bit for bit, what is factored as a whole.
 TEST(BlockSolver, FactorsWhatWasTouchedOnly) {
   for (const auto& make : {make_full, make_single, make_cholmod, make_iterative}) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <memory>
 #include <random>
 #include <set>
 #include <span>
@@ -89,6 +90,10 @@ inline Eigen::VectorXd solve(BlockSolver& solver, const Problem& p) {
   std::vector<double> residual(x.size());
   solver.solve(x, residual, strict());
   return Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+inline std::unique_ptr<BlockSolver> make_iterative() {
+  return make_block_conjugate_gradient(nullptr);
 }
 
 }  // namespace keyblock::linalg
