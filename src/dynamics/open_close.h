@@ -109,6 +109,15 @@ class OpenClose {
   void leave_out_bends(const StepProblem& problem);
   void find_gradient(const StepProblem& problem, std::span<const double> d);
   void hold(const StepProblem& problem, std::size_t c, int count);
+  [[nodiscard]] Force bend_from_matrix(std::size_t c) const;
+  void turn_against_gradient(std::size_t unknowns);
+  bool solve_corrected(linalg::HalfSolver& halves, std::size_t fresh, std::span<double> direction);
+  bool begin_correcting(const StepProblem& problem, linalg::BlockSolver& solver, double enough,
+                        bool from_zero, std::span<double> direction);
+  void go_corrected(const StepProblem& problem, std::span<const double> direction, std::span<double> d,
+                    OpenCloseResult& result);
+  bool correct_until_done(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                          bool from_zero, std::span<double> d, OpenCloseResult& result);
   bool correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, bool from_zero,
                std::span<double> d, OpenCloseResult& result);
   bool newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance, double enough,
@@ -161,6 +170,7 @@ class OpenClose {
     bool normal;
     friend bool operator==(Corrected, Corrected) = default;
   };
+  void leave_out(const StepProblem& problem, Corrected spring, double force);
   static constexpr double linear_share =
       0.3;  ///< of the tolerance of a step, what its linear systems may leave over
   static constexpr std::size_t most_corrected = 64;  ///< springs, beyond which a factorization takes less

@@ -109,20 +109,24 @@ bool OpenClose::find_corrections(const linalg::HalfSolver& halves, std::size_t f
   return true;
 }
 
+/// By how much the force of a contact differs from its straight line in the matrix.
+SpringArray::Force OpenClose::bend_from_matrix(std::size_t c) const {
+  return springs_->force(c) - springs_->force_on(c, factored_[c], springs_->y[c], springs_->w[c]);
+}
+
+/// Takes the force of one spring out of the gradient.
+void OpenClose::leave_out(const StepProblem& problem, Corrected spring, double force) {
+  add_force(problem, spring.contact, {spring.normal ? force : 0.0, spring.normal ? 0.0 : force}, -1.0,
+            gradient_);
+}
+
 /// ∇Π where all but the springs that bend are on the straight lines of a matrix that has been solved exactly: what these do otherwise than
 /// they have been corrected to.
 void OpenClose::find_rest(const StepProblem& problem) {
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
   out_of_balance_.reset();
-  for (const std::size_t c : bends_) {
-    const double y = springs_->y[c], w = springs_->w[c];
-    add_force(problem, c, springs_->force(c) - springs_->force_on(c, factored_[c], y, w), 1.0, gradient_);
-  }
-  for (std::size_t k = 0; k < corrected_.size(); ++k) {
-    const auto [c, normal] = corrected_[k];
-    const double force = correction_force_[k];
-    add_force(problem, c, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0, gradient_);
-  }
+  for (const std::size_t c : bends_) add_force(problem, c, bend_from_matrix(c), 1.0, gradient_);
+  for (std::size_t k = 0; k < corrected_.size(); ++k) leave_out(problem, corrected_[k], correction_force_[k]);
 }
 
 void OpenClose::forget_corrections() {
@@ -141,75 +145,75 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.
 void OpenClose::leave_out_bends(const StepProblem& problem) {
   for (const Corrected spring : wanted_) {
-    const std::size_t c = spring.contact;
-    const Force bend =
-        springs_->force(c) - springs_->force_on(c, factored_[c], springs_->y[c], springs_->w[c]);
-    add_force(problem, c, {spring.normal ? bend.normal : 0.0, spring.normal ? 0.0 : bend.shear}, -1.0,
-              gradient_);
+    const Force force = bend_from_matrix(spring.contact);
+    leave_out(problem, spring, spring.normal ? force.normal : force.shear);
   }
   if (!wanted_.empty()) out_of_balance_.reset();
 }
 
-/// Goes from D, where springs and gradient are, or from zero, where they need not be, to the minimum with the factor at hand, correcting the springs that act otherwise. They
-/// become more until no other does, so that this ends. False when they are too many, when their forces are not found, and when what the
-/// factor gets wrong is not refined away.
-bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
-                        bool from_zero, std::span<double> d, OpenCloseResult& result) {
-  linalg::HalfSolver& halves = *solver.halves();
-  const std::span<double> direction = std::span(direction_).first(problem.unknowns());
-  const double enough = (kept_ ? kept_share : linear_share) * tolerance;
-  const auto give_up = [&] {
-    if (!knows_relative_) place(problem, d);
-    find_gradient(problem, d);
-    return false;
-  };
-  const auto go = [&] {
-    ++result.iterations;
-    for (std::size_t k = 0; k < direction.size(); ++k) d[k] += direction[k];
-    for (const std::size_t b : free_) problem.solve_alone(b, d);
-    place(problem, d);
-    find_bent();
-    find_wanted();
-  };
-  const auto prepare = [&] {
+/// Against the gradient, into direction_.
+void OpenClose::turn_against_gradient(std::size_t unknowns) {
+  std::transform(gradient_.begin(), gradient_.begin() + static_cast<std::ptrdiff_t>(unknowns),
+                 direction_.begin(), std::negate());
+}
+
+/// The way that the springs on their lines would go, in `direction`, becomes that with the springs that are corrected. False when their
+/// forces are not found; none are corrected then.
+bool OpenClose::solve_corrected(linalg::HalfSolver& halves, std::size_t fresh, std::span<double> direction) {
+  {
     const Profile::Scope scope(*profile_, Phase::solution);
     halves.half_solve(direction, base_);
-  };
-  const auto against_gradient = [&] {
-    std::ranges::transform(std::span(gradient_).first(direction.size()), direction.begin(), std::negate());
-  };
-  const auto solve_corrected = [&](std::size_t fresh) {
-    if (!find_corrections(halves, fresh)) {
-      forget_corrections();
-      return false;
-    }
-    const Profile::Scope scope(*profile_, Phase::solution);
-    corrections_.finish(halves, base_, direction);
-    return true;
-  };
-  if (from_zero && !kept_ && !halves.is_exact()) {
-    // A long way: what its last digits lack would have springs seem to act otherwise that do not.
-    start_on_lines(problem);
-    const Profile::Scope scope(*profile_, Phase::solution);
-    solver.solve(direction, std::span(residual_).first(direction.size()), excess_over(problem, enough),
-                 linalg::BlockSolver::Residual::estimated);
-    if (!solver.solved()) return give_up();
-  } else {
-    if (from_zero) {
-      start_on_lines(problem);
-    } else {
-      find_bent();
-      find_wanted();
-      leave_out_bends(problem);
-      against_gradient();
-    }
-    prepare();
-    if (!solve_corrected(from_zero ? corrected_.size() : 0)) return give_up();
   }
-  go();
+  if (!find_corrections(halves, fresh)) {
+    forget_corrections();
+    return false;
+  }
+  const Profile::Scope scope(*profile_, Phase::solution);
+  corrections_.finish(halves, base_, direction);
+  return true;
+}
+
+/// The first way from D, into `direction`. False when it is not found.
+bool OpenClose::begin_correcting(const StepProblem& problem, linalg::BlockSolver& solver, double enough,
+                                 bool from_zero, std::span<double> direction) {
+  linalg::HalfSolver& halves = *solver.halves();
+  if (!from_zero) {
+    find_bent();
+    find_wanted();
+    leave_out_bends(problem);
+    turn_against_gradient(direction.size());
+    return solve_corrected(halves, 0, direction);
+  }
+  start_on_lines(problem);
+  if (kept_ || halves.is_exact()) return solve_corrected(halves, corrected_.size(), direction);
+  // A long way: what its last digits lack would have springs seem to act otherwise that do not.
+  const Profile::Scope scope(*profile_, Phase::solution);
+  solver.solve(direction, std::span(residual_).first(direction.size()), excess_over(problem, enough),
+               linalg::BlockSolver::Residual::estimated);
+  return solver.solved();
+}
+
+/// D ← D + direction; springs that act otherwise than the matrix has them there and are not corrected yet, into wanted_.
+void OpenClose::go_corrected(const StepProblem& problem, std::span<const double> direction,
+                             std::span<double> d, OpenCloseResult& result) {
+  ++result.iterations;
+  for (std::size_t k = 0; k < direction.size(); ++k) d[k] += direction[k];
+  for (const std::size_t b : free_) problem.solve_alone(b, d);
+  place(problem, d);
+  find_bent();
+  find_wanted();
+}
+
+/// As correct(), but for the gradient.
+bool OpenClose::correct_until_done(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                                   bool from_zero, std::span<double> d, OpenCloseResult& result) {
+  const std::span<double> direction = std::span(direction_).first(problem.unknowns());
+  const double enough = (kept_ ? kept_share : linear_share) * tolerance;
+  if (!begin_correcting(problem, solver, enough, from_zero, direction)) return false;
+  go_corrected(problem, direction, d, result);
   for (int refinements = 0;;) {
-    if (corrected_.size() + wanted_.size() > most_corrected) return give_up();
-    correct_wanted(problem, halves);
+    if (corrected_.size() + wanted_.size() > most_corrected) return false;
+    correct_wanted(problem, *solver.halves());
     const std::size_t fresh = wanted_.size();
     // What the factor gets wrong is refined away at the end, until nothing of it is left, and what that of an earlier step does
     // along with the first springs that come to be corrected.
@@ -219,17 +223,28 @@ bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver,
       leave_out_bends(problem);
     }
     const bool fits = !refines || out_of_balance(problem) <= enough;
-    if (fits && fresh == 0) break;
+    if (fits && fresh == 0) return true;
     if (fits) {
       std::ranges::fill(direction, 0.0);
     } else {
-      if (refinements++ == most_refinements) return give_up();
+      if (refinements++ == most_refinements) return false;
       ++result.refinements;
-      against_gradient();
+      turn_against_gradient(direction.size());
     }
-    prepare();
-    if (!solve_corrected(fresh)) return give_up();
-    go();
+    if (!solve_corrected(*solver.halves(), fresh, direction)) return false;
+    go_corrected(problem, direction, d, result);
+  }
+}
+
+/// Goes from D, where springs and gradient are, or from zero, where the gradient need not be, to the minimum with the factor at hand,
+/// correcting the springs that act otherwise. They become more until no other does, so that this ends. False when they are too many, when
+/// their forces are not found, and when what the factor gets wrong is not refined away; springs and gradient are those of D in any case.
+bool OpenClose::correct(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                        bool from_zero, std::span<double> d, OpenCloseResult& result) {
+  if (!correct_until_done(problem, solver, tolerance, from_zero, d, result)) {
+    if (!knows_relative_) place(problem, d);
+    find_gradient(problem, d);
+    return false;
   }
   if (is_exact(solver)) find_rest(problem);
   result.bends += corrected_.size();

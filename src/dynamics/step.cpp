@@ -220,12 +220,13 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     drive.turned = turned_;
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
-    // Where there is a factor, only a curve through the last increments is a better beginning than none at all.
     if (look == 1 && turns == 0) {
-      if (chosen.halves() == nullptr || history_.is_smooth())
+      // Where there is a factor, only a curve through the last increments is a better beginning than none at all.
+      if (chosen.halves() == nullptr || history_.is_smooth()) {
         history_.extrapolate(drive.step, increment_, team_);
-      else
+      } else {
         std::fill(increment_.begin(), increment_.end(), 0.0);
+      }
     }
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
     const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,

@@ -1,7 +1,6 @@
 #include "linalg/block_matrix.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include "core/index.h"
 #include "linalg/block_kernels.h"
@@ -63,14 +62,8 @@ void BlockMatrix::load_column(const BlockPattern& pattern, std::size_t j, std::s
   for (std::size_t k = source_start_[j]; k < source_start_[j + 1]; ++k) {
     const Source& source = sources_[k];
     clear_up_to(source.to);
-    for (std::size_t v = 0; v < source.count; v += row_padding) {
-      const Lanes numbers = load(&values_[source.from + v]);
-      if constexpr (std::is_same_v<Number, float>) {
-        store(&values[source.to + v], narrow(numbers));
-      } else {
-        store(&values[source.to + v], numbers);
-      }
-    }
+    for (std::size_t v = 0; v < source.count; v += row_padding)
+      store_rounded(&values[source.to + v], load(&values_[source.from + v]));
     filled += source.count;
   }
   clear_up_to(pattern.column_end(j));

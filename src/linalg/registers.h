@@ -27,6 +27,20 @@ inline NarrowLanes narrow(Lanes v) {
   return __builtin_convertvector(v, NarrowLanes);
 }
 
+inline Lanes load_wide(const double* p) {
+  return load(p);
+}
+inline Lanes load_wide(const float* p) {
+  return widen(load(p));
+}
+/// With as many digits as there is room for.
+inline void store_rounded(double* p, Lanes v) {
+  store(p, v);
+}
+inline void store_rounded(float* p, Lanes v) {
+  store(p, narrow(v));
+}
+
 /// c + a b, rounded once.
 inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
 #if defined(__AVX512F__)
