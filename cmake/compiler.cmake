@@ -13,9 +13,10 @@ target_compile_options(keyblock_options INTERFACE
 target_include_directories(keyblock_options INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
 # Eigen would pick other instructions, and other roundings, on other machines.
 target_compile_definitions(keyblock_options INTERFACE EIGEN_DONT_VECTORIZE)
-if(KEYBLOCK_NATIVE)
-  target_compile_options(keyblock_options INTERFACE -march=native)
-endif()
+# A target may ask for an instruction set of its own (property KEYBLOCK_ARCHITECTURE).
+set(architecture $<TARGET_PROPERTY:KEYBLOCK_ARCHITECTURE>)
+target_compile_options(keyblock_options INTERFACE
+  $<IF:$<BOOL:${architecture}>,-march=${architecture},$<$<BOOL:${KEYBLOCK_NATIVE}>:-march=native>>)
 
 # ccache where there is one, unless another launcher was asked for.
 find_program(CCACHE ccache)
