@@ -212,11 +212,9 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   bool must_be_direct = false, same_contacts = false;
   int turns = 0;  // times the step was taken again because blocks turn
   earlier_look_.forget();
+  turned_.clear();
   for (int look = 1; look <= looks;) {
-    if (!same_contacts) {
-      if (detect(state, drive.is_static)) earlier_look_.forget();
-      turned_.clear();
-    }
+    if (!same_contacts && detect(state, drive.is_static)) earlier_look_.forget();
     drive.turned = turned_;
     build_problem(state, drive);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
@@ -246,12 +244,14 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
     if (!moved && !impact && turned == Turns::are_known) return true;
     earlier_look_.keep(contacts_, problem_.springs());
-    same_contacts = !moved && !impact;
-    if (same_contacts) {
+    // Bonds that broke are for the next look to find again.
+    same_contacts = !moved && !(impact && result.bond_broken);
+    if (moved || impact) {
+      turned_.clear();
+      ++look;
+    } else {
       if (drive.is_static || ++turns > most_turns) return false;
       turned_.swap(turned_now_);
-    } else {
-      ++look;
     }
   }
   return true;

@@ -19,22 +19,21 @@ Pair pair_of(const Model& model, int a, int b) {
 
 }  // namespace
 
-/// Where the pair of blocks of every candidate is in the pattern.
+/// Where the pair of blocks of every candidate is in the pattern; both are in order.
 void Stepper::find_pairs(const State& state) {
   const std::vector<contact::Candidate>& list = state.contacts.pairs;
   pair_of_candidate_.resize(list.size());
-  Pair last{-1, -1};
-  int place = StepProblem::of_fixed;
+  auto next = state.pattern.begin();
   for (std::size_t k = 0; k < list.size(); ++k) {
-    if (const Pair pair = pair_of(model_, list[k].block_a, list[k].block_b); pair != last) {
-      const auto found = std::lower_bound(state.pattern.begin(), state.pattern.end(), pair);
-      last = pair;
-      place = pair.first < 0 ? StepProblem::of_fixed
-              : found != state.pattern.end() && *found == pair
-                  ? static_cast<int>(found - state.pattern.begin())
-                  : StepProblem::without_room;
+    const Pair pair = pair_of(model_, list[k].block_a, list[k].block_b);
+    if (pair.first < 0) {
+      pair_of_candidate_[k] = StepProblem::of_fixed;
+      continue;
     }
-    pair_of_candidate_[k] = place;
+    while (next != state.pattern.end() && *next < pair) ++next;
+    pair_of_candidate_[k] = next != state.pattern.end() && *next == pair
+                                ? static_cast<int>(next - state.pattern.begin())
+                                : StepProblem::without_room;
   }
   knows_pairs_ = true;
 }
