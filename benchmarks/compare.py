@@ -37,7 +37,7 @@ def begin(keyblock, folder, processor, scene):
 
 def end(process, folder):
     """Seconds of the dynamic stages, solutions a step and state."""
-    if process.wait() != 0:
+    if process.returncode != 0:
         raise RuntimeError(f"{process.args[0]} failed:\n{(folder / 'log').read_text()}")
     summary = json.loads((folder / "out" / "summary.json").read_text())
     seconds = sum(stage["wall_time_s"] for stage in summary["stages"] if stage["name"] in STAGES)
@@ -53,6 +53,8 @@ def measure(programs, seed, order, seconds):
     with tempfile.TemporaryDirectory() as folder:
         folders = [pathlib.Path(folder) / name for name in ("before", "after")]
         running = [begin(p, f, processors[(k + seed) % 2], scene) for k, (p, f) in enumerate(zip(programs, folders))]
+        for process in running:
+            process.wait()  # both, before the folder goes with what one of them says of its failure
         return [end(process, f) for process, f in zip(running, folders)]
 
 
