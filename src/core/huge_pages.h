@@ -38,4 +38,16 @@ class HugePageAllocator {
 template <typename T>
 using HugePageVector = std::vector<T, HugePageAllocator<T>>;
 
+/// n equal numbers. An array that has to grow gets an eighth more room than it needs, so that the next time it need not: new pages
+/// cost more than what is done with them.
+template <typename Vector>
+void assign_with_room(Vector& numbers, std::size_t n, typename Vector::value_type value) {
+  if (n > numbers.capacity()) {
+    const bool grows = numbers.capacity() > 0;
+    numbers = Vector();
+    numbers.reserve(grows ? n + n / 8 : n);
+  }
+  numbers.assign(n, value);
+}
+
 }  // namespace keyblock

@@ -54,6 +54,26 @@ linalg::BlockSolver::Excess OpenClose::excess_over(const StepProblem& problem, d
   };
 }
 
+/// Whether what is out of balance at few blocks may be taken off near these. In a static step, which has little inertia, that is everywhere.
+bool OpenClose::solves_near(const StepProblem& problem, const linalg::BlockSolver& solver) {
+  return solver.solves_near() && !problem.is_static();
+}
+
+/// direction_ ← A⁻¹ direction_ near the blocks that are out of balance, where these are few. False, and nothing is done, where not.
+bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough) {
+  constexpr double share =
+      0.5;  // of what is enough, that the others may be out of balance by: the solver looks at all
+  if (!solves_near(problem, solver)) return false;
+  find_all(
+      *team_, problem.blocks(), blocks_worth_threads,
+      [&](std::size_t b) { return problem.residual_ratio(b, gradient_) > share * enough; },
+      out_of_balance_blocks_);
+  for (std::size_t& b : out_of_balance_blocks_) b = at(problem.unknown(b));
+  const std::size_t n = problem.unknowns();
+  return solver.solve_near(out_of_balance_blocks_, std::span(direction_).first(n),
+                           std::span(residual_).first(n), excess_over(problem, enough));
+}
+
 /// direction_ ← A⁻¹ direction_, but for what is left in residual_. False when it cannot be had.
 bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance) {
   const Profile::Scope scope(*profile_, Phase::solution);
@@ -61,7 +81,9 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
   const std::span<double> x = std::span(direction_).first(n);
   // The springs that act are not known better than to a share of what is out of balance.
   const double enough = std::max(linear_share * tolerance, forcing * out_of_balance(problem));
-  solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind(solver));
+  near_ = solve_near(problem, solver, enough);
+  if (!near_)
+    solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind(solver));
   return solver.solved();
 }
 
@@ -151,9 +173,11 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
   if (!solve_linear(problem, solver, tolerance)) return false;
   if (was_exact != is_exact(solver)) forget_corrections();  // they are of another factor
   find_direction(problem);
-  double alpha = search_line();
+  const bool whole_way = !near_ && std::exchange(may_go_whole_way_, false);
+  if (whole_way) find_bends(1.0);
+  double alpha = whole_way ? 1.0 : search_line();
   // Where no contact changes, what the system left over is all that is.
-  if (bends_.empty() && problem.residual_ratio(residual_) >= enough) {
+  if (!near_ && bends_.empty() && problem.residual_ratio(residual_) >= enough) {
     if (!improve_linear(problem, solver, tolerance)) return false;
     find_direction(problem);
     alpha = search_line();
@@ -333,6 +357,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   springs_ = &problem.springs();
   assembled_ = knows_relative_ = false;
   misses_ = 0;
+  may_go_whole_way_ = solves_near(problem, solver);
   bound_steps_.clear();
   try_factor(problem, solver);
   OpenCloseResult result;

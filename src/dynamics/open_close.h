@@ -84,6 +84,8 @@ class OpenClose {
   bool change_matrix(const StepProblem& problem, linalg::BlockSolver& solver);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
+  [[nodiscard]] static bool solves_near(const StepProblem& problem, const linalg::BlockSolver& solver);
+  bool solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough);
   bool improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   [[nodiscard]] double out_of_balance(const StepProblem& problem);
   [[nodiscard]] static linalg::BlockSolver::Excess excess_over(const StepProblem& problem, double enough);
@@ -159,9 +161,12 @@ class OpenClose {
   bool kept_ = false;                 ///< it is that of an earlier step
   bool tried_ = false;                ///< it was so at the start of the step
   std::size_t corrected_before_ = 0;  ///< springs that it was corrected for then
-  int misses_ = 0;                    ///< Newton steps of this step that were not exact enough after all
-  int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
-  std::vector<std::size_t> free_;     ///< blocks that nothing holds
+  /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do
+  /// otherwise is mended near them.
+  bool may_go_whole_way_ = false;
+  int misses_ = 0;                 ///< Newton steps of this step that were not exact enough after all
+  int wait_ = 0, next_wait_ = 1;   ///< steps until a factor is kept again; after the next failure
+  std::vector<std::size_t> free_;  ///< blocks that nothing holds
   std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of change_matrix
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.
@@ -199,8 +204,10 @@ class OpenClose {
   std::vector<BoundStep>
       bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
-  std::optional<double> out_of_balance_;  ///< by gradient_, where it is known
-  std::vector<double> residual_;          ///< ρ of the last linear solution: A p = −g − ρ
+  std::optional<double> out_of_balance_;            ///< by gradient_, where it is known
+  std::vector<double> residual_;                    ///< ρ of the last linear solution: A p = −g − ρ
+  bool near_ = false;                               ///< it was of the neighbourhood of some blocks
+  std::vector<std::size_t> out_of_balance_blocks_;  ///< scratch: Block::unknown of these
   double slope_at_zero_ = 0.0, curvature_ = 0.0;
 };
 

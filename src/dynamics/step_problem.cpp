@@ -27,6 +27,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
                         std::span<const int> pairs, ThreadTeam& team) {
   team_ = &team;
   surface_ = &surface;
+  is_static_ = drive.is_static;
   if (model_ != &model) {
     model_ = &model;
     h_first_.clear();
@@ -269,14 +270,17 @@ void StepProblem::gradient(std::span<const double> d, std::span<double> g) const
   }
 }
 
+double StepProblem::residual_ratio(std::size_t i, std::span<const double> g) const {
+  if (inertia_[i] <= 0.0 || weight_[i] <= 0.0) return 0.0;
+  double largest = 0.0;
+  for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k)
+    largest = std::max(largest, std::abs(g[k]));
+  return largest / weight_[i];
+}
+
 double StepProblem::residual_ratio(std::span<const double> g) const {
-  return largest_of(*team_, model_->blocks.size(), blocks_worth_threads, [&](std::size_t i) {
-    if (inertia_[i] <= 0.0 || weight_[i] <= 0.0) return 0.0;
-    double largest = 0.0;
-    for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k)
-      largest = std::max(largest, std::abs(g[k]));
-    return largest / weight_[i];
-  });
+  return largest_of(*team_, model_->blocks.size(), blocks_worth_threads,
+                    [&](std::size_t i) { return residual_ratio(i, g); });
 }
 
 namespace {

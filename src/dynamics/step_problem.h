@@ -88,6 +88,7 @@ class StepProblem {
   /// Of every row. Built at D = 0, on the pieces that acted in the last step.
   [[nodiscard]] SpringArray& springs() { return springs_; }
   [[nodiscard]] const SpringArray& springs() const { return springs_; }
+  [[nodiscard]] bool is_static() const { return is_static_; }
   /// Whether there are bonds that may break in this step.
   [[nodiscard]] bool may_break() const { return may_break_; }
   /// The spring of contact c, at the start of the step where its `memory` has it.
@@ -169,6 +170,9 @@ class StepProblem {
   [[nodiscard]] std::span<const double> right() const { return b_; }
   /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
+  /// That of one block.
+  [[nodiscard]] double residual_ratio(std::size_t block, std::span<const double> g) const;
+  [[nodiscard]] std::size_t blocks() const { return bodies_.size(); }
   [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
   [[nodiscard]] int unknown(std::size_t block) const { return bodies_[block].unknown; }
   [[nodiscard]] double block_size() const { return model_->block_size; }
@@ -277,7 +281,7 @@ class StepProblem {
   std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
   SpringArray springs_;  ///< of every row
-  bool may_break_ = false, lacks_room_ = false;
+  bool is_static_ = false, may_break_ = false, lacks_room_ = false;
   // Of several threads alone.
   static constexpr std::size_t rows_of_piece = 256;
   std::vector<std::pair<int, int>> unknowns_of_row_;    ///< the two of every row, to look through

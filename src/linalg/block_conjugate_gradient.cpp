@@ -42,6 +42,16 @@ void for_registers(Layout layout, std::size_t j, const Body& body) {
   for (int l = 0; l < layout.stride(j); l += row_padding) body(layout.start(j) + at(l));
 }
 
+/// y −= Bᵀ x, of a block of the matrix with columns of `rows` numbers; y_stride: numbers of y.
+void subtract_transposed(const double* block, int rows, int columns, const double* x, int y_stride,
+                         double* y) {
+  in_sixes(columns, [&]<int width>(int c) {
+    LaneProducts t[width]{};
+    add_lane_products(rows / row_padding, block + c * rows, x, t);
+    subtract_first<width>(y + c, y_stride - c, sums(t));
+  });
+}
+
 }  // namespace
 
 BlockConjugateGradient::Dots& BlockConjugateGradient::Dots::operator+=(const Dots& other) {
@@ -91,9 +101,13 @@ void BlockConjugateGradient::subtract_scaled(Layout layout, std::size_t j, const
 /// gather, so that no two parts write to them.
 template <typename Subtract>
 void BlockConjugateGradient::for_entries_between(const Subtract& subtract) const {
-  for_rows_between([&](std::size_t row) {
-    for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) subtract(row_entries_[k], row);
-  });
+  for_rows_between([&](std::size_t row) { for_entries(row, subtract); });
+}
+template <typename Subtract>
+void BlockConjugateGradient::for_entries(std::size_t row, const Subtract& subtract) const {
+  for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
+    if (!is_near_ || near_.has[row_entries_[k].column] == 1) subtract(row_entries_[k], row);
+  }
 }
 
 /// y −= U x of the rows between the parts, of columns in parts.
@@ -134,13 +148,13 @@ void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, cons
   }
 }
 
-/// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of a range.
+/// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of some places.
 /// No calls within: they would keep vectors from staying in registers.
-template <typename Layout>
-[[gnu::flatten]] void BlockConjugateGradient::go_forward(Layout layout, Range range, float alpha,
+template <typename Layout, typename Some>
+[[gnu::flatten]] void BlockConjugateGradient::go_forward(Layout layout, Some places, float alpha,
                                                          float beta) {
   const NarrowLanes a = broadcast(alpha), b = broadcast(beta);
-  for (std::size_t j = range.first; j < range.last; ++j) {
+  for_each(places, [&](std::size_t j) {
     store_transposed(layout, j, t_.data(), q_.data());
     for_registers(layout, j, [&](std::size_t k) {
       const NarrowLanes p = load(&p_[k]), r = load(&r_[k]) - a * load(&t_[k]), next = r + b * p;
@@ -149,15 +163,15 @@ template <typename Layout>
       store(&r_[k], r);
       store(&p_[k], next);
     });
-  }
+  });
 }
 
-/// q ← (1 + U)⁻¹ q and t ← t + q of a range, but for what columns of other ranges add to its rows.
-template <typename Layout>
+/// q ← (1 + U)⁻¹ q and t ← t + q of some places, but for what columns elsewhere add to their rows.
+template <typename Layout, typename Some>
 [[gnu::flatten]] BlockConjugateGradient::Dots BlockConjugateGradient::go_backward(Layout layout,
-                                                                                  Range range) {
+                                                                                  Some places) {
   Lanes rr{}, pq{}, rq{}, qq{};
-  for (std::size_t j = range.last; j-- > range.first;) {
+  for_each_backward(places, [&](std::size_t j) {
     subtract_scaled(layout, j, q_.data(), q_.data());
     for_registers(layout, j, [&](std::size_t k) {
       const NarrowLanes t = load(&t_[k]) + load(&q_[k]);
@@ -168,7 +182,7 @@ template <typename Layout>
       rq = add_product(r, q, rq);
       qq = add_product(q, q, qq);
     });
-  }
+  });
   return {sum(rr), sum(pq), sum(rq), sum(qq)};
 }
 
@@ -176,15 +190,15 @@ template <typename Layout>
 BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double beta) {
   return with_layout([&](auto layout) {
     const auto a = static_cast<float>(alpha), b = static_cast<float>(beta);
-    go_forward(layout, between(), a, b);
-    for_parts([&](std::size_t k, Range range) {
-      go_forward(layout, range, a, b);
-      dots_[k] = go_backward(layout, range);
+    with_between([&](auto places) { go_forward(layout, places, a, b); });
+    for_parts([&](std::size_t k, auto places) {
+      go_forward(layout, places, a, b);
+      dots_[k] = go_backward(layout, places);
     });
     subtract_scaled_of_parts(layout, q_.data(), q_.data());
-    dots_.front() = go_backward(layout, between());
+    dots_.front() = with_between([&](auto places) { return go_backward(layout, places); });
     Dots total;
-    for (const Dots& part : dots_) total += part;
+    for (std::size_t k = 0; k < pieces(); ++k) total += dots_[k];
     return total;
   });
 }
@@ -192,12 +206,15 @@ BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double 
 /// z ← z + α p and r ← r − α Â p.
 void BlockConjugateGradient::go(double alpha) {
   const NarrowLanes a = broadcast(static_cast<float>(alpha));
-  for_ranges([&](std::size_t, Range range) {
-    const auto start = [&](std::size_t place) { return place < start_.size() ? start_[place] : z_.size(); };
-    for (std::size_t k = start(range.first); k < start(range.last); k += row_padding) {
-      store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
-      store(&r_[k], load(&r_[k]) - a * load(&t_[k]));
-    }
+  with_layout([&](auto layout) {
+    for_pieces([&](std::size_t, auto places) {
+      for_each(places, [&](std::size_t j) {
+        for_registers(layout, j, [&](std::size_t k) {
+          store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
+          store(&r_[k], load(&r_[k]) - a * load(&t_[k]));
+        });
+      });
+    });
   });
 }
 
@@ -205,11 +222,11 @@ void BlockConjugateGradient::go(double alpha) {
 void BlockConjugateGradient::start(std::span<const double> x) {
   beta_ = 0.0;
   with_layout([&](auto layout) {
-    const auto divide = [&](Range range) {
-      for (std::size_t j = range.last; j-- > range.first;) subtract_scaled(layout, j, r_.data(), r_.data());
+    const auto divide = [&](auto places) {
+      for_each_backward(places, [&](std::size_t j) { subtract_scaled(layout, j, r_.data(), r_.data()); });
     };
-    const auto scale = [&](Range range) {
-      for (std::size_t j = range.first; j < range.last; ++j) {
+    const auto scale = [&](auto places) {
+      for_each(places, [&](std::size_t j) {
         double* scaled = &wide_[layout.start(j)];
         multiply(layout.stride(j) / row_padding, layout.size(j), &inverse_[inverse_start_[j]], &x[offset_[j]],
                  scaled);
@@ -217,15 +234,23 @@ void BlockConjugateGradient::start(std::span<const double> x) {
           store(&r_[k], narrow(load(&wide_[k])));
           for (Vector* v : {&z_, &p_, &t_}) store(&(*v)[k], NarrowLanes{});
         });
-      }
+      });
     };
-    scale(between());
-    for_parts([&](std::size_t, Range range) {
-      scale(range);
-      divide(range);
+    if (is_near_) {
+      for (const std::size_t j : near_.edge) {
+        for_registers(layout, j, [&](std::size_t k) {
+          for (Vector* v : {&z_, &t_}) store(&(*v)[k], NarrowLanes{});
+          store(&wide_[k], Lanes{});
+        });
+      }
+    }
+    with_between(scale);
+    for_parts([&](std::size_t, auto places) {
+      scale(places);
+      divide(places);
     });
     subtract_scaled_of_parts(layout, r_.data(), r_.data());
-    divide(between());
+    with_between(divide);
   });
 }
 
@@ -247,26 +272,27 @@ void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector&
 /// leaves.
 void BlockConjugateGradient::find_residual(std::span<double> residual) {
   with_layout([&](auto layout) {
-    const auto copy = [&](Range range) {
-      for (std::size_t j = range.first; j < range.last; ++j)
+    const auto copy = [&](auto places) {
+      for_each(places, [&](std::size_t j) {
         for_registers(layout, j, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); });
+      });
     };
-    const auto multiply_columns = [&](Range range) {
-      for (std::size_t j = range.last; j-- > range.first;) {
+    const auto multiply_columns = [&](auto places) {
+      for_each_backward(places, [&](std::size_t j) {
         subtract_scaled(layout, j, r_.data(), q_.data());
         float* product = &t_[layout.start(j)];
         multiply(layout.stride(j) / row_padding, layout.size(j), &scale_[inverse_start_[j]],
                  &q_[layout.start(j)], product);
         for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] = -product[c];
-      }
+      });
     };
-    copy(between());
-    for_parts([&](std::size_t, Range range) {
-      copy(range);
-      multiply_columns(range);
+    with_between(copy);
+    for_parts([&](std::size_t, auto places) {
+      copy(places);
+      multiply_columns(places);
     });
     subtract_scaled_of_parts(layout, r_.data(), q_.data());
-    multiply_columns(between());
+    with_between(multiply_columns);
   });
 }
 
@@ -281,11 +307,22 @@ void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
   subtract_above(layout, j, block, x, y);
   for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
     const std::size_t i = rows_[e];
-    in_sixes(size, [&]<int width>(int c) {
-      LaneProducts t[width]{};
-      add_lane_products(layout.stride(i) / row_padding, block + c * layout.stride(i), x + layout.start(i), t);
-      subtract_first<width>(y_j + c, stride - c, sums(t));
-    });
+    subtract_transposed(block, layout.stride(i), size, x + layout.start(i), stride, y_j);
+    block += layout.stride(i) * size;
+  }
+}
+
+/// The same at the edge of a neighbourhood, of row j above the diagonal.
+template <typename Layout>
+void BlockConjugateGradient::subtract_product_at_edge(Layout layout, std::size_t j) {
+  const int size = layout.size(j), stride = layout.stride(j);
+  const double* block = &matrix_[diagonal_[j]] + static_cast<std::ptrdiff_t>(stride) * size;
+  for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
+    const std::size_t i = rows_[e];
+    if (near_.has[i] == 1) {
+      subtract_transposed(block, layout.stride(i), size, &wide_[layout.start(i)], stride,
+                          &product_[layout.start(j)]);
+    }
     block += layout.stride(i) * size;
   }
 }
@@ -294,39 +331,49 @@ void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
 void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> residual, Residual kind) {
   const bool exact = kind == Residual::exact;
   with_layout([&](auto layout) {
-    const auto solve = [&](Range range) {
-      for (std::size_t j = range.first; j < range.last; ++j) {
+    const auto clear_product = [&](std::size_t j) {
+      for_registers(layout, j, [&](std::size_t k) { store(&product_[k], Lanes{}); });
+    };
+    const auto solve = [&](auto places) {
+      for_each(places, [&](std::size_t j) {
         store_transposed(layout, j, z_.data(), q_.data());
         for_registers(layout, j, [&](std::size_t k) { store(&z_[k], load(&z_[k]) - load(&q_[k])); });
         unscale(layout, j, z_, product_, wide_);
-        if (exact) for_registers(layout, j, [&](std::size_t k) { store(&product_[k], Lanes{}); });
+        if (exact) clear_product(j);
         const double* correction = &wide_[layout.start(j)];
         for (int c = 0; c < layout.size(j); ++c) x[offset_[j] + at(c)] += correction[c];
-      }
+      });
     };
-    const auto multiply_columns = [&](Range range) {
-      for (std::size_t j = range.first; j < range.last; ++j) subtract_product_of(layout, j);
+    const auto multiply_columns = [&](auto places) {
+      for_each(places, [&](std::size_t j) { subtract_product_of(layout, j); });
     };
-    solve(between());
-    for_parts([&](std::size_t, Range range) {
-      solve(range);
-      if (exact) multiply_columns(range);
+    const Places edge = is_near_ ? Places(near_.edge) : Places();
+    for (const std::size_t j : edge) clear_product(j);
+    with_between(solve);
+    for_parts([&](std::size_t, auto places) {
+      solve(places);
+      if (exact) multiply_columns(places);
     });
     if (!exact) {
       for_numbers(residual.size(), [&](std::size_t k) { residual[k] = estimate_[k]; });
       return;
     }
-    for_entries_between([&](const RowEntry& entry, std::size_t row) {
+    const auto subtract_entry = [&](const RowEntry& entry, std::size_t row) {
       subtract_times(layout.stride(row) / row_padding, layout.size(entry.column), &matrix_[entry.values],
                      &wide_[layout.start(entry.column)], &product_[layout.start(row)]);
-    });
-    multiply_columns(between());
-    for_ranges([&](std::size_t, Range range) {
-      for (std::size_t j = range.first; j < range.last; ++j) {
-        const double* of_block = &product_[layout.start(j)];
-        for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] += of_block[c];
-      }
-    });
+    };
+    for_entries_between(subtract_entry);
+    with_between(multiply_columns);
+    const auto add_product_of = [&](std::size_t j) {
+      const double* of_block = &product_[layout.start(j)];
+      for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] += of_block[c];
+    };
+    for_pieces([&](std::size_t, auto places) { for_each(places, add_product_of); });
+    for (const std::size_t j : edge) {
+      if (j < between().last) for_entries(j, subtract_entry);
+      subtract_product_at_edge(layout, j);
+      add_product_of(j);
+    }
   });
 }
 
@@ -406,6 +453,27 @@ void BlockConjugateGradient::improve(std::span<double> x, std::span<double> resi
                                      Residual kind) {
   for_numbers(z_.size(), [&](std::size_t k) { z_[k] = 0.0F; });
   approach(x, residual, excess, kind);
+}
+
+bool BlockConjugateGradient::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
+                                        std::span<double> residual, const Excess& excess) {
+  if (!find_near(blocks)) return false;
+  for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
+  estimate_.resize(x.size());
+  for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });
+  beta_ = 0.0;
+  is_near_ = true;
+  lag_.swap(lag_near_);
+  solved_ = true;
+  if (const double too_large = excess(residual); too_large > 1.0) {
+    start(residual);
+    iterate(too_large, excess, most_iterations);
+    take_over(x, residual, Residual::exact);
+    solved_ = excess(residual) < most_growth * too_large;
+  }
+  lag_.swap(lag_near_);
+  is_near_ = false;
+  return true;
 }
 
 std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {

@@ -14,7 +14,7 @@
 namespace keyblock::linalg {
 
 /// make_block_conjugate_gradient(). Its pattern is found in block_conjugate_gradient_pattern.cpp, the matrix made ready in
-/// block_conjugate_gradient_factor.cpp.
+/// block_conjugate_gradient_factor.cpp; block_conjugate_gradient_near.cpp solves near some blocks alone.
 ///
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (Uᵀ + 1 + U) Cᵀ with
 /// U_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly above the diagonal. Preconditioned from both sides by (1 + U) it is
@@ -36,6 +36,9 @@ class BlockConjugateGradient final : public BlockSolver {
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   void improve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
+  [[nodiscard]] bool solves_near() const override { return true; }
+  bool solve_near(std::span<const std::size_t> blocks, std::span<double> x, std::span<double> residual,
+                  const Excess& excess) override;
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
 
@@ -45,6 +48,34 @@ class BlockConjugateGradient final : public BlockSolver {
   struct Range {
     std::size_t first, last;  ///< places
   };
+  using Places = std::span<const std::uint32_t>;
+  template <typename Body>
+  static void for_each(Range range, const Body& body) {
+    for (std::size_t j = range.first; j < range.last; ++j) body(j);
+  }
+  template <typename Body>
+  static void for_each_backward(Range range, const Body& body) {
+    for (std::size_t j = range.last; j-- > range.first;) body(j);
+  }
+  template <typename Body>
+  static void for_each(Places places, const Body& body) {
+    for (const std::size_t j : places) body(j);
+  }
+  template <typename Body>
+  static void for_each_backward(Places places, const Body& body) {
+    for (auto j = places.rbegin(); j != places.rend(); ++j) body(std::size_t{*j});
+  }
+  /// The neighbourhood of some blocks, of which a system may be.
+  struct Near {
+    std::vector<std::uint32_t> places;  ///< ascending: those between the parts, and then part by part
+    std::vector<std::size_t> begin;     ///< of these, into places
+    std::vector<std::uint32_t> edge;    ///< places that are coupled with these, and not of them
+    std::vector<std::uint8_t> has;      ///< per place: 1 for these, at_edge
+    [[nodiscard]] Places piece(std::size_t k) const {
+      return Places(places).subspan(begin[k], begin[k + 1] - begin[k]);
+    }
+  };
+  static constexpr std::uint8_t at_edge = 2;
   /// Dot products of an iteration, with q = Â p; they give r · r after it too.
   struct Dots {
     double rr = 0.0, pq = 0.0, rq = 0.0, qq = 0.0;
@@ -52,26 +83,55 @@ class BlockConjugateGradient final : public BlockSolver {
   };
 
   void place_vectors(std::span<const int> sizes, std::span<const int> order);
+  void find_neighbours(std::span<const std::pair<int, int>> pairs);
+  [[nodiscard]] Places neighbours(std::size_t place) const {
+    return Places(neighbours_)
+        .subspan(neighbours_start_[place], neighbours_start_[place + 1] - neighbours_start_[place]);
+  }
+  bool find_near(std::span<const std::size_t> blocks);
   std::vector<std::size_t> place_matrix(std::span<const std::pair<int, int>> pairs);
   template <typename Body>
   decltype(auto) with_layout(const Body& body) const;
-  /// Calls body(k, part) for every part, from 1 on; parts may go at the same time.
+  /// Calls body(k) for k from 1 to `count`, which may go at the same time.
   template <typename Body>
-  void for_parts(const Body& body) const {
-    const std::size_t count = begin_.size() - 2;
+  void for_piece_numbers(std::size_t count, const Body& body) const {
     const auto some = [&](std::size_t from, std::size_t to) {
-      for (std::size_t k = from + 1; k <= to; ++k) body(k, Range{begin_[k], begin_[k + 1]});
+      for (std::size_t k = from + 1; k <= to; ++k) body(k);
     };
-    if (team_ == nullptr || count == 1) {
+    if (team_ == nullptr || count <= 1) {
       some(0, count);
     } else {
       team_->for_range(count, 2, some);
     }
   }
-  /// The same for what lies between the parts, 0, and then for every part.
+  /// Calls body(k, places) for what lies between the parts, 0, and then for every part.
   template <typename Body>
   void for_ranges(const Body& body) const {
     body(std::size_t{0}, between());
+    for_piece_numbers(begin_.size() - 2, [&](std::size_t k) { body(k, Range{begin_[k], begin_[k + 1]}); });
+  }
+  /// Calls body(k, places) for every part, from 1 on, of what is solved.
+  template <typename Body>
+  void for_parts(const Body& body) const {
+    for_piece_numbers(pieces() - 1, [&](std::size_t k) {
+      if (is_near_) {
+        body(k, near_.piece(k));
+      } else {
+        body(k, Range{begin_[k], begin_[k + 1]});
+      }
+    });
+  }
+  /// Of what is solved: its parts, and what lies between them.
+  [[nodiscard]] std::size_t pieces() const { return (is_near_ ? near_.begin : begin_).size() - 1; }
+  /// Calls body(places) for what lies between them.
+  template <typename Body>
+  decltype(auto) with_between(const Body& body) const {
+    return is_near_ ? body(near_.piece(0)) : body(between());
+  }
+  /// Both.
+  template <typename Body>
+  void for_pieces(const Body& body) const {
+    with_between([&](auto places) { body(std::size_t{0}, places); });
     for_parts(body);
   }
   [[nodiscard]] Range between() const { return {0, begin_[1]}; }
@@ -79,13 +139,14 @@ class BlockConjugateGradient final : public BlockSolver {
   template <typename Body>
   void for_rows_between(const Body& body) const {
     constexpr std::size_t worth_threads = 64;
+    const std::size_t count = is_near_ ? near_.begin[1] : between().last;
     const auto some = [&](std::size_t from, std::size_t to) {
-      for (std::size_t row = from; row < to; ++row) body(row);
+      for (std::size_t k = from; k < to; ++k) body(is_near_ ? std::size_t{near_.places[k]} : k);
     };
     if (team_ == nullptr) {
-      some(0, between().last);
+      some(0, count);
     } else {
-      team_->for_range(between().last, worth_threads, some);
+      team_->for_range(count, worth_threads, some);
     }
   }
   /// Calls body(k) for the numbers of a vector.
@@ -106,15 +167,17 @@ class BlockConjugateGradient final : public BlockSolver {
   template <typename Layout>
   void subtract_scaled(Layout layout, std::size_t j, const float* x, float* y) const;
   template <typename Subtract>
+  void for_entries(std::size_t row, const Subtract& subtract) const;
+  template <typename Subtract>
   void for_entries_between(const Subtract& subtract) const;
   template <typename Layout>
   void subtract_scaled_of_parts(Layout layout, const float* x, float* y) const;
   template <typename Layout>
   void store_transposed(Layout layout, std::size_t j, const float* x, float* y) const;
-  template <typename Layout>
-  void go_forward(Layout layout, Range range, float alpha, float beta);
-  template <typename Layout>
-  [[nodiscard]] Dots go_backward(Layout layout, Range range);
+  template <typename Layout, typename Some>
+  void go_forward(Layout layout, Some places, float alpha, float beta);
+  template <typename Layout, typename Some>
+  [[nodiscard]] Dots go_backward(Layout layout, Some places);
   Dots apply(double alpha, double beta);
   void go(double alpha);
   void start(std::span<const double> x);
@@ -122,6 +185,8 @@ class BlockConjugateGradient final : public BlockSolver {
   void unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch, WideVector& x) const;
   template <typename Layout>
   void subtract_product_of(Layout layout, std::size_t j);
+  template <typename Layout>
+  void subtract_product_at_edge(Layout layout, std::size_t j);
   void find_residual(std::span<double> residual);
   void take_over(std::span<double> x, std::span<double> residual, Residual kind);
   /// Numbers of block (i, j) of U.
@@ -141,6 +206,10 @@ class BlockConjugateGradient final : public BlockSolver {
   ThreadTeam* team_;
   std::vector<std::size_t> place_;  ///< block → place
   std::vector<std::size_t> begin_;  ///< Partition::begin
+  Near near_;
+  bool is_near_ = false;                       ///< what is solved is that, and not all
+  std::vector<std::uint32_t> neighbours_;      ///< places that a place is coupled with
+  std::vector<std::size_t> neighbours_start_;  ///< per place
   std::vector<int> size_, stride_;
   std::vector<std::size_t> offset_;  ///< its unknowns in x
   std::vector<std::size_t> start_;   ///< into padded vectors
@@ -175,7 +244,7 @@ class BlockConjugateGradient final : public BlockSolver {
   std::vector<Dots> dots_;        ///< per range
   /// Of the last solutions with this matrix: by how much less the square of the residual fell than that of its norm in the scaled
   /// system; 0: not known.
-  std::array<double, 3> lag_{};
+  std::array<double, 3> lag_{}, lag_near_{};
   double beta_ = 0.0;  ///< of the next iteration; 0: the first
   bool solved_ = true;
 };

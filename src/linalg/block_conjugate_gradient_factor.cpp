@@ -49,7 +49,7 @@ void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const do
 }
 
 bool BlockConjugateGradient::factor() {
-  lag_ = {};
+  lag_ = lag_near_ = {};
   std::vector<std::uint8_t> good(begin_.size() - 1, 1);
   for_ranges([&](std::size_t k, Range range) {
     WideVector scratch(at(largest_ * largest_));

@@ -1,5 +1,6 @@
 // Where the blocks of a matrix, and what belongs to them in vectors, are.
 #include <algorithm>
+#include <numeric>
 
 #include "linalg/block_conjugate_gradient.h"
 #include "linalg/paired_columns.h"
@@ -13,6 +14,7 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
   dots_.assign(begin_.size() - 1, {});
   place_.resize(sizes.size());
   for (std::size_t k = 0; k < sizes.size(); ++k) place_[at(found.order[k])] = k;
+  find_neighbours(pairs);
   place_vectors(sizes, found.order);
   const std::vector<std::size_t> values = place_matrix(pairs);
   slots_.clear();
@@ -43,8 +45,23 @@ void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span
     padded += at(padded_rows(size));
     largest_ = std::max(largest_, padded_rows(size));
   }
-  for (Vector* v : {&t_, &z_, &r_, &p_, &q_}) v->assign(padded, 0.0F);
-  for (WideVector* v : {&wide_, &product_}) v->assign(padded, 0.0);
+  for (Vector* v : {&t_, &z_, &r_, &p_, &q_}) assign_with_room(*v, padded, 0.0F);
+  for (WideVector* v : {&wide_, &product_}) assign_with_room(*v, padded, 0.0);
+}
+
+void BlockConjugateGradient::find_neighbours(std::span<const std::pair<int, int>> pairs) {
+  neighbours_start_.assign(place_.size() + 1, 0);
+  for (const auto& [i, j] : pairs) {
+    ++neighbours_start_[place_[at(i)] + 1];
+    ++neighbours_start_[place_[at(j)] + 1];
+  }
+  std::partial_sum(neighbours_start_.begin(), neighbours_start_.end(), neighbours_start_.begin());
+  neighbours_.resize(neighbours_start_.back());
+  std::vector<std::size_t> next(neighbours_start_.begin(), neighbours_start_.end() - 1);
+  for (const auto& [i, j] : pairs) {
+    neighbours_[next[place_[at(i)]]++] = static_cast<std::uint32_t>(place_[at(j)]);
+    neighbours_[next[place_[at(j)]]++] = static_cast<std::uint32_t>(place_[at(i)]);
+  }
 }
 
 std::size_t BlockConjugateGradient::scaled_count(std::size_t i, std::size_t j) const {
@@ -99,11 +116,11 @@ std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const st
     }
     row_start_.push_back(row_entries_.size());
   }
-  matrix_.assign(used, 0.0);
-  inverse_.assign(inverse, 0.0);
-  scale_.assign(inverse, 0.0F);
-  above_.assign(scaled + paired_columns::read_beyond, 0.0F);
-  above_by_rows_.assign(copied + paired_columns::read_beyond, 0.0F);
+  assign_with_room(matrix_, used, 0.0);
+  assign_with_room(inverse_, inverse, 0.0);
+  assign_with_room(scale_, inverse, 0.0F);
+  assign_with_room(above_, scaled + paired_columns::read_beyond, 0.0F);
+  assign_with_room(above_by_rows_, copied + paired_columns::read_beyond, 0.0F);
   stale_.assign(n, 1);
   return values;
 }

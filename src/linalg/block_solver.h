@@ -90,6 +90,14 @@ class BlockSolver {
   /// A direct solver has nothing to improve.
   virtual void improve(std::span<double> /*x*/, std::span<double> /*residual*/, const Excess& /*excess*/,
                        Residual /*kind*/ = Residual::exact) {}
+  /// Whether there is a solve_near().
+  [[nodiscard]] virtual bool solves_near() const { return false; }
+  /// As solve() does for these blocks and those near them: x is zero elsewhere, and `residual`, which is exact, may be too large there
+  /// afterwards. False, and nothing is done, where these are so many that solve() is as well.
+  virtual bool solve_near(std::span<const std::size_t> /*blocks*/, std::span<double> /*x*/,
+                          std::span<double> /*residual*/, const Excess& /*excess*/) {
+    return false;
+  }
   /// Null where this solver has none.
   [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }
   /// Whether the matrix and what factor() made of it may serve later steps, corrected for what they get wrong.

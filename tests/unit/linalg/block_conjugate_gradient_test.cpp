@@ -174,6 +174,26 @@ struct GridProblem {
     solver.solve(x, residual, strict());
     return x;
   }
+  [[nodiscard]] std::vector<double> product(std::span<const double> x) const {
+    std::vector<std::size_t> first{0};
+    for (const int size : sizes) first.push_back(first.back() + static_cast<std::size_t>(size));
+    std::vector<double> y(x.size());
+    for (std::size_t b = 0; b < sizes.size(); ++b) {
+      for (std::size_t k = first[b]; k < first[b + 1]; ++k) y[k] = diagonal[b] * x[k];
+    }
+    for (std::size_t k = 0; k < grid.pairs.size(); ++k) {
+      const auto i = static_cast<std::size_t>(grid.pairs[k].first),
+                 j = static_cast<std::size_t>(grid.pairs[k].second);
+      auto value = coupling[k].begin();
+      for (std::size_t r = first[i]; r < first[i + 1]; ++r) {
+        for (std::size_t c = first[j]; c < first[j + 1]; ++c, ++value) {
+          y[r] += *value * x[c];
+          y[c] += *value * x[r];
+        }
+      }
+    }
+    return y;
+  }
   [[nodiscard]] std::vector<double> solution(BlockSolver& solver) const {
     fill(solver);
     return factor_and_solve(solver);
@@ -189,6 +209,62 @@ TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
     for (const int threads : {2, 3, 8}) {
       ThreadTeam team(threads);
       EXPECT_EQ(problem.solution(*make_block_conjugate_gradient(&team)), alone) << threads;
+    }
+  }
+}
+
+double largest(std::span<const double> numbers) {
+  double found = 0.0;
+  for (const double v : numbers) found = std::max(found, std::abs(v));
+  return found;
+}
+
+// Near some blocks, what is left over is what it says, also where that is beyond; and a system of all that follows knows nothing of it.
+TEST(BlockSolver, SolvesNearSomeBlocks) {
+  constexpr double enough = 1e-5, right = 1.0, of_others = 0.3 * enough;
+  for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
+    const GridProblem problem(choice);
+    std::vector<std::size_t> first{0};
+    for (const int size : problem.sizes) first.push_back(first.back() + static_cast<std::size_t>(size));
+    const auto whole = problem.solution(*make_iterative());
+    // In the middle of the grid, at its edge, and in the piece beside it.
+    const std::vector<std::size_t> blocks{25 * Grid::side + 24, 25 * Grid::side + 26, 7, Grid::blocks - 3};
+    std::vector<double> b(problem.right.size(), of_others);
+    for (const std::size_t block : blocks)
+      std::fill(b.data() + first[block], b.data() + first[block + 1], right);
+    const auto excess = [&](std::span<const double> r) { return largest(r) / enough; };
+    std::vector<double> alone;
+    for (const int threads : {1, 2, 3}) {
+      ThreadTeam team(threads);
+      const auto solver = make_block_conjugate_gradient(&team);
+      problem.fill(*solver);
+      ASSERT_TRUE(solver->factor());
+      std::vector<double> x = b, residual(b.size());
+      ASSERT_TRUE(solver->solves_near() && solver->solve_near(blocks, x, residual, excess));
+      EXPECT_TRUE(solver->solved());
+      const auto product = problem.product(x);
+      std::size_t moved = 0;
+      for (std::size_t block = 0; block < problem.sizes.size(); ++block) {
+        const std::size_t begin = first[block], end = first[block + 1];
+        for (std::size_t k = begin; k < end; ++k) ASSERT_NEAR(residual[k], b[k] - product[k], 1e-13);
+        moved += largest(std::span(x).subspan(begin, end - begin)) > 0.0 ? 1 : 0;
+      }
+      EXPECT_GT(moved, 150U);
+      EXPECT_LT(moved, 500U);
+      for (const std::size_t block : blocks)
+        EXPECT_LE(largest(std::span(residual).subspan(first[block], first[block + 1] - first[block])),
+                  enough);
+      EXPECT_GT(largest(residual), of_others) << "nothing is left beyond";
+      EXPECT_LT(largest(residual), 0.1 * right);
+      if (threads == 1) alone = x;
+      EXPECT_EQ(x, alone) << threads;
+      EXPECT_EQ(problem.factor_and_solve(*solver), whole);
+
+      std::vector<std::size_t> all(problem.sizes.size());
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      x = b;
+      EXPECT_FALSE(solver->solve_near(all, x, residual, excess)) << "all are as well";
+      EXPECT_EQ(x, b);
     }
   }
 }

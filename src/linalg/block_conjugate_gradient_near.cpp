@@ -1,0 +1,55 @@
+// Systems of the neighbourhood of some blocks.
+#include <algorithm>
+
+#include "linalg/block_conjugate_gradient.h"
+
+namespace keyblock::linalg {
+
+namespace {
+
+/// Blocks that a change is followed over. What it does beyond is left over in the residual.
+constexpr int layers = 6;
+/// Share of the blocks, beyond which a system of all takes little more.
+constexpr double most_share = 0.3;
+
+}  // namespace
+
+/// Some blocks, and those so many layers around them. False where they are so many that all are as well.
+bool BlockConjugateGradient::find_near(std::span<const std::size_t> blocks) {
+  const auto most = static_cast<std::size_t>(most_share * static_cast<double>(place_.size()));
+  if (blocks.size() > most) return false;
+  near_.places.clear();
+  near_.has.assign(place_.size(), 0);
+  const auto reach = [&](std::size_t place) {
+    if (near_.has[place] != 0) return;
+    near_.has[place] = 1;
+    near_.places.push_back(static_cast<std::uint32_t>(place));
+  };
+  for (const std::size_t block : blocks) reach(place_[block]);
+  std::size_t next = 0;
+  for (int layer = 0; layer < layers; ++layer) {
+    for (const std::size_t end = near_.places.size(); next < end; ++next) {
+      for (const std::uint32_t place : neighbours(near_.places[next])) reach(place);
+    }
+    if (near_.places.size() > most) return false;
+  }
+  near_.edge.clear();
+  for (; next < near_.places.size(); ++next) {
+    for (const std::uint32_t place : neighbours(near_.places[next])) {
+      if (near_.has[place] != 0) continue;
+      near_.has[place] = at_edge;
+      near_.edge.push_back(place);
+    }
+  }
+  std::sort(near_.places.begin(), near_.places.end());
+  near_.begin.assign(1, 0);
+  for (std::size_t piece = 1; piece < begin_.size(); ++piece) {
+    const auto end = std::lower_bound(near_.places.begin(), near_.places.end(), begin_[piece]);
+    const auto here = static_cast<std::size_t>(end - near_.places.begin());
+    // That between the parts comes first, be it empty.
+    if (piece == 1 || here > near_.begin.back()) near_.begin.push_back(here);
+  }
+  return true;
+}
+
+}  // namespace keyblock::linalg
