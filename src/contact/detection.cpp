@@ -335,7 +335,9 @@ Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<
   double second = -HUGE_VAL;
   bool passes_another = false;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    if (are_turned(rivals[i], rivals[farthest])) second = std::max(second, rivals[i]->gap);
+    const bool is_alike =
+        cosine_between(*rivals[i], *rivals[farthest], candidates) >= Tolerances::cosine_alike;
+    if (!is_alike && are_turned(rivals[i], rivals[farthest])) second = std::max(second, rivals[i]->gap);
     passes_another =
         passes_another || (when[i] > 0.0 && when[i] < HUGE_VAL && are_turned(rivals[i], rivals[last]));
   }

@@ -184,6 +184,15 @@ class Detection {
   [[nodiscard]] double leave() const { return -0.5 * tolerances_.end_zone; }
   /// m by which the vertex lies over the edge; negative: beyond the end.
   [[nodiscard]] static double inside(double along, double length) { return std::min(along, length - along); }
+  /// Cosine of the angle between the ways in which two lines push the one block away from the other.
+  [[nodiscard]] double cosine_between(const Rival& one, const Rival& other,
+                                      const CandidateList& candidates) const {
+    const auto owner = [&](const Rival& r) {
+      return candidates.pairs[static_cast<std::size_t>(r.candidate)].block_b;
+    };
+    const double cosine = dot(line(one, candidates).tangent, line(other, candidates).tangent);
+    return owner(one) == owner(other) ? cosine : -cosine;
+  }
   [[nodiscard]] const Corner& line(const Rival& rival, const CandidateList& candidates) const {
     return corners_[static_cast<std::size_t>(
         candidates.pairs[static_cast<std::size_t>(rival.candidate)].edge)];

@@ -110,18 +110,27 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
   const auto gap_rate = [&](const Rival* r) {
     return rate(std::abs(r->gap) + std::abs(inside(r->along, line(r).length)), line(r).length);
   };
-  double margin = HUGE_VAL, fastest = 0.0, least_gap = HUGE_VAL, largest_gap = -HUGE_VAL;
-  bool each_turned = true;
+  const auto cosine_of = [&](const Rival* r, const Rival* other) {
+    return cosine_between(*r, *other, candidates);
+  };
+  const auto part_otherwise = [&](const Rival* r, const Rival* other) {
+    return turned(line(r), line(other)) && cosine_of(r, other) < Tolerances::cosine_alike;
+  };
+  double margin = HUGE_VAL, while_alike = HUGE_VAL, fastest = 0.0, least_gap = HUGE_VAL,
+         largest_gap = -HUGE_VAL;
+  bool each_has_other = true;  // that parts the corners another way
   for (const Rival* r : rivals) {
-    bool any_turned = false;
+    bool has_other = false;
     for (const Rival* other : rivals) {
       if (other == r) continue;
       const double sine = std::abs(cross(line(r).tangent, line(other).tangent)),
                    shortest = std::min(line(r).length, line(other).length);
       margin = std::min(margin, turn_margin(sine, Tolerances::sine_parallel) * shortest);
-      any_turned = any_turned || turned(line(r), line(other));
+      while_alike =
+          std::min(while_alike, turn_margin(cosine_of(r, other), Tolerances::cosine_alike) * shortest);
+      has_other = has_other || part_otherwise(r, other);
     }
-    each_turned = each_turned && any_turned;
+    each_has_other = each_has_other && has_other;
     fastest = std::max(fastest, gap_rate(r));
     least_gap = std::min(least_gap, r->gap);
     largest_gap = std::max(largest_gap, r->gap);
@@ -134,8 +143,9 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
       margin = std::min(margin, (-tolerances_.rounding - inside(r->along, line(r).length)) / over_rate(r));
     return margin;
   }
+  margin = std::min(margin, while_alike);
   if (winner == nullptr) {  // a tie, whichever has the largest gap
-    if (!each_turned) return 0.0;
+    if (!each_has_other) return 0.0;
     for (const Rival* r : rivals)
       margin = std::min(margin, std::abs(r->gap + tolerances_.corner_depth) / fastest);
     return std::min({margin, (largest_gap + tolerances_.corner_depth) / fastest,
@@ -145,7 +155,7 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
   for (const Rival* r : rivals) {
     if (r == winner) continue;
     margin = std::min(margin, (winner->gap - r->gap) / (2.0 * fastest));
-    if (turned(line(r), line(winner))) second = std::max(second, r->gap);
+    if (part_otherwise(r, winner)) second = std::max(second, r->gap);
   }
   const double deep = (-tolerances_.corner_depth - winner->gap) / fastest,
                apart = (winner->gap - second - tolerances_.corner_tie) / (2.0 * fastest);

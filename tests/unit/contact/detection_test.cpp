@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <span>
 #include <tuple>
@@ -130,6 +131,23 @@ TEST(Detection, CornerOnCornerTakesTheShortestWayOut) {
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_NEAR(contacts[0].normal.x, 1.0, 1e-12);
   EXPECT_NEAR(contacts[0].gap, -0.0005, 1e-12);
+}
+
+// Two corners tip to tip: which side they pass cannot be told, unless both lines part them the same way, or nearly so.
+TEST(Detection, CornersTipToTipMeetWhereTheirLinesAreAlike) {
+  const auto contacts_of = [](double first, double last) {  // degrees, the upper corner's edges
+    const auto direction = [](double degrees) {
+      const double angle = degrees * std::numbers::pi / 180.0;
+      return Vec2{std::cos(angle), std::sin(angle)};
+    };
+    const Vec2 flank = direction(57.0), tip = 2e-5 * Vec2{-flank.y, flank.x};
+    Surface surface;
+    add_block(surface, {{{0.0, 0.0}, {1.0, 0.0}, flank}, {}});
+    add_block(surface, {{tip, tip + direction(first), tip + direction(last)}, {}});
+    return find(surface).size();
+  };
+  EXPECT_EQ(contacts_of(66.0, 124.0), 1U) << "lines 9 degrees apart";
+  EXPECT_EQ(contacts_of(110.0, 160.0), 0U) << "lines 53 degrees apart";
 }
 
 /// A wall of 64 crooked blocks: corners at all angles, small gaps and overlaps. Each row is shifted against the one below; without
