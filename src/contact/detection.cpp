@@ -315,9 +315,6 @@ double Detection::passing(const Surface& surface, const Rival& rival, const Cand
 /// along a face and over the joint at its end passes the side of the next block, but not its face. Null: there is no telling.
 Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<Rival* const> all,
                                               const CandidateList& candidates) const {
-  const auto are_turned = [&](const Rival* one, const Rival* other) {
-    return turned(line(*one, candidates), line(*other, candidates));
-  };
   std::array<Rival*, 4> outside{};  // the others are there for turns that blocks might make
   std::size_t count = 0;
   for (Rival* r : all) {
@@ -335,11 +332,10 @@ Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<
   double second = -HUGE_VAL;
   bool passes_another = false;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    const bool is_alike =
-        cosine_between(*rivals[i], *rivals[farthest], candidates) >= Tolerances::cosine_alike;
-    if (!is_alike && are_turned(rivals[i], rivals[farthest])) second = std::max(second, rivals[i]->gap);
+    if (part_otherwise(*rivals[i], *rivals[farthest], candidates)) second = std::max(second, rivals[i]->gap);
     passes_another =
-        passes_another || (when[i] > 0.0 && when[i] < HUGE_VAL && are_turned(rivals[i], rivals[last]));
+        passes_another || (when[i] > 0.0 && when[i] < HUGE_VAL &&
+                           turned(line(*rivals[i], candidates), line(*rivals[last], candidates)));
   }
   const bool is_tie = rivals[farthest]->gap - second < tolerances_.corner_tie;
   return is_tie && !passes_another ? nullptr : rivals[last];

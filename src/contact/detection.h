@@ -193,6 +193,12 @@ class Detection {
     const double cosine = dot(line(one, candidates).tangent, line(other, candidates).tangent);
     return owner(one) == owner(other) ? cosine : -cosine;
   }
+  /// Whether it matters which of two lines of the same corners parts them.
+  [[nodiscard]] bool part_otherwise(const Rival& one, const Rival& other,
+                                    const CandidateList& candidates) const {
+    return turned(line(one, candidates), line(other, candidates)) &&
+           cosine_between(one, other, candidates) < Tolerances::cosine_alike;
+  }
   [[nodiscard]] const Corner& line(const Rival& rival, const CandidateList& candidates) const {
     return corners_[static_cast<std::size_t>(
         candidates.pairs[static_cast<std::size_t>(rival.candidate)].edge)];

@@ -110,12 +110,6 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
   const auto gap_rate = [&](const Rival* r) {
     return rate(std::abs(r->gap) + std::abs(inside(r->along, line(r).length)), line(r).length);
   };
-  const auto cosine_of = [&](const Rival* r, const Rival* other) {
-    return cosine_between(*r, *other, candidates);
-  };
-  const auto part_otherwise = [&](const Rival* r, const Rival* other) {
-    return turned(line(r), line(other)) && cosine_of(r, other) < Tolerances::cosine_alike;
-  };
   double margin = HUGE_VAL, while_alike = HUGE_VAL, fastest = 0.0, least_gap = HUGE_VAL,
          largest_gap = -HUGE_VAL;
   bool each_has_other = true;  // that parts the corners another way
@@ -126,9 +120,9 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
       const double sine = std::abs(cross(line(r).tangent, line(other).tangent)),
                    shortest = std::min(line(r).length, line(other).length);
       margin = std::min(margin, turn_margin(sine, Tolerances::sine_parallel) * shortest);
-      while_alike =
-          std::min(while_alike, turn_margin(cosine_of(r, other), Tolerances::cosine_alike) * shortest);
-      has_other = has_other || part_otherwise(r, other);
+      const double cosine = cosine_between(*r, *other, candidates);
+      while_alike = std::min(while_alike, turn_margin(cosine, Tolerances::cosine_alike) * shortest);
+      has_other = has_other || part_otherwise(*r, *other, candidates);
     }
     each_has_other = each_has_other && has_other;
     fastest = std::max(fastest, gap_rate(r));
@@ -155,7 +149,7 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
   for (const Rival* r : rivals) {
     if (r == winner) continue;
     margin = std::min(margin, (winner->gap - r->gap) / (2.0 * fastest));
-    if (part_otherwise(r, winner)) second = std::max(second, r->gap);
+    if (part_otherwise(*r, *winner, candidates)) second = std::max(second, r->gap);
   }
   const double deep = (-tolerances_.corner_depth - winner->gap) / fastest,
                apart = (winner->gap - second - tolerances_.corner_tie) / (2.0 * fastest);

@@ -33,7 +33,7 @@ struct Tolerances {
   double least_length;
   /// Two corners tip to tip: while the gaps to their two entrance lines differ by less than `corner_tie` (0.5 mm), and the corners
   /// are not deeper than `corner_depth` (0.1 mm) behind one nor go there in the step, there is no telling which side they pass, and
-  /// no contact.
+  /// no contact; unless the lines part them alike (`cosine_alike`).
   double corner_tie;
   double corner_depth;
   /// Largest gap of a joint in place at the start (0.07 mm): such a contact has the joint's cohesion and tension.

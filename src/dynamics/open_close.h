@@ -161,12 +161,9 @@ class OpenClose {
   bool kept_ = false;                 ///< it is that of an earlier step
   bool tried_ = false;                ///< it was so at the start of the step
   std::size_t corrected_before_ = 0;  ///< springs that it was corrected for then
-  /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do
-  /// otherwise is mended near them.
-  bool may_go_whole_way_ = false;
-  int misses_ = 0;                 ///< Newton steps of this step that were not exact enough after all
-  int wait_ = 0, next_wait_ = 1;   ///< steps until a factor is kept again; after the next failure
-  std::vector<std::size_t> free_;  ///< blocks that nothing holds
+  int misses_ = 0;                    ///< Newton steps of this step that were not exact enough after all
+  int wait_ = 0, next_wait_ = 1;      ///< steps until a factor is kept again; after the next failure
+  std::vector<std::size_t> free_;     ///< blocks that nothing holds
   std::vector<StepProblem::SpringChange> changes_;  ///< scratch: of change_matrix
   std::vector<std::size_t> bends_;  ///< contacts that change piece along the direction of search
   /// The normal or the shear spring of a contact.
@@ -208,6 +205,9 @@ class OpenClose {
   std::vector<double> residual_;                    ///< ρ of the last linear solution: A p = −g − ρ
   bool near_ = false;                               ///< it was of the neighbourhood of some blocks
   std::vector<std::size_t> out_of_balance_blocks_;  ///< scratch: Block::unknown of these
+  /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do
+  /// otherwise is mended near them.
+  bool may_go_whole_way_ = false;
   double slope_at_zero_ = 0.0, curvature_ = 0.0;
 };
 

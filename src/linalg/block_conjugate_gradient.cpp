@@ -12,7 +12,6 @@ namespace keyblock::linalg {
 
 namespace {
 
-constexpr int most_iterations = 400;
 // By which the residual may be larger than before; beyond that the matrix is not positive definite.
 constexpr double most_growth = 100.0;
 // Excess of the iteration's residual, with which that of the matrix is small enough.
@@ -42,25 +41,7 @@ void for_registers(Layout layout, std::size_t j, const Body& body) {
   for (int l = 0; l < layout.stride(j); l += row_padding) body(layout.start(j) + at(l));
 }
 
-/// y −= Bᵀ x, of a block of the matrix with columns of `rows` numbers; y_stride: numbers of y.
-void subtract_transposed(const double* block, int rows, int columns, const double* x, int y_stride,
-                         double* y) {
-  in_sixes(columns, [&]<int width>(int c) {
-    LaneProducts t[width]{};
-    add_lane_products(rows / row_padding, block + c * rows, x, t);
-    subtract_first<width>(y + c, y_stride - c, sums(t));
-  });
-}
-
 }  // namespace
-
-BlockConjugateGradient::Dots& BlockConjugateGradient::Dots::operator+=(const Dots& other) {
-  rr += other.rr;
-  pq += other.pq;
-  rq += other.rq;
-  qq += other.qq;
-  return *this;
-}
 
 template <typename Body>
 decltype(auto) BlockConjugateGradient::with_layout(const Body& body) const {
@@ -453,27 +434,6 @@ void BlockConjugateGradient::improve(std::span<double> x, std::span<double> resi
                                      Residual kind) {
   for_numbers(z_.size(), [&](std::size_t k) { z_[k] = 0.0F; });
   approach(x, residual, excess, kind);
-}
-
-bool BlockConjugateGradient::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
-                                        std::span<double> residual, const Excess& excess) {
-  if (!find_near(blocks)) return false;
-  for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
-  estimate_.resize(x.size());
-  for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });
-  beta_ = 0.0;
-  is_near_ = true;
-  lag_.swap(lag_near_);
-  solved_ = true;
-  if (const double too_large = excess(residual); too_large > 1.0) {
-    start(residual);
-    iterate(too_large, excess, most_iterations);
-    take_over(x, residual, Residual::exact);
-    solved_ = excess(residual) < most_growth * too_large;
-  }
-  lag_.swap(lag_near_);
-  is_near_ = false;
-  return true;
 }
 
 std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {

@@ -43,6 +43,7 @@ class BlockConjugateGradient final : public BlockSolver {
   [[nodiscard]] bool serves_later_steps() const override { return true; }
 
  private:
+  static constexpr int most_iterations = 400;
   using Vector = HugePageVector<float>;
   using WideVector = HugePageVector<double>;
   struct Range {
@@ -70,7 +71,7 @@ class BlockConjugateGradient final : public BlockSolver {
     std::vector<std::uint32_t> places;  ///< ascending: those between the parts, and then part by part
     std::vector<std::size_t> begin;     ///< of these, into places
     std::vector<std::uint32_t> edge;    ///< places that are coupled with these, and not of them
-    std::vector<std::uint8_t> has;      ///< per place: 1 for these, at_edge
+    std::vector<std::uint8_t> has;      ///< per place: 1 for these, at_edge for those
     [[nodiscard]] Places piece(std::size_t k) const {
       return Places(places).subspan(begin[k], begin[k + 1] - begin[k]);
     }
@@ -79,7 +80,13 @@ class BlockConjugateGradient final : public BlockSolver {
   /// Dot products of an iteration, with q = Â p; they give r · r after it too.
   struct Dots {
     double rr = 0.0, pq = 0.0, rq = 0.0, qq = 0.0;
-    Dots& operator+=(const Dots& other);
+    Dots& operator+=(const Dots& other) {
+      rr += other.rr;
+      pq += other.pq;
+      rq += other.rq;
+      qq += other.qq;
+      return *this;
+    }
   };
 
   void place_vectors(std::span<const int> sizes, std::span<const int> order);
@@ -104,7 +111,7 @@ class BlockConjugateGradient final : public BlockSolver {
       team_->for_range(count, 2, some);
     }
   }
-  /// Calls body(k, places) for what lies between the parts, 0, and then for every part.
+  /// Calls body(k, range) for what lies between the parts, 0, and then for every part: all of the matrix.
   template <typename Body>
   void for_ranges(const Body& body) const {
     body(std::size_t{0}, between());
@@ -123,19 +130,20 @@ class BlockConjugateGradient final : public BlockSolver {
   }
   /// Of what is solved: its parts, and what lies between them.
   [[nodiscard]] std::size_t pieces() const { return (is_near_ ? near_.begin : begin_).size() - 1; }
-  /// Calls body(places) for what lies between them.
+  /// body(places) for what lies between them.
   template <typename Body>
   decltype(auto) with_between(const Body& body) const {
     return is_near_ ? body(near_.piece(0)) : body(between());
   }
-  /// Both.
+  /// Calls body(k, places) for what lies between the parts of what is solved, 0, and then for every part.
   template <typename Body>
   void for_pieces(const Body& body) const {
     with_between([&](auto places) { body(std::size_t{0}, places); });
     for_parts(body);
   }
+  /// Of all the matrix.
   [[nodiscard]] Range between() const { return {0, begin_[1]}; }
-  /// Calls body(row) for what lies between the parts; rows may go at the same time.
+  /// Calls body(row) for what lies between the parts of what is solved; rows may go at the same time.
   template <typename Body>
   void for_rows_between(const Body& body) const {
     constexpr std::size_t worth_threads = 64;

@@ -1,5 +1,6 @@
 // Systems of the neighbourhood of some blocks.
 #include <algorithm>
+#include <utility>
 
 #include "linalg/block_conjugate_gradient.h"
 
@@ -49,6 +50,27 @@ bool BlockConjugateGradient::find_near(std::span<const std::size_t> blocks) {
     // That between the parts comes first, be it empty.
     if (piece == 1 || here > near_.begin.back()) near_.begin.push_back(here);
   }
+  return true;
+}
+
+bool BlockConjugateGradient::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
+                                        std::span<double> residual, const Excess& excess) {
+  if (!find_near(blocks)) return false;
+  for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
+  estimate_.resize(x.size());
+  for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });
+  beta_ = 0.0;
+  is_near_ = true;
+  lag_.swap(lag_near_);
+  solved_ = true;
+  if (const double too_large = excess(residual); too_large > 1.0) {
+    start(residual);
+    iterate(too_large, excess, most_iterations);
+    take_over(x, residual, Residual::exact);
+    solved_ = excess(residual) < too_large;
+  }
+  lag_.swap(lag_near_);
+  is_near_ = false;
   return true;
 }
 

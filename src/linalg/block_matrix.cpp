@@ -91,11 +91,7 @@ void BlockMatrix::subtract_product(const BlockPattern& pattern, std::span<const 
       const int stride = pattern.stride[source.row];
       const double *block = &values_[source.from], *x_i = &x[pattern.work_start[source.row]];
       subtract_times(stride / row_padding, size, block, x_j, &y[pattern.work_start[source.row]]);
-      in_sixes(size, [&]<int width>(int c) {
-        LaneProducts t[width]{};
-        add_lane_products(stride / row_padding, block + c * stride, x_i, t);
-        subtract_first<width>(y_j + c, pattern.stride[j] - c, sums(t));
-      });
+      subtract_transposed(block, stride, size, x_i, pattern.stride[j], y_j);
     }
   }
 }

@@ -144,6 +144,12 @@ struct GridProblem {
       for (double& v : coupling.back()) v = uniform(random);
     }
   }
+  /// Of every block, and where the last one ends: the first of its unknowns.
+  [[nodiscard]] std::vector<std::size_t> first() const {
+    std::vector<std::size_t> first{0};
+    for (const int size : sizes) first.push_back(first.back() + static_cast<std::size_t>(size));
+    return first;
+  }
   [[nodiscard]] int size_of(int block) const { return sizes[static_cast<std::size_t>(block)]; }
 
   void fill(BlockSolver& solver, std::size_t pair) const {
@@ -174,9 +180,9 @@ struct GridProblem {
     solver.solve(x, residual, strict());
     return x;
   }
+  /// A x
   [[nodiscard]] std::vector<double> product(std::span<const double> x) const {
-    std::vector<std::size_t> first{0};
-    for (const int size : sizes) first.push_back(first.back() + static_cast<std::size_t>(size));
+    const std::vector<std::size_t> first = this->first();
     std::vector<double> y(x.size());
     for (std::size_t b = 0; b < sizes.size(); ++b) {
       for (std::size_t k = first[b]; k < first[b + 1]; ++k) y[k] = diagonal[b] * x[k];
@@ -224,8 +230,7 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
   constexpr double enough = 1e-5, right = 1.0, of_others = 0.3 * enough;
   for (const std::vector<int>& choice : {std::vector{6}, {6, 12, 20}}) {
     const GridProblem problem(choice);
-    std::vector<std::size_t> first{0};
-    for (const int size : problem.sizes) first.push_back(first.back() + static_cast<std::size_t>(size));
+    const std::vector<std::size_t> first = problem.first();
     const auto whole = problem.solution(*make_iterative());
     // In the middle of the grid, at its edge, and in the piece beside it.
     const std::vector<std::size_t> blocks{25 * Grid::side + 24, 25 * Grid::side + 26, 7, Grid::blocks - 3};
