@@ -12,8 +12,6 @@ namespace keyblock::linalg {
 
 namespace {
 
-// By which the residual may be larger than before; beyond that the matrix is not positive definite.
-constexpr double most_growth = 100.0;
 // Excess of the iteration's residual, with which that of the matrix is small enough.
 constexpr double well_enough = 0.9;
 // Share of the square of the residual asked for, at which it is looked at for the first time.

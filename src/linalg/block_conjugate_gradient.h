@@ -44,6 +44,8 @@ class BlockConjugateGradient final : public BlockSolver {
 
  private:
   static constexpr int most_iterations = 400;
+  /// By which the residual may be larger than before; beyond that the matrix is not positive definite.
+  static constexpr double most_growth = 100.0;
   using Vector = HugePageVector<float>;
   using WideVector = HugePageVector<double>;
   struct Range {

@@ -92,8 +92,8 @@ class BlockSolver {
                        Residual /*kind*/ = Residual::exact) {}
   /// Whether there is a solve_near().
   [[nodiscard]] virtual bool solves_near() const { return false; }
-  /// As solve() does for these blocks and those near them: x is zero elsewhere, and `residual`, which is exact, may be too large there
-  /// afterwards. False, and nothing is done, where these are so many that solve() is as well.
+  /// As solve() does for these blocks and those near them, where the others lack well less than is asked for: x is zero elsewhere, and
+  /// `residual`, which is exact, may be too large there afterwards. False, and nothing is done, where these are so many that solve() is as well.
   virtual bool solve_near(std::span<const std::size_t> /*blocks*/, std::span<double> /*x*/,
                           std::span<double> /*residual*/, const Excess& /*excess*/) {
     return false;

@@ -265,6 +265,14 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       EXPECT_EQ(x, alone) << threads;
       EXPECT_EQ(problem.factor_and_solve(*solver), whole);
 
+      // Where little is to be done, what is left over beyond may be more than there was: no reason to give up.
+      std::vector<double> little(b.size(), 0.899 * enough);
+      std::fill(little.data() + first[7], little.data() + first[8], 1.001 * enough);
+      x = little;
+      ASSERT_TRUE(solver->solve_near(std::vector<std::size_t>{7}, x, residual, excess));
+      EXPECT_GT(largest(residual), largest(little));
+      EXPECT_TRUE(solver->solved());
+
       std::vector<std::size_t> all(problem.sizes.size());
       std::iota(all.begin(), all.end(), std::size_t{0});
       x = b;
@@ -272,6 +280,23 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       EXPECT_EQ(x, b);
     }
   }
+}
+
+TEST(BlockSolver, GivesUpNearSomeBlocksWhereTheMatrixIsNotPositiveDefinite) {
+  GridProblem problem({6});
+  constexpr std::size_t pair = 2'000;
+  for (double& v : problem.coupling[pair]) v *= 100.0;
+  const auto solver = make_iterative();
+  problem.fill(*solver);
+  ASSERT_TRUE(solver->factor());
+  const auto [i, j] = problem.grid.pairs[pair];
+  std::vector<double> x(problem.right.size(), 0.0), residual(x.size());
+  std::fill_n(x.data() + 6 * i, 6, 1.0);
+  std::fill_n(x.data() + 6 * j, 6, -1.0);
+  const std::vector<std::size_t> blocks{static_cast<std::size_t>(i), static_cast<std::size_t>(j)};
+  ASSERT_TRUE(
+      solver->solve_near(blocks, x, residual, [&](std::span<const double> r) { return largest(r) / 1e-5; }));
+  EXPECT_FALSE(solver->solved());
 }
 
 // Also where the one block lies between the parts, whose rows are kept twice.
