@@ -75,13 +75,17 @@ bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solv
 }
 
 /// direction_ ← A⁻¹ direction_, but for what is left in residual_. False when it cannot be had.
-bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance) {
+bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                             const OpenCloseResult& result) {
+  constexpr double calm = 100.0;  // times the tolerance, out of balance
   const Profile::Scope scope(*profile_, Phase::solution);
   const std::size_t n = problem.unknowns();
   const std::span<double> x = std::span(direction_).first(n);
   // The springs that act are not known better than to a share of what is out of balance.
   const double enough = std::max(linear_share * tolerance, forcing * out_of_balance(problem));
-  near_ = solve_near(problem, solver, enough);
+  // Where no contact bends and little is out of balance, one system of all blocks is all that is needed.
+  const bool is_calm = result.bends == 0 && out_of_balance(problem) <= calm * tolerance;
+  near_ = !is_calm && solve_near(problem, solver, enough);
   if (!near_)
     solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind(solver));
   return solver.solved();
@@ -170,7 +174,7 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
     for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
   });
   const bool was_exact = is_exact(solver);
-  if (!solve_linear(problem, solver, tolerance)) return false;
+  if (!solve_linear(problem, solver, tolerance, result)) return false;
   if (was_exact != is_exact(solver)) forget_corrections();  // they are of another factor
   find_direction(problem);
   const bool whole_way = !near_ && std::exchange(may_go_whole_way_, false);

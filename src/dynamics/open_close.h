@@ -83,7 +83,8 @@ class OpenClose {
   void assemble(const StepProblem& problem, linalg::BlockSolver& solver);
   bool change_matrix(const StepProblem& problem, linalg::BlockSolver& solver);
   bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
-  bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
+  bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
+                    const OpenCloseResult& result);
   [[nodiscard]] static bool solves_near(const StepProblem& problem, const linalg::BlockSolver& solver);
   bool solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough);
   bool improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
