@@ -77,6 +77,7 @@ export async function openers() {
     );
     page.complaints = complaints;
     page.seconds = (performance.now() - begin) / 1000;
+    await settle(page); // charts are drawn once they know their size
     return page;
   }
 
