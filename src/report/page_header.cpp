@@ -1,8 +1,7 @@
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "report/page_data.h"
 #include "report/page_template.h"
+#include "results/json_parts.h"
+#include "results/record_json.h"
 
 namespace keyblock::report {
 
@@ -10,48 +9,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const char* name_of(simulation::StageKind kind) {
-  switch (kind) {
-    case simulation::StageKind::settle:
-      return "settle";
-    case simulation::StageKind::shake:
-      return "shake";
-    case simulation::StageKind::rest:
-      return "rest";
-  }
-  return "";
-}
-
-template <class T>
-ordered_json optional(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json energy_json(const simulation::Energy& e) {
-  return {{"kinetic", e.kinetic}, {"strain", e.strain},       {"gravity", e.gravity},
-          {"contact", e.contact}, {"friction", e.friction},   {"damping", e.damping},
-          {"input", e.input},     {"numerical", e.numerical}, {"residual_ratio", e.residual_ratio}};
-}
-
-ordered_json damage_json(const simulation::Damage& d) {
-  return {{"fallen_blocks", d.fallen_blocks},
-          {"fallen_area_m2", d.fallen_area},
-          {"opening_filled_ratio", d.opening_filled_ratio},
-          {"loosened_area_m2", d.loosened_area},
-          {"slip_max_m", d.slip_max},
-          {"slip_mean_m", d.slip_mean},
-          {"slipped_length_m", d.slipped_length},
-          {"opened_length_m", d.opened_length},
-          {"closure_vertical_m", d.closure_vertical},
-          {"closure_horizontal_m", d.closure_horizontal}};
-}
-
 ordered_json stage_json(const simulation::StageRecord& record) {
-  ordered_json moving = ordered_json::array();
-  for (const simulation::MovingBlock& m : record.moving)
-    moving.push_back({{"block", m.block}, {"carried", m.carried}});
   return {{"name", record.stage.name},
-          {"kind", name_of(record.stage.kind)},
+          {"kind", results::stage_kind_name(record.stage.kind)},
           {"excavate", record.stage.excavate},
           {"scale", record.stage.scale},
           {"tolerance", record.stage.tolerance},
@@ -61,19 +21,15 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"pga_m_s2", record.pga},
           {"equilibrium_reached", record.equilibrium_reached},
           {"worst_residual_ratio", record.worst_residual_ratio},
-          {"moving", moving},
-          {"damage", damage_json(record.damage)},
+          {"moving", results::moving_json(record.moving)},
+          {"damage", results::damage_json(record.damage)},
           {"wall_time_s", record.wall_time},
           {"interrupted", record.interrupted}};
 }
 
 ordered_json model_json(const simulation::ModelRecord& model) {
   ordered_json outlines = ordered_json::array();
-  for (const auto& outline : model.excavation_outlines) {
-    ordered_json points = ordered_json::array();
-    for (const Vec2 p : outline) points.push_back({p.x, p.y});
-    outlines.push_back(points);
-  }
+  for (const auto& outline : model.excavation_outlines) outlines.push_back(results::points_json(outline));
   ordered_json names = ordered_json::object();
   for (std::size_t b = 0; b < model.blocks.size(); ++b)
     if (!model.blocks[b].name.empty()) names[std::to_string(b)] = model.blocks[b].name;
@@ -92,7 +48,7 @@ ordered_json model_json(const simulation::ModelRecord& model) {
           {"excavations", model.excavation_names},
           {"excavation_outlines", outlines},
           {"histories", model.history_names},
-          {"opening_width_m", optional(model.opening_width)},
+          {"opening_width_m", results::or_null(model.opening_width)},
           {"cutting",
            {{"traces", cut.traces},
             {"joints_used", cut.joints_used},
@@ -112,14 +68,10 @@ ordered_json run_json(const simulation::RunRecord& run) {
           {"wall_time_s", run.wall_time},
           {"dof", run.dof},
           {"state_hash", run.state_hash},
-          {"open_close",
-           {{"mean_iterations", run.open_close.mean_iterations},
-            {"max_iterations", run.open_close.max_iterations},
-            {"retried_steps", run.open_close.retried_steps},
-            {"unconverged_steps", run.open_close.unconverged_steps}}},
+          {"open_close", results::open_close_json(run.open_close)},
           {"max_overlap_m", run.max_overlap},
           {"max_area_change", run.max_area_change},
-          {"energy", energy_json(run.energy)},
+          {"energy", results::energy_json(run.energy)},
           {"stages", stages},
           {"interrupted", run.interrupted}};
 }

@@ -1,12 +1,10 @@
 #include "results/record_json.h"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "core/error.h"
-#include "results/record_fields.h"
+#include "results/json_parts.h"
 
 namespace keyblock::results {
 namespace {
@@ -17,44 +15,11 @@ using simulation::StageKind;
 constexpr std::pair<StageKind, const char*> kinds[] = {
     {StageKind::settle, "settle"}, {StageKind::shake, "shake"}, {StageKind::rest, "rest"}};
 
-template <class T>
-ordered_json or_null(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json points(const std::vector<Vec2>& list) {
-  ordered_json out = ordered_json::array();
-  for (const Vec2 p : list) out.push_back({p.x, p.y});
-  return out;
-}
-
-// JSON has no NaN; it is written as null.
-double number(const ordered_json& value) {
-  return value.is_null() ? std::nan("") : value.get<double>();
-}
-
 std::optional<double> optional_number(const ordered_json& value) {
   return value.is_null() ? std::nullopt : std::optional(value.get<double>());
 }
 
-std::vector<Vec2> read_points(const ordered_json& list) {
-  std::vector<Vec2> out;
-  for (const auto& p : list) out.push_back({number(p.at(0)), number(p.at(1))});
-  return out;
-}
-
 // Field names beside members, for writing and reading alike.
-template <class Record, class Visit>
-void visit_damage(Record& d, const Visit& visit) {
-  visit("fallen_blocks", d.fallen_blocks);
-  for (const auto& [name, member] : damage_fields) visit(name, d.*member);
-}
-
-template <class Record, class Visit>
-void visit_energy(Record& e, const Visit& visit) {
-  for (const auto& [name, member] : energy_fields) visit(name, e.*member);
-}
-
 template <class Record, class Visit>
 void visit_cutting(Record& c, const Visit& visit) {
   visit("traces", c.traces);
@@ -105,7 +70,7 @@ std::string stage_kind_name(StageKind kind) {
 
 std::string model_json(const simulation::ModelRecord& model) {
   ordered_json outlines = ordered_json::array(), cutting;
-  for (const auto& outline : model.excavation_outlines) outlines.push_back(points(outline));
+  for (const auto& outline : model.excavation_outlines) outlines.push_back(points_json(outline));
   visit_cutting(model.cutting, Write{cutting});
   const ordered_json json{{"title", model.title},
                           {"version", model.version},
@@ -146,9 +111,6 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
 }
 
 std::string stage_json(int index, const simulation::StageRecord& r, bool ended) {
-  ordered_json damage, moving = ordered_json::array();
-  visit_damage(r.damage, Write{damage});
-  for (const auto& m : r.moving) moving.push_back({{"block", m.block}, {"carried", m.carried}});
   const ordered_json json{{"index", index},
                           {"ended", ended},
                           {"name", r.stage.name},
@@ -167,13 +129,13 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"arias", r.arias},
                           {"equilibrium_reached", r.equilibrium_reached},
                           {"worst_residual_ratio", r.worst_residual_ratio},
-                          {"moving", moving},
+                          {"moving", moving_json(r.moving)},
                           {"blocks_by_order", r.blocks_by_order},
-                          {"damage", damage},
+                          {"damage", damage_json(r.damage)},
                           {"wall_time", r.wall_time},
                           {"interrupted", r.interrupted},
                           {"motion_time", r.motion_time},
-                          {"motion", points(r.motion)}};
+                          {"motion", points_json(r.motion)}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -201,10 +163,9 @@ StageLine read_stage_json(const std::string& text) {
     if (json.contains("arias")) r.arias = number(json.at("arias"));
     json.at("equilibrium_reached").get_to(r.equilibrium_reached);
     r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
-    for (const auto& m : json.at("moving"))
-      r.moving.push_back({m.at("block").get<int>(), number(m.at("carried"))});
+    r.moving = read_moving(json.at("moving"));
     json.at("blocks_by_order").get_to(r.blocks_by_order);
-    visit_damage(r.damage, Read{json.at("damage")});
+    r.damage = read_damage(json.at("damage"));
     r.wall_time = number(json.at("wall_time"));
     json.at("interrupted").get_to(r.interrupted);
     for (const auto& t : json.at("motion_time")) r.motion_time.push_back(number(t));
@@ -214,20 +175,14 @@ StageLine read_stage_json(const std::string& text) {
 }
 
 std::string run_json(const simulation::RunRecord& run) {
-  ordered_json energy;
-  visit_energy(run.energy, Write{energy});
   const ordered_json json{{"steps", run.steps},
                           {"wall_time", run.wall_time},
                           {"dof", run.dof},
                           {"state_hash", run.state_hash},
-                          {"open_close",
-                           {{"mean_iterations", run.open_close.mean_iterations},
-                            {"max_iterations", run.open_close.max_iterations},
-                            {"retried_steps", run.open_close.retried_steps},
-                            {"unconverged_steps", run.open_close.unconverged_steps}}},
+                          {"open_close", open_close_json(run.open_close)},
                           {"max_overlap", run.max_overlap},
                           {"max_area_change", run.max_area_change},
-                          {"energy", energy},
+                          {"energy", energy_json(run.energy)},
                           {"interrupted", run.interrupted}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -239,14 +194,10 @@ simulation::RunRecord read_run_json(const std::string& text) {
     run.wall_time = number(json.at("wall_time"));
     json.at("dof").get_to(run.dof);
     json.at("state_hash").get_to(run.state_hash);
-    const auto& open_close = json.at("open_close");
-    run.open_close.mean_iterations = number(open_close.at("mean_iterations"));
-    open_close.at("max_iterations").get_to(run.open_close.max_iterations);
-    open_close.at("retried_steps").get_to(run.open_close.retried_steps);
-    open_close.at("unconverged_steps").get_to(run.open_close.unconverged_steps);
+    run.open_close = read_open_close(json.at("open_close"));
     run.max_overlap = number(json.at("max_overlap"));
     run.max_area_change = number(json.at("max_area_change"));
-    visit_energy(run.energy, Read{json.at("energy")});
+    run.energy = read_energy(json.at("energy"));
     json.at("interrupted").get_to(run.interrupted);
     return run;
   });

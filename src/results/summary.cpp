@@ -1,11 +1,10 @@
 #include "results/summary.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/atomic_file.h"
-#include "results/record_fields.h"
+#include "results/json_parts.h"
 #include "results/record_json.h"
 
 namespace keyblock::results {
@@ -60,29 +59,15 @@ ordered_json cutting(const cutting::CutStatistics& c) {
           {"sliver_area_m2", c.sliver_area}};
 }
 
-ordered_json energy(const simulation::Energy& e) {
-  ordered_json json;
-  for (const auto& [name, member] : energy_fields) json[name] = e.*member;
-  return json;
-}
-
 // Equilibrium is a question only where the stage seeks it.
 ordered_json equilibrium(const simulation::StageRecord& r) {
   if (r.stage.kind != simulation::StageKind::settle) {
     return {{"reached", nullptr}, {"worst_residual_ratio", nullptr}, {"moving_blocks", nullptr}};
   }
-  ordered_json moving = ordered_json::array();
-  for (const auto& m : r.moving) moving.push_back({{"block", m.block}, {"carried", m.carried}});
   return {{"reached", r.equilibrium_reached},
           {"worst_residual_ratio", r.worst_residual_ratio},
           {"moving_blocks", r.moving.size()},
-          {"moving", moving}};
-}
-
-ordered_json damage(const simulation::Damage& d) {
-  ordered_json json{{"fallen_blocks", d.fallen_blocks}};
-  for (const auto& [name, member] : damage_fields) json[name] = d.*member;
-  return json;
+          {"moving", moving_json(r.moving)}};
 }
 
 ordered_json blocks_by_order(const simulation::StageRecord& r) {
@@ -107,7 +92,7 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"interrupted", r.interrupted},
           {"equilibrium", equilibrium(r)},
           {"blocks_by_order", blocks_by_order(r)},
-          {"damage", damage(r.damage)}};
+          {"damage", damage_json(r.damage)}};
 }
 
 ordered_json profile(const simulation::RunRecord& run) {
@@ -145,14 +130,10 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"threads", model.threads},
       {"profile", profile(run)},
       {"state_hash", run.state_hash},
-      {"open_close",
-       {{"mean_iterations", run.open_close.mean_iterations},
-        {"max_iterations", run.open_close.max_iterations},
-        {"retried_steps", run.open_close.retried_steps},
-        {"unconverged_steps", run.open_close.unconverged_steps}}},
+      {"open_close", open_close_json(run.open_close)},
       {"max_overlap_m", run.max_overlap},
       {"max_area_change", run.max_area_change},
-      {"energy", energy(run.energy)},
+      {"energy", energy_json(run.energy)},
       {"stages", stages}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -1,11 +1,8 @@
 #include "study/run_json.h"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "core/error.h"
+#include "results/json_parts.h"
 #include "results/record_json.h"
-#include "simulation/damage_fields.h"
 #include "study/plan.h"
 #include "study/refusal.h"
 
@@ -13,23 +10,17 @@ namespace keyblock::study {
 namespace {
 
 using nlohmann::ordered_json;
+using results::number;
 using simulation::BlockStatus;
 using simulation::StageKind;
 
 constexpr int run_format = 1;
 const std::string checksum_mark = ",\"checksum\":\"";
 
-// JSON has no NaN; it is written as null.
-double number(const ordered_json& value) {
-  return value.is_null() ? std::nan("") : value.get<double>();
-}
-
 ordered_json stage_json(const StageMeasures& stage) {
-  ordered_json damage{{"fallen_blocks", stage.damage.fallen_blocks}};
-  for (const auto& [name, member] : simulation::damage_fields) damage[name] = stage.damage.*member;
   return {{"name", stage.name},       {"kind", results::stage_kind_name(stage.kind)},
           {"pga_m_s2", stage.pga},    {"pgv_m_s", stage.pgv},
-          {"arias_m_s", stage.arias}, {"damage", damage}};
+          {"arias_m_s", stage.arias}, {"damage", results::damage_json(stage.damage)}};
 }
 
 StageMeasures read_stage(const ordered_json& json) {
@@ -41,9 +32,7 @@ StageMeasures read_stage(const ordered_json& json) {
   stage.pga = number(json.at("pga_m_s2"));
   stage.pgv = number(json.at("pgv_m_s"));
   stage.arias = number(json.at("arias_m_s"));
-  const ordered_json& damage = json.at("damage");
-  damage.at("fallen_blocks").get_to(stage.damage.fallen_blocks);
-  for (const auto& [name, member] : simulation::damage_fields) stage.damage.*member = number(damage.at(name));
+  stage.damage = results::read_damage(json.at("damage"));
   return stage;
 }
 

@@ -1,0 +1,80 @@
+#include "results/json_parts.h"
+
+#include <cmath>
+
+#include "results/record_fields.h"
+
+namespace keyblock::results {
+
+using nlohmann::ordered_json;
+
+double number(const ordered_json& value) {
+  return value.is_null() ? std::nan("") : value.get<double>();
+}
+
+ordered_json damage_json(const simulation::Damage& damage) {
+  ordered_json json{{"fallen_blocks", damage.fallen_blocks}};
+  for (const auto& [name, member] : damage_fields) json[name] = damage.*member;
+  return json;
+}
+
+simulation::Damage read_damage(const ordered_json& json) {
+  simulation::Damage damage;
+  json.at("fallen_blocks").get_to(damage.fallen_blocks);
+  for (const auto& [name, member] : damage_fields) damage.*member = number(json.at(name));
+  return damage;
+}
+
+ordered_json energy_json(const simulation::Energy& energy) {
+  ordered_json json;
+  for (const auto& [name, member] : energy_fields) json[name] = energy.*member;
+  return json;
+}
+
+simulation::Energy read_energy(const ordered_json& json) {
+  simulation::Energy energy;
+  for (const auto& [name, member] : energy_fields) energy.*member = number(json.at(name));
+  return energy;
+}
+
+ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving) {
+  ordered_json json = ordered_json::array();
+  for (const auto& m : moving) json.push_back({{"block", m.block}, {"carried", m.carried}});
+  return json;
+}
+
+std::vector<simulation::MovingBlock> read_moving(const ordered_json& json) {
+  std::vector<simulation::MovingBlock> moving;
+  for (const auto& m : json) moving.push_back({m.at("block").get<int>(), number(m.at("carried"))});
+  return moving;
+}
+
+ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics) {
+  return {{"mean_iterations", statistics.mean_iterations},
+          {"max_iterations", statistics.max_iterations},
+          {"retried_steps", statistics.retried_steps},
+          {"unconverged_steps", statistics.unconverged_steps}};
+}
+
+simulation::OpenCloseStatistics read_open_close(const ordered_json& json) {
+  simulation::OpenCloseStatistics statistics;
+  statistics.mean_iterations = number(json.at("mean_iterations"));
+  json.at("max_iterations").get_to(statistics.max_iterations);
+  json.at("retried_steps").get_to(statistics.retried_steps);
+  json.at("unconverged_steps").get_to(statistics.unconverged_steps);
+  return statistics;
+}
+
+ordered_json points_json(const std::vector<Vec2>& points) {
+  ordered_json json = ordered_json::array();
+  for (const Vec2 p : points) json.push_back({p.x, p.y});
+  return json;
+}
+
+std::vector<Vec2> read_points(const ordered_json& json) {
+  std::vector<Vec2> points;
+  for (const auto& p : json) points.push_back({number(p.at(0)), number(p.at(1))});
+  return points;
+}
+
+}  // namespace keyblock::results

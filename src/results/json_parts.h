@@ -1,0 +1,33 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "geometry/vec2.h"
+#include "simulation/record.h"
+
+/// Parts of records that several files write as JSON alike. Reading throws nlohmann::json::exception for what is missing
+/// or has another type.
+namespace keyblock::results {
+
+nlohmann::ordered_json damage_json(const simulation::Damage& damage);
+nlohmann::ordered_json energy_json(const simulation::Energy& energy);
+nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
+nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics);
+nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, y], …]
+
+simulation::Damage read_damage(const nlohmann::ordered_json& json);
+simulation::Energy read_energy(const nlohmann::ordered_json& json);
+std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
+simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);
+std::vector<Vec2> read_points(const nlohmann::ordered_json& json);
+
+/// JSON has no NaN: it is written as null.
+double number(const nlohmann::ordered_json& value);
+
+template <class T>
+nlohmann::ordered_json or_null(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace keyblock::results
