@@ -64,13 +64,6 @@ Lanes magnitude(Lanes x) {
   return largest(x, -x);
 }
 
-bool any(decltype(Lanes{} < Lanes{}) lanes) {
-  for (int i = 0; i < lane_count; ++i) {
-    if (lanes[i] != 0) return true;
-  }
-  return false;
-}
-
 /// V and Λ of A = V Λ Vᵀ, for as many matrices as there are lanes.
 struct Eigenvectors {
   static constexpr int n = rows_of_order_2;
@@ -83,13 +76,13 @@ struct Eigenvectors {
     const Lanes off = a[q][p];
     const auto turns = magnitude(off) > negligible;
     // tan of the angle, the root of t² + 2 τ t − 1 that is nearer to zero
-    const Lanes tau = (a[q][q] - a[p][p]) / (2.0 * (turns ? off : one));
+    const Lanes tau = (a[q][q] - a[p][p]) / (2.0 * where(turns, off, one));
     const Lanes root = magnitude(tau) + square_root(one + tau * tau);
-    const Lanes t = turns ? (tau < zero ? -one : one) / root : zero;
+    const Lanes t = where(turns, where(tau < zero, -one, one) / root, zero);
     const Lanes c = one / square_root(one + t * t), s = t * c;
     a[p][p] -= t * off;
     a[q][q] += t * off;
-    a[q][p] = turns ? zero : off;
+    a[q][p] = where(turns, zero, off);
     const auto turn = [&](Lanes& x, Lanes& y) {
       const Lanes x_before = x;
       x = c * x_before - s * y;

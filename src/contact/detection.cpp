@@ -47,12 +47,12 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
   const Lanes reach = load(group.reach.data()), deepest = load(group.deepest.data());
   const Lanes zone = least(tolerances_.end_zone + reach, 0.5 * length);
-  const Lanes deep_zone = zone < deepest ? deepest : zone;
+  const Lanes deep_zone = largest(zone, deepest);
   const auto reflex_start = (reflex == 1.0) | (reflex == 3.0), reflex_end = reflex >= 2.0;
-  const Lanes before = reflex_start ? deep_zone : zone, after = reflex_end ? deep_zone : zone;
+  const Lanes before = where(reflex_start, deep_zone, zone), after = where(reflex_end, deep_zone, zone);
   // The corner of a block that spins may pass the one that is nearest now.
   const Lanes straight = broadcast(Tolerances::sine_inside);
-  const Lanes sine = gap > 0.0 ? least(broadcast(1.0), straight + load(group.turn.data())) : straight;
+  const Lanes sine = where(gap > 0.0, least(broadcast(1.0), straight + load(group.turn.data())), straight);
   // Whether an edge of the vertex lies outside the line, up to an angle.
   const auto outside = [&](Lanes x, Lanes y) {
     const Lanes across = nx * x + ny * y;
@@ -63,7 +63,8 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
                       outside(vertex[2], vertex[3]) & outside(-vertex[4], -vertex[5]);
   // Near an end, a convex one: there others of the same two corners may be the contact.
   const auto first_half = along < 0.5 * length;
-  const auto disputed = (least(along, length - along) < zone) & ~(first_half ? reflex_start : reflex_end);
+  const auto disputed =
+      (least(along, length - along) < zone) & ~((first_half & reflex_start) | (~first_half & reflex_end));
   std::size_t count = 0;
   for (std::size_t i = 0; i < group.size; ++i) {
     passed[count].candidate = group.candidate[i];

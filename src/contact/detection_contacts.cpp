@@ -50,7 +50,7 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
     const Lanes across = nx * ux + ny * uy, to = along + (ux * tx + uy * ty) * length_of_other;
     const Lanes low = largest(Lanes{}, least(along, to)), high = least(length, largest(along, to));
     const auto turned = across * across > Tolerances::sine_facing * Tolerances::sine_facing;
-    return turned ? Lanes{} : largest(Lanes{}, high - low);
+    return where(turned, Lanes{}, largest(Lanes{}, high - low));
   };
   return {gap, along / length,
           0.5 * (shared(vertex[2], vertex[3], vertex[6]) + shared(vertex[4], vertex[5], -length_before))};

@@ -46,7 +46,7 @@ inline void keep(const MemoryLanes& m, std::span<contact::Contact> contacts) {
 template <typename Number>
 Lanes lanes_of(std::span<const contact::Contact> contacts, const Number& number) {
   const auto of = [&](std::size_t i) { return number(contacts[i < contacts.size() ? i : 0]); };
-  return Lanes{of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)};
+  return lanes_from(of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7));
 }
 /// Whether `is` of each.
 template <typename Is>

@@ -259,14 +259,14 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
         const std::size_t c = group * lane_count;
         const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
         const Lanes zero{}, y = at_c(springs_->y), mu = at_c(springs_->friction);
-        const Lanes normal = y > at_c(springs_->floor) ? at_c(springs_->kn) * y : zero;
+        const Lanes normal = where(y > at_c(springs_->floor), at_c(springs_->kn) * y, zero);
         // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
         const Lanes wanted = mu * largest(normal, zero) + at_c(springs_->cohesion),
                     elastic = at_c(springs_->ks) * at_c(springs_->w), bound_now = at_c(springs_->bound),
                     change = largest(least(elastic, wanted), -wanted) -
                              largest(least(elastic, bound_now), -bound_now);
         const auto counts = (mu >= zero) & first_lanes(springs_->size() - c);
-        return Sums<AlignedLanes>{counts ? change * change : zero, counts ? wanted * wanted : zero};
+        return Sums<AlignedLanes>{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
       });
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;

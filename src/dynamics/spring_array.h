@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <type_traits>
 #include <vector>
 
 #include "core/lanes.h"
@@ -89,13 +88,13 @@ class SpringArray {
     const auto code = [](Piece p) { return std::int64_t{std::bit_cast<std::uint16_t>(p)}; };
     const auto now = (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
                      (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
-    std::uint16_t codes __attribute__((vector_size(lane_count * sizeof(std::uint16_t)))) = {};
+    std::uint16_t codes[lane_count] = {};
     if (c + lane_count <= size_) {
       std::memcpy(&codes, &piece[c], sizeof(codes));
     } else {
       std::memcpy(&codes, &piece[c], (size_ - c) * sizeof(Piece));
     }
-    return any(now != __builtin_convertvector(codes, std::remove_const_t<decltype(now)>));
+    return any(now != lane_codes(codes));
   }
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
     return {penetration > floor[c] ? kn[c] * penetration : 0.0,
@@ -109,8 +108,8 @@ class SpringArray {
         team, (size_ + width - 1) / width, contacts_worth_threads / width, [&](std::size_t group) {
           const std::size_t c = group * width;
           const Lanes zero{}, penetration = load(&y[c]),
-                              force = penetration > load(&floor[c]) ? load(&kn[c]) * penetration : zero;
-          return largest(first_lanes(size_ - c) ? force : zero);
+                              force = where(penetration > load(&floor[c]), load(&kn[c]) * penetration, zero);
+          return largest(where(first_lanes(size_ - c), force, zero));
         });
   }
   /// On the straight line that goes on from a piece.

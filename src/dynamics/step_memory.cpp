@@ -53,7 +53,7 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
               .input = -(normal * (moved_normal - turned) - shear * moved_shear),
               .turned = normal * turned,
               .penetration = s.penetration(y),
-              .closed = closed ? broadcast(1.0) : zero};
+              .closed = where(closed, broadcast(1.0), zero)};
   accounts.leave_out_beyond(count);
   const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
   memory.normal_force = memory.bounding_force = pressure;

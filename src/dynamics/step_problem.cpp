@@ -227,7 +227,7 @@ void multiply_block(Size size, const double* h, const double* x, double* y) {
   for (int first = 0; first < n; first += lane_count) {
     Lanes rows{};
     for (int c = 0; c < n; ++c) rows += load(h + c * stride + first) * broadcast(x[c]);
-    for (int r = first; r < std::min(n, first + lane_count); ++r) y[r] = rows[r - first];
+    store_first(y + first, rows, std::min(n - first, lane_count));
   }
 }
 

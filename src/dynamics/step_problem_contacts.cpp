@@ -79,12 +79,12 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   const MemoryLanes memory = memories_of(contacts);
   const Lanes a = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_a)].mass; });
   const Lanes b = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_b)].mass; });
-  const Lanes mass = a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
+  const Lanes mass = where(a == 0.0, b, where(b == 0.0, a, a * b / (a + b)));
   const auto fused = lanes_where(contacts, [](const contact::Contact& c) { return c.fused; });
   const auto bonded = lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
   const auto tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
-  const Lanes bound = fused ? broadcast(HUGE_VAL) : law.friction * memory.bounding_force + law.cohesion;
+  const Lanes bound = where(fused, broadcast(HUGE_VAL), law.friction * memory.bounding_force + law.cohesion);
   const contact::SpringLanes spring(contact::SpringLanes::Constants{
       law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
       damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
@@ -95,8 +95,8 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   keep(springs_.kn, spring.normal_stiffness());
   keep(springs_.ks, spring.shear_stiffness());
   keep(springs_.bound, bound);
-  keep(springs_.floor, tensile ? broadcast(-HUGE_VAL) : Lanes{});
-  keep(springs_.friction, fused ? broadcast(-1.0) : law.friction);
+  keep(springs_.floor, where(tensile, broadcast(-HUGE_VAL), Lanes{}));
+  keep(springs_.friction, where(fused, broadcast(-1.0), law.friction));
   keep(springs_.cohesion, law.cohesion);
   for (std::size_t i = 0; i < count; ++i)
     springs_.piece[first + i] = assumed_piece(contacts[i].memory.state, first + i, spring.shear()[i]);

@@ -49,8 +49,7 @@ double largest_squared_norm(ThreadTeam& team, std::span<const Vec2> vectors) {
   double most = largest_of(team, groups, contacts_worth_threads / width, [&](std::size_t group) {
     const std::size_t i = group * width;
     const Lanes first = load(&vectors[i].x), second = load(&vectors[i + lane_count / 2].x),
-                x = __builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14),
-                y = __builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15);
+                x = even_lanes(first, second), y = odd_lanes(first, second);
     return largest(x * x + y * y);
   });
   for (const Vec2 v : vectors.subspan(groups * width)) most = std::max(most, squared_norm(v));

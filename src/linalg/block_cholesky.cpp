@@ -151,14 +151,14 @@ double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) cons
   std::size_t i = at(x.column), j = at(y.column);
   while (i != j && i != none && j != none) (i < j ? i : j) = pattern_.parent[std::min(i, j)];
   if (i != j || i == none) return 0.0;
-  LaneProducts t{};
+  Lanes t{};
   for (std::size_t k = 0; k < pattern_.above[i] + at(pattern_.stride[i]); k += row_padding)
     add_lane_product(&x.values[k], &y.values[k], t);
   return sum(t);
 }
 
 double BlockCholesky::product(const HalfSolution& x, std::span<const double> y) const {
-  LaneProducts t{};
+  Lanes t{};
   for (std::size_t j = at(x.column); j != BlockPattern::none; j = pattern_.parent[j]) {
     for (std::size_t l = 0; l < at(pattern_.stride[j]); l += row_padding)
       add_lane_product(&x.values[pattern_.above[j] + l], &y[pattern_.work_start[j] + l], t);

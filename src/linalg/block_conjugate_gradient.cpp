@@ -241,7 +241,7 @@ void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector&
   const double *wide = &scratch[layout.start(j)], *inverse = &inverse_[inverse_start_[j]];
   const int stride = layout.stride(j);
   in_sixes(layout.size(j), [&]<int width>(int c) {
-    LaneProducts t[width]{};
+    Lanes t[width]{};
     add_lane_products(stride / row_padding, inverse + c * stride, wide, t);
     store_first<width>(&x[layout.start(j)] + c, stride - c, sums(t));
   });

@@ -143,7 +143,7 @@ FactorOutcome BlockFactor<Number>::factor(const BlockPattern& pattern, const Blo
 template <typename Number>
 template <int equal, int columns>
 int BlockFactor<Number>::gather(const BlockPattern& pattern, std::size_t j, int c, const double* y) {
-  LaneProducts t[columns]{};
+  Lanes t[columns]{};
   for (std::size_t e = pattern.row_start[j]; e < pattern.row_start[j + 1]; ++e) {
     const std::size_t i = pattern.rows[e];
     const int rows = stride_of<equal>(pattern, i);
@@ -164,7 +164,7 @@ int BlockFactor<Number>::gather(const BlockPattern& pattern, std::size_t j, int 
 template <typename Number>
 template <int equal, int columns>
 int BlockFactor<Number>::divide(const BlockPattern& pattern, std::size_t j, int c, double* y) {
-  LaneProducts t[columns]{};
+  Lanes t[columns]{};
   const int rows = stride_of<equal>(pattern, j);
   add_lane_products(rows / row_padding, &values_[pattern.column_value[j] + at(c * rows)], solved_.data(), t);
   double* out = y + pattern.work_start[j] + c;

@@ -305,7 +305,7 @@ void add_lane_products(int lanes, const Stored* a, const Number* x, Products (&t
 inline void subtract_transposed(const double* block, int stride, int columns, const double* x, int y_stride,
                                 double* y) {
   in_sixes(columns, [&]<int width>(int c) {
-    LaneProducts t[width]{};
+    Lanes t[width]{};
     add_lane_products(stride / row_padding, block + c * stride, x, t);
     subtract_first<width>(y + c, y_stride - c, sums(t));
   });

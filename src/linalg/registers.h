@@ -15,17 +15,27 @@ namespace keyblock::linalg {
 
 static_assert(row_padding == lane_count);
 
-inline Lanes widen(NarrowLanes v) {
 #if defined(__AVX512F__)
+inline Lanes widen(NarrowLanes v) {
   // One instruction; compilers make five of the general form.
   return _mm512_maskz_cvtps_pd(0xff, v);
-#else
-  return __builtin_convertvector(v, Lanes);
-#endif
 }
 inline NarrowLanes narrow(Lanes v) {
   return __builtin_convertvector(v, NarrowLanes);
 }
+#else
+using NarrowHalf = float __attribute__((vector_size(4 * sizeof(float))));
+using LooseNarrowHalf = float __attribute__((vector_size(4 * sizeof(float)), aligned(4)));
+inline Lanes widen(NarrowLanes v) {
+  const NarrowHalf low = __builtin_shufflevector(v, v, 0, 1, 2, 3),
+                   high = __builtin_shufflevector(v, v, 4, 5, 6, 7);
+  return {__builtin_convertvector(low, HalfLanes), __builtin_convertvector(high, HalfLanes)};
+}
+inline NarrowLanes narrow(Lanes v) {
+  return __builtin_shufflevector(__builtin_convertvector(v.low, NarrowHalf),
+                                 __builtin_convertvector(v.high, NarrowHalf), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+#endif
 
 inline Lanes load_wide(const double* p) {
   return load(p);
@@ -42,20 +52,26 @@ inline void store_rounded(float* p, Lanes v) {
 }
 
 /// c + a b, rounded once.
-inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
 #if defined(__AVX512F__)
+inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
   return _mm512_fmadd_pd(a, b, c);
-#elif defined(__FMA__)
-  using Half = double __attribute__((vector_size(row_padding / 2 * sizeof(double))));
-  const auto low = [](Lanes v) { return Half{v[0], v[1], v[2], v[3]}; };
-  const auto high = [](Lanes v) { return Half{v[4], v[5], v[6], v[7]}; };
-  const Half x = _mm256_fmadd_pd(low(a), low(b), low(c)), y = _mm256_fmadd_pd(high(a), high(b), high(c));
-  return Lanes{x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3]};
+}
+inline SixteenLanes add_product(SixteenLanes a, SixteenLanes b, SixteenLanes c) {
+  return _mm512_fmadd_ps(a, b, c);
+}
 #else
-  for (int k = 0; k < row_padding; ++k) c[k] = std::fma(a[k], b[k], c[k]);
+inline HalfLanes add_product(HalfLanes a, HalfLanes b, HalfLanes c) {
+#if defined(__FMA__)
+  return _mm256_fmadd_pd(a, b, c);
+#else
+  for (int k = 0; k < 4; ++k) c[k] = std::fma(a[k], b[k], c[k]);
   return c;
 #endif
 }
+inline Lanes add_product(Lanes a, Lanes b, Lanes c) {
+  return {add_product(a.low, b.low, c.low), add_product(a.high, b.high, c.high)};
+}
+#endif
 inline NarrowLanes add_product(NarrowLanes a, NarrowLanes b, NarrowLanes c) {
 #if defined(__FMA__)
   return _mm256_fmadd_ps(a, b, c);
@@ -64,25 +80,6 @@ inline NarrowLanes add_product(NarrowLanes a, NarrowLanes b, NarrowLanes c) {
   return c;
 #endif
 }
-#if defined(__AVX512F__)
-inline SixteenLanes add_product(SixteenLanes a, SixteenLanes b, SixteenLanes c) {
-  return _mm512_fmadd_ps(a, b, c);
-}
-#endif
-#if defined(__FMA__) && !defined(__AVX512F__)
-#define KEYBLOCK_HALF_LANES
-/// Where a register has room for four numbers, kernels work on halves of lanes, which compilers take apart number by number otherwise.
-using HalfLanes = double __attribute__((vector_size(4 * sizeof(double)), aligned(8)));
-inline HalfLanes add_product(HalfLanes a, HalfLanes b, HalfLanes c) {
-  return _mm256_fmadd_pd(a, b, c);
-}
-inline HalfLanes load_half(const double* p) {
-  return *reinterpret_cast<const HalfLanes*>(p);
-}
-inline HalfLanes load_half(const float* p) {
-  return _mm256_cvtps_pd(_mm_loadu_ps(p));
-}
-#endif
 /// c − a b, rounded once.
 template <typename Register>
 Register subtract_product(Register a, Register b, Register c) {
@@ -113,15 +110,16 @@ struct Registers<float, 16> {
   static void store_to(float* p, Register v) { *reinterpret_cast<SixteenLanes*>(p) = v; }
   static Register all(float x) { return _mm512_set1_ps(x); }
 };
-#elif defined(KEYBLOCK_HALF_LANES)
+#else
+/// Halves one by one: as many as kernels hold fill the registers there are.
 template <int stride>
 struct Registers<double, stride> {
   using Register = HalfLanes;
-  template <typename Stored>
-  static Register load_from(const Stored* p) {
-    return load_half(p);
+  static Register load_from(const double* p) { return load_half(p); }
+  static Register load_from(const float* p) {
+    return __builtin_convertvector(*reinterpret_cast<const LooseNarrowHalf*>(p), HalfLanes);
   }
-  static void store_to(double* p, Register v) { *reinterpret_cast<HalfLanes*>(p) = v; }
+  static void store_to(double* p, Register v) { store_half(p, v); }
   static Register all(double x) { return HalfLanes{x, x, x, x}; }
 };
 #endif
@@ -141,33 +139,11 @@ void subtract_first(Number* out, int room, Register v) {
 
 using keyblock::sum;
 using keyblock::sums;
-/// Products added up lane by lane, and the sums of up to eight of them.
-#if defined(KEYBLOCK_HALF_LANES)
-struct LaneProducts {
-  HalfLanes low, high;
-};
-inline double sum(const LaneProducts& t) {
-  const auto of = [](HalfLanes v) { return (v[0] + v[1]) + (v[2] + v[3]); };
-  return of(t.low) + of(t.high);
-}
-template <int count>
-Lanes sums(const LaneProducts (&t)[count]) {
-  Lanes v{};
-  for (int k = 0; k < count; ++k) v[k] = sum(t[k]);
-  return v;
-}
-template <typename Stored>
-void add_lane_product(const Stored* a, const double* x, LaneProducts& t) {
-  t.low = add_product(load_half(a), load_half(x), t.low);
-  t.high = add_product(load_half(a + 4), load_half(x + 4), t.high);
-}
-#else
-using LaneProducts = Lanes;
+/// t += a ∘ x: products added up lane by lane.
 template <typename Stored>
 void add_lane_product(const Stored* a, const double* x, Lanes& t) {
-  t = add_product(Registers<double, row_padding>::load_from(a), load(x), t);
+  t = add_product(load_wide(a), load(x), t);
 }
-#endif
 inline void add_lane_product(const float* a, const float* x, NarrowLanes& t) {
   t = add_product(load(a), load(x), t);
 }
