@@ -22,6 +22,10 @@ struct LaneCondition {
   std::int64_t operator[](Index i) const {
     return reinterpret_cast<const std::int64_t*>(this)[i];
   }
+  template <typename Index>
+  std::int64_t& operator[](Index i) {
+    return reinterpret_cast<std::int64_t*>(this)[i];
+  }
   friend LaneCondition operator&(LaneCondition a, LaneCondition b) {
     return {a.low & b.low, a.high & b.high};
   }

@@ -1,6 +1,7 @@
 #include "results/json_parts.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "results/record_fields.h"
 
@@ -10,6 +11,13 @@ using nlohmann::ordered_json;
 
 double number(const ordered_json& value) {
   return value.is_null() ? std::nan("") : value.get<double>();
+}
+
+ordered_json or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+ordered_json or_null(const std::optional<int>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
 ordered_json damage_json(const simulation::Damage& damage) {

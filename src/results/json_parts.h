@@ -1,5 +1,5 @@
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
@@ -25,9 +25,7 @@ std::vector<Vec2> read_points(const nlohmann::ordered_json& json);
 /// JSON has no NaN: it is written as null.
 double number(const nlohmann::ordered_json& value);
 
-template <class T>
-nlohmann::ordered_json or_null(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
+nlohmann::ordered_json or_null(const std::optional<double>& value);
+nlohmann::ordered_json or_null(const std::optional<int>& value);
 
 }  // namespace keyblock::results

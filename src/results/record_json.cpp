@@ -1,5 +1,6 @@
 #include "results/record_json.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 

@@ -1,5 +1,7 @@
 #include "study/run_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "core/error.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
