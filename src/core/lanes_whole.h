@@ -46,7 +46,7 @@ inline bool any(LaneCondition condition) {
 /// As many codes, one in each lane.
 inline LaneCondition lane_codes(const std::uint16_t* codes) {
   return reinterpret_cast<LaneCondition>(
-      _mm512_cvtepu16_epi64(_mm_loadu_si128(reinterpret_cast<const __m128i*>(codes))));
+      _mm512_maskz_cvtepu16_epi64(0xff, _mm_loadu_si128(reinterpret_cast<const __m128i*>(codes))));
 }
 
 /// Every second number of both, a's first.

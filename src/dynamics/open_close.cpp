@@ -14,6 +14,8 @@ constexpr double forcing = 0.003;  // of what is out of balance, what its linear
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
+// Of the inertia behind a contact, in a step of multipliers: enough for eight contacts that push a rigid block, and the least.
+constexpr double first_multiplier_share = 0.25, least_multiplier_share = 1e-3;
 
 /// Two sums over the same.
 template <typename Number>
@@ -308,14 +310,19 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
     const double penetration = -(contacts[c].gap + normal) - std::max(0.0, contacts[c].memory.offset);
     const double drift = springs_->piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
     worst = std::max({worst, std::abs(penetration), std::abs(drift)});
-    // A quarter: up to eight contacts may share the inertia of a block before the iteration would overshoot.
-    const double inertia = problem.inertia_between(contacts[c]);
-    shift_[c] = {penetration * (1.0 + 0.25 * inertia / springs_->kn[c]),
-                 drift * (1.0 + 0.25 * inertia / springs_->ks[c])};
+    const double inertia = multiplier_share_ * problem.inertia_between(contacts[c]);
+    // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
+    const double multiplier =
+        springs_->is_tensile(c) ? HUGE_VAL : std::max(0.0, springs_->y[c] - penetration);
+    shift_[c] = {std::max(penetration * (1.0 + inertia / springs_->kn[c]), -multiplier),
+                 drift * (1.0 + inertia / springs_->ks[c])};
   }
   if (worst <= tolerance) return false;
+  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for.
+  const bool overshoots = worst > worst_ && multiplier_share_ > least_multiplier_share;
+  if (overshoots) multiplier_share_ /= std::min(1.0 + worst / worst_, 4.0);
   // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
-  stalls_ = worst > 0.9 * worst_ ? stalls_ + 1 : 0;
+  stalls_ = !overshoots && worst > 0.97 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;
   if (stalls_ == 3) return false;
   for (std::size_t c = 0; c < springs_->size(); ++c) {
@@ -368,6 +375,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
   worst_ = HUGE_VAL;
   stalls_ = 0;
+  multiplier_share_ = first_multiplier_share;
   bool warm = false;
   double enough = options.tolerance;
   for (;;) {

@@ -50,6 +50,11 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     inertia_.assign(model.blocks.size(), 0.0);
     viscous_.assign(model.blocks.size(), 0.0);
     weight_.assign(model.blocks.size(), 0.0);
+    stress_.assign(model.blocks.size(), 0.0);
+    for (std::size_t i = 0; i < model.blocks.size() && model.gravity == Vec2{}; ++i) {
+      const block::Stress s = block::in_situ_at(model.in_situ, centroid(model.blocks[i].reference));
+      stress_[i] = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy)});
+    }
   }
   build_blocks(state, drive);
   add_supports(state, drive);
@@ -144,7 +149,8 @@ void StepProblem::build_blocks(const State& state, const Drive& drive) {
     finish_blocks(pressed);
   });
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
-  for (std::size_t i = 0; i < model_->blocks.size(); ++i) weight_[i] = body_force_[i] * g;
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i)
+    weight_[i] = std::max(body_force_[i] * g, stress_[i]);
   for (const GeneralizedLoad& load : model_->loads) {
     if (!model_->moves(at(load.block))) continue;
     const Block& block = model_->blocks[at(load.block)];

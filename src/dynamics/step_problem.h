@@ -296,6 +296,7 @@ class StepProblem {
   std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> body_force_;   ///< per block, Block::body_force
   std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
+  std::vector<double> stress_;       ///< the same of its in-situ stress, where there is no gravity; else 0
   std::vector<ElasticLoss> losses_;  ///< scratch, per block
 };
 

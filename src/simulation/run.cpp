@@ -260,7 +260,12 @@ void Runner::settle(StageRecord& record) {
     now_.mechanics.ledger.numerical += before - total_energy();
     return true;
   };
-  if (now_.stage_step == 0) change_orders(&OrderControl::begin);
+  if (now_.stage_step == 0) {
+    // Static steps have no velocity.
+    now_.mechanics.ledger.numerical += stepper_->kinetic_energy(now_.mechanics);
+    std::fill(now_.mechanics.velocity.begin(), now_.mechanics.velocity.end(), 0.0);
+    change_orders(&OrderControl::begin);
+  }
   bool done = false;
   while (!done && now_.stage_step < limit && !stopped()) {
     dynamics::StepReport report;

@@ -51,7 +51,7 @@ bool Settler::step(dynamics::Stepper& stepper, dynamics::State& state, dynamics:
   } else if (report.substeps > 1) {
     memory_.time_step *= 0.5;
   }
-  memory_.quiet_steps = worst_ratio_ <= tolerance_ ? memory_.quiet_steps + 1 : 0;
+  memory_.quiet_steps = report.converged && worst_ratio_ <= tolerance_ ? memory_.quiet_steps + 1 : 0;
   return memory_.quiet_steps >= steps_to_hold;
 }
 

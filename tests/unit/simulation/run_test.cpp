@@ -235,5 +235,52 @@ TEST(Settling, EndsWithoutGravity) {
   EXPECT_LT(record.stages[0].steps, 200);
 }
 
+// Pressed between two plates by the stress that it was cut in.
+TEST(Settling, IsMeasuredByInSituStressWithoutGravity) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
+  scene.rectangle({0.0, 2.0}, 1.0, 1.0, 0.0, true);
+  RunSetup setup = scene.setup;
+  setup.gravity = {0.0, 0.0};
+  setup.time_step = 0.002;
+  setup.in_situ = InSituStress{};
+  setup.in_situ->sxx = -1e6;
+  setup.in_situ->syy = -2e6;
+  setup.stages.push_back(stage("settle", StageKind::settle));
+  RunObserver nobody;
+  const RunRecord record = run(setup, {}, nobody);
+  EXPECT_TRUE(record.stages[0].equilibrium_reached);
+  EXPECT_LT(record.stages[0].worst_residual_ratio, 0.01);
+}
+
+TEST(Settling, StepsThatDoNotConvergeAreNoEquilibrium) {
+  Scene scene(1e300, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages.push_back(stage("settle", StageKind::settle));
+  setup.stages.back().max_steps = 20;
+  RunObserver nobody;
+  EXPECT_FALSE(run(setup, {}, nobody).stages[0].equilibrium_reached);
+}
+
+// A block that falls when the stage begins: what it has gained by then is taken out, and accounted for.
+TEST(Settling, TakesOutTheEnergyOfMotion) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 1.5}, 1.0, 1.0);
+  scene.setup.properties[1].velocity = {0.1, 0.0};
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages = {stage("fall", StageKind::rest, 0.2), stage("settle", StageKind::settle)};
+  setup.stages.back().max_steps = 5;
+  RunObserver nobody;
+  const RunRecord record = run(setup, {}, nobody);
+  EXPECT_LT(record.energy.residual_ratio, 1e-9);
+  EXPECT_LT(record.energy.kinetic, 1e-9);
+}
+
 }  // namespace
 }  // namespace keyblock::simulation

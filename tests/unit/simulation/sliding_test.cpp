@@ -108,6 +108,42 @@ TEST_P(Incline, SlidesAsCoulombSaysWithAugmentedLagrangian) {
   EXPECT_LT(std::abs(s.residual()), 0.01 * s.state.ledger.friction);
 }
 
+// Elastic blocks that bounce by micrometres: a contact that opens in a step, and closes in the next, holds again at once.
+TEST(AugmentedLagrangian, CarriesAStackThatWasSetDownAtOnce) {
+  Scene scene(1e9, 30.0, 2500.0);
+  scene.setup.solver.contact = dynamics::ContactMethod::augmented_lagrangian;
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  for (const double y : {0.0, 1.0}) scene.rectangle({0.0, y}, 1.0, 1.0);
+  Simulator s(scene);
+  const double sunk_by_weight =
+      3.0 * 2500.0 * g / 1e9;  // m, of the upper one's middle, were it laid down slowly
+  for (int step = 0; step < 200; ++step) {
+    s.run(1e-4, 5e-5);
+    for (const contact::Contact& c : s.stepper.contacts()) EXPECT_GT(c.gap, -1e-9) << step;
+    EXPECT_GT(s.centroid(2).y, 1.5 - 3.0 * sunk_by_weight) << step;
+    EXPECT_LT(s.centroid(2).y, 1.5 + sunk_by_weight) << step;
+  }
+  EXPECT_EQ(s.unconverged, 0);
+}
+
+// Many contacts on one block, and little stiffness beside its inertia.
+TEST(AugmentedLagrangian, CarriesABlockOnManyVertices) {
+  Scene scene(1e9, 30.0, 2500.0);
+  scene.setup.solver.contact = dynamics::ContactMethod::augmented_lagrangian;
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  Ring outline{{1.0, 1.0}, {0.0, 1.0}};
+  constexpr int pieces = 64;
+  for (int k = 0; k <= pieces; ++k) outline.push_back({k / static_cast<double>(pieces), 0.0});
+  const int block = scene.add(outline);
+  Simulator s(scene);
+  for (int step = 0; step < 50; ++step) {
+    s.run(2e-4, 5e-5);
+    for (const contact::Contact& c : s.stepper.contacts()) EXPECT_GT(c.gap, -1e-8) << step;
+    EXPECT_NEAR(s.centroid(block).y, 0.5, 1e-4) << step;
+  }
+  EXPECT_EQ(s.unconverged, 0);
+}
+
 TEST_P(Incline, StackOfNineKeepsItsPlace) {
   Scene scene(1e9, 35.0);
   scene.rectangle({-1.0, -1.0}, 6.0, 1.0, 0.0, true);
