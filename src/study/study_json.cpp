@@ -106,7 +106,8 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
   ordered_json points{
       {"intensity", column(curve.stripes, [](const statistics::Stripe& s) { return s.intensity; })},
       {"n", column(curve.stripes, [](const statistics::Stripe& s) { return s.runs; })},
-      {"exceeded", column(curve.stripes, [](const statistics::Stripe& s) { return s.exceeded; })}};
+      {"exceeded", column(curve.stripes, [](const statistics::Stripe& s) { return s.exceeded; })},
+      {"realizations", column(curve.stripes, [](const statistics::Stripe& s) { return s.clusters; })}};
   add_band(points, "probability", group.points);
   ordered_json band{{"intensity", column(curve.intensity, [](double x) { return x; })}};
   add_band(band, "probability", curve.probability);

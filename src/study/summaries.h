@@ -59,7 +59,7 @@ struct FragilityGroup {
   std::vector<std::string> values;        ///< empty text on the axes of the shaking
   std::vector<std::size_t> combinations;  ///< by intensity
   std::vector<statistics::Estimate>
-      points;  ///< exceeded share at each stripe of the curve, Wilson's interval
+      points;  ///< exceeded share at each stripe of the curve, Wilson's interval of as many draws as realizations
   statistics::FragilityCurve curve;
 };
 

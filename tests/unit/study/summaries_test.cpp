@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "statistics/proportion.h"
 #include "synthetic_study.h"
 
 namespace keyblock::study {
@@ -184,6 +185,48 @@ TEST(Summaries, PrecisionIsThatOfStudentsInterval) {
   EXPECT_FALSE(reached({"fallen_area_m2", 100.0, 100.0}));
   study.runs.clear();
   EXPECT_FALSE(reached({"fallen_area_m2", 100.0, 100.0}));
+}
+
+// Shaken twice at the same intensity, ten realizations are still ten.
+TEST(Summaries, PointsCountRealizationsNotRuns) {
+  StudyData study;
+  study.axes = {{"stage.quake.motion", {"'a'", "'b'", "'c'"}}};
+  study.levels = {{"any", "fallen_area_m2", 0.1}};
+  for (int r = 0; r < 10; ++r) {
+    study.runs.push_back(made_run(r, {"'a'"}, 1.0, r < 5 ? 1.0 : 0.0));
+    study.runs.push_back(made_run(r, {"'b'"}, 1.0, r < 5 ? 1.0 : 0.0));
+    study.runs.push_back(made_run(r, {"'c'"}, 2.0, r < 8 ? 1.0 : 0.0));
+  }
+  const Summary summary = summarize(study);
+  const FragilityGroup& group = summary.fragility.at(0);
+  ASSERT_EQ(group.points.size(), 2U);
+  EXPECT_EQ(group.curve.stripes[0].runs, 20.0);
+  const statistics::Estimate ten = statistics::proportion(5, 10, study.confidence);
+  EXPECT_DOUBLE_EQ(group.points[0].value, 0.5);
+  EXPECT_DOUBLE_EQ(group.points[0].low, ten.low);
+  EXPECT_DOUBLE_EQ(group.points[0].high, ten.high);
+  EXPECT_DOUBLE_EQ(group.points[1].low, statistics::proportion(8, 10, study.confidence).low);
+}
+
+// What is taken off leaves no noise: equal gains are equal, and have no spread.
+TEST(Summaries, EqualDifferencesAreOneValue) {
+  StudyData study;
+  study.axes = {{"rock.order", {"1"}}};
+  study.since = "excavated";
+  study.stage = "quake";
+  for (int r = 0; r < 6; ++r) {
+    RunResult run = made_run(r, {"1"}, 1.0, 0.0);
+    run.stages[0].damage.fallen_area = 0.1 + 0.7 * r;
+    run.stages[1].damage.fallen_area = run.stages[0].damage.fallen_area + 1.1;
+    study.runs.push_back(run);
+  }
+  const Summary summary = summarize(study);
+  const MeasureSummary& fallen = summary.combinations[0].measures[*find_measure("fallen_area_m2")];
+  EXPECT_EQ(fallen.exceedance.value, (std::vector<double>{1.1}));
+  EXPECT_EQ(fallen.description.mean.value, 1.1);
+  EXPECT_EQ(fallen.description.standard_deviation.value, 0.0);
+  EXPECT_EQ(fallen.description.standard_deviation.high, 0.0);
+  EXPECT_EQ(fallen.running.mean.back().low, fallen.running.mean.back().high);
 }
 
 TEST(Summaries, MapsCountRunsByCell) {
