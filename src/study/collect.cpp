@@ -36,6 +36,16 @@ std::vector<std::size_t> sorted_places(const Plan& plan) {
   return places;
 }
 
+std::vector<std::string> planned_variants(const Plan& plan) {
+  std::vector<std::string> found;
+  for (const PlannedRun& run : plan.runs) {
+    if (run.wanted && !run.variant.empty() &&
+        std::find(found.begin(), found.end(), run.variant) == found.end())
+      found.push_back(run.variant);
+  }
+  return found;
+}
+
 }  // namespace
 
 StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int realizations) {
@@ -60,7 +70,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.seed = plan.seed;
   study.version = plan.version;
   for (const scenario::VarySpec& axis : plan.axes) {
-    study.axes.push_back({axis.key_text(), {}});
+    study.axes.push_back({axis.key_text(), {}, axis.keys});
     for (std::size_t k = 0; k < axis.values.size(); ++k)
       study.axes.back().values.push_back(axis.value_text(k));
   }
@@ -69,6 +79,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.levels = plan.levels;
   study.marginal = plan.marginal;
   study.confidence = plan.confidence;
+  study.variants = planned_variants(plan);
   if (plan.until) study.precision = Precision{plan.until->measure, plan.until->half_width, plan.until->width};
   study.grid = plan.grid;
   study.outlines = plan.outlines;

@@ -59,8 +59,10 @@ struct RunResult {
 
 /// An axis of the grid of a study: a [[study.vary]] table.
 struct Axis {
-  std::string key;                  ///< key path of what varies
+  std::string key;                  ///< key path of what varies; of several, joined by " + "
   std::vector<std::string> values;  ///< TOML text
+  std::vector<std::string> keys =
+      {};  ///< those of an axis of several, one by one; empty: `key` is the only one
 };
 
 /// A level of damage to know the probability of: a measure (by its name in summary.json) above a threshold.
@@ -96,6 +98,7 @@ struct StudyData {
   std::optional<MarginalCheck> marginal;  ///< given when variants are run
   double confidence = 0.95;
   std::optional<Precision> precision;  ///< given when realizations are added until it is reached
+  std::vector<std::string> variants;      ///< that are run of every case, without ""
   MapGrid grid;
   std::vector<std::vector<Vec2>> outlines;  ///< of the excavations, real coordinates
   std::vector<RunResult> runs;              ///< by realization, then combination, then variant

@@ -166,6 +166,54 @@ TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {
   EXPECT_EQ(summary.combinations[0].measures[0].description.n, 5U);
 }
 
+// "no" is said only when all that was planned to be tried was tried.
+TEST(Summaries, NotMarginalOnlyWhenAllVariantsWereMeasured) {
+  StudyData study;
+  study.axes = {{"rock.order", {"1"}}};
+  study.marginal = MarginalCheck{3.0, 0.5};
+  study.variants = {"friction-", "friction+", "released"};
+  const auto add = [&](int r, double friction_plus, bool released) {
+    study.runs.push_back(made_run(r, {"1"}, 1.0, 1.0));
+    study.runs.push_back(made_run(r, {"1"}, 1.0, 1.0, "friction-"));
+    study.runs.push_back(made_run(r, {"1"}, 1.0, friction_plus, "friction+"));
+    if (released) study.runs.push_back(made_run(r, {"1"}, 1.0, 1.0, "released"));
+  };
+  add(0, 1.0, true);
+  add(1, 1.0, false);  // missing
+  add(2, 1.0, true);   // failed
+  study.runs.back().error = "killed";
+  add(3, 9.0, false);
+  const Summary summary = summarize(study);
+  std::vector<Marginal> own;
+  for (std::size_t r = 0; r < study.runs.size(); ++r)
+    if (study.runs[r].variant.empty()) own.push_back(summary.marginal[r]);
+  EXPECT_EQ(own, (std::vector<Marginal>{Marginal::no, Marginal::unknown, Marginal::unknown, Marginal::yes}));
+  EXPECT_EQ(summary.combinations[0].checked, 2U);
+}
+
+// A curve goes through shakings of one rock: what changes both is no axis of shaking.
+TEST(Summaries, AnAxisThatChangesTheRockIsNoneOfShaking) {
+  const auto shaking = [](Axis axis) {
+    StudyData study;
+    study.axes = {std::move(axis)};
+    study.levels = {{"any", "fallen_area_m2", 0.1}};
+    for (int r = 0; r < 4; ++r) {
+      study.runs.push_back(made_run(r, {"1"}, 1.0, 0.0));
+      study.runs.push_back(made_run(r, {"2"}, 2.0, 1.0));
+    }
+    const Summary summary = summarize(study);
+    EXPECT_EQ(summary.fragility.empty(), !summary.shaking_axis[0]);
+    return static_cast<bool>(summary.shaking_axis[0]);
+  };
+  EXPECT_TRUE(shaking({"stage.quake.duration", {"1", "2"}}));
+  EXPECT_TRUE(shaking({"motion.'m'.x.amplitude", {"1", "2"}}));
+  EXPECT_TRUE(shaking({"stage[1].scale", {"1", "2"}}));
+  EXPECT_FALSE(shaking({"section.azimuth", {"1", "2"}}));
+  EXPECT_FALSE(shaking({"stages.scale", {"1", "2"}}));
+  EXPECT_TRUE(shaking({"stage.a.scale + stage.b.scale", {"1", "2"}, {"stage.a.scale", "stage.b.scale"}}));
+  EXPECT_FALSE(shaking({"rock.order + stage.a.scale", {"1", "2"}, {"rock.order", "stage.a.scale"}}));
+}
+
 // Five values 4, 0, 1, 2, 9: mean 3.2, s = 3.564, t = 2.776: ± 4.425.
 TEST(Summaries, PrecisionIsThatOfStudentsInterval) {
   StudyData study = small();
