@@ -80,7 +80,8 @@ void submit_study(SubmitArguments& arguments) {
   study::check_can_submit(fs::absolute(arguments.folder), arguments.slurm);
   const auto lock = study::lock_study(arguments.folder);
   study::enter_plan(arguments.folder, plan, arguments.resume);
-  const study::StudyFiles files = study::read_study_files(arguments.folder, plan);
+  study::StudyFiles files = study::read_study_files(arguments.folder, plan);
+  study::forget_failures(arguments.folder, plan, files);
   std::vector<std::size_t> runs;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {
     if (files.asked(plan.runs[k]) && files.states[k].kind != study::RunState::Kind::done) runs.push_back(k);

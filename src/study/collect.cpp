@@ -55,13 +55,27 @@ StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int rea
     if (plan.runs[k].wanted && plan.runs[k].realization < realizations)
       files.states[k] = read_run_state(directory, plan, plan.runs[k]);
   }
+  update_enough(plan, files);
+  return files;
+}
+
+void update_enough(const Plan& plan, StudyFiles& files) {
+  if (!plan.until) return;
   std::vector<const RunResult*> results;
   for (const RunState& state : files.states) {
     const bool known = state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed;
     results.push_back(known ? &state.result : nullptr);
   }
   files.enough = enough_realizations(plan, results);
-  return files;
+}
+
+void forget_failures(const fs::path& directory, const Plan& plan, StudyFiles& files) {
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    if (!plan.runs[k].wanted || files.states[k].kind != RunState::Kind::failed) continue;
+    remove_failure(directory, plan.runs[k]);
+    files.states[k] = {};
+  }
+  update_enough(plan, files);
 }
 
 StudyData study_data(const Plan& plan, StudyFiles files) {
@@ -80,7 +94,10 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.marginal = plan.marginal;
   study.confidence = plan.confidence;
   study.variants = planned_variants(plan);
-  if (plan.until) study.precision = Precision{plan.until->measure, plan.until->half_width, plan.until->width};
+  if (plan.until) {
+    study.precision = Precision{plan.until->measure, plan.until->half_width, plan.until->width,
+                                plan.until->minimum, files.enough.has_value()};
+  }
   study.grid = plan.grid;
   study.outlines = plan.outlines;
   for (const std::size_t k : sorted_places(plan)) {

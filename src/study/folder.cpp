@@ -217,4 +217,11 @@ void write_failure(const fs::path& directory, const Plan& plan, const RunResult&
   write_file_atomically(folder / "failed.json", run_json(result, run_input(plan)));
 }
 
+void remove_failure(const fs::path& directory, const PlannedRun& run) {
+  const fs::path file = run_folder(directory, run.key) / "failed.json";
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw RunError(fmt::format("{}: cannot remove: {}", file.string(), error.message()));
+}
+
 }  // namespace keyblock::study

@@ -63,5 +63,7 @@ std::string run_input(const Plan& plan);
 RunResult empty_result(const PlannedRun& run);
 
 void write_failure(const std::filesystem::path& directory, const Plan& plan, const RunResult& result);
+/// Throws RunError when it cannot be removed.
+void remove_failure(const std::filesystem::path& directory, const PlannedRun& run);
 
 }  // namespace keyblock::study

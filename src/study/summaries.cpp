@@ -193,23 +193,6 @@ std::vector<Marginal> marginal_runs(const StudyData& study) {
   return result;
 }
 
-bool precise_enough(const StudyData& study, const Summary& summary) {
-  const auto measure = study.precision ? find_measure(study.precision->measure) : std::nullopt;
-  if (!measure) return false;
-  bool any = false;
-  for (const Combination& c : summary.combinations) {
-    if (c.runs.empty()) continue;
-    any = true;
-    const statistics::Estimate mean = c.measures[*measure].running.mean.back();
-    const double width = mean.high - mean.low;
-    const bool by_share =
-        study.precision->half_width && 0.5 * width <= *study.precision->half_width * std::abs(mean.value);
-    const bool by_width = study.precision->width && width <= *study.precision->width;
-    if (!by_share && !by_width) return false;
-  }
-  return any;
-}
-
 Summary summarize(const StudyData& study) {
   Summary summary;
   summary.marginal = marginal_runs(study);

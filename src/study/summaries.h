@@ -79,11 +79,6 @@ struct Summary {
 /// Deterministic; 10,000 runs take seconds.
 Summary summarize(const StudyData& study);
 
-/// Whether `study.precision` is reached: at the end of the running mean of its measure the band (Student's interval) is
-/// narrow enough in every combination that has measured runs. False where one has a single run, where there are none, and
-/// where no precision, or that of no measure, is asked for.
-bool precise_enough(const StudyData& study, const Summary& summary);
-
 /// Parts of it. `groups` of fragility, and whether runs are marginal.
 std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summary& summary);
 std::vector<Marginal> marginal_runs(const StudyData& study);

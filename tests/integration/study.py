@@ -240,6 +240,35 @@ class GoingOn(Study):
         self.assertIn("out/plan.json: found a damaged file", self.study("collect", "out", expect=1).stderr)
 
 
+class GoingOnUntil(Study):
+    """[study.until] with two realizations that agree and a third that failed: enough, as long as it is left out."""
+
+    def setUp(self):
+        super().setUp()
+        until = 'until = { measure = "slipped_length_m", width = 0.01, minimum = 3, maximum = 6 }\n'
+        self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until)
+        self.study("submit", "until.toml", "-o", "out")
+        self.study("task", "out", "0")
+        first, second, third, *_ = self.plan()["runs"]
+        result = self.result(first["key"])
+        self.write_result(second, result)
+        self.write_result(third, result, "failed.json", error="killed")
+        self.assertIn("enough: 3 realizations\n2 of 3 runs done, 1 failed\n", self.study("collect", "out").stdout)
+        self.assertTrue(json.loads((self.out / "study.json").read_text())["precision"]["reached"])
+
+    def test_resuming_runs_what_the_failed_run_makes_necessary(self):
+        for workers in ("1", "2"):
+            said = self.study("run", "until.toml", "-o", "out", "--resume", "--workers", workers).stdout
+            self.assertIn("6 of 6 runs done\n", said)
+        self.assertFalse(json.loads((self.out / "study.json").read_text())["precision"]["reached"])
+
+    def test_submitting_again_does_too(self):
+        said = self.study("submit", "until.toml", "-o", "out", "--resume").stdout
+        self.assertIn("4 of 6 runs to be done", said)
+        for k in range(2, 6):
+            self.assertIn(": done\n", self.study("task", "out", k).stdout)
+
+
 class Large(Study):
     def many(self, realizations):
         """A study whose runs are all done: copies of one."""

@@ -214,27 +214,6 @@ TEST(Summaries, AnAxisThatChangesTheRockIsNoneOfShaking) {
   EXPECT_FALSE(shaking({"rock.order + stage.a.scale", {"1", "2"}, {"rock.order", "stage.a.scale"}}));
 }
 
-// Five values 4, 0, 1, 2, 9: mean 3.2, s = 3.564, t = 2.776: ± 4.425.
-TEST(Summaries, PrecisionIsThatOfStudentsInterval) {
-  StudyData study = small();
-  study.runs.resize(5);
-  const auto reached = [&](Precision precision) {
-    study.precision = std::move(precision);
-    return precise_enough(study, summarize(study));
-  };
-  EXPECT_FALSE(precise_enough(study, summarize(study)));
-  EXPECT_TRUE(reached({"fallen_area_m2", 4.43 / 3.2, std::nullopt}));
-  EXPECT_FALSE(reached({"fallen_area_m2", 4.42 / 3.2, std::nullopt}));
-  EXPECT_TRUE(reached({"fallen_area_m2", std::nullopt, 8.86}));
-  EXPECT_FALSE(reached({"fallen_area_m2", std::nullopt, 8.84}));
-  EXPECT_TRUE(reached({"fallen_area_m2", 0.001, 8.86}));  // one of both is enough
-  EXPECT_FALSE(reached({"no_such_measure", 100.0, 100.0}));
-  study.runs.push_back(made_run(0, {"40"}, 2.0, 0.5));  // a single run tells nothing
-  EXPECT_FALSE(reached({"fallen_area_m2", 100.0, 100.0}));
-  study.runs.clear();
-  EXPECT_FALSE(reached({"fallen_area_m2", 100.0, 100.0}));
-}
-
 // Shaken twice at the same intensity, ten realizations are still ten.
 TEST(Summaries, PointsCountRealizationsNotRuns) {
   StudyData study;
