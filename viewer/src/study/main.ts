@@ -40,11 +40,7 @@ function chosenName(study: Study, selection: Selection): HTMLElement {
 /** Maps and pictures have no beginning but the excavation, unlike the numbers beside them. */
 function wholeHistory(study: Study): HTMLElement | null {
   return study.json.since
-    ? h(
-        "p",
-        { class: "hint" },
-        `All that has happened since the first excavation, not only what came${study.after()}, which the result counts.`,
-      )
+    ? h("p", { class: "hint" }, `Everything since the first excavation, not only what came${study.after()}.`)
     : null;
 }
 
