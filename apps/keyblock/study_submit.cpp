@@ -63,25 +63,37 @@ void submit_all(const fs::path& folder, const std::vector<study::ArrayScript>& s
             << ": collects what they leave" << std::endl;
 }
 
+/// Scripts of an earlier submission that took more arrays would run what they were not meant for.
+void remove_scripts(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (study::is_array_script(entry.path().filename().string())) found.push_back(entry.path());
+  }
+  for (const fs::path& path : found) fs::remove(path);
+}
+
 void submit_study(SubmitArguments& arguments) {
   study::Plan plan =
       study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION);
+  const auto limit = study::max_array_size(output_of("scontrol show config 2>/dev/null").first);
+  if (limit) arguments.slurm.most_elements = *limit;
+  study::check_can_submit(fs::absolute(arguments.folder), arguments.slurm);
   const auto lock = study::lock_study(arguments.folder);
   study::enter_plan(arguments.folder, plan, arguments.resume);
-  const study::StudyFiles files = study::read_study_files(arguments.folder, plan);
+  study::StudyFiles files = study::read_study_files(arguments.folder, plan);
+  study::forget_failures(arguments.folder, plan, files);
   std::vector<std::size_t> runs;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {
     if (files.asked(plan.runs[k]) && files.states[k].kind != study::RunState::Kind::done) runs.push_back(k);
   }
+  const fs::path folder = fs::canonical(arguments.folder);
+  remove_scripts(folder);
   if (runs.empty()) {
     std::cout << "all runs are done; keyblock study collect " << arguments.folder << " gathers them"
               << std::endl;
     return;
   }
-  const fs::path folder = fs::canonical(arguments.folder);
   arguments.slurm.program = fs::read_symlink("/proc/self/exe").string();
-  const auto limit = study::max_array_size(output_of("scontrol show config 2>/dev/null").first);
-  if (limit) arguments.slurm.most_elements = *limit;
   fs::create_directories(folder / "slurm");
   const auto scripts = study::array_scripts(folder, runs, arguments.slurm);
   for (const study::ArrayScript& script : scripts) write_file_atomically(folder / script.name, script.text);

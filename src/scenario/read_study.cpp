@@ -77,7 +77,8 @@ void read_until(TableReader& t, UntilSpec& until) {
   read_measure(t, until.measure, "Measure of damage, by its name in summary.json.");
   t.number("half_width", until.half_width,
            {.meaning = "Narrow enough: half the width of the interval is at most this share of the mean. "
-                       "Where `width` is given as well, one of both is enough.",
+                       "Where `width` is given as well, one of both is enough. Not reached while all values "
+                       "are equal.",
             .above = 0.0});
   t.number(
       "width", until.width,

@@ -121,8 +121,10 @@ Description describe(std::span<const double> ascending, std::span<const double> 
   for (std::size_t r = 0; r < resamples.count(); ++r) {
     const auto ranks = resamples.ranks(r);
     double sum = 0.0, squares = 0.0;
-    for (const std::uint32_t k : ranks) sum += ascending[k];
-    means[r] = sum / n;
+    // From a value of the resample, so that one of equal values has no spread by rounding.
+    const double first = ascending[ranks.front()];
+    for (const std::uint32_t k : ranks) sum += ascending[k] - first;
+    means[r] = first + sum / n;
     for (const std::uint32_t k : ranks) squares += (ascending[k] - means[r]) * (ascending[k] - means[r]);
     deviations[r] = std::sqrt(squares / (n - 1.0));
     for (std::size_t q = 0; q < probabilities.size(); ++q) {

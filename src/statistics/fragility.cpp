@@ -221,7 +221,7 @@ Table tabulate(std::span<const Observation> runs) {
   std::sort(intensities.begin(), intensities.end());
   for (const double x : intensities)
     if (table.stripes.empty() || x > table.stripes.back().intensity * (1.0 + same_intensity))
-      table.stripes.push_back({x, 0.0, 0.0});
+      table.stripes.push_back({x, 0.0, 0.0, 0.0});
   std::map<int, std::vector<Table::Part>> clusters;
   for (const Observation& run : runs) {
     if (!(run.intensity > 0.0)) continue;
@@ -232,7 +232,13 @@ Table tabulate(std::span<const Observation> runs) {
     table.stripes[stripe].exceeded += run.exceeded ? 1.0 : 0.0;
     clusters[run.cluster].push_back({stripe, 1.0, run.exceeded ? 1.0 : 0.0});
   }
-  for (auto& [id, parts] : clusters) table.clusters.push_back(std::move(parts));
+  for (auto& [id, parts] : clusters) {
+    std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.stripe < b.stripe; });
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      if (k == 0 || parts[k].stripe != parts[k - 1].stripe) table.stripes[parts[k].stripe].clusters += 1.0;
+    }
+    table.clusters.push_back(std::move(parts));
+  }
   return table;
 }
 
@@ -255,7 +261,8 @@ FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<cons
   curve.clusters = table.clusters.size();
   curve.left_out = table.left_out;
   curve.fit = fit_fragility(table.stripes);
-  curve.theta.value = curve.fit.theta;
+  if (curve.fit.status == FragilityStatus::fitted || curve.fit.status == FragilityStatus::separated)
+    curve.theta.value = curve.fit.theta;
   curve.beta.value = curve.fit.beta;
   curve.intensity.assign(at.begin(), at.end());
   for (const double x : at)

@@ -23,6 +23,7 @@ struct Stripe {
   double intensity = 0.0;
   double runs = 0.0;      ///< n_j
   double exceeded = 0.0;  ///< z_j
+  double clusters = 0.0;  ///< of how many clusters (Observation) they are; the fit does not need it
 };
 
 enum class FragilityStatus {
@@ -31,8 +32,8 @@ enum class FragilityStatus {
   one_intensity,    ///< all runs at the same intensity: a point, no curve
   never_exceeded,   ///< z = 0 everywhere
   always_exceeded,  ///< z = n everywhere
-  separated,  ///< one intensity parts exceeded from not exceeded: L grows without bound as β → 0, and θ may be anywhere
-  ///< between two intensities
+  separated,  ///< at most one intensity has a share other than 0 and 1, with none exceeded below it and all above: L goes
+  ///< to its bound as β → 0, with θ at that intensity, or anywhere between the last of none and the first of all
   not_increasing,  ///< more shaking does not go with more damage: the likeliest curve is flat or falls
 };
 
@@ -41,7 +42,7 @@ const char* name_of(FragilityStatus status);
 struct FragilityFit {
   FragilityStatus status = FragilityStatus::no_data;
   double theta =
-      not_a_number;  ///< fitted; separated: geometric mean of the two intensities; ∞ never, 0 always exceeded
+      not_a_number;  ///< fitted; separated: geometric mean of its bounds; ∞ never, 0 always exceeded
   double beta = not_a_number;   ///< fitted; separated: 0
   double share = not_a_number;  ///< Σ z / Σ n
   /// The likeliest curve that does not fall: for what is not fitted, a step or a constant. Not a number without data
@@ -66,7 +67,7 @@ struct Observation {
 /// fit, or with fewer than smallest_bootstrap_sample clusters, there is neither band nor interval.
 struct FragilityCurve {
   FragilityFit fit;
-  Estimate theta, beta;
+  Estimate theta, beta;  ///< fitted and separated; otherwise not a number
   std::vector<Stripe> stripes;
   std::vector<double> intensity;      ///< as asked for
   std::vector<Estimate> probability;  ///< there, pointwise band; not a number where there is no curve

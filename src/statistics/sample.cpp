@@ -10,8 +10,8 @@ namespace keyblock::statistics {
 double mean(std::span<const double> sample) {
   if (sample.empty()) return not_a_number;
   double sum = 0.0;
-  for (const double x : sample) sum += x;
-  return sum / static_cast<double>(sample.size());
+  for (const double x : sample) sum += x - sample.front();
+  return sample.front() + sum / static_cast<double>(sample.size());
 }
 
 double standard_deviation(std::span<const double> sample) {

@@ -1,7 +1,8 @@
 #pragma once
 #include <span>
 
-/// Numbers that describe a sample x_1 … x_n.
+/// Numbers that describe a sample x_1 … x_n. Sums are of the differences to x_1: equal values have that value as their mean, and a
+/// standard deviation of exactly 0.
 namespace keyblock::statistics {
 
 /// x̄ = Σ x_i / n; not a number when n = 0.

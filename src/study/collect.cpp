@@ -36,6 +36,16 @@ std::vector<std::size_t> sorted_places(const Plan& plan) {
   return places;
 }
 
+std::vector<std::string> planned_variants(const Plan& plan) {
+  std::vector<std::string> found;
+  for (const PlannedRun& run : plan.runs) {
+    if (run.wanted && !run.variant.empty() &&
+        std::find(found.begin(), found.end(), run.variant) == found.end())
+      found.push_back(run.variant);
+  }
+  return found;
+}
+
 }  // namespace
 
 StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int realizations) {
@@ -45,13 +55,27 @@ StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int rea
     if (plan.runs[k].wanted && plan.runs[k].realization < realizations)
       files.states[k] = read_run_state(directory, plan, plan.runs[k]);
   }
+  update_enough(plan, files);
+  return files;
+}
+
+void update_enough(const Plan& plan, StudyFiles& files) {
+  if (!plan.until) return;
   std::vector<const RunResult*> results;
   for (const RunState& state : files.states) {
     const bool known = state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed;
     results.push_back(known ? &state.result : nullptr);
   }
   files.enough = enough_realizations(plan, results);
-  return files;
+}
+
+void forget_failures(const fs::path& directory, const Plan& plan, StudyFiles& files) {
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    if (!plan.runs[k].wanted || files.states[k].kind != RunState::Kind::failed) continue;
+    remove_failure(directory, plan.runs[k]);
+    files.states[k] = {};
+  }
+  update_enough(plan, files);
 }
 
 StudyData study_data(const Plan& plan, StudyFiles files) {
@@ -60,7 +84,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.seed = plan.seed;
   study.version = plan.version;
   for (const scenario::VarySpec& axis : plan.axes) {
-    study.axes.push_back({axis.key_text(), {}});
+    study.axes.push_back({axis.key_text(), {}, axis.keys});
     for (std::size_t k = 0; k < axis.values.size(); ++k)
       study.axes.back().values.push_back(axis.value_text(k));
   }
@@ -69,7 +93,11 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   study.levels = plan.levels;
   study.marginal = plan.marginal;
   study.confidence = plan.confidence;
-  if (plan.until) study.precision = Precision{plan.until->measure, plan.until->half_width, plan.until->width};
+  study.variants = planned_variants(plan);
+  if (plan.until) {
+    study.precision = Precision{plan.until->measure, plan.until->half_width, plan.until->width,
+                                plan.until->minimum, files.enough.has_value()};
+  }
   study.grid = plan.grid;
   study.outlines = plan.outlines;
   for (const std::size_t k : sorted_places(plan)) {

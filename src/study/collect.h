@@ -25,6 +25,13 @@ struct StudyFiles {
 StudyFiles read_study_files(const std::filesystem::path& directory, const Plan& plan,
                             int realizations = std::numeric_limits<int>::max());
 
+/// files.enough anew, after its states have changed.
+void update_enough(const Plan& plan, StudyFiles& files);
+
+/// Wanted runs that failed count as missing from now on, in the folder too, and so does what [study.until] concluded from their
+/// failure: they are to be tried again, and until then nobody can say how many realizations are enough.
+void forget_failures(const std::filesystem::path& directory, const Plan& plan, StudyFiles& files);
+
 /// How many of the runs that are asked for are there, and which are not, each with its key and what is known of it.
 struct CollectReport {
   std::size_t asked = 0, done = 0;

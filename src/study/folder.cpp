@@ -55,6 +55,32 @@ std::vector<std::string> differences(const Plan& there, const Plan& here) {
   return found;
 }
 
+// Runs of values that were dropped stay, and are used when their values come back: with the files as they were.
+void keep_files(const std::vector<InputFile>& earlier, Plan& plan) {
+  for (const InputFile& file : earlier) {
+    const bool there = std::any_of(plan.files.begin(), plan.files.end(),
+                                   [&](const InputFile& known) { return known.name == file.name; });
+    if (!there) plan.files.push_back(file);
+  }
+}
+
+bool same_raster(const MapGrid& a, const MapGrid& b) {
+  return a.corner == b.corner && a.cell == b.cell && a.columns == b.columns && a.rows == b.rows;
+}
+
+// Maps of different rasters cannot be added up.
+void check_same_raster(const fs::path& directory, const Plan& there, const Plan& here) {
+  if (same_raster(there.grid, here.grid)) return;
+  const bool any_done = std::any_of(there.runs.begin(), there.runs.end(), [&](const PlannedRun& run) {
+    return fs::exists(run_folder(directory, run.key) / "run.json");
+  });
+  if (!any_done) return;
+  refuse(directory.string(),
+         fmt::format("runs with a map of other cells (study.map.cell: {} there, {} here)", there.grid.cell,
+                     here.grid.cell),
+         "the cells of the runs that are done", "set study.map.cell as it was, or take another folder");
+}
+
 void check_same_study(const fs::path& directory, const Plan& there, const Plan& here) {
   const std::vector<std::string> found = differences(there, here);
   if (found.empty()) return;
@@ -118,11 +144,13 @@ void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
   if (fs::exists(plan_path(directory))) {
     const Plan there = read_plan(directory);
     check_same_study(directory, there, plan);
+    if (resume) check_same_raster(directory, there, plan);
     if (!resume) {
       refuse(directory.string(), fmt::format("a study of {} runs", there.wanted()),
              "a new folder, or --resume to go on with what is there");
     }
     keep_places(there.runs, plan);
+    keep_files(there.files, plan);
   } else if (fs::exists(directory / "result.h5")) {
     refuse(directory.string(), "the results of a run", "another folder");
   }
@@ -158,6 +186,10 @@ RunState read_run_state(const fs::path& directory, const Plan& plan, const Plann
         state.problem = fmt::format("{}: found the run {}", path.string(), state.result.key);
         return false;
       }
+      const RunResult planned = empty_result(run);
+      state.result.realization = planned.realization;
+      state.result.values = planned.values;
+      state.result.variant = planned.variant;
       return true;
     } catch (const InputError& error) {
       const Diagnostic& d = error.diagnostics().front();
@@ -183,6 +215,13 @@ void write_failure(const fs::path& directory, const Plan& plan, const RunResult&
   const fs::path folder = run_folder(directory, result.key);
   make_folder(folder);
   write_file_atomically(folder / "failed.json", run_json(result, run_input(plan)));
+}
+
+void remove_failure(const fs::path& directory, const PlannedRun& run) {
+  const fs::path file = run_folder(directory, run.key) / "failed.json";
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw RunError(fmt::format("{}: cannot remove: {}", file.string(), error.message()));
 }
 
 }  // namespace keyblock::study

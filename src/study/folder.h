@@ -42,8 +42,9 @@ class FileLock {
 std::unique_ptr<FileLock> lock_study(const std::filesystem::path& directory);
 
 /// Puts the plan into the folder. A folder that holds a plan already is gone on with only if `resume`, and only if it is of the
-/// same study: same scenario but for [study], same files, same version of the program. Runs keep their places
-/// (keep_places). Throws InputError that names what differs; the folder is then as it was.
+/// same study: same scenario but for [study], same files, same version of the program, and the same raster of maps where runs
+/// are done. Runs keep their places (keep_places), and files that earlier plans named stay known with their content. Throws
+/// InputError that names what differs; the folder is then as it was.
 void enter_plan(const std::filesystem::path& directory, Plan& plan, bool resume);
 
 /// What a run has left.
@@ -52,6 +53,7 @@ struct RunState {
   RunResult result;     ///< done and failed
   std::string problem;  ///< failed and damaged, with the name of the file
 };
+/// Realization, values and variant are as `plan` has them: its axes may stand in another order than when the run was made.
 RunState read_run_state(const std::filesystem::path& directory, const Plan& plan, const PlannedRun& run);
 
 /// The identity of what is run, as run.json keeps it.
@@ -61,5 +63,7 @@ std::string run_input(const Plan& plan);
 RunResult empty_result(const PlannedRun& run);
 
 void write_failure(const std::filesystem::path& directory, const Plan& plan, const RunResult& result);
+/// Throws RunError when it cannot be removed.
+void remove_failure(const std::filesystem::path& directory, const PlannedRun& run);
 
 }  // namespace keyblock::study

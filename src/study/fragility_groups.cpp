@@ -80,9 +80,10 @@ std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summa
         }
         FragilityGroup made{l, i, group.values, group.combinations, {}, {}};
         made.curve = statistics::fragility_curve(runs, curve_grid(runs), study.confidence);
+        // Rock that is shaken twice at one intensity is not two independent pieces of rock.
         for (const statistics::Stripe& s : made.curve.stripes)
-          made.points.push_back(statistics::proportion(static_cast<std::size_t>(s.exceeded),
-                                                       static_cast<std::size_t>(s.runs), study.confidence));
+          made.points.push_back(
+              statistics::share_of_independent(s.exceeded / s.runs, s.clusters, study.confidence));
         result.push_back(std::move(made));
       }
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -20,6 +21,16 @@ constexpr std::pair<const char*, const char*> titles[] = {
     {"horizontal closure", "m"}};
 static_assert(std::size(titles) == 1 + std::size(simulation::damage_fields),
               "a measure of the damage is missing");
+
+/// Differences are taken to this many per unit: far below what a measure means, far above its rounding.
+constexpr double difference_grain = 1e9;
+constexpr double largest_rounded = 1e6;  ///< beyond, the grain is finer than the numbers themselves
+
+/// a − b, where equal differences of different numbers come out equal, and those of equal numbers as 0.
+double difference(double a, double b) {
+  const double d = a - b;
+  return std::abs(d) < largest_rounded ? std::round(d * difference_grain) / difference_grain + 0.0 : d;
+}
 
 const std::array<Intensity, 3> all_intensities{
     {{"pga_m_s2", "PGA", "m/s²", &StageMeasures::pga},
@@ -64,7 +75,8 @@ std::optional<simulation::Damage> damage_between(const RunResult& run, std::stri
   const auto start = named(since);
   if (start == run.stages.end()) return std::nullopt;
   damage.fallen_blocks -= start->damage.fallen_blocks;
-  for (const auto& [name, member] : simulation::damage_fields) damage.*member -= start->damage.*member;
+  for (const auto& [name, member] : simulation::damage_fields)
+    damage.*member = difference(damage.*member, start->damage.*member);
   return damage;
 }
 

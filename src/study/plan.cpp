@@ -152,6 +152,11 @@ std::string hash_text(std::string_view content) {
   return fmt::format("{:016x}", hash.value());
 }
 
+std::string scenario_identity(const std::string& text, const fs::path& file,
+                              const std::vector<std::string>& overrides) {
+  return hash_text(scenario::to_toml(scenario::document_without_study(text, file, overrides)));
+}
+
 std::string run_key(int realization, const std::vector<std::string>& overrides, const std::string& variant) {
   return key_of(realization, combination_hash(overrides, variant));
 }
@@ -249,7 +254,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
     throw InputError(Diagnostic{scenario.where("stage"), "stage", "nothing", "at least one [[stage]]", ""});
   }
   scenario::check_inputs(scenario);
-  plan.input = hash_text(scenario::to_toml(scenario::document_without_study(plan.text, file, overrides)));
+  plan.input = scenario_identity(plan.text, file, overrides);
   plan.title = scenario.title;
   plan.seed = scenario.seed;
   const scenario::StudySpec study = scenario.study.value_or(scenario::StudySpec{});

@@ -34,7 +34,7 @@ struct Plan {
   std::string text;                ///< of it
   std::vector<std::string> overrides;
   std::string version;
-  std::string input;  ///< hash of the scenario with its overrides and without [study]
+  std::string input;  ///< scenario_identity
   std::vector<InputFile> files;
 
   std::string title;
@@ -87,6 +87,10 @@ std::vector<DamageLevel> damage_levels(const scenario::Scenario& scenario);
 
 /// The name of a file in Plan::files.
 std::string input_name(const std::filesystem::path& scenario, const std::filesystem::path& file);
+
+/// Hash of a scenario with its overrides and without [study]. `file` is for messages.
+std::string scenario_identity(const std::string& text, const std::filesystem::path& file,
+                              const std::vector<std::string>& overrides);
 
 /// Content hash, 16 hexadecimal digits.
 std::string hash_text(std::string_view content);

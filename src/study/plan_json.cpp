@@ -124,6 +124,15 @@ void read_description(const ordered_json& json, Plan& plan) {
   }
 }
 
+// What is run must be what the results go by.
+void check_copy(const fs::path& directory, const Plan& plan) {
+  const fs::path file = scenario_path(directory);
+  if (scenario_identity(plan.text, file, plan.overrides) == plan.input) return;
+  refuse(file.string(), "a scenario other than that of plan.json",
+         "the scenario as it was when the study was planned",
+         "put it back, or plan the changed one in another folder");
+}
+
 }  // namespace
 
 std::string plan_json(const Plan& plan, const fs::path& directory) {
@@ -176,6 +185,7 @@ Plan read_plan(const fs::path& directory) {
     refuse(path.string(), fmt::format("a damaged file ({})", error.what()), "the plan of a study");
   }
   plan.text = read_file(scenario_path(directory));
+  check_copy(directory, plan);
   return plan;
 }
 

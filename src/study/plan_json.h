@@ -10,7 +10,8 @@ namespace keyblock::study {
 /// full path.
 std::string plan_json(const Plan& plan, const std::filesystem::path& directory);
 
-/// Throws InputError when DIR holds no plan, or one that is damaged or of another format.
+/// Throws InputError when DIR holds no plan, or one that is damaged or of another format, and when DIR/study.toml is another
+/// scenario than the plan was made of (but for [study]).
 Plan read_plan(const std::filesystem::path& directory);
 
 }  // namespace keyblock::study

@@ -59,8 +59,10 @@ struct RunResult {
 
 /// An axis of the grid of a study: a [[study.vary]] table.
 struct Axis {
-  std::string key;                  ///< key path of what varies
+  std::string key;                  ///< key path of what varies; of several, joined by " + "
   std::vector<std::string> values;  ///< TOML text
+  std::vector<std::string> keys =
+      {};  ///< those of an axis of several, one by one; empty: `key` is the only one
 };
 
 /// A level of damage to know the probability of: a measure (by its name in summary.json) above a threshold.
@@ -77,11 +79,13 @@ struct MarginalCheck {
 };
 
 /// When enough realizations are there: the confidence interval of the mean of a measure is narrow enough in every
-/// combination. Where both limits are given, one of them is enough.
+/// combination (until.h). Where both limits are given, one of them is enough.
 struct Precision {
   std::string measure;               ///< by its name in summary.json
   std::optional<double> half_width;  ///< half the width is at most this share of the mean
   std::optional<double> width;       ///< the width is at most this, in the unit of the measure
+  int minimum = 2;                   ///< realizations, before which nothing is enough
+  bool reached = false;              ///< enough_realizations found some number to be enough
 };
 
 /// The runs that are there, with what a reader needs to group them.
@@ -94,6 +98,7 @@ struct StudyData {
   std::string since;  ///< what they were at the end of this stage is taken off; empty: nothing is
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;  ///< given when variants are run
+  std::vector<std::string> variants;      ///< that are run of every case, without ""
   double confidence = 0.95;
   std::optional<Precision> precision;  ///< given when realizations are added until it is reached
   MapGrid grid;

@@ -4,16 +4,25 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <map>
 #include <sstream>
+
+#include "study/refusal.h"
 
 namespace keyblock::study {
 namespace {
 
+// For --output, in which % begins a symbol that sbatch replaces.
+std::string log_pattern(const std::filesystem::path& directory, const std::string& name) {
+  std::string text;
+  for (const char c : directory.string()) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return text + "/slurm/" + name;
+}
+
 // What both kinds of script begin with.
-std::string head(const std::string& job, const std::filesystem::path& log, const SlurmOptions& options) {
-  std::string text =
-      fmt::format("#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --output=\"{}\"\n", job, log.string());
+std::string head(const std::string& job, const std::string& log, const SlurmOptions& options) {
+  std::string text = fmt::format("#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --output=\"{}\"\n", job, log);
   text += "#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n";
   if (!options.time.empty()) text += "#SBATCH --time=" + options.time + "\n";
   if (!options.memory.empty()) text += "#SBATCH --mem=" + options.memory + "\n";
@@ -64,13 +73,28 @@ std::optional<std::size_t> max_array_size(const std::string& config) {
     if (!line.starts_with("MaxArraySize")) continue;
     const auto digit =
         std::find_if(line.begin(), line.end(), [](unsigned char c) { return std::isdigit(c); });
-    if (digit != line.end()) return std::stoul(std::string(digit, line.end()));
+    const std::string number(digit, line.end());
+    std::size_t size = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), size);
+    if (error == std::errc{}) return size;
   }
   return std::nullopt;
 }
 
+void check_can_submit(const std::filesystem::path& directory, const SlurmOptions& options) {
+  if (options.most_elements == 0) {
+    refuse("", "MaxArraySize = 0 in the configuration of Slurm: it takes no job arrays",
+           "a cluster that takes job arrays", "keyblock study run does all runs on one machine");
+  }
+  if (directory.string().find_first_of("\"\\\n") != std::string::npos) {
+    refuse(directory.string(), "a double quote, a backslash or a line break in the path",
+           "a folder that sbatch can be told to write its logs to");
+  }
+}
+
 std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
                                        const std::vector<std::size_t>& runs, const SlurmOptions& options) {
+  check_can_submit(directory, options);
   const auto per_task = static_cast<std::size_t>(std::max(1, options.runs_per_task));
   std::map<std::size_t, std::vector<std::size_t>> arrays;
   for (const std::size_t run : runs) {
@@ -85,7 +109,7 @@ std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
     script.name = scripts.empty() ? "array.sbatch" : fmt::format("array-{}.sbatch", scripts.size() + 1);
     script.elements = index_ranges(elements);
     if (options.most_running > 0) script.elements += fmt::format("%{}", options.most_running);
-    script.text = head("keyblock", directory / "slurm" / "%A_%a.log", options) +
+    script.text = head("keyblock", log_pattern(directory, "%A_%a.log"), options) +
                   "#SBATCH --array=" + script.elements + "\n\n" +
                   task_commands(directory, array * options.most_elements, runs.back(), options);
     scripts.push_back(std::move(script));
@@ -93,8 +117,18 @@ std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
   return scripts;
 }
 
+bool is_array_script(const std::string& name) {
+  const std::string begin = "array", end = ".sbatch";
+  if (!name.starts_with(begin) || !name.ends_with(end) || name.size() < begin.size() + end.size())
+    return false;
+  const std::string number = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return number.empty() || (number.size() > 1 && number[0] == '-' &&
+                            std::all_of(number.begin() + 1, number.end(),
+                                        [](unsigned char c) { return std::isdigit(c) != 0; }));
+}
+
 std::string collect_script(const std::filesystem::path& directory, const SlurmOptions& options) {
-  return head("keyblock-collect", directory / "slurm" / "%j.log", options) +
+  return head("keyblock-collect", log_pattern(directory, "%j.log"), options) +
          fmt::format("\nexec {} study collect {}\n", shell_quoted(options.program),
                      shell_quoted(directory.string()));
 }

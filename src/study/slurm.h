@@ -22,9 +22,16 @@ struct ArrayScript {
   std::string elements;  ///< as for --array: "3,7-20%4"
 };
 
-/// One script, or several, for these runs (ascending indices) of the study in `directory` (absolute).
+/// Throws InputError when Slurm takes no arrays (most_elements = 0), and for a path that `#SBATCH --output` cannot hold: with a
+/// double quote, a backslash or a line break.
+void check_can_submit(const std::filesystem::path& directory, const SlurmOptions& options);
+
+/// One script, or several, for these runs (ascending indices) of the study in `directory` (absolute), which can be submitted.
 std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
                                        const std::vector<std::size_t>& runs, const SlurmOptions& options);
+
+/// Whether a file of that name in DIR is one of them, of this call or an earlier one.
+bool is_array_script(const std::string& name);
 
 /// A script that gathers the study.
 std::string collect_script(const std::filesystem::path& directory, const SlurmOptions& options);

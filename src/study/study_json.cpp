@@ -106,7 +106,8 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
   ordered_json points{
       {"intensity", column(curve.stripes, [](const statistics::Stripe& s) { return s.intensity; })},
       {"n", column(curve.stripes, [](const statistics::Stripe& s) { return s.runs; })},
-      {"exceeded", column(curve.stripes, [](const statistics::Stripe& s) { return s.exceeded; })}};
+      {"exceeded", column(curve.stripes, [](const statistics::Stripe& s) { return s.exceeded; })},
+      {"realizations", column(curve.stripes, [](const statistics::Stripe& s) { return s.clusters; })}};
   add_band(points, "probability", group.points);
   ordered_json band{{"intensity", column(curve.intensity, [](double x) { return x; })}};
   add_band(band, "probability", curve.probability);
@@ -139,7 +140,7 @@ ordered_json failed_json(const StudyData& study) {
 
 ordered_json points(const std::vector<Vec2>& outline) {
   ordered_json rows = ordered_json::array();
-  for (const Vec2 p : outline) rows.push_back({number(p.x), number(p.y)});
+  for (const Vec2 p : outline) rows.push_back({p.x, p.y});
   return rows;
 }
 
@@ -151,7 +152,8 @@ ordered_json head(const StudyData& study, const Summary& summary) {
                     {"shaking", static_cast<bool>(summary.shaking_axis[a])}});
   ordered_json levels = ordered_json::array();
   for (const DamageLevel& level : study.levels)
-    levels.push_back({{"name", level.name}, {"measure", level.measure}, {"threshold", level.threshold}});
+    levels.push_back(
+        {{"name", level.name}, {"measure", level.measure}, {"threshold", number(level.threshold)}});
   ordered_json units = ordered_json::array();
   for (const Measure& m : measures())
     units.push_back({{"name", m.name}, {"title", m.title}, {"unit", m.unit}});
@@ -187,7 +189,8 @@ ordered_json head(const StudyData& study, const Summary& summary) {
     json["precision"] = {{"measure", study.precision->measure},
                          {"half_width", limit(study.precision->half_width)},
                          {"width", limit(study.precision->width)},
-                         {"reached", precise_enough(study, summary)}};
+                         {"minimum", study.precision->minimum},
+                         {"reached", study.precision->reached}};
   }
   json["marginal"] = nullptr;
   if (study.marginal)
@@ -208,8 +211,9 @@ std::string study_json(const StudyData& study, const Summary& summary) {
   for (const FragilityGroup& group : summary.fragility)
     fragility.push_back(fragility_json(study, summary, group));
   json["fragility"] = std::move(fragility);
-  json["grid"] = {{"corner", {number(study.grid.corner.x), number(study.grid.corner.y)}},
-                  {"cell_m", number(study.grid.cell)},
+  // Six digits are too few for coordinates of a national grid.
+  json["grid"] = {{"corner", {study.grid.corner.x, study.grid.corner.y}},
+                  {"cell_m", study.grid.cell},
                   {"columns", study.grid.columns},
                   {"rows", study.grid.rows}};
   ordered_json outlines = ordered_json::array();

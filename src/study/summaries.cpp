@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/index.h"
+#include "scenario/key_path.h"
 #include "statistics/proportion.h"
 
 namespace keyblock::study {
@@ -114,11 +115,27 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && std::string_view(text).substr(text.size() - end.size()) == end;
 }
 
-/// An axis is one of shaking when its key says so, or when two combinations that differ on it alone differ in intensity.
+/// Of several keys that vary together, too.
+bool of_stages_and_motions(const std::vector<std::string>& keys) {
+  return std::all_of(keys.begin(), keys.end(), [](const std::string& key) {
+    const auto path = scenario::parse_key_path(key);
+    return path && !path->empty() && (path->front().key == "stage" || path->front().key == "motion");
+  });
+}
+
+/// See Summary::shaking_axis. Whether it changes an intensity: two combinations that differ on it alone differ in one.
 std::vector<bool> shaking_axes(const StudyData& study, const std::vector<Combination>& combinations) {
   std::vector<bool> result;
   for (std::size_t a = 0; a < study.axes.size(); ++a) {
-    bool shaking = ends_with(study.axes[a].key, ".scale") || ends_with(study.axes[a].key, ".motion");
+    const std::vector<std::string> keys =
+        study.axes[a].keys.empty() ? std::vector{study.axes[a].key} : study.axes[a].keys;
+    if (!of_stages_and_motions(keys)) {
+      result.push_back(false);
+      continue;
+    }
+    bool shaking = std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+      return ends_with(key, ".scale") || ends_with(key, ".motion");
+    });
     std::map<std::vector<std::string>, std::array<double, 3>> seen;
     for (const Combination& c : combinations) {
       if (shaking || c.runs.empty() || a >= c.values.size()) continue;
@@ -156,6 +173,7 @@ std::vector<Marginal> marginal_runs(const StudyData& study) {
     const RunResult& run = study.runs[r];
     if (run.variant.empty() && measured(study, run).damage) own[{run.realization, run.values}] = r;
   }
+  std::vector<std::size_t> seen(study.runs.size(), 0);  // variants of a run that were measured
   for (const RunResult& run : study.runs) {
     if (run.variant.empty()) continue;
     const Measured variant = measured(study, run);
@@ -164,30 +182,15 @@ std::vector<Marginal> marginal_runs(const StudyData& study) {
     const double a = measured(study, study.runs[found->second]).damage->fallen_area;
     const double b = variant.damage->fallen_area;
     const double change = std::abs(a - b);
-    Marginal& verdict = result[found->second];
+    ++seen[found->second];
     if (change > study.marginal->share * std::max(a, b) && change > smallest_marginal_area)
-      verdict = Marginal::yes;
-    else if (verdict == Marginal::unknown)
-      verdict = Marginal::no;
+      result[found->second] = Marginal::yes;
+  }
+  for (std::size_t r = 0; r < result.size(); ++r) {
+    const bool all = seen[r] > 0 && seen[r] >= study.variants.size();
+    if (all && result[r] == Marginal::unknown) result[r] = Marginal::no;
   }
   return result;
-}
-
-bool precise_enough(const StudyData& study, const Summary& summary) {
-  const auto measure = study.precision ? find_measure(study.precision->measure) : std::nullopt;
-  if (!measure) return false;
-  bool any = false;
-  for (const Combination& c : summary.combinations) {
-    if (c.runs.empty()) continue;
-    any = true;
-    const statistics::Estimate mean = c.measures[*measure].running.mean.back();
-    const double width = mean.high - mean.low;
-    const bool by_share =
-        study.precision->half_width && 0.5 * width <= *study.precision->half_width * std::abs(mean.value);
-    const bool by_width = study.precision->width && width <= *study.precision->width;
-    if (!by_share && !by_width) return false;
-  }
-  return any;
 }
 
 Summary summarize(const StudyData& study) {

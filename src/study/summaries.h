@@ -25,7 +25,8 @@ struct Measured {
 };
 Measured measured(const StudyData& study, const RunResult& run);
 
-enum class Marginal { unknown, no, yes };  ///< unknown: no variant of the run has been measured
+/// yes: one variant is enough; no: all of StudyData::variants were measured, and none changes much; else unknown.
+enum class Marginal { unknown, no, yes };
 
 struct MeasureSummary {
   statistics::Description description;  ///< quantiles: summary_quantiles
@@ -45,10 +46,10 @@ struct Combination {
   std::size_t failed = 0;                    ///< those with an error, or without the stage
   std::array<double, 3> intensity{};         ///< mean over the runs; all alike unless the motion varies
   std::optional<std::size_t> worst, median;  ///< runs with the largest and with the middle fallen area
-  std::size_t checked = 0, marginal = 0;     ///< runs with variants, and those of them that are marginal
-  std::vector<MeasureSummary> measures;      ///< as measures()
-  std::vector<LevelSummary> levels;          ///< as StudyData::levels
-  std::size_t mapped = 0;                    ///< runs with a map
+  std::size_t checked = 0, marginal = 0;  ///< runs of which it is known, and those of them that are marginal
+  std::vector<MeasureSummary> measures;   ///< as measures()
+  std::vector<LevelSummary> levels;       ///< as StudyData::levels
+  std::size_t mapped = 0;                 ///< runs with a map
   /// By cell of the grid: in how many of them its rock has fallen, and has fallen or loosened; −1 where all excavate it.
   std::vector<int> fallen, disturbed;
 };
@@ -59,13 +60,15 @@ struct FragilityGroup {
   std::vector<std::string> values;        ///< empty text on the axes of the shaking
   std::vector<std::size_t> combinations;  ///< by intensity
   std::vector<statistics::Estimate>
-      points;  ///< exceeded share at each stripe of the curve, Wilson's interval
+      points;  ///< exceeded share at each stripe of the curve, Wilson's interval of as many draws as realizations
   statistics::FragilityCurve curve;
 };
 
 struct Summary {
   std::vector<Combination> combinations;  ///< in the order of the axes, the last one running fastest
-  std::vector<bool> shaking_axis;  ///< by axis: its key ends in .scale or .motion, or it changes an intensity
+  /// By axis: all its keys are of stages or motions, and end in .scale or .motion or change an intensity. An axis that
+  /// changes the rock as well is none.
+  std::vector<bool> shaking_axis;
   std::vector<FragilityGroup>
       fragility;                     ///< by level, intensity, group; empty where no axis changes the shaking
   std::vector<Marginal> marginal;    ///< by run; that of variants is unknown
@@ -75,11 +78,6 @@ struct Summary {
 
 /// Deterministic; 10,000 runs take seconds.
 Summary summarize(const StudyData& study);
-
-/// Whether `study.precision` is reached: at the end of the running mean of its measure the band (Student's interval) is
-/// narrow enough in every combination that has measured runs. False where one has a single run, where there are none, and
-/// where no precision, or that of no measure, is asked for.
-bool precise_enough(const StudyData& study, const Summary& summary);
 
 /// Parts of it. `groups` of fragility, and whether runs are marginal.
 std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summary& summary);

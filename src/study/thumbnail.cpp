@@ -14,9 +14,9 @@ namespace keyblock::study {
 
 namespace {
 
-/// Width of the window in units of the picture: blocks are drawn at whole units. The finest with which the picture is
-/// small enough is taken, or the last.
-constexpr std::array<int, 5> resolutions{400, 320, 250, 190, 140};
+/// Width of the window in units of the picture: blocks are drawn at whole units, which are fewer letters than decimals. The finest
+/// with which the picture is small enough is taken, or the last. Below about 700 a round opening that fills a screen has kinks.
+constexpr std::array<int, 9> resolutions{2000, 1400, 1000, 850, 700, 500, 320, 250, 140};
 constexpr std::size_t largest_size = 12'000;
 /// Room around the openings, as a share of their size: about 1.3 widths from the centre of a single one.
 constexpr double room = 0.8;

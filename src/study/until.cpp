@@ -28,7 +28,7 @@ bool narrow(const Sums& s, const scenario::UntilSpec& until, double quantile) {
   const double n = s.count, mean = s.first + s.sum / n;
   const double variance = std::max(0.0, (s.squares - s.sum * s.sum / n) / (n - 1.0));
   const double half = quantile * std::sqrt(variance / n);
-  return (until.half_width && half <= *until.half_width * std::abs(mean)) ||
+  return (until.half_width && variance > 0.0 && half <= *until.half_width * std::abs(mean)) ||
          (until.width && 2.0 * half <= *until.width);
 }
 

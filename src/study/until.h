@@ -11,8 +11,10 @@ namespace keyblock::study {
 ///
 ///     m ± t s / √N,   t the quantile of Student's distribution with N − 1 degrees of freedom,
 ///
-/// is narrow enough. Runs that failed are left out; at least two must have been done. As n depends on the results alone, it is the same
-/// for any number of workers. Nothing when no n up to the first run that is missing is enough, or without a rule.
+/// is narrow enough. Without variation, s = 0, a share of the mean (half_width) is not reached: that nothing has fallen n times
+/// does not say how often something will. An absolute width is: it is what ends a study where nothing falls. Runs that failed are
+/// left out; at least two must have been done. As n depends on the results alone, it is the same for any number of workers.
+/// Nothing when no n up to the first run that is missing is enough, or without a rule.
 ///
 /// `results` are in the places of plan.runs; null: missing. Variants have no say.
 std::optional<int> enough_realizations(const Plan& plan, const std::vector<const RunResult*>& results);

@@ -15,7 +15,6 @@
 #include "core/index.h"
 #include "study/folder.h"
 #include "study/process.h"
-#include "study/until.h"
 
 namespace keyblock::study {
 namespace {
@@ -44,16 +43,21 @@ class Workers {
  public:
   Workers(const fs::path& directory, const Plan& plan, StudyFiles& files, const WorkerOptions& options)
       : directory_(directory), plan_(plan), files_(files), options_(options) {
+    // A run that failed before counts as missing until it has been tried again; that may make more realizations necessary.
+    forget_failures(directory, plan, files);
     for (std::size_t k = 0; k < plan.runs.size(); ++k) {
       if (!files.asked(plan.runs[k])) continue;
       if (files.states[k].kind == RunState::Kind::done) {
         ++outcome_.before;
       } else {
         pending_.push_back(k);
+        files.states[k] = {};
       }
     }
-    // A run that failed before counts as missing until it has been tried again.
-    for (const std::size_t k : pending_) files.states[k] = {};
+    // Values that were added to the plan stand behind those it had.
+    std::stable_sort(pending_.begin(), pending_.end(), [&](std::size_t a, std::size_t b) {
+      return plan.runs[a].realization < plan.runs[b].realization;
+    });
   }
 
   WorkerOutcome run() {
@@ -132,7 +136,7 @@ class Workers {
     const PlannedRun& run = plan_.runs[k];
     RunState& state = files_.states[k];
     state = read_run_state(directory_, plan_, run);
-    if (plan_.until) update_enough();
+    update_enough(plan_, files_);
     if (!files_.asked(run) && state.kind != RunState::Kind::done) return;
     if (state.kind == RunState::Kind::done) {
       ++outcome_.done;
@@ -141,7 +145,7 @@ class Workers {
     } else {
       note_failure(k, end);
       outcome_.failed.push_back(run.key + ": " + state.problem);
-      if (plan_.until) update_enough();
+      update_enough(plan_, files_);
     }
     const bool done = state.kind == RunState::Kind::done;
     report(run.key, done ? "" : state.problem);
@@ -158,15 +162,6 @@ class Workers {
     state.problem = state.result.error;
     state.kind = RunState::Kind::failed;
     write_failure(directory_, plan_, state.result);
-  }
-
-  void update_enough() {
-    std::vector<const RunResult*> results;
-    for (const RunState& s : files_.states) {
-      const bool known = s.kind == RunState::Kind::done || s.kind == RunState::Kind::failed;
-      results.push_back(known ? &s.result : nullptr);
-    }
-    files_.enough = enough_realizations(plan_, results);
   }
 
   void report(const std::string& finished, const std::string& failure) {

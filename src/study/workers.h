@@ -35,8 +35,8 @@ struct WorkerOutcome {
   bool interrupted = false;
 };
 
-/// Runs all that is not done, in the order of the plan, no run twice; with [study.until], realizations one after the other until
-/// they are enough. Children write to runs/KEY/log.txt and die with this process. `files` is what is there (updated).
+/// Runs all that is not done, by realization, then in the order of the plan, no run twice; with [study.until] until realizations
+/// are enough. What failed before is tried again. Children write to runs/KEY/log.txt and die with this process. `files` is what is there (updated).
 ///
 /// Throws RunError when no process can be started, or what failed cannot be written down (the disk is full); the children have
 /// ended by then.

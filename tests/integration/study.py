@@ -1,20 +1,11 @@
 #!/usr/bin/env python3
 """Studies from end to end: many runs, and studies that go on with what is there."""
 
-import csv
 import json
 import time
 import unittest
 
 from study_case import GALLERY, SCALES, SMALL, Study
-
-
-def checksum(text):
-    """FNV-1a, 64 bit."""
-    value = 14695981039346656037
-    for byte in text.encode():
-        value = ((value ^ byte) * 1099511628211) % 2**64
-    return f"{value:016x}"
 
 
 class Runs(Study):
@@ -34,8 +25,7 @@ class Runs(Study):
             self.assertAlmostEqual(shaken["pga_m_s2"], 3.0 * float(run["values"][0][0]))
             # A whole sine from rest: the velocity at its middle is 2 a / ω.
             self.assertAlmostEqual(shaken["pgv_m_s"], 2 * shaken["pga_m_s2"] / (8 * 3.141592653589793), places=5)
-        with open(self.out / "runs.csv", newline="") as file:
-            self.assertEqual([row["key"] for row in csv.DictReader(file)], self.keys())
+        self.assertEqual([row["key"] for row in self.rows()], self.keys())
 
     def test_a_run_is_that_of_the_run_command(self):
         self.run_study("small.toml")
@@ -124,6 +114,52 @@ class GoingOn(Study):
         self.assertEqual({key: self.done()[key] for key in before}, before)
         self.assertEqual(self.keys()[:6], keys)  # an index stays that of its run
 
+    def test_axes_in_another_order_and_grouped_keep_runs_what_they_are(self):
+        axes = [("rock.order", "[1, 2]"), ("stage.after.duration", "[0.1, 0.2]")]
+        text = GALLERY + '[study]\nkeep = "measures"\n'
+
+        def of(*axes):
+            return text + "".join(f'[[study.vary]]\nkey = "{key}"\nvalues = {values}\n' for key, values in axes)
+
+        self.write("axes.toml", of(*axes))
+        self.run_study("axes.toml")
+        names = [key for key, _ in axes]
+        before, ended = {row["key"]: [row[name] for name in names] for row in self.rows()}, self.done()
+        self.write("axes.toml", of(*reversed(axes)))
+        self.run_study("axes.toml", "--resume")
+        self.assertEqual({row["key"]: [row[name] for name in names] for row in self.rows()}, before)
+        self.write("axes.toml", text + '[[study.vary]]\nkeys = ["stage.after.duration", "rock.order"]\nvalues = [[0.2, 1], [0.1, 2]]\n')
+        self.run_study("axes.toml", "--resume")
+        together = {row["key"]: row["stage.after.duration + rock.order"].split(", ")[::-1] for row in self.rows()}
+        self.assertEqual(together, {key: values for key, values in before.items() if values in (["1", "0.2"], ["2", "0.1"])})
+        self.assertEqual(self.done(), ended)
+
+    def test_a_file_that_changes_while_its_value_is_left_out(self):
+        for name in "ab":
+            self.write(f"{name}.csv", "# m/s2\n0.0,0.0\n0.1,1.0\n0.2,0.0\n")
+        text = GALLERY.replace("x = { amplitude = 3.0, frequency = 4.0, cycles = 2.0 }",
+                               'components = [{ file = "a.csv", azimuth = 90.0 }]')  # fmt: skip
+        both = '[[study.vary]]\nkey = "motion.sine.components[0].file"\nvalues = ["a.csv", "b.csv"]\n'
+        self.write("both.toml", text + '[study]\nkeep = "measures"\n' + both)
+        self.write("one.toml", text + '[study]\nkeep = "measures"\n')
+        self.run_study("both.toml")
+        self.run_study("one.toml", "--resume")
+        self.write("b.csv", "# m/s2\n0.0,0.0\n0.1,2.0\n0.2,0.0\n")
+        self.assertRegex(self.run_study("both.toml", "--resume", expect=1).stderr, r"the content of .*b\.csv")
+
+    def test_other_cells_of_the_map_are_refused(self):
+        self.run_study("small.toml")
+        self.assertIn("study.map.cell: 0.05 there, 0.1 here",
+                      self.run_study("small.toml", "--resume", "--set", "study.map.cell=0.1", expect=1).stderr)  # fmt: skip
+
+    def test_an_edited_copy_of_the_scenario_is_refused(self):
+        self.run_study("small.toml")
+        copy = self.out / "study.toml"
+        copy.write_text(copy.read_text().replace("young = 2.0e9", "young = 3.0e9"))
+        for command in (("collect", "out"), ("task", "out", "0"), ("run", "small.toml", "-o", "out", "--resume")):
+            said = self.study(*command, expect=1).stderr
+            self.assertIn("out/study.toml: found a scenario other than that of plan.json", said)
+
     def test_fewer_values_leave_runs_aside(self):
         self.run_study("small.toml")
         keys = self.keys()
@@ -204,6 +240,35 @@ class GoingOn(Study):
         self.assertIn("out/plan.json: found a damaged file", self.study("collect", "out", expect=1).stderr)
 
 
+class GoingOnUntil(Study):
+    """[study.until] with two realizations that agree and a third that failed: enough, as long as it is left out."""
+
+    def setUp(self):
+        super().setUp()
+        until = 'until = { measure = "slipped_length_m", width = 0.01, minimum = 3, maximum = 6 }\n'
+        self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until)
+        self.study("submit", "until.toml", "-o", "out")
+        self.study("task", "out", "0")
+        first, second, third, *_ = self.plan()["runs"]
+        result = self.result(first["key"])
+        self.write_result(second, result)
+        self.write_result(third, result, "failed.json", error="killed")
+        self.assertIn("enough: 3 realizations\n2 of 3 runs done, 1 failed\n", self.study("collect", "out").stdout)
+        self.assertTrue(json.loads((self.out / "study.json").read_text())["precision"]["reached"])
+
+    def test_resuming_runs_what_the_failed_run_makes_necessary(self):
+        for workers in ("1", "2"):
+            said = self.study("run", "until.toml", "-o", "out", "--resume", "--workers", workers).stdout
+            self.assertIn("6 of 6 runs done\n", said)
+        self.assertFalse(json.loads((self.out / "study.json").read_text())["precision"]["reached"])
+
+    def test_submitting_again_does_too(self):
+        said = self.study("submit", "until.toml", "-o", "out", "--resume").stdout
+        self.assertIn("4 of 6 runs to be done", said)
+        for k in range(2, 6):
+            self.assertIn(": done\n", self.study("task", "out", k).stdout)
+
+
 class Large(Study):
     def many(self, realizations):
         """A study whose runs are all done: copies of one."""
@@ -211,14 +276,9 @@ class Large(Study):
         self.study("submit", "many.toml", "-o", "out")
         self.study("task", "out", "0")
         runs = self.plan()["runs"]
-        text = self.run_file(runs[0]["key"]).read_text()
+        result = self.result(runs[0]["key"])
         for run in runs[1:]:
-            result = json.loads(text)
-            result |= {"key": run["key"], "realization": run["realization"], "values": [row[0] for row in run["values"]]}
-            del result["checksum"]
-            line = json.dumps(result, separators=(",", ":"))[:-1]
-            self.run_file(run["key"]).parent.mkdir()
-            self.run_file(run["key"]).write_text(f'{line},"checksum":"{checksum(line)}"}}\n')
+            self.write_result(run, result)
         return len(runs)
 
     def test_a_study_that_is_done_is_resumed_without_a_run(self):

@@ -136,6 +136,41 @@ class WrongInput(Study):
         self.assertEqual(set(self.done()), {self.keys()[k] for k in (3, 4, 5)})
 
 
+    def test_scripts_of_an_earlier_submission_go(self):
+        self.slurm("MaxArraySize = 2")
+        self.submit()
+        self.assertEqual(self.scripts(), ["array-2.sbatch", "array-3.sbatch", "array.sbatch"])
+        self.study("task", "out", "0")
+        self.study("task", "out", "1")
+        self.submit("--resume")
+        self.assertEqual(self.scripts(), ["array-2.sbatch", "array.sbatch"])
+        self.run_study("small.toml", "--resume")
+        self.submit("--resume")
+        self.assertEqual(self.scripts(), [])
+
+    def test_a_cluster_without_arrays(self):
+        self.slurm("MaxArraySize = 0")
+        self.assertIn("MaxArraySize = 0", self.submit(expect=1))
+        self.assertFalse(self.out.exists())
+
+    def slurm(self, config):
+        """A `scontrol` that says this."""
+        (self.folder / "bin").mkdir()
+        tool = self.folder / "bin/scontrol"
+        tool.write_text(f"#!/bin/sh\necho '{config}'\n")
+        tool.chmod(0o755)
+
+    def submit(self, *more, expect=0):
+        environment = {**os.environ, "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}"}
+        done = subprocess.run([PROGRAM, "study", "submit", "small.toml", "-o", "out", *more], cwd=self.folder, env=environment,
+                              capture_output=True, text=True, timeout=60)  # fmt: skip
+        self.assertEqual(done.returncode, expect, done.stderr)
+        return done.stdout + done.stderr
+
+    def scripts(self):
+        return sorted(path.name for path in self.out.glob("array*"))
+
+
 class FullDisk(Study):
     def no_space(self, size):
         """The study's folder becomes a small file system of its own, where that is allowed."""

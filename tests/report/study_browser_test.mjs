@@ -223,6 +223,68 @@ const tests = {
     await close(page);
   },
 
+  async "measures that begin later are told apart from pictures of all that happened"() {
+    const page = await open("study_since");
+    assert.match(
+      await text(page, ".verdict"),
+      /of rock after “excavated” \(\d/,
+    );
+    for (const id of ["map", "extremes", "gallery"])
+      assert.match(
+        await text(page, `#${id} .hint`),
+        /since the first excavation, not only what came after “excavated”/,
+      );
+    assert.match(
+      await text(page, "#map"),
+      /Fallen or loosened since the first excavation/,
+    );
+    assert.match(
+      await text(page, "#gallery figcaption"),
+      /m² fallen after “excavated”/,
+    );
+    await shoot(page, "study_since-1400");
+    await close(page);
+  },
+
+  async "counts of realizations are whole, and bands end at the axes"() {
+    const page = await open("study_since");
+    const chart = page.locator("#distribution .chart-target svg").nth(1);
+    const marks = await chart.evaluate((e) =>
+      [...e.querySelectorAll(".axes text")]
+        .filter((t) => t.getAttribute("text-anchor") === "middle")
+        .map((t) => Number(t.textContent)),
+    );
+    assert.deepEqual(marks, [1, 2, 3]);
+    const [clip, frame] = await chart.evaluate((e) => {
+      const band = e.querySelector(".band").parentNode;
+      const id = /#([\w-]+)/.exec(band.getAttribute("clip-path"))[1];
+      const box = e.querySelector(`#${id} rect`);
+      const [y, height] = ["y", "height"].map((k) =>
+        Number(box.getAttribute(k)),
+      );
+      const path = e.querySelector(".frame").getAttribute("d");
+      const [, top, bottom] = /^M\S+ (\S+)V(\S+)H/.exec(path).map(Number);
+      return [
+        [y, y + height],
+        [top, bottom],
+      ];
+    });
+    assert.deepEqual(clip, frame);
+    await close(page);
+  },
+
+  async "that nothing has fallen yet is not called precise"() {
+    const page = await open("study_still");
+    const all = await text(page, "#verdict");
+    assert.match(
+      all,
+      /Not enough realizations: 1 of 1 combination is known less well/,
+    );
+    assert.match(all, /No variation yet in 1 combination/);
+    assert.doesNotMatch(all, /Enough realizations: every/);
+    await close(page);
+  },
+
   async "a study without runs says so"() {
     const page = await open("study_empty");
     assert.match(await text(page, ".verdict"), /No run has ended/);

@@ -36,6 +36,20 @@ int main(int argc, char** argv) {
                                 .variants = false,
                                 .failures = false,
                                 .pictures = 0});
+  // Measures that begin after the excavation, in too few realizations for the precision.
+  write("study_since", {.realizations = 3,
+                        .scales = {"0.4", "1.0"},
+                        .orders = {"1"},
+                        .variants = false,
+                        .failures = false,
+                        .since = true});
+  // Nothing falls.
+  write("study_still", {.realizations = 8,
+                        .scales = {"0.0"},
+                        .orders = {"1"},
+                        .variants = false,
+                        .failures = false,
+                        .pictures = 0});
   // More pictures than a page holds.
   write("study_large", {.realizations = 190, .variants = false, .failures = false});
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "study_empty");

@@ -148,6 +148,7 @@ TEST(Fragility, SaysWhyThereIsNoCurve) {
   EXPECT_EQ(status({{1, 10, 0}, {2, 10, 10}}), FragilityStatus::separated);
   EXPECT_EQ(status({{1, 10, 0}, {2, 10, 4}, {3, 10, 10}}), FragilityStatus::separated);
   EXPECT_EQ(status({{1, 10, 0}, {2, 10, 4}}), FragilityStatus::separated);
+  EXPECT_EQ(status({{1, 3, 2}, {2, 3, 3}}), FragilityStatus::separated);
   EXPECT_EQ(status({{1, 10, 5}, {2, 10, 5}}), FragilityStatus::not_increasing);
   EXPECT_EQ(status({{1, 10, 8}, {2, 10, 3}}), FragilityStatus::not_increasing);
   EXPECT_EQ(status({{1, 10, 10}, {2, 10, 0}}), FragilityStatus::not_increasing);
@@ -170,8 +171,22 @@ TEST(Fragility, NoBandWhereThereIsNoFitOrOneRealization) {
   EXPECT_EQ(never.probability[0].value, 0.0);
   EXPECT_TRUE(std::isnan(never.probability[0].high));
   EXPECT_TRUE(std::isnan(never.theta.low));
+  EXPECT_TRUE(std::isnan(never.theta.value));
+  for (Observation& run : runs) run.exceeded = true;
+  const FragilityCurve always = fragility_curve(runs, at, 0.95);
+  EXPECT_EQ(always.fit.status, FragilityStatus::always_exceeded);
+  EXPECT_TRUE(std::isnan(always.theta.value));
   EXPECT_EQ(fragility_curve({}, at, 0.95).fit.status, FragilityStatus::no_data);
   EXPECT_TRUE(std::isnan(fragility_curve({}, at, 0.95).probability[0].value));
+}
+
+TEST(Fragility, StripesKnowTheirClusters) {
+  const std::vector<Observation> runs{{1.0, false, 1}, {2.0, true, 2}, {1.0, true, 2}, {1.0, true, 1}};
+  const FragilityCurve curve = fragility_curve(runs, {}, 0.95);
+  ASSERT_EQ(curve.stripes.size(), 2U);
+  EXPECT_EQ(curve.stripes[0].runs, 3.0);
+  EXPECT_EQ(curve.stripes[0].clusters, 2.0);
+  EXPECT_EQ(curve.stripes[1].clusters, 1.0);
 }
 
 TEST(Fragility, RunsWithoutShakingAreLeftOutAndCounted) {

@@ -19,6 +19,17 @@ TEST(Sample, MeanAndDeviationOfKnownNumbers) {
   EXPECT_DOUBLE_EQ(standard_deviation(x), std::sqrt(32.0 / 7.0));
 }
 
+// 3 × 1.1 / 3 is not 1.1 in floating point.
+TEST(Sample, EqualNumbersHaveNoSpread) {
+  for (const double value : {1.1, 0.3, -7e-9}) {
+    for (std::size_t n = 2; n < 12; ++n) {
+      const std::vector<double> x(n, value);
+      EXPECT_EQ(mean(x), value);
+      EXPECT_EQ(standard_deviation(x), 0.0);
+    }
+  }
+}
+
 TEST(Sample, TooFewNumbersGiveNone) {
   const std::vector<double> one{3.0};
   EXPECT_TRUE(std::isnan(mean({})));
@@ -76,6 +87,15 @@ TEST(Proportion, WilsonOfKnownCounts) {
 }
 
 // Exact coverage over the binomial distribution: near what is asked for, at every p that matters.
+TEST(Proportion, OfFewerIndependentDrawsIsWider) {
+  const Estimate twenty = proportion(10, 20, 0.95), ten = share_of_independent(0.5, 10.0, 0.95);
+  EXPECT_DOUBLE_EQ(ten.low, proportion(5, 10, 0.95).low);
+  EXPECT_DOUBLE_EQ(ten.high, proportion(5, 10, 0.95).high);
+  EXPECT_LT(ten.low, twenty.low);
+  EXPECT_EQ(share_of_independent(1.0, 4.0, 0.95).high, 1.0);
+  EXPECT_EQ(share_of_independent(0.0, 4.0, 0.95).low, 0.0);
+}
+
 TEST(Proportion, CoversAsOftenAsItSays) {
   const int n = 40;
   for (const double p : {0.1, 0.3, 0.5, 0.8}) {

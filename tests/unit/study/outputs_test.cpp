@@ -139,6 +139,23 @@ TEST_F(Outputs, StudyJsonSaysWhatTheStatisticsAre) {
   EXPECT_FALSE(json["failed"].empty());
 }
 
+// Coordinates of a national grid need more than six digits; what is not known is null.
+TEST_F(Outputs, StudyJsonKeepsCoordinatesWholeAndTheRestShort) {
+  StudyData study = made_up::synthetic_study({.realizations = 6, .variants = false, .failures = false});
+  study.outlines = {{{612345.125, 4812345.75}, {612347.125, 4812345.75}, {612346.0, 4812347.5}}};
+  study.grid.corner = {612340.0625, 4812340.5};
+  study.levels = {{"any", "fallen_area_m2", -1.0}, {"third", "fallen_area_m2", 1.0 / 3.0}};
+  study.precision->reached = true;
+  const auto json = nlohmann::json::parse(study_json(study, summarize(study)));
+  EXPECT_EQ(json["outlines"][0][0], (nlohmann::json{612345.125, 4812345.75}));
+  EXPECT_EQ(json["grid"]["corner"], (nlohmann::json{612340.0625, 4812340.5}));
+  EXPECT_EQ(json["levels"][1]["threshold"], 0.333333);
+  EXPECT_EQ(json["fragility"][0]["status"], "always_exceeded");
+  EXPECT_EQ(json["fragility"][0]["theta"]["value"], nullptr);
+  EXPECT_EQ(json["fragility"][0]["points"]["realizations"][0], 6);
+  EXPECT_EQ(json["precision"]["reached"], true);
+}
+
 TEST_F(Outputs, SameStudySameBytes) {
   const StudyData study = made_up::synthetic_study({.realizations = 12});
   write_outputs(directory, study);

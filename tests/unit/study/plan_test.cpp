@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "study/folder.h"
 #include "study/plan_json.h"
+#include "study/run_json.h"
 
 namespace keyblock::study {
 namespace {
@@ -155,6 +156,100 @@ TEST(EnterPlan, NamesWhatDiffers) {
   EXPECT_THROW(enter_plan(folder.path(), other, true), InputError);
   EXPECT_THROW(enter_plan(folder.path(), plan, false), InputError);
   EXPECT_NO_THROW(enter_plan(folder.path(), plan, true));
+}
+
+/// Leaves what a run leaves that is done.
+void write_run(const std::filesystem::path& directory, const Plan& plan, const PlannedRun& run) {
+  std::filesystem::create_directories(run_folder(directory, run.key));
+  std::ofstream(run_folder(directory, run.key) / "run.json") << run_json(empty_result(run), run_input(plan));
+}
+
+// The same runs with the axes, and the keys of one that joins several, in another order.
+TEST(ReadRunState, TakesItsPlaceFromThePlan) {
+  const Folder folder;
+  const auto plan_with = [](const std::string& axes) {
+    return plan_of({"study.realizations=1", "study.vary=" + axes});
+  };
+  const std::string scale = "{key='stage.shaken.scale', values=[1, 2]}",
+                    order = "{key='rock.order', values=[2, 1]}";
+  Plan plan = plan_with("[" + scale + ", " + order + "]");
+  enter_plan(folder.path(), plan, false);
+  for (const PlannedRun& run : plan.runs) write_run(folder.path(), plan, run);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> later{
+      {"[" + order + ", " + scale + "]", {"2/1", "2/2", "1/1", "1/2"}},
+      {"[{keys=['rock.order', 'stage.shaken.scale'], values=[[1, 1], [2, 1], [1, 2], [2, 2]]}]",
+       {"1, 1", "2, 1", "1, 2", "2, 2"}}};
+  for (const auto& [axes, expected] : later) {
+    Plan next = plan_with(axes);
+    const std::vector<PlannedRun> runs = next.runs;
+    enter_plan(folder.path(), next, true);
+    ASSERT_EQ(next.runs.size(), plan.runs.size());
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const RunState state = read_run_state(folder.path(), next, runs[k]);
+      ASSERT_EQ(state.kind, RunState::Kind::done) << state.problem;
+      std::string values;
+      for (const std::string& value : state.result.values) values += (values.empty() ? "" : "/") + value;
+      EXPECT_EQ(values, expected[k]);
+    }
+  }
+}
+
+// Runs of a value that was dropped are used when it comes back: with the file as it was.
+TEST(EnterPlan, RemembersFilesOfEarlierPlans) {
+  const Folder folder;
+  Plan plan = plan_of();
+  plan.files = {{"a.smc", "0123"}, {"b.smc", "4567"}};
+  enter_plan(folder.path(), plan, false);
+  Plan fewer = plan_of();
+  fewer.files = {{"a.smc", "0123"}};
+  enter_plan(folder.path(), fewer, true);
+  EXPECT_EQ(read_plan(folder.path()).files.size(), 2U);
+  Plan again = plan_of();
+  again.files = {{"a.smc", "0123"}, {"b.smc", "89ab"}};
+  try {
+    enter_plan(folder.path(), again, true);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the content of b.smc"));
+  }
+}
+
+TEST(EnterPlan, MapsOfOtherCellsAreRefusedOnceRunsAreDone) {
+  const Folder folder;
+  Plan plan = plan_of();
+  enter_plan(folder.path(), plan, false);
+  Plan finer = plan_of({"study.map.cell=0.1"});
+  EXPECT_NO_THROW(enter_plan(folder.path(), finer, true));
+  write_run(folder.path(), finer, finer.runs[1]);
+  plan = plan_of();
+  try {
+    enter_plan(folder.path(), plan, true);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("study.map.cell: 0.1 there, 0.05 here"));
+  }
+  EXPECT_EQ(read_plan(folder.path()).grid.cell, 0.1);
+}
+
+TEST(ReadPlan, RefusesACopyThatWasEdited) {
+  const Folder folder;
+  Plan plan = plan_of({"rock.poisson=0.25"});
+  enter_plan(folder.path(), plan, false);
+  const std::string text = plan.text;
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string edited = text;
+    edited.replace(edited.find(from), from.size(), to);
+    std::ofstream(scenario_path(folder.path())) << edited;
+  };
+  with("density = 2500.0", "density = 2600.0");
+  try {
+    read_plan(folder.path());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("study.toml: found a scenario other than that of plan.json"));
+  }
+  with("realizations = 3", "realizations = 4  # without effect");
+  EXPECT_NO_THROW(read_plan(folder.path()));
 }
 
 TEST(FileLock, IsHeldOnce) {

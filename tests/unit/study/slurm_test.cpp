@@ -68,9 +68,31 @@ TEST(ArrayScripts, SeveralRunsForATask) {
   EXPECT_THAT(scripts[1].text, HasSubstr("run <= 47;"));
 }
 
+TEST(ArrayScripts, WhatSbatchCannotTakeIsRefused) {
+  SlurmOptions options;
+  options.program = "keyblock";
+  const auto scripts = array_scripts("/data/100%A", {0}, options);
+  EXPECT_THAT(scripts[0].text, HasSubstr("#SBATCH --output=\"/data/100%%A/slurm/%A_%a.log\"\n"));
+  EXPECT_THAT(collect_script("/data/100%A", options), HasSubstr("\"/data/100%%A/slurm/%j.log\"\n"));
+  for (const char* folder : {"/data/a\"b", "/data/a\\b", "/data/a\nb"})
+    EXPECT_THROW(array_scripts(folder, {0}, options), InputError);
+  options.most_elements = 0;
+  EXPECT_THROW(array_scripts("/data", {0}, options), InputError);
+}
+
+TEST(ArrayScripts, AreKnownByTheirNames) {
+  for (const char* name : {"array.sbatch", "array-2.sbatch", "array-31.sbatch"})
+    EXPECT_TRUE(is_array_script(name));
+  for (const char* name :
+       {"array-.sbatch", "array2.sbatch", "array-mine.sbatch", "array.sbatch.txt", "collect.sbatch"})
+    EXPECT_FALSE(is_array_script(name));
+}
+
 TEST(MaxArraySize, OfTheConfiguration) {
   EXPECT_EQ(max_array_size("KillWait = 30 sec\nMaxArraySize            = 4001\nMaxJobCount = 10000\n"),
             4001U);
+  EXPECT_EQ(max_array_size("MaxArraySize = 0\n"), 0U);
+  EXPECT_FALSE(max_array_size("MaxArraySize = 99999999999999999999999\n"));
   EXPECT_FALSE(max_array_size(""));
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "statistics/proportion.h"
 #include "synthetic_study.h"
 
 namespace keyblock::study {
@@ -165,25 +166,94 @@ TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {
   EXPECT_EQ(summary.combinations[0].measures[0].description.n, 5U);
 }
 
-// Five values 4, 0, 1, 2, 9: mean 3.2, s = 3.564, t = 2.776: ± 4.425.
-TEST(Summaries, PrecisionIsThatOfStudentsInterval) {
-  StudyData study = small();
-  study.runs.resize(5);
-  const auto reached = [&](Precision precision) {
-    study.precision = std::move(precision);
-    return precise_enough(study, summarize(study));
+// "no" is said only when all that was planned to be tried was tried.
+TEST(Summaries, NotMarginalOnlyWhenAllVariantsWereMeasured) {
+  StudyData study;
+  study.axes = {{"rock.order", {"1"}}};
+  study.marginal = MarginalCheck{3.0, 0.5};
+  study.variants = {"friction-", "friction+", "released"};
+  const auto add = [&](int r, double friction_plus, bool released) {
+    study.runs.push_back(made_run(r, {"1"}, 1.0, 1.0));
+    study.runs.push_back(made_run(r, {"1"}, 1.0, 1.0, "friction-"));
+    study.runs.push_back(made_run(r, {"1"}, 1.0, friction_plus, "friction+"));
+    if (released) study.runs.push_back(made_run(r, {"1"}, 1.0, 1.0, "released"));
   };
-  EXPECT_FALSE(precise_enough(study, summarize(study)));
-  EXPECT_TRUE(reached({"fallen_area_m2", 4.43 / 3.2, std::nullopt}));
-  EXPECT_FALSE(reached({"fallen_area_m2", 4.42 / 3.2, std::nullopt}));
-  EXPECT_TRUE(reached({"fallen_area_m2", std::nullopt, 8.86}));
-  EXPECT_FALSE(reached({"fallen_area_m2", std::nullopt, 8.84}));
-  EXPECT_TRUE(reached({"fallen_area_m2", 0.001, 8.86}));  // one of both is enough
-  EXPECT_FALSE(reached({"no_such_measure", 100.0, 100.0}));
-  study.runs.push_back(made_run(0, {"40"}, 2.0, 0.5));  // a single run tells nothing
-  EXPECT_FALSE(reached({"fallen_area_m2", 100.0, 100.0}));
-  study.runs.clear();
-  EXPECT_FALSE(reached({"fallen_area_m2", 100.0, 100.0}));
+  add(0, 1.0, true);
+  add(1, 1.0, false);  // missing
+  add(2, 1.0, true);   // failed
+  study.runs.back().error = "killed";
+  add(3, 9.0, false);
+  const Summary summary = summarize(study);
+  std::vector<Marginal> own;
+  for (std::size_t r = 0; r < study.runs.size(); ++r)
+    if (study.runs[r].variant.empty()) own.push_back(summary.marginal[r]);
+  EXPECT_EQ(own, (std::vector<Marginal>{Marginal::no, Marginal::unknown, Marginal::unknown, Marginal::yes}));
+  EXPECT_EQ(summary.combinations[0].checked, 2U);
+}
+
+// A curve goes through shakings of one rock: what changes both is no axis of shaking.
+TEST(Summaries, AnAxisThatChangesTheRockIsNoneOfShaking) {
+  const auto shaking = [](Axis axis) {
+    StudyData study;
+    study.axes = {std::move(axis)};
+    study.levels = {{"any", "fallen_area_m2", 0.1}};
+    for (int r = 0; r < 4; ++r) {
+      study.runs.push_back(made_run(r, {"1"}, 1.0, 0.0));
+      study.runs.push_back(made_run(r, {"2"}, 2.0, 1.0));
+    }
+    const Summary summary = summarize(study);
+    EXPECT_EQ(summary.fragility.empty(), !summary.shaking_axis[0]);
+    return static_cast<bool>(summary.shaking_axis[0]);
+  };
+  EXPECT_TRUE(shaking({"stage.quake.duration", {"1", "2"}}));
+  EXPECT_TRUE(shaking({"motion.'m'.x.amplitude", {"1", "2"}}));
+  EXPECT_TRUE(shaking({"stage[1].scale", {"1", "2"}}));
+  EXPECT_FALSE(shaking({"section.azimuth", {"1", "2"}}));
+  EXPECT_FALSE(shaking({"stages.scale", {"1", "2"}}));
+  EXPECT_TRUE(shaking({"stage.a.scale + stage.b.scale", {"1", "2"}, {"stage.a.scale", "stage.b.scale"}}));
+  EXPECT_FALSE(shaking({"rock.order + stage.a.scale", {"1", "2"}, {"rock.order", "stage.a.scale"}}));
+}
+
+// Shaken twice at the same intensity, ten realizations are still ten.
+TEST(Summaries, PointsCountRealizationsNotRuns) {
+  StudyData study;
+  study.axes = {{"stage.quake.motion", {"'a'", "'b'", "'c'"}}};
+  study.levels = {{"any", "fallen_area_m2", 0.1}};
+  for (int r = 0; r < 10; ++r) {
+    study.runs.push_back(made_run(r, {"'a'"}, 1.0, r < 5 ? 1.0 : 0.0));
+    study.runs.push_back(made_run(r, {"'b'"}, 1.0, r < 5 ? 1.0 : 0.0));
+    study.runs.push_back(made_run(r, {"'c'"}, 2.0, r < 8 ? 1.0 : 0.0));
+  }
+  const Summary summary = summarize(study);
+  const FragilityGroup& group = summary.fragility.at(0);
+  ASSERT_EQ(group.points.size(), 2U);
+  EXPECT_EQ(group.curve.stripes[0].runs, 20.0);
+  const statistics::Estimate ten = statistics::proportion(5, 10, study.confidence);
+  EXPECT_DOUBLE_EQ(group.points[0].value, 0.5);
+  EXPECT_DOUBLE_EQ(group.points[0].low, ten.low);
+  EXPECT_DOUBLE_EQ(group.points[0].high, ten.high);
+  EXPECT_DOUBLE_EQ(group.points[1].low, statistics::proportion(8, 10, study.confidence).low);
+}
+
+// What is taken off leaves no noise: equal gains are equal, and have no spread.
+TEST(Summaries, EqualDifferencesAreOneValue) {
+  StudyData study;
+  study.axes = {{"rock.order", {"1"}}};
+  study.since = "excavated";
+  study.stage = "quake";
+  for (int r = 0; r < 6; ++r) {
+    RunResult run = made_run(r, {"1"}, 1.0, 0.0);
+    run.stages[0].damage.fallen_area = 0.1 + 0.7 * r;
+    run.stages[1].damage.fallen_area = run.stages[0].damage.fallen_area + 1.1;
+    study.runs.push_back(run);
+  }
+  const Summary summary = summarize(study);
+  const MeasureSummary& fallen = summary.combinations[0].measures[*find_measure("fallen_area_m2")];
+  EXPECT_EQ(fallen.exceedance.value, (std::vector<double>{1.1}));
+  EXPECT_EQ(fallen.description.mean.value, 1.1);
+  EXPECT_EQ(fallen.description.standard_deviation.value, 0.0);
+  EXPECT_EQ(fallen.description.standard_deviation.high, 0.0);
+  EXPECT_EQ(fallen.running.mean.back().low, fallen.running.mean.back().high);
 }
 
 TEST(Summaries, MapsCountRunsByCell) {

@@ -101,11 +101,15 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
   study.version = "0.1.0";
   study.axes = {{"stage.'first earthquake'.scale", options.scales}, {"rock.order", options.orders}};
   study.stage = "after";
+  if (options.since) study.since = "excavated";
   if (options.levels)
     study.levels = {{"light", "fallen_area_m2", 0.25},
                     {"moderate", "fallen_area_m2", 0.8},
                     {"severe", "fallen_area_m2", 6.0}};
-  if (options.variants) study.marginal = study::MarginalCheck{};
+  if (options.variants) {
+    study.marginal = study::MarginalCheck{};
+    study.variants = {"friction-", "friction+", "released"};
+  }
   study.precision = study::Precision{"fallen_area_m2", 0.1, std::nullopt};
   study.outlines = {outline({0.0, 0.0})};
   if (options.map) study.grid = {{-5.5, -5.5}, 0.275, 40, 40};

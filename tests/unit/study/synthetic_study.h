@@ -19,6 +19,7 @@ struct SyntheticStudyOptions {
   bool failures = true;  ///< some runs fail, some are missing
   bool levels = true;
   bool map = true;
+  bool since = false;              ///< measures begin after the excavation
   std::size_t pictures = 100'000;  ///< how many realizations have one
 };
 

@@ -46,11 +46,11 @@ TEST(Thumbnail, DrawsBlocksWhereTheyAreByStatus) {
   add_block(model, frame, 1, 1, BlockStatus::fallen, {0.0F, -1.0F});
   add_block(model, frame, 0, 1, BlockStatus::loosened);
   const std::string svg = thumbnail_svg(model, frame);
-  EXPECT_NE(svg.find("viewBox=\"0 0 400 400\""), std::string::npos);
-  // No opening: the window is that of the rock, 2 × 2 m, 200 units a metre, y down.
-  EXPECT_EQ(path_of(svg, 'r'), "m0 400l200 0 0-200-200 0z");
-  EXPECT_EQ(path_of(svg, 'f'), "m200 400l200 0 0-200-200 0z");
-  EXPECT_EQ(path_of(svg, 'l'), "m0 200l200 0 0-200-200 0z");
+  EXPECT_NE(svg.find("viewBox=\"0 0 2000 2000\""), std::string::npos);
+  // No opening: the window is that of the rock, 2 × 2 m, 1000 units a metre, y down.
+  EXPECT_EQ(path_of(svg, 'r'), "m0 2000l1000 0 0-1000-1000 0z");
+  EXPECT_EQ(path_of(svg, 'f'), "m1000 2000l1000 0 0-1000-1000 0z");
+  EXPECT_EQ(path_of(svg, 'l'), "m0 1000l1000 0 0-1000-1000 0z");
 }
 
 TEST(Thumbnail, ShowsTheSurroundingsOfTheOpening) {
@@ -61,10 +61,10 @@ TEST(Thumbnail, ShowsTheSurroundingsOfTheOpening) {
   model.excavation_outlines = {{{-2, -1}, {2, -1}, {2, 1}, {-2, 1}}};
   const std::string svg = thumbnail_svg(model, frame);
   // 4 × 2 m and 3.2 m on each side.
-  EXPECT_NE(svg.find("viewBox=\"0 0 400 323\""), std::string::npos) << svg.substr(0, 200);
+  EXPECT_NE(svg.find("viewBox=\"0 0 2000 1615\""), std::string::npos) << svg.substr(0, 200);
   const std::string rock = path_of(svg, 'r');
   EXPECT_LE(std::count(rock.begin(), rock.end(), 'z'), 12 * 10);
-  EXPECT_EQ(path_of(svg, 'o').substr(0, 2), "m1");
+  EXPECT_EQ(path_of(svg, 'o').substr(0, 4), "m615");
 }
 
 TEST(Thumbnail, FixedBlocksAreToldApartAndDoNotSetTheWindow) {
@@ -75,8 +75,8 @@ TEST(Thumbnail, FixedBlocksAreToldApartAndDoNotSetTheWindow) {
   add_block(model, frame, 0.5, 0.5, BlockStatus::in_place);
   model.blocks[1].fixed = model.blocks[2].fixed = true;
   const std::string svg = thumbnail_svg(model, frame);
-  EXPECT_EQ(path_of(svg, 'r'), "m0 400l400 0 0-400-400 0z");
-  EXPECT_EQ(path_of(svg, 'x'), "m200 200l400 0 0-400-400 0z");
+  EXPECT_EQ(path_of(svg, 'r'), "m0 2000l2000 0 0-2000-2000 0z");
+  EXPECT_EQ(path_of(svg, 'x'), "m1000 1000l2000 0 0-2000-2000 0z");
 }
 
 TEST(Thumbnail, NothingIsAPictureToo) {
@@ -91,6 +91,8 @@ TEST(Thumbnail, OfATunnelOfEightHundredBlocksIsSmall) {
     const std::string svg = thumbnail_svg(model, frame);
     EXPECT_LE(svg.size(), 12'000U);
     EXPECT_GE(svg.size(), 5'000U);
+    // Enlarged, the opening is still round.
+    EXPECT_GE(std::atoi(svg.substr(svg.find("viewBox=\"0 0 ") + 13).c_str()), 700);
     EXPECT_FALSE(path_of(svg, 'f').empty());
     EXPECT_FALSE(path_of(svg, 'l').empty());
     EXPECT_EQ(svg, thumbnail_svg(model, frame));

@@ -68,8 +68,48 @@ TEST(EnoughRealizations, RelativeToTheMean) {
   Sample s = sample();
   s.plan.until->width.reset();
   s.plan.until->half_width = 0.01;
-  for (int k = 0; k < 5; ++k) s.add(k, "1", 0.0);
-  EXPECT_EQ(s.enough(), 2);  // nothing ever falls
+  for (int k = 0; k < 5; ++k) s.add(k, "1", 5.0 + 0.001 * k);
+  EXPECT_EQ(s.enough(), 2);
+}
+
+// That nothing has fallen yet is no precision of a mean; an absolute width is reached all the same.
+TEST(EnoughRealizations, NoShareOfTheMeanWithoutVariation) {
+  for (const double area : {0.0, 5.0}) {
+    Sample s = sample();
+    s.plan.until->width.reset();
+    s.plan.until->half_width = 0.5;
+    for (int k = 0; k < 8; ++k) s.add(k, "1", area);
+    EXPECT_FALSE(s.enough());
+    s.add(8, "1", area + 0.001);
+    EXPECT_EQ(s.enough().has_value(), area > 0.0);
+    s.plan.until->width = 1.0;
+    EXPECT_EQ(s.enough(), 2);
+  }
+}
+
+// Five values 4, 0, 1, 2, 9: mean 3.2, s = 3.564, t = 2.776: ± 4.425.
+TEST(EnoughRealizations, IsThatOfStudentsInterval) {
+  Sample s = sample();
+  const double areas[] = {4.0, 0.0, 1.0, 2.0, 9.0};
+  for (int k = 0; k < 5; ++k) s.add(k, "1", areas[k]);
+  const auto reached = [&](std::optional<double> half_width, std::optional<double> width) {
+    s.plan.until = scenario::UntilSpec{"fallen_area_m2", half_width, width, 5, 100};
+    return s.enough().has_value();
+  };
+  EXPECT_TRUE(reached(4.43 / 3.2, std::nullopt));
+  EXPECT_FALSE(reached(4.42 / 3.2, std::nullopt));
+  EXPECT_TRUE(reached(std::nullopt, 8.86));
+  EXPECT_FALSE(reached(std::nullopt, 8.84));
+  EXPECT_TRUE(reached(0.001, 8.86));  // one of both is enough
+  s.plan.until->minimum = 6;
+  EXPECT_FALSE(s.enough());
+  // A combination that is planned, but has no results, or none but failed ones, is not known.
+  s.plan.until->minimum = 5;
+  for (int k = 0; k < 5; ++k) s.add(k, "2", areas[k]);
+  EXPECT_EQ(s.enough(), 5);
+  EXPECT_FALSE(s.enough(5));
+  for (std::size_t k = 5; k < 10; ++k) s.runs[k].error = "killed";
+  EXPECT_FALSE(s.enough());
 }
 
 TEST(EnoughRealizations, FailedRunsAndVariantsHaveNoSay) {

@@ -27,6 +27,8 @@ export interface ChartOptions {
   x: Scale;
   y: Scale;
   percent?: boolean;
+  /** Values of x are counts: no marks between them. */
+  wholeX?: boolean;
   series: ChartSeries[];
   /** Horizontal lines. */
   marks?: { y: number; text: string }[];
@@ -97,23 +99,30 @@ export class Chart {
     this.width = width;
     const { options } = this;
     const clip = `clip-${Math.random().toString(36).slice(2)}`;
+    const bands = svg("g", { "clip-path": `url(#${clip}-bands)` });
     const inner = svg("g", { "clip-path": `url(#${clip})` });
-    for (const s of options.series) this.drawBand(inner, s);
+    for (const s of options.series) this.drawBand(bands, s);
     for (const s of options.series) this.drawCurve(inner, s);
+    const [across, down] = [
+      Math.max(0, width - margin.left - margin.right),
+      this.height - margin.top - margin.bottom,
+    ];
     const root = svg(
       "svg",
       { width, height: this.height, viewBox: `0 0 ${width} ${this.height}`, role: "img" },
+      // Bands end at the axes; lines and points on the edge show their whole width.
+      svg(
+        "clipPath",
+        { id: `${clip}-bands` },
+        svg("rect", { x: margin.left, y: margin.top, width: across, height: down }),
+      ),
       svg(
         "clipPath",
         { id: clip },
-        svg("rect", {
-          x: margin.left - 1,
-          y: margin.top - 6,
-          width: Math.max(0, width - margin.left - margin.right + 8),
-          height: this.height - margin.top - margin.bottom + 12,
-        }),
+        svg("rect", { x: margin.left - 1, y: margin.top - 6, width: across + 8, height: down + 12 }),
       ),
       this.axes(),
+      bands,
       inner,
       this.limits(),
       this.hair,
@@ -127,6 +136,7 @@ export class Chart {
     const group = svg("g", { class: "axes" });
     const bottom = height - margin.bottom;
     for (const x of axisTicks(options!.x, Math.max(2, (width - margin.left) / 75))) {
+      if (options!.wholeX && !Number.isInteger(x)) continue;
       const at = this.px(x);
       group.append(
         svg("line", { class: "grid", x1: at, x2: at, y1: margin.top, y2: bottom }),

@@ -78,7 +78,13 @@ export interface StudyJson {
   levels: { name: string; measure: string; threshold: number }[];
   measures: Quantity[];
   intensities: Quantity[];
-  precision: { measure: string; half_width: Maybe; width: Maybe } | null;
+  precision: {
+    measure: string;
+    half_width: Maybe;
+    width: Maybe;
+    minimum: number;
+    reached: boolean;
+  } | null;
   marginal: { friction_degrees: number; share: number; smallest_area_m2: number } | null;
   combinations: Combination[];
   fragility: Fragility[];
@@ -179,6 +185,11 @@ export class Study {
         : [`${this.axisName(a)} ${value}`],
     );
     return parts.join(", ") || "all runs";
+  }
+
+  /** From when on measures count: " after “excavated”"; nothing where they count from the first excavation on. */
+  after(): string {
+    return this.json.since ? ` after “${this.json.since}”` : "";
   }
 
   /** The run's picture as an address for an img element; none where the page has none. */

@@ -90,6 +90,7 @@ export class Distribution {
       xName: "realizations",
       yName: label(q),
       x: { min: 1, max: Math.max(2, n[n.length - 1] ?? 2), logarithmic: false },
+      wholeX: true,
       y,
       series: [
         {

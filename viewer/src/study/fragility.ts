@@ -9,7 +9,7 @@ const reasons: Record<string, string> = {
   one_intensity: "no curve: all runs at the same intensity",
   never_exceeded: "no curve: never exceeded",
   always_exceeded: "no curve: always exceeded",
-  separated: "no curve: one intensity parts exceeded from not exceeded",
+  separated: "no curve: at most one intensity with a share other than 0 and 100 %",
   not_increasing: "no curve: no more damage with more shaking",
 };
 

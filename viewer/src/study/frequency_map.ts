@@ -107,9 +107,10 @@ export class FrequencyMaps {
   private readonly maps: FrequencyMap[];
 
   constructor(study: Study, selection: Selection) {
+    const since = study.json.since ? " since the first excavation" : "";
     this.maps = [
-      new FrequencyMap(study, selection, "fallen", "Fallen"),
-      new FrequencyMap(study, selection, "fallen_or_loosened", "Fallen or loosened"),
+      new FrequencyMap(study, selection, "fallen", `Fallen${since}`),
+      new FrequencyMap(study, selection, "fallen_or_loosened", `Fallen or loosened${since}`),
     ];
     const bar = legendElement({
       title: "Share of the realizations in which the rock that lay there is gone or has moved",

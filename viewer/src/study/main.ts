@@ -37,6 +37,13 @@ function chosenName(study: Study, selection: Selection): HTMLElement {
   return name;
 }
 
+/** Maps and pictures have no beginning but the excavation, unlike the numbers beside them. */
+function wholeHistory(study: Study): HTMLElement | null {
+  return study.json.since
+    ? h("p", { class: "hint" }, `Everything since the first excavation, not only what came${study.after()}.`)
+    : null;
+}
+
 function statistics(study: Study, selection: Selection): Child[] {
   const { levels, fragility, grid } = study.json;
   const parts: Child[] = [];
@@ -54,7 +61,9 @@ function statistics(study: Study, selection: Selection): Child[] {
   const mapped = study.json.combinations.some((c) => c.map.n > 0);
   if (mapped && grid.columns > 0) {
     const map = new FrequencyMaps(study, selection);
-    parts.push(section("map", "Where rock falls", chosenName(study, selection), map.element));
+    parts.push(
+      section("map", "Where rock falls", chosenName(study, selection), wholeHistory(study), map.element),
+    );
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => map.draw());
     for (const moment of ["beforeprint", "afterprint"]) addEventListener(moment, () => map.draw());
   }
@@ -71,6 +80,7 @@ function runs(study: Study, selection: Selection): Child[] {
         "extremes",
         "Worst and median run",
         chosenName(study, selection),
+        wholeHistory(study),
         new Extremes(study, selection).element,
         legend(),
       ),
@@ -78,6 +88,7 @@ function runs(study: Study, selection: Selection): Child[] {
         "gallery",
         "Every realization at the end",
         chosenName(study, selection),
+        wholeHistory(study),
         note ? h("p", { class: "hint" }, note) : null,
         new Gallery(study, selection).element,
       ),

@@ -26,7 +26,7 @@ function pictureOf(study: Study, run: number, title: string): HTMLElement {
   const q = shownAs(study.measure(area));
   const facts = failed
     ? study.errors[run] || "not measured"
-    : `${withUnit(q, study.value(run, area))} fallen${marginal ? " · marginal" : ""}`;
+    : `${withUnit(q, study.value(run, area))} fallen${study.after()}${marginal ? " · marginal" : ""}`;
   return h(
     "figure",
     { class: "run" },

@@ -1,7 +1,7 @@
 import type { Finding } from "../findings";
 import { count, integer, list, significant } from "../format";
 import type { Combination, Estimate, Study } from "./data";
-import { percent, percentRange, relativeHalfWidth, shownAs, withUnit } from "./quantities";
+import { percent, percentRange, relativeHalfWidth, shownAs, withUnit, type Shown } from "./quantities";
 import { headline } from "./selection";
 
 const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -30,9 +30,10 @@ function exceeding(study: Study, l: number, plural: boolean): string {
   const { measure, threshold } = study.json.levels[l];
   const q = shownAs(study.measure(measure));
   const [lose, have] = plural ? ["lose", "have"] : ["loses", "has"];
-  if (measure === "fallen_area_m2") return `${lose} more than ${withUnit(q, threshold)} of rock`;
-  if (measure === "fallen_blocks") return `${lose} more than ${count(threshold, "block")}`;
-  return `${have} ${q.title} above ${withUnit(q, threshold)}`;
+  const after = study.after();
+  if (measure === "fallen_area_m2") return `${lose} more than ${withUnit(q, threshold)} of rock${after}`;
+  if (measure === "fallen_blocks") return `${lose} more than ${count(threshold, "block")}${after}`;
+  return `${have} ${q.title} above ${withUnit(q, threshold)}${after}`;
 }
 
 function probabilitySentence(study: Study, k: number, l: number): string {
@@ -53,7 +54,7 @@ function meanSentence(study: Study, k: number): string {
     mean?.low === null || mean?.low === undefined
       ? ""
       : ` (${withUnit(q, mean.low)} to ${withUnit(q, mean.high)})`;
-  return `${name === "all runs" ? "" : `With ${name}, `}${withUnit(q, mean?.value ?? null)}${range} of rock falls on average of ${count(c.n, "realization")}.`;
+  return `${name === "all runs" ? "" : `With ${name}, `}${withUnit(q, mean?.value ?? null)}${range} of rock falls${study.after()} on average of ${count(c.n, "realization")}.`;
 }
 
 /** What the study says, in sentences. The first is the verdict. */
@@ -81,58 +82,101 @@ function finalMean(c: Combination, measure: string): Estimate | null {
   return last < 0 ? null : { value: running.mean[last], low: running.low[last], high: running.high[last] };
 }
 
+interface Row {
+  c: Combination;
+  mean: Estimate;
+}
+
+/** All realizations gave the same: that is no interval, and says nothing of how well the mean is known. */
+const flat = ({ c, mean }: Row) => c.n > 1 && mean.low !== null && mean.low === mean.high;
+
+/** Where there is no interval, there are too few realizations for one. */
+const halfWidth = (mean: Estimate) =>
+  mean.low === null || mean.high === null ? Infinity : 0.5 * (mean.high - mean.low);
+
 /** Whether enough realizations were run. */
 function precisionFindings(study: Study): Finding[] {
-  const { precision, combinations, confidence } = study.json;
+  const { precision, combinations } = study.json;
   const q = shownAs(study.measure(precision?.measure ?? "fallen_area_m2"));
   const rows = combinations.flatMap((c) => {
     const mean = finalMean(c, q.name);
     return c.n > 0 && mean ? [{ c, mean }] : [];
   });
   if (rows.length === 0) return [];
-  const level = percent(confidence);
-  if (!precision) {
-    const c = combinations[headline(study)];
-    const mean = finalMean(c, q.name);
-    const half = mean && relativeHalfWidth(mean);
-    if (!mean || mean.low === null || mean.high === null)
-      return [{ grade: "attention", text: "Too few realizations for confidence intervals." }];
-    return [
-      {
-        grade: "plain",
-        text: `Mean ${q.title} there: ${withUnit(q, mean.value)}, known to ± ${withUnit(q, 0.5 * (mean.high - mean.low), 2)}${half === null ? "" : ` or ± ${percent(half)}`} (half the ${level} interval). No precision was asked for.`,
-      },
-    ];
-  }
-  const limit = (mean: { value: number | null }) =>
-    Math.max((precision.half_width ?? 0) * Math.abs(mean.value ?? 0), 0.5 * (precision.width ?? 0));
-  // Where there is no interval, there are too few realizations for one.
-  const half = (mean: Estimate) =>
-    mean.low === null || mean.high === null ? Infinity : 0.5 * (mean.high - mean.low);
-  const wide = rows.filter(({ mean }) => half(mean) > limit(mean) * (1 + 1e-9));
+  if (!precision) return [knownTo(study, q)];
+  const level = percent(study.json.confidence);
   const asked = [
     precision.half_width === null ? [] : [`± ${percent(precision.half_width)} of the mean`],
     precision.width === null ? [] : [`a width of ${withUnit(q, precision.width)}`],
   ].flat();
   const goal = `${asked.join(" or ")} (${level} interval of the mean ${q.title})`;
-  if (wide.length === 0)
-    return [{ grade: "good", text: `Enough realizations: every combination is known to ${goal}.` }];
-  // The width of an interval goes with the root of the number of realizations.
-  const needed = wide.flatMap(({ c, mean }) => {
-    const ratio = half(mean) / limit(mean);
-    return Number.isFinite(ratio) ? [{ c, n: c.n * ratio * ratio }] : [];
-  });
-  needed.sort((a, b) => a.n - b.n);
-  const guess = ({ c, n }: { c: Combination; n: number }) =>
-    `${study.combinationName(c.values)} about ${integer(Number(n.toPrecision(2)))}`;
-  const ends = needed.length > 1 ? [needed[0], needed[needed.length - 1]] : needed;
-  const estimate = ends.length > 0 ? ` Realizations that would be needed: ${list(ends.map(guess))}.` : "";
+  const still = rows.filter(flat);
+  const same =
+    still.length > 0
+      ? ` No variation yet in ${count(still.length, "combination")}: all realizations gave the same ${q.title}.`
+      : "";
+  if (precision.reached)
+    return [{ grade: "good", text: `Enough realizations: every combination is known to ${goal}.${same}` }];
   return [
     {
       grade: "attention",
-      text: `Not enough realizations: ${wide.length} of ${count(rows.length, "combination")} ${wide.length === 1 ? "is" : "are"} known less well than ${goal}.${estimate}`,
+      text: `Not enough realizations: ${shortfall(study, rows, goal)}.${same}${needed(study, rows)}`,
     },
   ];
+}
+
+/** How well the mean is known where no precision was asked for. */
+function knownTo(study: Study, q: Shown): Finding {
+  const c = study.json.combinations[headline(study)];
+  const mean = finalMean(c, q.name);
+  if (!mean || mean.low === null || mean.high === null)
+    return { grade: "attention", text: "Too few realizations for confidence intervals." };
+  if (flat({ c, mean }))
+    return {
+      grade: "attention",
+      text: `Mean ${q.title} there: ${withUnit(q, mean.value)}. No variation yet: all ${count(c.n, "realization")} gave the same, so that nothing can be said of how well it is known.`,
+    };
+  const half = relativeHalfWidth(mean);
+  return {
+    grade: "plain",
+    text: `Mean ${q.title} there: ${withUnit(q, mean.value)}, known to ± ${withUnit(q, halfWidth(mean), 2)}${half === null ? "" : ` or ± ${percent(half)}`} (half the ${percent(study.json.confidence)} interval). No precision was asked for.`,
+  };
+}
+
+/** Half the width that the precision asks for. */
+function limitOf(study: Study, mean: Estimate): number {
+  const { precision } = study.json;
+  return Math.max((precision?.half_width ?? 0) * Math.abs(mean.value ?? 0), 0.5 * (precision?.width ?? 0));
+}
+
+function tooWide(study: Study, rows: Row[]): Row[] {
+  return rows.filter((row) => !flat(row) && halfWidth(row.mean) > limitOf(study, row.mean) * (1 + 1e-9));
+}
+
+/** What is short of the precision asked for: combinations, or realizations. */
+function shortfall(study: Study, rows: Row[], goal: string): string {
+  const { axes, precision, realizations } = study.json;
+  const planned = axes.reduce((product, axis) => product * axis.values.length, 1);
+  const still = precision!.width === null ? rows.filter(flat).length : 0;
+  const below = tooWide(study, rows).length + still + Math.max(0, planned - rows.length);
+  if (below > 0)
+    return `${below} of ${count(planned, "combination")} ${below === 1 ? "is" : "are"} known less well than ${goal}`;
+  return realizations < precision!.minimum
+    ? `${integer(realizations)} of the ${integer(precision!.minimum)} that are run in any case`
+    : `some of the first ${integer(realizations)} are missing`;
+}
+
+/** The width of an interval goes with the root of the number of realizations. */
+function needed(study: Study, rows: Row[]): string {
+  const found = tooWide(study, rows).flatMap(({ c, mean }) => {
+    const ratio = halfWidth(mean) / limitOf(study, mean);
+    return Number.isFinite(ratio) ? [{ c, n: c.n * ratio * ratio }] : [];
+  });
+  found.sort((a, b) => a.n - b.n);
+  const guess = ({ c, n }: { c: Combination; n: number }) =>
+    `${study.combinationName(c.values)} about ${integer(Number(n.toPrecision(2)))}`;
+  const ends = found.length > 1 ? [found[0], found[found.length - 1]] : found;
+  return ends.length > 0 ? ` Realizations that would be needed: ${list(ends.map(guess))}.` : "";
 }
 
 /** Runs that failed or are missing. */
