@@ -37,8 +37,10 @@ void orient(Polygon& polygon);
 /// O(n²).
 bool self_intersects(const Polygon& polygon);
 
-/// Triangles that cover the polygon exactly (ear clipping after holes are bridged), counter-clockwise.
-/// Throws std::invalid_argument for a ring of fewer than three vertices or of no area.
+/// Triangles between vertices of the polygon that cover it exactly (ear clipping after holes are joined to the outer
+/// ring), counter-clockwise. Rings may touch at common vertices as long as the region stays connected.
+/// Throws std::invalid_argument for a ring of fewer than three vertices or of no area, and for rings that break the
+/// invariant, so that the areas of the triangles do not add up.
 std::vector<std::array<Vec2, 3>> triangulate(const Polygon& polygon);
 
 }  // namespace keyblock

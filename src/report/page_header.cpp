@@ -78,6 +78,16 @@ ordered_json run_json(const simulation::RunRecord& run) {
           {"interrupted", run.interrupted}};
 }
 
+/// The smallest number of steps from one row of a stage to the next; 0 where there are no two rows.
+long steps_between_rows(const std::vector<simulation::StepRow>& rows) {
+  long least = 0;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const long between = rows[k].step - rows[k - 1].step;
+    if (rows[k].stage == rows[k - 1].stage && (least == 0 || between < least)) least = between;
+  }
+  return least;
+}
+
 }  // namespace
 
 std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
@@ -90,6 +100,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
       {"recorded_frames", run.frames.size()},
       {"displacement_quantum", displacement_quantum(run)},
       {"stress_quantum", stress_quantum(run)},
+      {"steps_between_rows", steps_between_rows(run.steps)},
       // In the order of the values in add_steps, page_arrays.cpp.
       {"step_columns",
        {"stage", "time", "iterations", "step_size", "penetration", "max_displacement", "closed_contacts",

@@ -45,12 +45,13 @@ export async function openers() {
     ],
   });
 
-  /** Opens a sample; the returned `complaints` collect what must not happen. */
+  /** Opens a sample, after running a script in its page if one is given; the returned `complaints` collect what must not happen. */
   async function open(
     name,
-    { width = 1400, height = 1000, colorScheme = "light" } = {},
+    { width = 1400, height = 1000, colorScheme = "light", script } = {},
   ) {
     const page = await context.newPage();
+    if (script) await page.addInitScript(script);
     await page.setViewportSize({ width, height });
     await page.emulateMedia({ colorScheme });
     const complaints = [];

@@ -211,6 +211,87 @@ const tests = {
     await close(page);
   },
 
+  async "zooming a plot takes its line along, a double click only ends the zoom"() {
+    const page = await open("tunnel");
+    await slideTo(page, 78);
+    const [name, moved] = [await label(page), await marker(page)];
+    const over = page.locator(".aside .u-over").first();
+    await over.scrollIntoViewIfNeeded();
+    const box = await over.boundingBox();
+    await page.mouse.move(box.x + 5, box.y + 20);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.7 * box.width, box.y + 20, { steps: 5 });
+    await page.mouse.up();
+    await settle(page);
+    const hidden = () => page.$eval(".aside .now-line", (line) => line.hidden);
+    assert.ok((await hidden()) || (await marker(page)) !== moved);
+    await page.mouse.dblclick(box.x + 0.2 * box.width, box.y + 20);
+    await settle(page);
+    assert.equal(await label(page), name);
+    assert.equal(await marker(page), moved);
+    assert.ok(!(await hidden()));
+    await close(page);
+  },
+
+  async "no label of an axis is cut off at the left"() {
+    const script = () => {
+      const { prototype } = CanvasRenderingContext2D;
+      const fillText = prototype.fillText;
+      window.labels = [];
+      prototype.fillText = function (text, x, y) {
+        const width = this.measureText(text).width;
+        const shares = { right: 1, end: 1, center: 0.5 };
+        const left = x - width * (shares[this.textAlign] ?? 0);
+        const at = this.getTransform().transformPoint({ x: left, y });
+        window.labels.push({ text, left: at.x });
+        fillText.call(this, text, x, y);
+      };
+    };
+    for (const width of [400, 1400]) {
+      const page = await open("far_and_still", { width, script });
+      await page.locator(canvas).scrollIntoViewIfNeeded();
+      await page.locator(".zoom-buttons button").first().click();
+      await settle(page);
+      await page.locator("#quality .plot").last().scrollIntoViewIfNeeded();
+      await settle(page);
+      const labels = await page.evaluate(() => window.labels);
+      const cut = labels.filter((l) => l.left < 0).map((l) => l.text);
+      assert.deepEqual(cut, []);
+      const written = labels.map((l) => l.text);
+      assert.ok(written.includes("6,691,590"), written.join("; "));
+      assert.ok(
+        written.some((t) => / × 10⁻/.test(t)),
+        written.join("; "),
+      );
+      assert.ok(written.includes("10⁻⁶"), written.join("; "));
+      await shoot(page, `far_and_still-${width}`);
+      await close(page);
+    }
+  },
+
+  async "labels of colour bars keep clear of each other"() {
+    for (const width of [400, 1400]) {
+      const page = await open("tunnel", { width });
+      for (const value of ["displacement", "mean", "major", "minor", "shear"]) {
+        await page.locator("#animation select").first().selectOption(value);
+        await settle(page);
+        await settle(page);
+        const gaps = await page.$$eval(
+          "#animation .legend-ticks span",
+          (spans) => {
+            const boxes = spans
+              .map((span) => span.getBoundingClientRect())
+              .sort((a, b) => a.left - b.left);
+            return boxes.slice(1).map((box, k) => box.left - boxes[k].right);
+          },
+        );
+        assert.ok(gaps.length >= 1);
+        assert.ok(Math.min(...gaps) >= 4, `${value}: ${gaps}`);
+      }
+      await close(page);
+    }
+  },
+
   async "a picture can be enlarged and closed again"() {
     const page = await open("tunnel");
     await page.locator(".picture").nth(3).click();
@@ -228,7 +309,12 @@ const tests = {
       /marginal: 3 blocks .* still moving when “excavated” ended/,
     );
     assert.equal(await page.locator("#verdict tbody tr").count(), 3);
+    assert.match(await text(page, "#verdict thead"), /Mass\s*t\/m/);
     assert.ok((await page.locator("#quality td.attention").count()) >= 3);
+    assert.match(
+      await text(page, "#quality tbody tr:last-child"),
+      /Marginal static stages\s*“excavated”: no equilibrium, 3 blocks still moving/,
+    );
     await page.locator("#verdict button.link").first().click();
     assert.match(await label(page), /^excavated/);
     await shoot(page, "marginal-1400");

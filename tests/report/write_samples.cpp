@@ -25,6 +25,15 @@ int main(int argc, char** argv) {
   write("no_excavation", {.excavation = false});
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "empty");
   keyblock::report::write_report({}, std::filesystem::path(argv[1]) / "empty");
+  // Far from the origin of coordinates, and hardly moving: long and small numbers at the axes.
+  keyblock::results::RunData far = synthetic_run({.frames_per_stage = 4});
+  far.model.origin = {466000.0, 6691590.0};
+  for (auto& row : far.steps) {
+    row.max_displacement = 1e-9 * (1.0 + static_cast<double>(row.step % 7));
+    row.energy = {.kinetic = 1.0 + 1e-9 * static_cast<double>(row.step % 11), .input = 1.0};
+  }
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "far_and_still");
+  keyblock::report::write_report(far, std::filesystem::path(argv[1]) / "far_and_still");
   // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.
   write("large", {.columns = 32, .rows = 28, .edge_pieces = 3, .frames_per_stage = 75});
 }

@@ -81,6 +81,8 @@ export interface Header {
   displacement_quantum: number;
   stress_quantum: number;
   step_columns: string[];
+  /** The smallest number of steps from one row of a stage to the next; 0 where there are none. */
+  steps_between_rows: number;
   arrays: ArrayEntry[];
 }
 

@@ -57,6 +57,15 @@ export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+let measuring: CanvasRenderingContext2D | null = null;
+
+/** Width of each text in a font of so many pixels, px. */
+export function textWidths(texts: readonly string[], pixels: number): number[] {
+  const context = (measuring ??= document.createElement("canvas").getContext("2d")!);
+  context.font = `${pixels}px ${css("--font")}`;
+  return texts.map((text) => context.measureText(text).width);
+}
+
 /** A table in a box that scrolls sideways where the page is too narrow. */
 export function tableBox(caption: string, head: Child[][], rows: Child[][], className = ""): HTMLElement {
   const header = h("thead");

@@ -14,12 +14,24 @@ export function significant(x: Number_, digits = 3): string {
   if (x === 0) return "0";
   const size = Math.abs(x);
   if (size >= 1e7 || size < 1e-4) {
-    const exponent = Math.floor(Math.log10(size));
-    const mantissa = (x / 10 ** exponent).toPrecision(Math.min(digits, 3));
-    return minus(`${mantissa} × 10${superscript(exponent)}`);
+    const [mantissa, exponent] = x.toExponential(digits - 1).split("e");
+    return minus(`${mantissa} × ${powerOfTen(Number(exponent))}`);
   }
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return minus(x.toLocaleString("en-US", { minimumFractionDigits: 0, maximumFractionDigits: decimals }));
+  return minus(rounded(x, 0, decimals));
+}
+
+export function powerOfTen(exponent: number): string {
+  return `10${superscript(exponent)}`;
+}
+
+/** Halves go to the even digit, as in what the program prints. */
+function rounded(x: number, least: number, most: number): string {
+  return x.toLocaleString("en-US", {
+    minimumFractionDigits: least,
+    maximumFractionDigits: most,
+    roundingMode: "halfEven",
+  } as Intl.NumberFormatOptions);
 }
 
 function superscript(n: number): string {
@@ -29,10 +41,7 @@ function superscript(n: number): string {
 
 export function fixed(x: Number_, decimals: number): string {
   if (!present(x)) return missing;
-  const text = x.toLocaleString("en-US", {
-    minimumFractionDigits: decimals,
-    maximumFractionDigits: decimals,
-  });
+  const text = rounded(x, decimals, decimals);
   return minus(/^-[0.,]*$/.test(text) ? text.slice(1) : text);
 }
 
@@ -69,10 +78,10 @@ export function stress(pa: Number_, digits = 3): string {
 export function duration(s: Number_): string {
   if (!present(s)) return missing;
   if (s < 120) return `${significant(s, 3)} s`;
-  const minutes = Math.floor(s / 60);
-  return minutes < 120
-    ? `${minutes} min ${Math.round(s - 60 * minutes)} s`
-    : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+  const seconds = Math.round(s);
+  if (seconds < 7200) return `${Math.floor(seconds / 60)} min ${seconds % 60} s`;
+  const minutes = Math.round(s / 60);
+  return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
 export function count(n: number, singular: string, plural = `${singular}s`): string {

@@ -1,9 +1,12 @@
 import { place, ticks, type Scale } from "./colors";
-import { h } from "./dom";
+import { h, textWidths } from "./dom";
 import type { Legend } from "./fields";
 
-/** Of .legend-bar in style.css, px. */
+/** Of .legend-bar and .legend in style.css, px. */
 const barWidth = 360;
+const fontSize = 12.5;
+/** Between labels, px. */
+const space = 8;
 
 /** A legend as HTML, so that it prints sharply and can be read out. */
 export function legendElement(legend: Legend): HTMLElement {
@@ -13,11 +16,19 @@ export function legendElement(legend: Legend): HTMLElement {
     const bar = h("div", { class: "legend-bar", "aria-hidden": "true" });
     bar.style.background = `linear-gradient(to right, ${colors.join(",")})`;
     const labels = h("div", { class: "legend-ticks" });
-    for (const { value, text, align } of barLabels(scale, format)) {
-      const tick = h("span", { class: align }, text);
-      tick.style.left = `${100 * place(scale, value)}%`;
-      labels.append(tick);
-    }
+    const write = (width: number) => {
+      labels.replaceChildren();
+      for (const { value, text, align } of barLabels(scale, format, width)) {
+        const tick = h("span", { class: align }, text);
+        tick.style.left = `${100 * place(scale, value)}%`;
+        labels.append(tick);
+      }
+    };
+    write(barWidth);
+    // A narrow window has a shorter bar.
+    new ResizeObserver(() => {
+      if (labels.clientWidth > 0) write(labels.clientWidth);
+    }).observe(labels);
     box.append(bar, labels);
   }
   if (legend.classes) {
@@ -40,15 +51,19 @@ interface BarLabel {
 }
 
 /** Labels of a colour bar: its two ends, and of the round values between them those that do not run into others. */
-function barLabels(scale: Scale, format: (value: number) => string): BarLabel[] {
+function barLabels(scale: Scale, format: (value: number) => string, barLength: number): BarLabel[] {
   const labels: BarLabel[] = [
     { value: scale.min, text: format(scale.min), align: "first" },
     { value: scale.max, text: format(scale.max), align: "last" },
   ];
-  const taken = labels.map((l) => reach(l, scale));
-  for (const value of ticks(scale, 4)) {
-    const label: BarLabel = { value, text: format(value), align: "middle" };
-    const [from, to] = reach(label, scale);
+  const between = ticks(scale, 4).map((value): BarLabel => ({ value, text: format(value), align: "middle" }));
+  const widths = textWidths(
+    [...labels, ...between].map((l) => l.text),
+    fontSize,
+  );
+  const taken = labels.map((l, k) => reach(l, scale, barLength, widths[k]));
+  for (const [k, label] of between.entries()) {
+    const [from, to] = reach(label, scale, barLength, widths[2 + k]);
     if (taken.some(([a, b]) => from < b && a < to)) continue;
     taken.push([from, to]);
     labels.push(label);
@@ -56,10 +71,9 @@ function barLabels(scale: Scale, format: (value: number) => string): BarLabel[] 
   return labels;
 }
 
-/** From where to where a label reaches, px, with some room; widths are estimated from the number of characters. */
-function reach(label: BarLabel, scale: Scale): [number, number] {
-  const width = 6.6 * label.text.length + 6;
-  const x = barWidth * place(scale, label.value);
+/** From where to where a label reaches, px, with half of the space to its neighbours on both sides. */
+function reach(label: BarLabel, scale: Scale, barLength: number, width: number): [number, number] {
+  const x = barLength * place(scale, label.value);
   const from = label.align === "first" ? x : label.align === "last" ? x - width : x - 0.5 * width;
-  return [from, from + width];
+  return [from - 0.5 * space, from + width + 0.5 * space];
 }

@@ -1,7 +1,7 @@
 import uPlot from "uplot";
 import type { Clock } from "./clock";
 import { css, h, symbols } from "./dom";
-import { significant } from "./format";
+import { powerOfTen, significant } from "./format";
 
 export interface Series {
   name: string;
@@ -35,8 +35,9 @@ export interface PlotOptions {
   seek: (x: number) => void;
 }
 
-/** Width of a right axis, px. */
+/** Width of a right axis, and least width of a left one, so that most plots above each other are as wide; px. */
 const rightAxis = 44;
+const leftAxis = 56;
 
 const colorOf = (s: Series) => (s.color.startsWith("--") ? css(s.color) : s.color);
 
@@ -44,6 +45,30 @@ function decades(min: number, max: number): number[] {
   const values: number[] = [];
   for (let k = Math.ceil(Math.log10(min) - 1e-9); 10 ** k <= max * (1 + 1e-9); k++) values.push(10 ** k);
   return values;
+}
+
+/** Labels of an axis, without zeros at the end of a mantissa. */
+function axisLabel(value: number | null): string {
+  return value === null ? "" : significant(value, 5).replace(/\.?0+ ×/, " ×");
+}
+
+function decadeLabel(value: number | null): string {
+  if (value === null || !(value > 0)) return "";
+  const exponent = Math.round(Math.log10(value));
+  return Math.abs(exponent) <= 1 ? significant(10 ** exponent, 2) : powerOfTen(exponent);
+}
+
+/** Width of a vertical axis with these labels, px. */
+function axisWidth(plot: uPlot, labels: string[] | null, axis: number, cycle: number): number {
+  const { font, ticks, gap, _size } = plot.axes[axis] as uPlot.Axis & { _size: number };
+  if (cycle > 1) return _size; // uPlot asks again until sizes stay as they are
+  const context = plot.ctx;
+  context.save();
+  context.font = (font as unknown as string[])[0];
+  const widest = Math.max(0, ...(labels ?? []).map((text) => context.measureText(text ?? "").width));
+  context.restore();
+  const width = Math.ceil((ticks?.size ?? 0) + (gap ?? 0) + widest / devicePixelRatio) + 1;
+  return Math.max(width, axis === 1 ? leftAxis : rightAxis);
 }
 
 /** A plot over time or steps with a line at the moment of the animation; a click moves the animation there. */
@@ -56,7 +81,7 @@ export class Plot {
 
   constructor(
     private readonly options: PlotOptions,
-    clock: Clock,
+    private readonly clock: Clock,
   ) {
     this.target = h("div", { class: "plot-target" });
     const caption = h(
@@ -92,15 +117,14 @@ export class Plot {
   }
 
   private build(width: number): void {
-    const { options } = this;
+    const { clock, options } = this;
     const axis = {
       stroke: css("--muted"),
       font: `11px ${css("--font")}`,
       grid: { stroke: css("--grid"), width: 1 },
       ticks: { stroke: css("--grid"), width: 1, size: 4 },
     };
-    const number = (_: uPlot, values: (number | null)[]) =>
-      values.map((v) => (v === null ? "" : significant(v, 5)));
+    const number = (_: uPlot, values: (number | null)[]) => values.map(axisLabel);
     const axes: uPlot.Axis[] = [
       {
         ...axis,
@@ -113,16 +137,19 @@ export class Plot {
       },
       {
         ...axis,
-        size: 56,
+        size: axisWidth,
         values: number,
         space: 26,
         ...(options.logarithmic
-          ? { splits: (_: uPlot, __: number, min: number, max: number) => decades(min, max) }
+          ? {
+              splits: (_: uPlot, __: number, min: number, max: number) => decades(min, max),
+              values: (_: uPlot, values: (number | null)[]) => values.map(decadeLabel),
+            }
           : {}),
       },
     ];
     if (options.right)
-      axes.push({ ...axis, scale: "right", side: 1, size: rightAxis, values: number, grid: { show: false } });
+      axes.push({ ...axis, scale: "right", side: 1, size: axisWidth, values: number, grid: { show: false } });
     const divisor = options.right?.divisor ?? 1;
     const plot = new uPlot(
       {
@@ -167,18 +194,25 @@ export class Plot {
           points: { size: 6 },
         },
         legend: { show: false },
-        hooks: { setCursor: [(u) => this.showReadings(u.cursor.idx ?? null)] },
+        hooks: {
+          setCursor: [(u) => this.showReadings(u.cursor.idx ?? null)],
+          setScale: [(_, scale) => scale === "x" && this.moveMarker()],
+        },
       },
       [options.x, ...options.series.map((s) => s.values)] as uPlot.AlignedData,
       this.target,
     );
     plot.over.append(this.marker);
     let pressedAt = 0;
+    let before = clock.moment;
     plot.over.addEventListener("mousedown", (event) => (pressedAt = event.clientX));
     plot.over.addEventListener("click", (event) => {
-      // A drag, which zooms, ends with a click, too.
-      if (Math.abs(event.clientX - pressedAt) < 3) options.seek(plot.posToVal(event.offsetX, "x"));
+      // A drag, which zooms, ends with a click, too; a double click, which ends the zoom, begins with one.
+      if (Math.abs(event.clientX - pressedAt) >= 3 || event.detail > 1) return;
+      before = clock.moment;
+      options.seek(plot.posToVal(event.offsetX, "x"));
     });
+    plot.over.addEventListener("dblclick", () => clock.seek(before));
     this.plot = plot;
   }
 

@@ -156,6 +156,12 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
   });
 }
 
+/** Of which steps there are rows; peaks of the others are not in the plots. */
+function whichSteps(run: Run): string {
+  const every = run.header.steps_between_rows;
+  return every > 1 ? `one step in ${every}` : "every step";
+}
+
 /** Iterations, depths and energies by step: by step and not by time, as static steps have none. */
 export function solverPlots(run: Run, clock: Clock): Plot[] {
   const step = run.arrays.get("step.step", "f64");
@@ -186,7 +192,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
     ...energies.map(([name]) => column(name).reduce((m, v) => Math.max(m, Math.abs(v)), 0)),
   );
   return [
-    plot("Open-close iterations", "per step", [
+    plot("Open-close iterations", `of ${whichSteps(run)}`, [
       { name: "iterations", values: column("iterations"), color: "--curve-1", style: "steps", width: 1 },
     ]),
     plot(

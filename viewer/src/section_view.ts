@@ -1,7 +1,6 @@
-import { css } from "./dom";
+import { css, textWidths } from "./dom";
 import type { BlockField, Fields, JointField } from "./fields";
-import { significant } from "./format";
-import { ticks } from "./colors";
+import { marks, type Mark } from "./axis_marks";
 import { Status, type Box, type Moment, type Run } from "./run";
 
 export interface Look {
@@ -13,8 +12,11 @@ export interface Look {
   joints: JointField;
 }
 
-const axisLeft = 46;
+const axisFont = 11; // px
 const axisBottom = 24;
+/** Least room at the left of the axes, and what labels do not take of it; px. */
+const leastAxisLeft = 46;
+const besideLabels = 11;
 
 /** Draws the block system on a canvas: one moment, as a Look says, through a camera that can zoom and pan. */
 const smallestWithEdges = 2.5; // pixels
@@ -44,6 +46,8 @@ export class SectionView {
   private ay = 0;
   private scaleNow = 1;
   private hatch: CanvasPattern | null = null;
+  /** Room at the left of the axes: for the widest label since the model was last fitted. */
+  private axisLeft = leastAxisLeft;
 
   constructor(
     readonly run: Run,
@@ -84,7 +88,7 @@ export class SectionView {
   /** Makes the canvas as wide as given, and as high as the model then is within the limits of the options. */
   resize(width: number): void {
     const { minX, maxX, minY, maxY } = this.extent;
-    const insetX = this.options.axes ? axisLeft + 8 : 0;
+    const insetX = this.options.axes ? this.axisLeft + 8 : 0;
     const insetY = this.options.axes ? axisBottom + 8 : 0;
     const natural = ((maxY - minY) / (maxX - minX)) * (width - insetX) + insetY;
     const height = Math.min(
@@ -102,6 +106,7 @@ export class SectionView {
 
   fit(): void {
     this.zoom = 1;
+    this.axisLeft = leastAxisLeft;
     this.centerX = 0.5 * (this.extent.minX + this.extent.maxX);
     this.centerY = 0.5 * (this.extent.minY + this.extent.maxY);
   }
@@ -115,7 +120,8 @@ export class SectionView {
 
   private inner(): { left: number; top: number; width: number; height: number } {
     if (!this.options.axes) return { left: 0, top: 0, width: this.width, height: this.height };
-    return { left: axisLeft, top: 8, width: this.width - axisLeft - 8, height: this.height - axisBottom - 8 };
+    const left = this.axisLeft;
+    return { left, top: 8, width: this.width - left - 8, height: this.height - axisBottom - 8 };
   }
 
   toPixel(x: number, y: number): [number, number] {
@@ -226,6 +232,7 @@ export class SectionView {
   draw(): void {
     if (this.width === 0) return;
     this.update();
+    if (this.options.axes) this.makeRoomForLabels();
     const { context: c } = this;
     this.scaleNow = this.scale;
     [this.ax, this.ay] = this.toPixel(0, 0);
@@ -372,28 +379,42 @@ export class SectionView {
     }
   }
 
-  private drawAxes(): void {
-    const { context: c } = this;
+  /** Marks of the axes in real coordinates, with their labels. */
+  private axisMarks(): { x: Mark[]; y: Mark[] } {
     const { left, top, width, height } = this.inner();
     const [ox, oy] = this.run.header.model.origin;
     const [x0, y0] = this.toModel(left, top + height);
     const [x1, y1] = this.toModel(left + width, top);
+    return {
+      x: marks(x0 + ox, x1 + ox, Math.max(2, width / 90)),
+      y: marks(y0 + oy, y1 + oy, Math.max(2, height / 70)),
+    };
+  }
+
+  private makeRoomForLabels(): void {
+    const labels = this.axisMarks().y.map((mark) => mark.text);
+    const needed = Math.ceil(Math.max(...textWidths(labels, axisFont))) + besideLabels;
+    this.axisLeft = Math.max(this.axisLeft, needed);
+  }
+
+  private drawAxes(): void {
+    const { context: c } = this;
+    const { left, top, width, height } = this.inner();
+    const [ox, oy] = this.run.header.model.origin;
+    const at = this.axisMarks();
     c.strokeStyle = css("--axis");
     c.fillStyle = css("--muted");
     c.lineWidth = 1;
     c.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
-    c.font = `11px ${css("--font")}`;
+    c.font = `${axisFont}px ${css("--font")}`;
     c.beginPath();
     c.textAlign = "center";
     c.textBaseline = "top";
-    const label = (value: number, range: number) =>
-      Math.abs(value) < 1e-9 * range ? "0" : significant(value, 8);
     let last = left - 7;
-    for (const t of ticks({ min: x0 + ox, max: x1 + ox, logarithmic: false }, Math.max(2, width / 90))) {
-      const [px] = this.toPixel(t - ox, 0);
+    for (const { value, text } of at.x) {
+      const [px] = this.toPixel(value - ox, 0);
       c.moveTo(Math.round(px) + 0.5, top + height);
       c.lineTo(Math.round(px) + 0.5, top + height + 4);
-      const text = label(t, x1 - x0);
       const half = 0.5 * c.measureText(text).width;
       if (px - half < last + 8 || px + half > this.width) continue;
       c.fillText(text, px, top + height + 6);
@@ -402,11 +423,11 @@ export class SectionView {
     c.textAlign = "right";
     c.fillText("m", left - 7, top + height + 6);
     c.textBaseline = "middle";
-    for (const t of ticks({ min: y0 + oy, max: y1 + oy, logarithmic: false }, Math.max(2, height / 70))) {
-      const [, py] = this.toPixel(0, t - oy);
+    for (const { value, text } of at.y) {
+      const [, py] = this.toPixel(0, value - oy);
       c.moveTo(left - 4, Math.round(py) + 0.5);
       c.lineTo(left, Math.round(py) + 0.5);
-      if (py > top + 6 && py < top + height - 2) c.fillText(label(t, y1 - y0), left - 7, py);
+      if (py > top + 6 && py < top + height - 2) c.fillText(text, left - 7, py);
     }
     c.stroke();
   }

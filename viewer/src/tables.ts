@@ -159,7 +159,7 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
       ),
       h("td", { class: "text" }, stage.name),
       h("td", {}, significant(run.area[m.block], 3)),
-      h("td", {}, significant((run.area[m.block] * run.density[m.block] * 9.81) / 1e3, 3)),
+      h("td", {}, significant((run.area[m.block] * run.density[m.block]) / 1e3, 3)),
       h("td", {}, m.carried === null ? "–" : fixed(100 * m.carried, 0)),
     ]),
   );
@@ -167,14 +167,14 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
     column("Block"),
     column("Stage", "", true),
     column("Area", "m²"),
-    column("Weight", "kN/m"),
+    column("Mass", "t/m"),
     column("Carried by contacts", "% of weight"),
   ];
   return h(
     "details",
     { open: total <= 12 },
     h("summary", {}, `${count(total, "block")} still moving at the end of a static stage`),
-    tableBox("Blocks without equilibrium", [head], rows, "narrow"),
+    tableBox("Blocks still moving", [head], rows, "narrow"),
   );
 }
 

@@ -161,15 +161,24 @@ export function checks(run: Run): Check[] {
   ];
   const settled = run.stages.filter((s) => s.kind === "settle");
   if (settled.length > 0) {
-    const marginal = marginalStages(run).map(({ stage }) => quoted(stage.name));
+    const marginal = marginalStages(run).map(({ stage }) => `${quoted(stage.name)}: ${leftOver(stage)}`);
     result.push({
-      name: "Static stages that ended without equilibrium",
+      name: "Marginal static stages",
       value: marginal.length === 0 ? `0 of ${settled.length}` : list(marginal),
       limit: "none",
       good: marginal.length === 0,
     });
   }
   return result;
+}
+
+/** What makes a static stage marginal. */
+function leftOver(stage: Stage): string {
+  const moving = stage.moving.length;
+  return [
+    ...(stage.equilibrium_reached ? [] : ["no equilibrium"]),
+    ...(moving > 0 ? [`${count(moving, "block")} still moving`] : []),
+  ].join(", ");
 }
 
 function capital(text: string): string {

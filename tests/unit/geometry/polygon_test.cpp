@@ -44,32 +44,6 @@ TEST(Polygon, SelfIntersection) {
   EXPECT_TRUE(self_intersects({{{0, 0}, {2, 0}, {1, 0}, {1, 1}}, {}}));  // a spike
 }
 
-TEST(Triangulate, CoversExactly) {
-  for (const Polygon& polygon : {frame, l_shape}) {
-    double sum = 0.0;
-    for (const auto& t : triangulate(polygon)) {
-      const double a = signed_area(t);
-      EXPECT_GT(a, 0.0);
-      sum += a;
-    }
-    EXPECT_NEAR(sum, area(polygon), 1e-14);
-  }
-  EXPECT_THROW(triangulate({{{0, 0}, {1, 1}}, {}}), std::invalid_argument);
-}
-
-// Both holes are joined to the vertex on the right, of which there are then two copies: one above, one below the bridge.
-TEST(Triangulate, TwoHolesSeeTheSameVertex) {
-  for (const double y : {-0.6, 0.6}) {
-    Polygon polygon{{{-3, -1.2}, {0, -1.2}, {2, 0}, {0, 1.2}, {-3, 1.2}},
-                    {{{-1, -0.1}, {1, 0}, {-1, 0.1}}, {{-1.2, y - 0.1}, {0.2, y}, {-1.2, y + 0.1}}}};
-    orient(polygon);
-    ASSERT_FALSE(self_intersects(polygon));
-    double sum = 0.0;
-    for (const auto& t : triangulate(polygon)) sum += signed_area(t);
-    EXPECT_NEAR(sum, area(polygon), 1e-14) << y;
-  }
-}
-
 TEST(Moments, CentreAndScaleAreThoseAsked) {
   const Moments moments(l_shape, {0.5, 0.25}, 2.0, 4);
   EXPECT_NEAR(moments(0, 0), 4.0, 1e-14);

@@ -54,6 +54,19 @@ TEST(Report, NumbersThatAreNoneBecomeNull) {
   EXPECT_THAT(page_header(run, page_arrays(run)), HasSubstr("\"max_overlap_m\":null"));
 }
 
+TEST(Report, SaysOfHowManyStepsThereAreRows) {
+  results::RunData run = made_up::synthetic_run({.frames = false});
+  const auto header = [&] { return page_header(run, page_arrays(run)); };
+  run.steps.resize(3);
+  run.steps[0].step = 20;
+  run.steps[1].step = 25;
+  run.steps[2].step = 35;
+  run.steps[1].stage = run.steps[2].stage = 1;
+  EXPECT_THAT(header(), HasSubstr("\"steps_between_rows\":10"));
+  run.steps.clear();
+  EXPECT_THAT(header(), HasSubstr("\"steps_between_rows\":0"));
+}
+
 TEST(Report, OfAnEmptyRunCanBeWritten) {
   EXPECT_THAT(render_report({}), HasSubstr("</html>"));
 }
