@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0006;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0007;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -67,6 +67,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.contacts.memory);
   archive(s.mechanics.pattern);
   archive(s.mechanics.ledger);
+  archive(s.mechanics.contact_energy);
+  archive(s.mechanics.support_energy);
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
