@@ -18,6 +18,10 @@ std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
   hash.add(setup.version.data(), setup.version.size());
   hash.add(setup.scenario.data(), setup.scenario.size());
+  for (const InputFile& file : setup.files) {
+    hash.add(file.name.data(), file.name.size());
+    hash.add(file.hash.data(), file.hash.size());
+  }
   const double numbers[] = {static_cast<double>(setup.seed), static_cast<double>(setup.realization),
                             setup.time_step, static_cast<double>(setup.system.blocks.size()),
                             static_cast<double>(setup.stages.size())};
@@ -116,6 +120,7 @@ RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup&
     diagnostic.where.file = checkpoint_path(directory).string();
     diagnostic.found = found;
     diagnostic.expected = expected;
+    diagnostic.hint = "run without --resume to begin anew";
     throw InputError(std::move(diagnostic));
   };
   const std::string data = read_file(checkpoint_path(directory));

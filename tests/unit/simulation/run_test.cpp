@@ -117,6 +117,22 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Run, OtherFilesAreOtherInput) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_files_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  RunSetup setup = shaken_incline(1);
+  setup.files = {{"q.csv", "00ff"}};
+  RunObserver nobody;
+  RunOptions options;
+  options.directory = folder;
+  run(setup, options, nobody);
+  EXPECT_NO_THROW(read_checkpoint(folder, setup));
+  setup.files[0].hash = "00fe";
+  EXPECT_THROW(read_checkpoint(folder, setup), InputError);
+  std::filesystem::remove_all(folder);
+}
+
 RunSetup shaken_wall() {
   Scene scene(1e9, 35.0);
   scene.add({{-2.0, -1.0}, {8.0, -1.0}, {8.0, 0.0}, {-2.0, 0.0}}, true);
