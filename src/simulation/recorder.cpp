@@ -131,7 +131,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
     row.position = surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
-    row.gap = c.gap;
+    row.gap = c.gap + c.memory.offset;
     row.slip = gauge_.slip(c.vertex, c.edge);
     row.normal_force = stepper.forces()[k].normal;
     row.shear_force = stepper.forces()[k].shear;

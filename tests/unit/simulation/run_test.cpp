@@ -133,6 +133,30 @@ TEST(Run, OtherFilesAreOtherInput) {
   std::filesystem::remove_all(folder);
 }
 
+// Blocks that overlap at the start are taken as they are: the joint between them is not pressed.
+TEST(Run, GapsAreThoseThatTheJointLawHas) {
+  struct LastContacts final : RunObserver {
+    ContactFrame last;
+    void contacts(const ContactFrame& frame) override { last = frame; }
+  };
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({-0.5, -0.001}, 1.0, 0.5);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages = {stage("settle", StageKind::settle)};
+  LastContacts observer;
+  run(setup, {}, observer);
+  double force = 0.0;
+  for (const ContactRecord& contact : observer.last.contacts) {
+    if (contact.normal_force <= 0.0) continue;
+    force += contact.normal_force;
+    EXPECT_LT(contact.gap, 0.0);
+    EXPECT_GT(contact.gap, -1e-5);
+  }
+  EXPECT_NEAR(force / (2600.0 * g * 0.5), 1.0, 0.01);
+}
+
 RunSetup shaken_wall() {
   Scene scene(1e9, 35.0);
   scene.add({{-2.0, -1.0}, {8.0, -1.0}, {8.0, 0.0}, {-2.0, 0.0}}, true);
