@@ -57,6 +57,7 @@ struct Frame {
   std::vector<std::array<float, 2>> displacement;  ///< of every display vertex since the start, m
   std::vector<std::array<float, 3>> stress;        ///< mean Cauchy stress of every block: xx, yy, xy, Pa
   std::vector<BlockStatus> status;                 ///< of every block
+  std::vector<std::int16_t> order;                 ///< of every block
 };
 
 enum class ContactState : std::uint8_t { open = 0, sliding = 1, locked = 2 };

@@ -109,6 +109,7 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
     const block::Stress s =
         block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&state.position[block.first]);
     frame.stress.push_back({static_cast<float>(s.xx), static_cast<float>(s.yy), static_cast<float>(s.xy)});
+    frame.order.push_back(static_cast<std::int16_t>(block.basis.order()));
   }
   frame.status = gauge_.status(state);
   return frame;

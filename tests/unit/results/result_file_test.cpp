@@ -279,6 +279,49 @@ TEST(ResultFile, WhatIsNoResultFileIsNamed) {
   }
 }
 
+// Whatever byte is wrong: the file is refused, or the byte is not looked at.
+TEST(ResultFile, AWrongByteIsFound) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const RunData expected = read_run(folder);
+  const std::string whole = read_file(folder / "result.h5");
+  int refused = 0;
+  for (std::size_t k = 0; k < whole.size(); k += 331) {
+    std::string damaged = whole;
+    damaged[k] = static_cast<char>(damaged[k] ^ 0x41);
+    std::ofstream(folder / "result.h5", std::ios::binary) << damaged;
+    try {
+      expect_equal(read_run(folder), expected);
+    } catch (const InputError&) {
+      ++refused;
+    }
+    ASSERT_FALSE(HasFailure()) << "byte " << k;
+  }
+  EXPECT_GT(refused, 20);
+}
+
+TEST(ResultFile, PlacesThatAreNotThereAreRefused) {
+  const auto error_with = [](const auto& change, const std::string& name) {
+    const auto folder = fresh_folder();
+    SampleRun sample;
+    change(sample.model);
+    {
+      ResultWriter writer(folder);
+      sample.play(writer);
+    }
+    EXPECT_THAT(error_of(folder), HasSubstr(name));
+  };
+  using Model = simulation::ModelRecord;
+  for (const std::vector<int>& start : {std::vector<int>{3, 1, 11}, {3, 5, 11}, {-3, 7, 11}, {3, 7, 15}})
+    error_with([&](Model& model) { model.blocks[1].ring_start = start; }, "model/ring_start");
+  error_with([](Model& model) { model.blocks[1].excavations = {2}; }, "model/excavation");
+  error_with([](Model& model) { model.edge_label.pop_back(); }, "model/edge_kind");
+}
+
 TEST(ResultFile, AFolderThatCannotBeWrittenIsARunError) {
   const auto folder = fresh_folder();
   std::ofstream(folder / "file") << "x";
