@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -219,14 +220,52 @@ TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
   expect_equal(read_run(folder), sample.expected());
 }
 
-TEST(ResultFile, ResumingWithoutEarlierResultsIsARunLikeAnyOther) {
+TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
   const auto folder = fresh_folder();
   SampleRun sample;
   {
     ResultWriter writer(folder, true);
-    sample.play(writer);
+    EXPECT_THROW(sample.play(writer, 19, 30), InputError);
   }
-  expect_equal(read_run(folder), sample.expected());
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  int calls = 0;
+  ResultWriter writer(folder);
+  writer.before_publishing([&] {
+    ++calls;
+    EXPECT_TRUE(std::filesystem::exists(folder / "result.h5.tmp"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "result.h5"));
+  });
+  sample.play(writer);
+  EXPECT_EQ(calls, 1);
+}
+
+// Of a file that ends before the model does, nothing is left.
+TEST(ResultFile, AFileThatCannotBeCreatedLeavesNothing) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{4096, 4096};  // bytes
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      ResultWriter writer(folder);
+      writer.begin(sample.model);
+    } catch (const RunError&) {
+      ::_exit(std::filesystem::is_empty(folder) ? 0 : 2);
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
