@@ -197,6 +197,27 @@ TEST(Run, AResumedRunHasTheSameEnergies) {
   std::filesystem::remove_all(folder);
 }
 
+// Neither a checkpoint nor what begins from it may form them anew: sums depend on their order.
+TEST(Run, StoredEnergiesArePartOfTheState) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_stored_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({-0.5, 0.0}, 1.0, 0.5);
+  Simulator simulator(scene);
+  RunState kept;
+  kept.mechanics = simulator.state;
+  kept.mechanics.contact_energy = 0.1;
+  kept.mechanics.support_energy = 0.3;
+  write_checkpoint(folder, scene.setup, kept);
+  RunState read = read_checkpoint(folder, scene.setup);
+  simulator.stepper.resume(read.mechanics);
+  EXPECT_EQ(read.mechanics.contact_energy, 0.1);
+  EXPECT_EQ(read.mechanics.support_energy, 0.3);
+  std::filesystem::remove_all(folder);
+}
+
 // All linear solvers solve the same problem. Before anything slides for good, they differ by no more than tolerances do.
 TEST(Run, LinearSolversAgree) {
   RunSetup setup = shaken_wall();
