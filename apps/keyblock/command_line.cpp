@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -71,6 +73,8 @@ int explain(const CLI::App& app, const std::vector<std::string>& words, const CL
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
+  // What would grow beyond the limit for files is an error of writing like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     CLI::App app;
     int exit_code = done;
@@ -86,6 +90,9 @@ int run_command_line(int argc, const char* const* argv) {
     std::cerr << error.what() << "\n";
     return input_wrong;
   } catch (const RunError& error) {
+    std::cerr << "keyblock: " << error.what() << "\n";
+    return run_failed;
+  } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << "keyblock: " << error.what() << "\n";
     return run_failed;
   } catch (const std::exception& error) {

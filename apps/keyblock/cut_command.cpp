@@ -36,10 +36,10 @@ std::string picture(const scenario::Scenario& scenario, const scenario::BlockMod
 void cut_scenario(const CutArguments& arguments) {
   const scenario::Scenario scenario = arguments.scenario.read();
   const int realization = arguments.scenario.realization;
-  const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
   const std::filesystem::path folder = arguments.folder;
-  make_folder(folder);
   check_holds_no_run(folder);
+  make_folder(folder);
+  const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
   // Hundreds of megabytes for many blocks: both files are put together and written at the same time.
   std::future<void> outlines = std::async(std::launch::async, [&] {
     write_file_atomically(folder / "blocks.geojson", cutting::to_geojson(model.system));

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "commands.h"
-#include "result_folder.h"
+#include "core/folder.h"
 #include "results/export.h"
 #include "results/run_data.h"
 

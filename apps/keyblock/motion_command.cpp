@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/folder.h"
 #include "loading/motion_measures.h"
 
 namespace keyblock::app {
@@ -20,6 +21,7 @@ struct MotionArguments {
 };
 
 void show_motions(const MotionArguments& arguments) {
+  if (arguments.plot) check_can_write(arguments.output);
   std::vector<loading::MotionComponent> components;
   std::vector<Diagnostic> mistakes;
   for (const std::string& file : arguments.files) {

@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "commands.h"
+#include "core/folder.h"
 #include "report/report.h"
 #include "results/run_data.h"
 
@@ -15,7 +17,9 @@ void add_report(CLI::App& app) {
   command->add_option("DIR", *directory, "Where a run has left its results")->required();
   command->footer("Example:\n  keyblock report out/tunnel");
   command->callback([directory] {
-    report::write_report(results::read_run(*directory), *directory);
+    const results::RunData run = results::read_run(*directory);
+    check_can_write(std::filesystem::path(*directory) / "report.html");
+    report::write_report(run, *directory);
     std::cout << "report: " << *directory << "/report.html\n";
   });
 }

@@ -16,6 +16,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* input_name = "scenario.toml";
 constexpr const char* result_name = "result.h5";
+constexpr const char* conclusions[] = {"summary.json", "histories.csv", "report.html"};
+
+// All files of a run.
+std::vector<fs::path> files_of(const fs::path& folder) {
+  std::vector<fs::path> files{folder / input_name, folder / result_name, simulation::checkpoint_path(folder)};
+  for (const char* name : conclusions) files.push_back(folder / name);
+  return files;
+}
 
 [[noreturn]] void refuse(const fs::path& place, std::string found, std::string expected, std::string hint) {
   Diagnostic diagnostic;
@@ -26,40 +34,87 @@ constexpr const char* result_name = "result.h5";
   throw InputError(std::move(diagnostic));
 }
 
+std::string input_text(const simulation::RunSetup& setup) {
+  std::string text = fmt::format("{}\n# realization {}\n", setup.scenario, setup.realization);
+  for (const simulation::InputFile& file : setup.files)
+    text += fmt::format("# content of {}: {}\n", file.name, file.hash);
+  return text;
+}
+
+void check_keeps_input(const fs::path& folder, const std::vector<fs::path>& inputs) {
+  for (const fs::path& file : files_of(folder)) {
+    for (const fs::path& input : inputs) {
+      std::error_code error;
+      if (!fs::equivalent(file, input, error)) continue;
+      refuse(folder, fmt::format("{}, input of the run, which the run would write over", input.string()),
+             "another folder", "");
+    }
+  }
+}
+
+void check_is_no_study(const fs::path& folder) {
+  if (file_exists(folder / "plan.json")) refuse(folder, "a study", "another folder", "");
+}
+
 }  // namespace
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error)) {
-    refuse(folder, error ? error.message() : "a file", "a folder, or a place where one can be made", "");
-  }
-}
-
 void check_holds_no_run(const fs::path& folder) {
-  if (fs::exists(folder / result_name)) refuse(folder, "the results of a run", "another folder", "");
+  if (file_exists(folder / result_name)) refuse(folder, "the results of a run", "another folder", "");
+  check_is_no_study(folder);
 }
 
-ResultFolder::ResultFolder(fs::path folder, const simulation::RunSetup& setup, Use use)
-    : folder_(std::move(folder)),
-      input_(fmt::format("{}\n# realization {}\n", setup.scenario, setup.realization)) {
+ResultFolder::ResultFolder(fs::path folder, const std::vector<fs::path>& inputs,
+                           const simulation::RunSetup& setup, Use use)
+    : folder_(std::move(folder)), input_(input_text(setup)) {
+  check_is_no_study(folder_);
+  check_keeps_input(folder_, inputs);
   make_folder(folder_);
-  const fs::path input = folder_ / input_name;
-  const bool same = fs::exists(input) && read_file(input) == input_;
-  if (fs::exists(folder_ / result_name) && !same && use != Use::replace) {
-    refuse(folder_, "results of other input",
-           use == Use::resume ? "those of this scenario with the same --set and --realization"
-                              : "another folder, or --force to replace them",
-           "the input of the results there is in " + input.string());
+  lock_.emplace(folder_ / "lock", FileLock::Afterwards::remove_file);
+  if (!lock_->held()) {
+    refuse(folder_, fmt::format("a run that {} is at", lock_->holder()),
+           "a folder that no other process works in", "wait until it has ended");
   }
-  resumes_ = use == Use::resume && same && fs::exists(simulation::checkpoint_path(folder_));
+  const fs::path input = folder_ / input_name;
+  same_ = file_exists(input) && read_file(input) == input_;
+  check_state(use);
+  resumes_ = use == Use::resume && same_ && file_exists(simulation::checkpoint_path(folder_));
 }
 
-void ResultFolder::begin(const simulation::ModelRecord&) {
+void ResultFolder::check_state(Use use) const {
+  if (use == Use::replace) return;
+  const bool results = file_exists(folder_ / result_name);
+  if (same_) {
+    const fs::path checkpoint = simulation::checkpoint_path(folder_);
+    if (use == Use::resume && !results && file_exists(checkpoint)) {
+      refuse(folder_ / result_name, "no such file, but a " + checkpoint.filename().string(),
+             "the results of the run to be resumed", "run without --resume to begin anew");
+    }
+    return;
+  }
+  if (results) {
+    refuse(folder_, "results of other input",
+           use == Use::resume ? "those of this scenario with the same files, --set and --realization"
+                              : "another folder, or --force to replace them",
+           "the input of the results there is in " + (folder_ / input_name).string());
+  }
+  for (const fs::path& file : files_of(folder_)) {
+    if (!file_exists(file)) continue;
+    refuse(folder_, fmt::format("a {} that is not of this run", file.filename().string()), "another folder",
+           "or --force to replace it");
+  }
+}
+
+void ResultFolder::enter() {
   if (resumes_) return;
-  for (const char* name : {"summary.json", "histories.csv", "report.html"}) fs::remove(folder_ / name);
-  fs::remove(simulation::checkpoint_path(folder_));
   write_file_atomically(folder_ / input_name, input_);
+  std::vector<fs::path> outdated{simulation::checkpoint_path(folder_)};
+  for (const char* name : conclusions) outdated.push_back(folder_ / name);
+  for (const fs::path& file : outdated) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}", file.string(), error.message()));
+  }
+  entered_ = true;
 }
 
 }  // namespace keyblock::app

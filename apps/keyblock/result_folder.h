@@ -1,38 +1,51 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "simulation/record.h"
+#include "core/folder.h"
 #include "simulation/setup.h"
 
 namespace keyblock::app {
 
-/// Makes the folder if it is not there. Throws InputError when it cannot be made or is no folder.
-void make_folder(const std::filesystem::path& folder);
-
 /// Throws InputError when the folder holds results of a run, whose summary would be lost.
 void check_holds_no_run(const std::filesystem::path& folder);
 
-/// Guards the folder of a run's results. The input of a run is kept beside its results, in scenario.toml; a folder with
-/// results of the same input may be written again (the results are the same), one with results of other input not.
-class ResultFolder : public simulation::RunObserver {
+/// Guards the folder of a run's results, for one process. The input of a run is kept beside its results, in scenario.toml, with
+/// hashes of the files that it names; a folder with results of the same input may be written again (the results are the
+/// same), one with results of other input not.
+class ResultFolder {
  public:
   enum class Use { fresh, replace, resume };
 
-  /// Throws InputError when `folder` holds results of other input, unless they are to be replaced. Nothing is changed yet.
-  ResultFolder(std::filesystem::path folder, const simulation::RunSetup& setup, Use use);
+  /// `inputs`: the files that the run reads. Throws InputError when
+  ///   - one of them is a file that the run would write, or the folder is that of a study, or another process is at it;
+  ///   - there are results of other input, or files named like results without them, unless they are to be replaced;
+  ///   - a run is to be resumed whose results are gone.
+  /// Nothing is changed yet, but that the folder is made, and in it a file `lock` while the object lives.
+  ResultFolder(std::filesystem::path folder, const std::vector<std::filesystem::path>& inputs,
+               const simulation::RunSetup& setup, Use use);
 
   /// Whether there is something to go on from. A run that was stopped before its first checkpoint, or never started,
   /// begins anew, which leads to the same end.
   [[nodiscard]] bool resumes() const { return resumes_; }
 
-  /// The run begins: unless it is resumed, keeps its input, and takes away what an earlier run had concluded.
-  void begin(const simulation::ModelRecord& model) override;
+  /// New results are about to take the place of earlier ones: unless the run is resumed, keeps its input, and takes away what an
+  /// earlier run had concluded.
+  void enter();
+
+  /// Whether the folder holds results of this run, so far as there are any.
+  [[nodiscard]] bool holds_this_run() const { return resumes_ || entered_; }
 
  private:
+  void check_state(Use use) const;
+
   std::filesystem::path folder_;
   std::string input_;
-  bool resumes_ = false;
+  std::optional<FileLock> lock_;
+  bool same_ = false;  ///< what is there is of the same input
+  bool resumes_ = false, entered_ = false;
 };
 
 }  // namespace keyblock::app

@@ -18,6 +18,7 @@
 #include "results/result_writer.h"
 #include "results/run_data.h"
 #include "scenario/build.h"
+#include "scenario/inputs.h"
 #include "scenario_arguments.h"
 #include "simulation/fan_out.h"
 #include "simulation/run.h"
@@ -40,18 +41,22 @@ void write_report(const std::filesystem::path& folder) {
   report::write_report(results::read_run(folder), folder);
 }
 
-simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const RunArguments& arguments) {
+std::vector<std::filesystem::path> inputs_of(const scenario::Scenario& scenario) {
+  std::vector<std::filesystem::path> inputs = scenario::input_paths(scenario);
+  inputs.emplace_back(scenario.file);
+  return inputs;
+}
+
+simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const RunArguments& arguments,
+                                     ResultFolder& guard) {
   const std::filesystem::path folder = arguments.folder;
-  ResultFolder guard(folder, setup,
-                     arguments.resume  ? ResultFolder::Use::resume
-                     : arguments.force ? ResultFolder::Use::replace
-                                       : ResultFolder::Use::fresh);
   if (arguments.resume && !guard.resumes()) {
     std::cerr << arguments.folder << ": nothing to go on from; starting at the beginning\n";
   }
   results::ResultWriter writer(folder, guard.resumes());
+  writer.before_publishing([&] { guard.enter(); });
   ProgressObserver progress = ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()));
-  simulation::FanOut observers({&guard, &writer, &progress});
+  simulation::FanOut observers({&writer, &progress});
   simulation::RunOptions options;
   options.threads = arguments.threads;
   options.directory = folder;
@@ -63,16 +68,20 @@ simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const Ru
 void run_scenario(RunArguments arguments) {
   if (!arguments.solver.empty()) arguments.scenario.overrides.push_back("solver.linear=" + arguments.solver);
   std::vector<std::string> warnings;
-  simulation::RunSetup setup =
-      scenario::build_setup(arguments.scenario.read(), arguments.scenario.realization, &warnings);
+  const scenario::Scenario scenario = arguments.scenario.read();
+  simulation::RunSetup setup = scenario::build_setup(scenario, arguments.scenario.realization, &warnings);
   setup.version = KEYBLOCK_VERSION;
   print_warnings(arguments.scenario, warnings);
+  ResultFolder guard(arguments.folder, inputs_of(scenario), setup,
+                     arguments.resume  ? ResultFolder::Use::resume
+                     : arguments.force ? ResultFolder::Use::replace
+                                       : ResultFolder::Use::fresh);
   simulation::RunRecord record;
   try {
-    record = run_and_record(setup, arguments);
+    record = run_and_record(setup, arguments, guard);
   } catch (const RunError&) {
     try {
-      write_report(arguments.folder);
+      if (guard.holds_this_run()) write_report(arguments.folder);
     } catch (const std::exception& error) {  // the first failure is the one to be told about
       std::cerr << "keyblock: no report: " << error.what() << "\n";
     }

@@ -14,6 +14,7 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/folder.h"
 #include "interrupt.h"
 #include "scenario/key_path.h"
 #include "terminal.h"
@@ -98,6 +99,7 @@ std::string formatted(const std::vector<verification::CaseResult>& results,
 }
 
 int verify_cases(const VerifyArguments& arguments) {
+  if (!arguments.output.empty()) check_can_write(arguments.output);
   const auto cases = chosen(verification::read_cases(find_cases(arguments.cases)), arguments.names);
   verification::VerifyOptions options;
   // A case that is named is wanted, however long it takes.

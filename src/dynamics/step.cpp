@@ -110,7 +110,7 @@ void Stepper::start(State& state) {
     memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
     if (model_.solver.contact == ContactMethod::augmented_lagrangian) continue;
     memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
-    contact_energy_ += memory.stored;
+    state.contact_energy += memory.stored;
   }
   contact::keep_memory(contacts_, state.contacts, team_);
   make_room(state);
@@ -122,8 +122,6 @@ void Stepper::resume(State& state) {
   state.moved = moved;
   candidates_.invalidate();
   forget_pattern();
-  contact_energy_ = stored_energy(state);
-  support_energy_ = support_energy(state);
 }
 
 std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
@@ -141,7 +139,7 @@ void Stepper::remove_absent(State& state) {
   history_.forget();
   std::fill(reach_.begin(), reach_.end(), 0.0);
   candidates_.update(model_.surface, reach_, state.contacts, team_);
-  contact_energy_ = stored_energy(state);
+  sum_stored_energy(state);
   forget_pattern();
   state.pattern.clear();
 }

@@ -49,6 +49,8 @@ class Stepper {
   void start(State& state);
   /// Brings everything derived to a state read from a checkpoint.
   void resume(State& state);
+  /// Sums the energy stored in springs anew, after something else than a step has changed the state.
+  void sum_stored_energy(State& state) const;
   /// Makes the next step look at all blocks and factor its matrix anew, as it does after a restart: with that at every
   /// checkpoint, a run that is resumed gives the same bits as one that is not.
   void forget_history() {
@@ -85,7 +87,10 @@ class Stepper {
   [[nodiscard]] double kinetic_energy(const State& state) const;
   [[nodiscard]] double strain_energy(const State& state) const;
   [[nodiscard]] double gravity_energy(const State& state) const;
-  [[nodiscard]] double contact_energy() const { return contact_energy_ + support_energy_; }
+  /// In the springs of contacts and of supports.
+  [[nodiscard]] static double contact_energy(const State& state) {
+    return state.contact_energy + state.support_energy;
+  }
 
  private:
   /// Calls of_block(b) for the blocks that move.
@@ -98,8 +103,6 @@ class Stepper {
     });
   }
   void place(State& state);
-  static double stored_energy(const State& state);
-  [[nodiscard]] double support_energy(const State& state) const;
   void prescribe(const State& state, Drive& drive);
   void move_prescribed(State& state, const Drive& drive);
   void build_problem(State& state, const Drive& drive);
@@ -194,7 +197,6 @@ class Stepper {
   };
   std::vector<BlockWork> block_work_;  ///< scratch
   std::vector<Balance> balance_;
-  double contact_energy_ = 0.0, support_energy_ = 0.0;
 };
 
 }  // namespace keyblock::dynamics

@@ -7,14 +7,9 @@
 
 namespace keyblock::dynamics {
 
-double Stepper::stored_energy(const State& state) {
-  double sum = 0.0;
-  for (const contact::Memory& memory : state.contacts.memory) sum += memory.stored;
-  return sum;
-}
-
-double Stepper::support_energy(const State& state) const {
-  double sum = 0.0;
+void Stepper::sum_stored_energy(State& state) const {
+  state.contact_energy = state.support_energy = 0.0;
+  for (const contact::Memory& memory : state.contacts.memory) state.contact_energy += memory.stored;
   for (const GroundSpring& spring : model_.springs) {
     if (!model_.moves(at(spring.block))) continue;
     const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
@@ -22,9 +17,8 @@ double Stepper::support_energy(const State& state) const {
     for (std::size_t k = 0; k < spring.phi.size(); ++k)
       coordinate += spring.phi[k] * state.position[first + 2 * k];
     const double stretch = coordinate - spring.target(state.time);
-    sum += 0.5 * spring.stiffness * stretch * stretch;
+    state.support_energy += 0.5 * spring.stiffness * stretch * stretch;
   }
-  return sum;
 }
 
 void Stepper::account(State& state, const Drive& drive) {
@@ -67,7 +61,7 @@ void Stepper::account(State& state, const Drive& drive) {
     for (std::size_t k = 0; k < load.force.size(); ++k)
       ledger.input += f * load.force[k] * increment_[model_.blocks[at(load.block)].first + k];
   }
-  support_energy_ = 0.0;
+  state.support_energy = 0.0;
   for (const GroundSpring& spring : model_.springs) {
     if (!model_.moves(at(spring.block))) continue;
     const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
@@ -79,7 +73,7 @@ void Stepper::account(State& state, const Drive& drive) {
     const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step),
                  end = spring.target(drive.end_time);
     const double stretch = coordinate + moved - end, change = moved - (end - before);
-    support_energy_ += 0.5 * spring.stiffness * stretch * stretch;
+    state.support_energy += 0.5 * spring.stiffness * stretch * stretch;
     ledger.input -= spring.stiffness * stretch * (end - before);
     // elastic_loss has taken ½ k moved² for a ground that stands still.
     ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);

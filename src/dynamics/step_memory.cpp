@@ -101,7 +101,7 @@ void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccoun
 void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
-  state.ledger.numerical += contact_energy_;
+  state.ledger.numerical += state.contact_energy;
   state.contacts.make_room(contacts_.size());
   std::atomic<bool> any_bond = false;
   // Piece by piece, which are the same for any number of threads.
@@ -127,12 +127,12 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   ContactAccounts total;
   for (const ContactAccounts& accounts : accounts_) total.add(accounts);
   total.enter(state.ledger);
-  contact_energy_ = sum(total.balance.stored);
+  state.contact_energy = sum(total.balance.stored);
   for (std::size_t i = 0; i < lane_count; ++i)
     report.penetration = std::max(report.penetration, total.penetration[i]);
   report.closed_contacts += static_cast<int>(sum(total.closed));
   state.contacts.may_have_bonds = any_bond;
-  report.contact_energy = contact_energy();
+  report.contact_energy = contact_energy(state);
 }
 
 }  // namespace keyblock::dynamics

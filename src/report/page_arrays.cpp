@@ -22,7 +22,8 @@ constexpr std::size_t max_rows = 4000;
 constexpr std::size_t max_displacements = 8'000'000;
 constexpr std::size_t min_frames = 60;
 
-void add_model(const simulation::ModelRecord& model, ArrayPack& pack) {
+void add_model(const results::RunData& run, ArrayPack& pack) {
+  const simulation::ModelRecord& model = run.model;
   std::vector<std::uint32_t> begin, end, block;
   std::vector<std::uint8_t> order, fixed, kind;
   std::vector<std::int32_t> index;
@@ -34,11 +35,11 @@ void add_model(const simulation::ModelRecord& model, ArrayPack& pack) {
       end.push_back(static_cast<std::uint32_t>(record.ring_start[r + 1]));
       block.push_back(static_cast<std::uint32_t>(b));
     }
-    order.push_back(static_cast<std::uint8_t>(std::min(record.order, 255)));
     fixed.push_back(record.fixed ? 1 : 0);
     area.push_back(static_cast<float>(record.area));
     density.push_back(static_cast<float>(record.density));
   }
+  for (const int n : results::last_orders(run)) order.push_back(static_cast<std::uint8_t>(std::min(n, 255)));
   for (const Vec2 p : model.vertices) {
     position.push_back(static_cast<float>(p.x));
     position.push_back(static_cast<float>(p.y));
@@ -242,7 +243,7 @@ double stress_quantum(const results::RunData& run) {
 
 ArrayPack page_arrays(const results::RunData& run) {
   ArrayPack pack;
-  add_model(run.model, pack);
+  add_model(run, pack);
   const std::vector<std::size_t> frames = chosen_frames(run);
   add_frames(run, frames, pack);
   add_contacts(run, frames, pack);

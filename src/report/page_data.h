@@ -22,7 +22,7 @@ PageData make_page_data(const results::RunData& run);
 /// | ring.block | u32 | n(rings) | its block |
 /// | vertex.position | f32 | 2 n(vertices) | x, y in reference position, m |
 /// | edge.kind, edge.index | u8, i32 | n(vertices) | label of the piece from here to the next vertex |
-/// | block.order, block.fixed | u8 | n(blocks) | |
+/// | block.order, block.fixed | u8 | n(blocks) | order at the end; whether fixed |
 /// | block.area, block.density | f32 | n(blocks) | m², kg/m³ |
 /// | frame.time, frame.step | f64 | n(frames) | s; steps since the start of the run |
 /// | frame.stage | i32 | n(frames) | |

@@ -4,6 +4,7 @@
 #include "report/page_template.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
+#include "results/summary.h"
 
 namespace keyblock::report {
 
@@ -94,9 +95,11 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
   ordered_json entries = ordered_json::array();
   for (const ArrayPack::Entry& e : arrays.entries())
     entries.push_back({{"name", e.name}, {"type", e.type}, {"offset", e.offset}, {"count", e.count}});
+  const results::Areas area = results::areas(run.model, run.run);
   const ordered_json header{
       {"model", model_json(run.model)},
       {"run", run_json(run.run)},
+      {"area", {{"blocks_m2", area.blocks}, {"excavated_m2", area.excavated}}},
       {"recorded_frames", run.frames.size()},
       {"displacement_quantum", displacement_quantum(run)},
       {"stress_quantum", stress_quantum(run)},

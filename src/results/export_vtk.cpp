@@ -82,7 +82,7 @@ void add_block_data(VtkFile& file, const simulation::ModelRecord& model, const s
     const auto k = static_cast<std::size_t>(b);
     const auto& record = model.blocks[k];
     block.push_back(b);
-    order.push_back(record.order);
+    order.push_back(frame.order[k]);
     excavation.push_back(record.excavations.empty() ? -1 : record.excavations.front());
     status.push_back(static_cast<std::uint8_t>(frame.status[k]));
     stress.insert(stress.end(), frame.stress[k].begin(), frame.stress[k].end());

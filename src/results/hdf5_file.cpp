@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -22,15 +23,38 @@ herr_t keep_message(unsigned n, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
+// "file write failed: time = …, error message = 'No space left on device', buf = …" without what only programmers ask for.
+std::string shortened(std::string cause) {
+  constexpr std::string_view before = "error message = '";
+  const std::size_t begin = cause.find(before), first = cause.find(": time = ");
+  if (begin == std::string::npos || first == std::string::npos) return cause;
+  const std::size_t message = begin + before.size();
+  return cause.substr(0, first) + ": " + cause.substr(message, cause.find('\'', message) - message);
+}
+
 hsize_t product(const std::vector<hsize_t>& shape) {
   return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
 }
 
-Handle string_type() {
+// Texts of up to `size` bytes, padded by zeros. Those of variable length lie in a heap without a checksum, where one wrong byte
+// lets the library fall.
+Handle string_type(std::size_t size) {
   Handle type(check_id(H5Tcopy(H5T_C_S1), "string type"), H5Tclose);
-  check(H5Tset_size(type, H5T_VARIABLE), "string type");
+  check(H5Tset_size(type, std::max<std::size_t>(size, 1)), "string type");
+  check(H5Tset_strpad(type, H5T_STR_NULLPAD), "string type");
   check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
   return type;
+}
+
+// The type of texts that are read, which must be such.
+Handle string_type_of(hid_t stored, const std::string& name) {
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0)
+    throw RunError(name + " is no text of a fixed length");
+  return string_type(H5Tget_size(stored));
+}
+
+std::string without_padding(std::string_view text) {
+  return std::string(text.substr(0, text.find('\0')));
 }
 
 // Times of creation would make two files of one run differ.
@@ -40,10 +64,14 @@ Handle dataset_properties() {
   return properties;
 }
 
-void compress(hid_t properties, const std::vector<hsize_t>& chunk) {
+// Chunks with checksums: damage shows when they are read.
+void set_chunks(hid_t properties, const std::vector<hsize_t>& chunk, bool compressed) {
   check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "chunks");
-  check(H5Pset_shuffle(properties), "compression");
-  check(H5Pset_deflate(properties, deflate_level), "compression");
+  if (compressed) {
+    check(H5Pset_shuffle(properties), "compression");
+    check(H5Pset_deflate(properties, deflate_level), "compression");
+  }
+  check(H5Pset_fletcher32(properties), "checksums");
 }
 
 std::vector<hsize_t> chunk_of(const std::vector<hsize_t>& row_shape, std::size_t value_bytes) {
@@ -66,6 +94,10 @@ hid_t file_type() {
 
 }  // namespace
 
+// Files are closed where their handles end. At the end of the program the library would try once more what could not be written
+// to a full disk, and fall. Before any other call.
+[[maybe_unused]] static const bool without_cleanup_at_exit = H5dont_atexit() >= 0;
+
 QuietErrors::QuietErrors() {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -79,7 +111,7 @@ void check(herr_t status, const std::string& what) {
   if (status >= 0) return;
   std::string cause;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_message, &cause);
-  throw RunError(cause.empty() ? what : fmt::format("{}: {}", what, cause));
+  throw RunError(cause.empty() ? what : fmt::format("{}: {}", what, shortened(std::move(cause))));
 }
 
 hid_t check_id(hid_t id, const std::string& what) {
@@ -98,12 +130,11 @@ Handle open_group(hid_t parent, const std::string& name) {
 }
 
 void write_attribute(hid_t object, const std::string& name, const std::string& value) {
-  const Handle type = string_type();
+  const Handle type = string_type(value.size());
   const Handle space(check_id(H5Screate(H5S_SCALAR), name), H5Sclose);
   const Handle attribute(
       check_id(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), name), H5Aclose);
-  const char* text = value.c_str();
-  check(H5Awrite(attribute, type, &text), name);
+  check(H5Awrite(attribute, type, value.c_str()), name);
 }
 
 template <class T>
@@ -117,12 +148,13 @@ void write_attribute(hid_t object, const std::string& name, T value) {
 
 std::string read_text_attribute(hid_t object, const std::string& name) {
   const Handle attribute(check_id(H5Aopen(object, name.c_str(), H5P_DEFAULT), name), H5Aclose);
-  const Handle type = string_type();
-  char* text = nullptr;
-  check(H5Aread(attribute, type, &text), name);
-  std::string value = text == nullptr ? "" : text;
-  H5free_memory(text);
-  return value;
+  const Handle stored(check_id(H5Aget_type(attribute), name), H5Tclose);
+  const Handle space(check_id(H5Aget_space(attribute), name), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space) != 1) throw RunError(name + " is not one text");
+  const Handle type = string_type_of(stored, name);
+  std::string text(H5Tget_size(type), '\0');
+  check(H5Aread(attribute, type, text.data()), name);
+  return without_padding(text);
 }
 
 template <class T>
@@ -140,7 +172,7 @@ void write_array(hid_t group, const std::string& name, const std::vector<hsize_t
                      H5Sclose);
   const Handle properties = dataset_properties();
   constexpr std::size_t smallest_compressed = 4096;
-  if (values.size_bytes() >= smallest_compressed) compress(properties, shape);
+  if (!values.empty()) set_chunks(properties, shape, values.size_bytes() >= smallest_compressed);
   const Handle dataset(
       check_id(H5Dcreate2(group, name.c_str(), file_type<T>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
                name),
@@ -151,14 +183,20 @@ void write_array(hid_t group, const std::string& name, const std::vector<hsize_t
 
 void write_strings(hid_t group, const std::string& name, const std::vector<std::string>& values) {
   const hsize_t count = values.size();
-  const Handle type = string_type();
+  std::size_t longest = 1;
+  for (const std::string& value : values) longest = std::max(longest, value.size());
+  const Handle type = string_type(longest);
   const Handle space(check_id(H5Screate_simple(1, &count, nullptr), name), H5Sclose);
   const Handle properties = dataset_properties();
+  if (count > 0) set_chunks(properties, {std::clamp<hsize_t>(chunk_bytes / longest, 1, count)}, true);
   const Handle dataset(
       check_id(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), name),
       H5Dclose);
-  std::vector<const char*> texts;
-  for (const std::string& value : values) texts.push_back(value.c_str());
+  std::string texts;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    texts += values[k];
+    texts.resize((k + 1) * longest, '\0');
+  }
   if (count > 0) check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
 }
 
@@ -181,16 +219,17 @@ Array<T> read_array(hid_t group, const std::string& name) {
 std::vector<std::string> read_strings(hid_t group, const std::string& name) {
   const Handle dataset(check_id(H5Dopen2(group, name.c_str(), H5P_DEFAULT), name), H5Dclose);
   const Handle space(check_id(H5Dget_space(dataset), name), H5Sclose);
-  const hssize_t count = H5Sget_simple_extent_npoints(space);
-  check(count < 0 ? -1 : 0, name);
-  std::vector<char*> texts(static_cast<std::size_t>(count), nullptr);
-  const Handle type = string_type();
+  const hssize_t points = H5Sget_simple_extent_npoints(space);
+  check(points < 0 ? -1 : 0, name);
+  const Handle stored(check_id(H5Dget_type(dataset), name), H5Tclose);
+  const Handle type = string_type_of(stored, name);
+  const auto count = static_cast<std::size_t>(points);
+  const std::size_t size = H5Tget_size(type);
+  std::string texts(count * size, '\0');
   if (count > 0) check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
   std::vector<std::string> values;
-  for (char* text : texts) {
-    values.emplace_back(text == nullptr ? "" : text);
-    H5free_memory(text);
-  }
+  for (std::size_t k = 0; k < count; ++k)
+    values.push_back(without_padding(std::string_view(texts).substr(k * size, size)));
   return values;
 }
 
@@ -205,7 +244,7 @@ Column<T>::Column(hid_t group, const std::string& name, std::vector<hsize_t> row
   const Handle space(check_id(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), name),
                      H5Sclose);
   const Handle properties = dataset_properties();
-  compress(properties, chunk_of(row_shape_, sizeof(T)));
+  set_chunks(properties, chunk_of(row_shape_, sizeof(T)), true);
   if constexpr (std::is_same_v<T, double>) {
     const double unwritten = std::numeric_limits<double>::quiet_NaN();
     check(H5Pset_fill_value(properties, H5T_NATIVE_DOUBLE, &unwritten), name);

@@ -77,7 +77,7 @@ std::string read_text_attribute(hid_t object, const std::string& name);
 template <class T>
 T read_attribute(hid_t object, const std::string& name);
 
-/// Datasets written once. `shape` includes the number of rows.
+/// Datasets written once, with checksums. `shape` includes the number of rows. Texts take the room of the longest.
 template <class T>
 void write_array(hid_t group, const std::string& name, const std::vector<hsize_t>& shape,
                  std::span<const T> values);
@@ -99,7 +99,7 @@ template <class T>
 Array<T> read_array(hid_t group, const std::string& name);
 std::vector<std::string> read_strings(hid_t group, const std::string& name);
 
-/// A dataset that grows by rows, compressed. Rows gather in memory until flush(). A row of doubles that was made room
+/// A dataset that grows by rows, compressed and with checksums. Rows gather in memory until flush(). A row of doubles that was made room
 /// for but not yet written, when the process is killed, reads as NaN.
 template <class T>
 class Column {

@@ -50,6 +50,25 @@ Lists read_lists(hid_t group, const std::string& start, const std::string& value
   return lists;
 }
 
+// Whether everything that is numbered is there.
+void check_places(const simulation::ModelRecord& model) {
+  constexpr int least_vertices = 3;  // of a ring
+  if (model.edge_label.size() != model.vertices.size())
+    throw RunError("model/edge_kind and model/vertices differ in length");
+  for (const auto& block : model.blocks) {
+    const std::vector<int>& start = block.ring_start;
+    bool rings = start.size() >= 2 && start.front() >= 0 &&
+                 static_cast<std::size_t>(start.back()) <= model.vertices.size();
+    for (std::size_t r = 0; rings && r + 1 < start.size(); ++r)
+      rings = start[r + 1] - start[r] >= least_vertices;
+    if (!rings) throw RunError("model/ring_start does not give rings of vertices");
+    for (const int excavation : block.excavations) {
+      if (excavation < 0 || static_cast<std::size_t>(excavation) >= model.excavation_names.size())
+        throw RunError("model/excavation is out of range");
+    }
+  }
+}
+
 }  // namespace
 
 void write_model(hid_t file, const simulation::ModelRecord& model) {
@@ -134,10 +153,7 @@ simulation::ModelRecord read_model(hid_t file) {
     }
     model.edge_label.push_back({static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]});
   }
-  for (const int start : rings.values) {
-    if (start < 0 || static_cast<std::size_t>(start) > model.vertices.size())
-      throw RunError("model/ring_start is out of range");
-  }
+  check_places(model);
   return model;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/folder.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
 #include "results/run_data.h"
@@ -25,7 +26,7 @@ constexpr unsigned read_attempts = 24;  // some 20 ms in all
 
 // A file whose writer was killed, or still runs, opens in the mode for concurrent readers alone.
 hdf5::Handle open_file(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) fail(path, "no such file", "the results of a run");
+  if (!file_exists(path)) fail(path, "no such file", "the results of a run");
   const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), "file access"), H5Pclose);
   hdf5::check(H5Pset_file_locking(access, true, true), "file access");
   // Each attempt at a page that is being written waits twice as long as the last, from 1 ns.
@@ -39,15 +40,17 @@ hdf5::Handle open_file(const std::filesystem::path& path) {
 }
 
 void check_format(const std::filesystem::path& path, hid_t file) {
-  if (H5Aexists(file, "format") <= 0 || hdf5::read_text_attribute(file, "format") != result_format) {
+  const auto of_another_kind = [&] {
     fail(path, "an HDF5 file of another kind", fmt::format("the attribute format = \"{}\"", result_format));
-  }
+  };
+  if (H5Aexists(file, "format") <= 0 || H5Aexists(file, "format_version") <= 0) of_another_kind();
   const auto version = hdf5::read_attribute<std::int32_t>(file, "format_version");
   if (version != result_format_version) {
     fail(path, fmt::format("format version {}", version),
          fmt::format("format version {}", result_format_version),
          "read it with the version of keyblock that wrote it");
   }
+  if (hdf5::read_text_attribute(file, "format") != result_format) of_another_kind();
 }
 
 // Calls read(file) and turns whatever HDF5 finds wrong into an error of the input.
@@ -109,7 +112,34 @@ void read_run_record(hid_t file, RunData& data) {
   }
 }
 
+// Whether the rows are those of the model.
+void check_rows(const RunData& data) {
+  const std::size_t blocks = data.model.blocks.size();
+  for (const simulation::Frame& frame : data.frames) {
+    if (frame.displacement.size() != data.model.vertices.size() || frame.status.size() != blocks)
+      throw RunError("frames and model differ in size");
+  }
+  const auto known = [&](int block) { return block >= 0 && static_cast<std::size_t>(block) < blocks; };
+  for (const simulation::ContactFrame& frame : data.contacts) {
+    for (const simulation::ContactRecord& contact : frame.contacts) {
+      if (!known(contact.block_a) || !known(contact.block_b))
+        throw RunError("contacts/block_a or block_b is out of range");
+    }
+  }
+  for (const simulation::HistoryRow& row : data.histories) {
+    if (row.points.size() != data.model.history_names.size())
+      throw RunError("histories/values does not fit histories/names");
+  }
+}
+
 }  // namespace
+
+std::vector<int> last_orders(const RunData& run) {
+  if (!run.frames.empty()) return {run.frames.back().order.begin(), run.frames.back().order.end()};
+  std::vector<int> orders;
+  for (const auto& block : run.model.blocks) orders.push_back(block.order);
+  return orders;
+}
 
 RunData read_run(const std::filesystem::path& directory) {
   return with_file(directory, [](hid_t file) {
@@ -119,6 +149,7 @@ RunData read_run(const std::filesystem::path& directory) {
     data.contacts = ContactTable::read(file);
     data.histories = HistoryTable::read(file);
     data.steps = StepTable::read(file);
+    check_rows(data);
     read_run_record(file, data);
     return data;
   });

@@ -59,13 +59,14 @@ FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
       displacement_(group_, "displacement", {vertices_, 2}),
       stress_(group_, "stress", {blocks_, 3}),
       status_(group_, "status", {blocks_}),
+      order_(group_, "order", {blocks_}),
       stage_(group_, "stage", {}),
       step_(group_, "step", {}),
       time_(group_, "time", {}) {}
 
 void FrameTable::append(const simulation::Frame& frame) {
   if (frame.displacement.size() != vertices_ || frame.stress.size() != blocks_ ||
-      frame.status.size() != blocks_) {
+      frame.status.size() != blocks_ || frame.order.size() != blocks_) {
     throw std::invalid_argument("a frame of another model");
   }
   displacement_.append_row(flat(frame.displacement.data()->data(), 2 * vertices_));
@@ -73,6 +74,7 @@ void FrameTable::append(const simulation::Frame& frame) {
   std::vector<std::uint8_t> status;
   for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
   status_.append_row(status);
+  order_.append_row(frame.order);
   stage_.append(frame.stage);
   step_.append(frame.step);
   time_.append(frame.time);
@@ -82,6 +84,7 @@ void FrameTable::flush() {
   displacement_.flush();
   stress_.flush();
   status_.flush();
+  order_.flush();
   stage_.flush();
   step_.flush();
   time_.flush();
@@ -93,12 +96,14 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
   const auto displacement = read_array<float>(group, "displacement"),
              stress = read_array<float>(group, "stress");
   const auto status = read_array<std::uint8_t>(group, "status");
+  const auto order = read_array<std::int16_t>(group, "order");
   const auto stage = read_array<std::int32_t>(group, "stage");
   const auto step = read_array<std::int64_t>(group, "step");
   const std::size_t nv = displacement.width() / 2, nb = status.width();
   require(stress.width() == 3 * nb, "frames/stress");
-  std::vector<simulation::Frame> frames(
-      common_rows(time, {displacement.rows(), stress.rows(), status.rows(), stage.rows(), step.rows()}));
+  require(order.width() == nb, "frames/order");
+  std::vector<simulation::Frame> frames(common_rows(
+      time, {displacement.rows(), stress.rows(), status.rows(), order.rows(), stage.rows(), step.rows()}));
   for (std::size_t f = 0; f < frames.size(); ++f) {
     simulation::Frame& frame = frames[f];
     frame.time = time.values[f];
@@ -108,6 +113,8 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
     frame.stress.resize(nb);
     std::copy_n(displacement.values.data() + 2 * nv * f, 2 * nv, frame.displacement.data()->data());
     std::copy_n(stress.values.data() + 3 * nb * f, 3 * nb, frame.stress.data()->data());
+    const auto orders = std::span(order.values).subspan(nb * f, nb);
+    frame.order.assign(orders.begin(), orders.end());
     for (std::size_t b = 0; b < nb; ++b) {
       frame.status.push_back(
           enumerator(status.values[nb * f + b], simulation::BlockStatus::excavated, "frames/status"));

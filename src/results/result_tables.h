@@ -9,7 +9,7 @@
 namespace keyblock::results {
 
 inline constexpr const char* result_format = "keyblock result";
-inline constexpr int result_format_version = 1;
+inline constexpr int result_format_version = 2;
 
 void write_model(hid_t file, const simulation::ModelRecord& model);
 simulation::ModelRecord read_model(hid_t file);
@@ -26,6 +26,7 @@ class FrameTable {
   hdf5::Handle group_;
   hdf5::Column<float> displacement_, stress_;
   hdf5::Column<std::uint8_t> status_;
+  hdf5::Column<std::int16_t> order_;
   hdf5::Column<std::int32_t> stage_;
   hdf5::Column<std::int64_t> step_;
   hdf5::Column<double> time_;

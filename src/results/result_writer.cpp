@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -81,6 +82,7 @@ struct ResultWriter::State {
   simulation::ModelRecord model;
   std::optional<OpenFile> file;
   Clock::time_point start, last_flush;
+  std::function<void()> before_publishing;
   bool published = false;
   bool begins_with_stage = false;                           // the first stage reported has no steps yet
   std::vector<std::pair<int, std::string>> waiting_stages;  // lines from before the first row
@@ -90,6 +92,11 @@ struct ResultWriter::State {
   [[nodiscard]] bool flush_is_due() const;
   void copy_earlier(long first_new_step);
   void publish(long first_new_step);
+  void abandon() {
+    file.reset();
+    std::error_code ignored;
+    std::filesystem::remove(temporary_path(), ignored);
+  }
 };
 
 bool ResultWriter::State::flush_is_due() const {
@@ -131,11 +138,12 @@ void ResultWriter::State::copy_earlier(long first_new_step) {
 
 // Gives the file its name, when its first row is to be written.
 void ResultWriter::State::publish(long first_new_step) {
-  if (resume && std::filesystem::exists(path())) copy_earlier(first_new_step);
+  if (resume) copy_earlier(first_new_step);
   for (const auto& [index, line] : waiting_stages) file->stages.append_line(line);
   waiting_stages.clear();
   hdf5::check(H5Fflush(file->file, H5F_SCOPE_GLOBAL), path().string());
   hdf5::check(H5Fstart_swmr_write(file->file), path().string());
+  if (before_publishing) before_publishing();
   std::error_code error;
   std::filesystem::rename(temporary_path(), path(), error);
   if (error) throw RunError(fmt::format("{}: cannot rename: {}", path().string(), error.message()));
@@ -150,10 +158,11 @@ ResultWriter::ResultWriter(std::filesystem::path directory, bool resume, double 
 }
 
 ResultWriter::~ResultWriter() {
-  const bool abandoned = state_->file && !state_->published;
-  state_->file.reset();
-  std::error_code ignored;
-  if (abandoned) std::filesystem::remove(state_->temporary_path(), ignored);
+  if (state_->file && !state_->published) state_->abandon();
+}
+
+void ResultWriter::before_publishing(std::function<void()> call) {
+  state_->before_publishing = std::move(call);
 }
 
 void ResultWriter::begin(const simulation::ModelRecord& model) {
@@ -162,7 +171,14 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   if (error)
     throw RunError(fmt::format("{}: cannot create: {}", state_->directory.string(), error.message()));
   state_->model = model;
-  state_->file.emplace(state_->temporary_path(), model);
+  try {
+    state_->file.emplace(state_->temporary_path(), model);
+    state_->file->flush();
+    hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string() + ": cannot write");
+  } catch (const RunError&) {
+    state_->abandon();
+    throw;
+  }
   state_->start = state_->last_flush = Clock::now();
 }
 

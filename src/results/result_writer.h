@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "simulation/record.h"
@@ -16,8 +17,8 @@ namespace keyblock::results {
 ///
 /// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps what
 /// the earlier one had reported before the first step that is now reported (by the step counts of the events, which
-/// therefore must count the whole run), and the stages that had ended. stage_begin tells by StageRecord::steps whether
-/// its stage goes on or begins.
+/// therefore must count the whole run), and the stages that had ended; InputError where there is no earlier one.
+/// stage_begin tells by StageRecord::steps whether its stage goes on or begins.
 ///
 /// Every call may throw RunError: the disk may be full.
 class ResultWriter : public simulation::RunObserver {
@@ -26,6 +27,10 @@ class ResultWriter : public simulation::RunObserver {
   explicit ResultWriter(std::filesystem::path directory, bool resume = false,
                         double flush_interval = default_flush_interval);
   ~ResultWriter() override;
+
+  /// Is called once, when the new result.h5 stands complete under another name and is about to take the place of what is there:
+  /// until then, nothing in the folder has changed.
+  void before_publishing(std::function<void()> call);
 
   void begin(const simulation::ModelRecord& model) override;
   void stage_begin(int index, const simulation::StageRecord& stage) override;

@@ -18,6 +18,9 @@ struct RunData {
   std::vector<simulation::StepRow> steps;
 };
 
+/// Of every block, at the end of what was recorded.
+std::vector<int> last_orders(const RunData& run);
+
 /// Reads DIR/result.h5. Throws InputError when there is none, or when it is truncated or of another format.
 RunData read_run(const std::filesystem::path& directory);
 

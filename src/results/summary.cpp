@@ -37,20 +37,6 @@ Count count(const simulation::ModelRecord& model) {
   return count;
 }
 
-ordered_json areas(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
-  std::set<int> opened;
-  for (const auto& stage : run.stages)
-    opened.insert(stage.stage.excavate.begin(), stage.stage.excavate.end());
-  double blocks = 0.0, excavated = 0.0;
-  for (const auto& block : model.blocks) {
-    if (is_frame(model, block)) continue;
-    const bool out = std::any_of(block.excavations.begin(), block.excavations.end(),
-                                 [&](int e) { return opened.contains(e); });
-    (out ? excavated : blocks) += block.area;
-  }
-  return {{"blocks", blocks}, {"excavated", excavated}, {"domain", model.cutting.domain_area}};
-}
-
 ordered_json cutting(const cutting::CutStatistics& c) {
   return {{"traces", c.traces},
           {"trace_length_m", c.trace_length},
@@ -107,10 +93,26 @@ ordered_json profile(const simulation::RunRecord& run) {
 
 }  // namespace
 
+Areas areas(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+  std::set<int> opened;
+  for (const auto& stage : run.stages)
+    opened.insert(stage.stage.excavate.begin(), stage.stage.excavate.end());
+  Areas areas;
+  areas.domain = model.cutting.domain_area;
+  for (const auto& block : model.blocks) {
+    if (is_frame(model, block)) continue;
+    const bool out = std::any_of(block.excavations.begin(), block.excavations.end(),
+                                 [&](int e) { return opened.contains(e); });
+    (out ? areas.excavated : areas.blocks) += block.area;
+  }
+  return areas;
+}
+
 std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
   ordered_json stages = ordered_json::array();
   for (const auto& record : run.stages) stages.push_back(stage(record));
   const auto [blocks, vertices] = count(model);
+  const Areas area = areas(model, run);
   const ordered_json json{
       {"title", model.title},
       {"version", model.version},
@@ -121,7 +123,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"vertices", vertices},
       {"dof", run.dof},
       {"joints", model.cutting.joints_used},
-      {"area", areas(model, run)},
+      {"area", {{"blocks", area.blocks}, {"excavated", area.excavated}, {"domain", area.domain}}},
       {"merged_slivers", model.cutting.merged_slivers},
       {"cutting", cutting(model.cutting)},
       {"steps", run.steps},

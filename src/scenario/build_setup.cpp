@@ -232,6 +232,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.in_situ = in_situ_stress(scenario, top_of(scenario, setup.system));
   setup.time_step = scenario.time_step;
   setup.motions = read_motions(scenario, notes);
+  setup.files = input_files(scenario);
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
   setup.damage = scenario.damage;

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
+#include "core/atomic_file.h"
+#include "core/hash.h"
 #include "loading/motion_file.h"
 #include "loading/projection.h"
 #include "rockmass/trace_map.h"
@@ -13,6 +16,7 @@
 namespace keyblock::scenario {
 namespace {
 
+namespace fs = std::filesystem;
 using loading::ComponentDirection;
 using loading::GroundMotion;
 using loading::MotionComponent;
@@ -131,6 +135,28 @@ class MotionReader {
 };
 
 }  // namespace
+
+std::vector<fs::path> input_paths(const Scenario& scenario) {
+  std::set<fs::path> paths;
+  for (const TraceMapSpec& map : scenario.trace_maps) paths.insert(map.file);
+  for (const MotionSpec& motion : scenario.motions) {
+    for (const MotionComponentSpec& component : motion.components) paths.insert(component.file);
+  }
+  return {paths.begin(), paths.end()};
+}
+
+std::vector<simulation::InputFile> input_files(const Scenario& scenario) {
+  const fs::path folder = fs::absolute(scenario.file).lexically_normal().parent_path();
+  std::vector<simulation::InputFile> files;
+  for (const fs::path& path : input_paths(scenario)) {
+    const std::string content = read_file(path);
+    Hash hash;
+    hash.add(content.data(), content.size());
+    files.push_back({fs::absolute(path).lexically_normal().lexically_relative(folder).string(),
+                     fmt::format("{:016x}", hash.value())});
+  }
+  return files;
+}
 
 std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario) {
   std::vector<rockmass::Trace> traces;

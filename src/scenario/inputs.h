@@ -1,14 +1,22 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "loading/ground_motion.h"
 #include "rockmass/trace.h"
 #include "scenario/scenario.h"
+#include "simulation/setup.h"
 
 /// The files that a scenario names. A mistake inside a file is reported at its place there, one in what the scenario
 /// says about the file at its place in the scenario. All mistakes are thrown as one InputError.
 namespace keyblock::scenario {
+
+/// Paths of all files that the scenario names, each once, in their order.
+std::vector<std::filesystem::path> input_paths(const Scenario& scenario);
+
+/// The same files as a run records them: paths from the folder of the scenario, and what their contents hash to.
+std::vector<simulation::InputFile> input_files(const Scenario& scenario);
 
 /// The traces of all [[trace_map]], each with its index.
 std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario);

@@ -12,12 +12,16 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0006;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0007;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
   hash.add(setup.version.data(), setup.version.size());
   hash.add(setup.scenario.data(), setup.scenario.size());
+  for (const InputFile& file : setup.files) {
+    hash.add(file.name.data(), file.name.size());
+    hash.add(file.hash.data(), file.hash.size());
+  }
   const double numbers[] = {static_cast<double>(setup.seed), static_cast<double>(setup.realization),
                             setup.time_step, static_cast<double>(setup.system.blocks.size()),
                             static_cast<double>(setup.stages.size())};
@@ -67,6 +71,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.contacts.memory);
   archive(s.mechanics.pattern);
   archive(s.mechanics.ledger);
+  archive(s.mechanics.contact_energy);
+  archive(s.mechanics.support_energy);
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
@@ -114,6 +120,7 @@ RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup&
     diagnostic.where.file = checkpoint_path(directory).string();
     diagnostic.found = found;
     diagnostic.expected = expected;
+    diagnostic.hint = "run without --resume to begin anew";
     throw InputError(std::move(diagnostic));
   };
   const std::string data = read_file(checkpoint_path(directory));

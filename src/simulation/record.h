@@ -27,7 +27,7 @@ struct ModelRecord {
 
   struct Block {
     std::string name;  ///< empty for cut blocks
-    int order = 1;
+    int order = 1;     ///< at the start
     bool fixed = false;
     double area = 0.0;     ///< m²
     double density = 0.0;  ///< kg/m³
@@ -57,6 +57,7 @@ struct Frame {
   std::vector<std::array<float, 2>> displacement;  ///< of every display vertex since the start, m
   std::vector<std::array<float, 3>> stress;        ///< mean Cauchy stress of every block: xx, yy, xy, Pa
   std::vector<BlockStatus> status;                 ///< of every block
+  std::vector<std::int16_t> order;                 ///< of every block
 };
 
 enum class ContactState : std::uint8_t { open = 0, sliding = 1, locked = 2 };
@@ -68,7 +69,7 @@ struct ContactRecord {
   Vec2 position;              ///< m
   Vec2 normal;                ///< unit, out of block_b
   double length = 0.0;        ///< m of joint that belongs to it
-  double gap = 0.0;           ///< m, negative: penetration
+  double gap = 0.0;           ///< m, as the joint law has it: negative where the contact is pressed
   double slip = 0.0;          ///< m, relative shear displacement since the excavation, signed
   double normal_force = 0.0;  ///< N per metre thickness, compression positive
   double shear_force = 0.0;

@@ -109,6 +109,7 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
     const block::Stress s =
         block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&state.position[block.first]);
     frame.stress.push_back({static_cast<float>(s.xx), static_cast<float>(s.yy), static_cast<float>(s.xy)});
+    frame.order.push_back(static_cast<std::int16_t>(block.basis.order()));
   }
   frame.status = gauge_.status(state);
   return frame;
@@ -131,7 +132,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
     row.position = surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
-    row.gap = c.gap;
+    row.gap = c.gap + c.memory.offset;
     row.slip = gauge_.slip(c.vertex, c.edge);
     row.normal_force = stepper.forces()[k].normal;
     row.shear_force = stepper.forces()[k].shear;

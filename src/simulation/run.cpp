@@ -101,7 +101,7 @@ class Runner {
 
 double Runner::total_energy() const {
   return stepper_->kinetic_energy(now_.mechanics) + stepper_->strain_energy(now_.mechanics) +
-         stepper_->gravity_energy(now_.mechanics) + stepper_->contact_energy();
+         stepper_->gravity_energy(now_.mechanics) + dynamics::Stepper::contact_energy(now_.mechanics);
 }
 
 Energy Runner::energy() const {
@@ -109,7 +109,7 @@ Energy Runner::energy() const {
   Energy e;
   e.kinetic = stepper_->kinetic_energy(now_.mechanics);
   e.strain = stepper_->strain_energy(now_.mechanics);
-  e.contact = stepper_->contact_energy();
+  e.contact = dynamics::Stepper::contact_energy(now_.mechanics);
   e.friction = ledger.friction;
   e.damping = ledger.damping;
   e.numerical = ledger.numerical;
@@ -257,6 +257,7 @@ void Runner::settle(StageRecord& record) {
     const double before = total_energy();
     if (!orders_.active() || !(orders_.*change)(model_, now_.mechanics)) return false;
     orders_changed();
+    stepper_->sum_stored_energy(now_.mechanics);
     now_.mechanics.ledger.numerical += before - total_energy();
     return true;
   };

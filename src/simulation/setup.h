@@ -69,13 +69,20 @@ struct OutputOptions {
   double history_interval = 0.0;    ///< s between history rows; 0: every step
 };
 
+/// A file that belongs to the input of a run.
+struct InputFile {
+  std::string name;  ///< path from the folder of the scenario
+  std::string hash;  ///< of its content, hexadecimal
+};
+
 /// Everything a run needs. Coordinates are local: real ones minus system.origin.
 struct RunSetup {
   std::string title;
   std::string version;
   std::uint64_t seed = 0;
   int realization = 0;
-  std::string scenario;  ///< text of the scenario as run
+  std::string scenario;          ///< text of the scenario as run
+  std::vector<InputFile> files;  ///< that the scenario names
 
   cutting::BlockSystem system;
   std::vector<BlockProperties> properties;  ///< one per block of `system`

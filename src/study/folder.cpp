@@ -1,19 +1,14 @@
 #include "study/folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <memory>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/folder.h"
 #include "scenario/parse.h"
 #include "study/plan_json.h"
 #include "study/refusal.h"
@@ -25,14 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_differences = 5;  // that are named
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error)) {
-    refuse(folder.string(), error ? error.message() : "a file", "a folder, or a place where one can be made");
-  }
-}
 
 // What makes two plans those of different studies.
 std::vector<std::string> differences(const Plan& there, const Plan& here) {
@@ -91,11 +78,6 @@ void check_same_study(const fs::path& directory, const Plan& there, const Plan& 
   refuse(directory.string(), text, "a study that differs in nothing but [study]", "take another folder");
 }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
-}
-
 }  // namespace
 
 fs::path plan_path(const fs::path& directory) {
@@ -110,26 +92,6 @@ fs::path run_folder(const fs::path& directory, const std::string& key) {
   return directory / "runs" / key;
 }
 
-FileLock::FileLock(fs::path path) : path_(std::move(path)) {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0) throw RunError(fmt::format("{}: cannot create: {}", path_.string(), std::strerror(errno)));
-  held_ = ::flock(file_, LOCK_EX | LOCK_NB) == 0;
-  if (!held_) return;
-  const std::string text = fmt::format("process {} on {}\n", ::getpid(), host_name());
-  // Only for people; a full disk does not matter.
-  static_cast<void>(::ftruncate(file_, 0) == 0 && ::write(file_, text.data(), text.size()) > 0);
-}
-
-FileLock::~FileLock() {
-  if (file_ >= 0) ::close(file_);
-}
-
-std::string FileLock::holder() const {
-  std::string text = read_file(path_);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text.empty() ? "another process" : text;
-}
-
 std::unique_ptr<FileLock> lock_study(const fs::path& directory) {
   make_folder(directory);
   auto lock = std::make_unique<FileLock>(directory / "lock");
@@ -141,7 +103,7 @@ std::unique_ptr<FileLock> lock_study(const fs::path& directory) {
 }
 
 void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
-  if (fs::exists(plan_path(directory))) {
+  if (file_exists(plan_path(directory))) {
     const Plan there = read_plan(directory);
     check_same_study(directory, there, plan);
     if (resume) check_same_raster(directory, there, plan);
@@ -151,7 +113,7 @@ void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
     }
     keep_places(there.runs, plan);
     keep_files(there.files, plan);
-  } else if (fs::exists(directory / "result.h5")) {
+  } else if (file_exists(directory / "result.h5")) {
     refuse(directory.string(), "the results of a run", "another folder");
   }
   make_folder(directory / "runs");
@@ -197,9 +159,9 @@ RunState read_run_state(const fs::path& directory, const Plan& plan, const Plann
       return false;
     }
   };
-  if (fs::exists(folder / "run.json")) {
+  if (file_exists(folder / "run.json")) {
     state.kind = read(folder / "run.json") ? RunState::Kind::done : RunState::Kind::damaged;
-  } else if (fs::exists(folder / "failed.json")) {
+  } else if (file_exists(folder / "failed.json")) {
     state.kind = RunState::Kind::failed;
     if (read(folder / "failed.json")) {
       state.problem = state.result.error;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "core/folder.h"
 #include "study/plan.h"
 
 /// The folder of a study:
@@ -19,24 +20,6 @@ namespace keyblock::study {
 std::filesystem::path plan_path(const std::filesystem::path& directory);
 std::filesystem::path scenario_path(const std::filesystem::path& directory);
 std::filesystem::path run_folder(const std::filesystem::path& directory, const std::string& key);
-
-/// Held while the object lives. Of processes that want the same file locked, on any machine that sees it, one gets it.
-class FileLock {
- public:
-  /// Throws RunError when the file cannot be made.
-  explicit FileLock(std::filesystem::path path);
-  ~FileLock();
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
-  [[nodiscard]] bool held() const { return held_; }
-  /// Who holds it, as far as is known: `process 1234 on HOST`.
-  [[nodiscard]] std::string holder() const;
-
- private:
-  std::filesystem::path path_;
-  int file_ = -1;
-  bool held_ = false;
-};
 
 /// Locks the study for planning and running. Throws InputError when another process has it, or the folder cannot be made.
 std::unique_ptr<FileLock> lock_study(const std::filesystem::path& directory);

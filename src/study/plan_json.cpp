@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/folder.h"
 #include "study/folder.h"
 #include "study/refusal.h"
 
@@ -162,7 +163,7 @@ std::string plan_json(const Plan& plan, const fs::path& directory) {
 
 Plan read_plan(const fs::path& directory) {
   const fs::path path = plan_path(directory);
-  if (!fs::exists(path)) {
+  if (!file_exists(path)) {
     refuse(directory.string(), "no plan.json", "the folder of a study, as keyblock study run makes it");
   }
   Plan plan;
@@ -173,7 +174,7 @@ Plan read_plan(const fs::path& directory) {
     json.at("version").get_to(plan.version);
     // Both may have been moved together, or the folder alone.
     plan.scenario = (directory / json.at("scenario").get<std::string>()).lexically_normal();
-    if (!fs::exists(plan.scenario)) plan.scenario = json.at("scenario_path").get<std::string>();
+    if (!file_exists(plan.scenario)) plan.scenario = json.at("scenario_path").get<std::string>();
     json.at("overrides").get_to(plan.overrides);
     json.at("input").get_to(plan.input);
     for (const auto& file : json.at("files")) {
@@ -181,8 +182,9 @@ Plan read_plan(const fs::path& directory) {
     }
     read_description(json, plan);
     read_runs(json.at("runs"), plan.runs);
-  } catch (const nlohmann::json::exception& error) {
-    refuse(path.string(), fmt::format("a damaged file ({})", error.what()), "the plan of a study");
+  } catch (const nlohmann::json::exception&) {
+    refuse(path.string(), "a damaged file", "the plan of a study",
+           "remove it and run the study again in this folder: what is done is not done again");
   }
   plan.text = read_file(scenario_path(directory));
   check_copy(directory, plan);

@@ -2,6 +2,7 @@
 """Runs from end to end: what is written, that it is the same again, that nothing is lost, that Ctrl-C is survived."""
 
 import csv
+import resource
 import signal
 import subprocess
 import time
@@ -133,7 +134,107 @@ class Folder(Scenario):
             self.assertEqual(self.summary("out")[field], before[field], field)
 
 
+class OtherFiles(Scenario):
+    """What is not of a run stays what it is."""
+
+    def content(self, folder):
+        return {p.name: p.read_bytes() for p in (self.folder / folder).iterdir()}
+
+    def refused(self, folder, *options):
+        before = self.content(folder)
+        error = self.keyblock("run", "incline.toml", "-o", folder, *options, expect=1).stderr
+        self.assertEqual(self.content(folder), before)
+        return error
+
+    def test_the_scenario_is_not_written_over(self):
+        case = self.folder / "case"
+        case.mkdir()
+        scenario = self.scenario.rename(case / "scenario.toml")
+        text = scenario.read_text()
+        for options in ((), ("--force",), ("--resume",), ("--set", "joints.friction=10")):
+            error = self.keyblock("run", "case/scenario.toml", "-o", "case", *options, expect=1).stderr
+            self.assertIn("scenario.toml, input of the run", error)
+            self.assertEqual(self.content("case"), {"scenario.toml": text.encode()})
+
+    def test_files_of_the_user(self):
+        for name in ("report.html", "summary.json", "histories.csv", "scenario.toml", "checkpoint.bin"):
+            folder = self.folder / name.split(".")[0]
+            folder.mkdir()
+            (folder / name).write_text("mine")
+            self.assertIn(f"a {name} that is not of this run", self.refused(folder.name))
+            self.refused(folder.name, "--resume")
+        self.keyblock("run", "incline.toml", "-o", "report", "--force")
+        self.assertIn("A block on an incline", (self.folder / "report/report.html").read_text())
+
+    def test_a_study(self):
+        (self.folder / "study").mkdir()
+        self.write("study/plan.json", "{}")
+        self.assertIn("found a study", self.refused("study"))
+        self.refused("study", "--force")
+        self.keyblock("cut", "incline.toml", "-o", "study", expect=1)
+
+    def test_files_that_the_scenario_names_are_input(self):
+        motion = self.scenario.read_text().replace('kind = "rest"', 'kind = "shake"\nmotion = "q"')
+        motion += '[section]\nazimuth = 0.0\n[[motion]]\nname = "q"\ncomponents = [{ file = "q.csv", azimuth = 0.0 }]\n'
+        self.write("incline.toml", motion)
+        self.write("q.csv", "time,acceleration\n0.0,0.0\n0.1,1.0\n0.2,0.0\n0.5,0.0\n")
+        self.keyblock("run", "incline.toml", "-o", "out")
+        self.keyblock("run", "incline.toml", "-o", "out")
+        self.write("q.csv", "time,acceleration\n0.0,0.0\n0.1,-1.0\n0.2,0.0\n0.5,0.0\n")
+        self.assertIn("results of other input", self.refused("out"))
+        self.assertIn("the same files", self.refused("out", "--resume"))
+        self.keyblock("run", "incline.toml", "-o", "out", "--force")
+
+    def test_results_that_are_gone_are_not_resumed(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        (self.folder / "out/result.h5").unlink()
+        self.assertIn("run without --resume to begin anew", self.refused("out", "--resume"))
+        self.keyblock("run", "incline.toml", "-o", "out")
+
+
+class Trouble(Scenario):
+    """Disks and folders that do not take what is written."""
+
+    def test_files_too_large_for_the_disk(self):
+        def limit(size):
+            return subprocess.run(
+                [PROGRAM, "run", "incline.toml", "-o", "out"], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,
+                text=True, timeout=60, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+            )  # fmt: skip
+
+        self.keyblock("run", "incline.toml", "-o", "out")
+        before = {p.name: p.read_bytes() for p in (self.folder / "out").iterdir()}
+        done = limit(4096)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertIn("File too large", done.stderr)
+        self.assertEqual({p.name: p.read_bytes() for p in (self.folder / "out").iterdir()}, before)
+        done = limit(len(before["result.h5"]) // 2)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("File too large", done.stderr)
+
+    def test_places_that_cannot_be_read_or_written(self):
+        (self.folder / "loop").symlink_to("loop")
+        self.write("q.csv", "time,acceleration\n0.0,0.0\n0.1,1.0\n0.2,0.0\n")
+        for words in (
+            "run incline.toml -o loop", "run incline.toml -o incline.toml/out", "cut incline.toml -o loop", "report loop",
+            "export loop --format csv", "study run incline.toml -o loop", "study collect loop",
+            "motion q.csv --plot -o nowhere/q.svg", "verify -o nowhere/table.txt", "verify -o .",
+        ):  # fmt: skip
+            error = self.keyblock(*words.split(), expect=1).stderr
+            self.assertNotIn("internal error", error, words)
+            self.assertRegex(error, "loop|incline.toml/out|nowhere|found a folder", words)
+
+
 class Interrupt(Scenario):
+    def test_two_runs_in_one_folder(self):
+        run = self.start("out", 1e5)
+        error = self.keyblock("run", "incline.toml", "-o", "out", "--force", expect=1).stderr
+        self.assertIn(f"out: found a run that process {run.pid} on ", error)
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=30)
+        self.assertFalse((self.folder / "out/lock").exists())
+
     def start(self, folder, duration):
         """A run that has begun to write its results."""
         run = subprocess.Popen(

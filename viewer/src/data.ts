@@ -60,6 +60,7 @@ export interface Header {
       sliver_area_m2: number;
     };
   };
+  area: { blocks_m2: number; excavated_m2: number };
   run: {
     steps: number;
     wall_time_s: number;

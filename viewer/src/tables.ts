@@ -2,10 +2,10 @@ import type { Damage, Stage } from "./data";
 import { column, factList, h, tableBox, type Child } from "./dom";
 import { count, duration, fixed, integer, signed, significant } from "./format";
 import type { Run } from "./run";
-import { checks, excavatedArea, marginalStages } from "./verdict";
+import { checks, marginalStages } from "./verdict";
 
 export function runFacts(run: Run): HTMLElement {
-  const { model, run: record } = run.header;
+  const { model, run: record, area } = run.header;
   const cut = model.cutting;
   const moving = run.blockCount - run.fixed.reduce((sum, f) => sum + f, 0);
   const orders = [...new Set([...run.order].filter((_, b) => !run.fixed[b]))].sort((a, b) => a - b);
@@ -17,8 +17,8 @@ export function runFacts(run: Run): HTMLElement {
       "Blocks",
       moving === run.blockCount ? integer(moving) : `${integer(moving)} and ${run.blockCount - moving} fixed`,
     ],
-    ["Area of the blocks", `${significant(run.rockArea(), 4)} m²`],
-    ["Excavated at the end", `${significant(excavatedArea(run), 4)} m²`],
+    ["Area of the blocks", `${significant(area.blocks_m2, 4)} m²`],
+    ["Excavated at the end", `${significant(area.excavated_m2, 4)} m²`],
     ["Order", orders.join(", ") || "–"],
     ["Degrees of freedom", integer(record.dof)],
     [

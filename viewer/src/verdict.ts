@@ -1,7 +1,7 @@
 import type { Stage } from "./data";
 import type { Finding } from "./findings";
 import { count, fixed, integer, length, list, significant } from "./format";
-import { Status, type Run } from "./run";
+import type { Run } from "./run";
 
 const quoted = (name: string) => `“${name}”`;
 
@@ -183,13 +183,4 @@ function leftOver(stage: Stage): string {
 
 function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
-/** Blocks that are excavated at the end, for the facts. */
-export function excavatedArea(run: Run): number {
-  if (run.frameCount === 0) return 0;
-  let sum = 0;
-  for (let b = 0; b < run.blockCount; b++)
-    if (run.statusAt(run.frameCount - 1, b) === Status.excavated) sum += run.area[b];
-  return sum;
 }

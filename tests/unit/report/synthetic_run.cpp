@@ -228,6 +228,7 @@ class Wall {
       for (std::size_t b = 0; b < run_.model.blocks.size(); ++b) {
         frame.status.push_back(status(b, stage, frame.time));
         frame.stress.push_back(stress(b, frame.status.back()));
+        frame.order.push_back(static_cast<std::int16_t>(run_.model.blocks[b].order));
       }
       if (k == 0 || k == count - 1 || (plan.duration > 0.0 && k % 3 == 0)) add_contacts(frame);
       run_.frames.push_back(std::move(frame));

@@ -80,6 +80,13 @@ TEST(BlockShape, HolesAndDisplacements) {
   EXPECT_NEAR(covered, 15.0, 1e-12);
 }
 
+TEST(LastOrders, AreThoseOfTheLastFrame) {
+  RunData data = small_motions();
+  EXPECT_EQ(last_orders(data), (std::vector<int>{31, 32, 33}));
+  data.frames.clear();
+  EXPECT_EQ(last_orders(data), (std::vector<int>{1, 2, 1}));
+}
+
 TEST(Export, Csv) {
   const auto folder = fresh_folder() / "made";
   const RunData data = small_motions();
@@ -150,6 +157,7 @@ area = sum(abs(grid.GetCell(k).ComputeArea()) for k in range(1, grid.GetNumberOf
 print("points", grid.GetNumberOfPoints(), "area of block 1", round(area, 6))
 print("type of cell 0", grid.GetCellType(0), "its points", grid.GetCell(0).GetNumberOfPoints())
 print("blocks", sorted({int(data.GetArray("block").GetValue(k)) for k in range(grid.GetNumberOfCells())}))
+print("order", int(data.GetArray("order").GetValue(1)))
 print("status", int(data.GetArray("status").GetValue(1)))
 print("stress", data.GetArray("stress").GetNumberOfComponents(), data.GetArray("stress").GetComponentName(2))
 print("displacement", [round(v, 6) for v in grid.GetPointData().GetArray("displacement").GetTuple3(0)])
@@ -168,6 +176,7 @@ print("contacts", lines.GetNumberOfLines(), lines.GetNumberOfPoints(), int(lines
             "points 14 area of block 1 15.0\n"
             "type of cell 0 7 its points 3\n"
             "blocks [0, 1]\n"
+            "order 32\n"
             "status 2\n"
             "stress 3 xy\n"
             "displacement [0.3, -0.25, 0.0]\n"

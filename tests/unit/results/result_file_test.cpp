@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -219,14 +220,52 @@ TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
   expect_equal(read_run(folder), sample.expected());
 }
 
-TEST(ResultFile, ResumingWithoutEarlierResultsIsARunLikeAnyOther) {
+TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
   const auto folder = fresh_folder();
   SampleRun sample;
   {
     ResultWriter writer(folder, true);
-    sample.play(writer);
+    EXPECT_THROW(sample.play(writer, 19, 30), InputError);
   }
-  expect_equal(read_run(folder), sample.expected());
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  int calls = 0;
+  ResultWriter writer(folder);
+  writer.before_publishing([&] {
+    ++calls;
+    EXPECT_TRUE(std::filesystem::exists(folder / "result.h5.tmp"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "result.h5"));
+  });
+  sample.play(writer);
+  EXPECT_EQ(calls, 1);
+}
+
+// Of a file that ends before the model does, nothing is left.
+TEST(ResultFile, AFileThatCannotBeCreatedLeavesNothing) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{4096, 4096};  // bytes
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      ResultWriter writer(folder);
+      writer.begin(sample.model);
+    } catch (const RunError&) {
+      ::_exit(std::filesystem::is_empty(folder) ? 0 : 2);
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
@@ -277,6 +316,49 @@ TEST(ResultFile, WhatIsNoResultFileIsNamed) {
         .write(whole.data(), static_cast<std::streamsize>(size));
     EXPECT_THAT(error_of(folder), HasSubstr("result.h5")) << size;
   }
+}
+
+// Whatever byte is wrong: the file is refused, or the byte is not looked at.
+TEST(ResultFile, AWrongByteIsFound) {
+  const auto folder = fresh_folder();
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const RunData expected = read_run(folder);
+  const std::string whole = read_file(folder / "result.h5");
+  int refused = 0;
+  for (std::size_t k = 0; k < whole.size(); k += 331) {
+    std::string damaged = whole;
+    damaged[k] = static_cast<char>(damaged[k] ^ 0x41);
+    std::ofstream(folder / "result.h5", std::ios::binary) << damaged;
+    try {
+      expect_equal(read_run(folder), expected);
+    } catch (const InputError&) {
+      ++refused;
+    }
+    ASSERT_FALSE(HasFailure()) << "byte " << k;
+  }
+  EXPECT_GT(refused, 20);
+}
+
+TEST(ResultFile, PlacesThatAreNotThereAreRefused) {
+  const auto error_with = [](const auto& change, const std::string& name) {
+    const auto folder = fresh_folder();
+    SampleRun sample;
+    change(sample.model);
+    {
+      ResultWriter writer(folder);
+      sample.play(writer);
+    }
+    EXPECT_THAT(error_of(folder), HasSubstr(name));
+  };
+  using Model = simulation::ModelRecord;
+  for (const std::vector<int>& start : {std::vector<int>{3, 1, 11}, {3, 5, 11}, {-3, 7, 11}, {3, 7, 15}})
+    error_with([&](Model& model) { model.blocks[1].ring_start = start; }, "model/ring_start");
+  error_with([](Model& model) { model.blocks[1].excavations = {2}; }, "model/excavation");
+  error_with([](Model& model) { model.edge_label.pop_back(); }, "model/edge_kind");
 }
 
 TEST(ResultFile, AFolderThatCannotBeWrittenIsARunError) {

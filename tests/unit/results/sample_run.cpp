@@ -90,6 +90,7 @@ void expect_equal(const simulation::Frame& a, const simulation::Frame& b) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(same(a.stress[k][i], b.stress[k][i]));
   }
   EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.order, b.order);
 }
 
 void expect_equal(const simulation::ContactFrame& a, const simulation::ContactFrame& b) {
@@ -210,6 +211,7 @@ simulation::Frame SampleRun::frame(int stage, long step) {
     frame.stress.push_back(
         {static_cast<float>(noise(step, 100 + k)), -0.0F, std::numeric_limits<float>::denorm_min()});
     frame.status.push_back(static_cast<simulation::BlockStatus>((step + k) % 4));
+    frame.order.push_back(static_cast<std::int16_t>(1 + (step + k) % 300));
   }
   return frame;
 }
@@ -217,8 +219,8 @@ simulation::Frame SampleRun::frame(int stage, long step) {
 simulation::ContactFrame SampleRun::contacts(int stage, long step, int count) {
   simulation::ContactFrame frame{static_cast<double>(step) * step_size, stage, {}, step};
   for (int k = 0; k < count; ++k) {
-    frame.contacts.push_back({k,
-                              k + 1,
+    frame.contacts.push_back({k % 3,
+                              (k + 1) % 3,
                               static_cast<simulation::ContactState>(k % 3),
                               {noise(step, k), noise(step, k + 1)},
                               {0.6, 0.8},

@@ -47,6 +47,11 @@ struct Tip final : RunObserver {
   double down = 0.0;
   std::atomic<bool> stop = false;
   long after = -1;
+  std::vector<std::int16_t> first_orders, orders;
+  void frame(const Frame& frame) override {
+    if (first_orders.empty()) first_orders = frame.order;
+    orders = frame.order;
+  }
   void history(const HistoryRow& row) override { down = -row.points[0].uy; }
   void step(const StepRow& row) override { stop = after >= 0 && row.step >= after; }
 };
@@ -63,6 +68,9 @@ TEST(OrderControl, RaisesWhereStressVariesAndLowersWhereItDoesNot) {
   EXPECT_GE(record.dof, 20 + 6);
   EXPECT_LE(record.dof, 56 + 6);
   EXPECT_LT(record.energy.residual_ratio, 0.01);
+  EXPECT_EQ(chosen.first_orders, (std::vector<std::int16_t>{1, 1, 1}));
+  EXPECT_GE(chosen.orders[0], 3);
+  EXPECT_EQ(chosen.orders[2], 1);
 }
 
 TEST(OrderControl, IndicatorIsTheStressOfTheHighestDegree) {

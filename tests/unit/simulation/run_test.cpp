@@ -73,6 +73,13 @@ TEST(Run, RepeatedShakingGivesRepeatedSlip) {
   EXPECT_NEAR(slid(5) / (5.0 * once), 1.0, 5e-3);
 }
 
+void expect_equal_energies(const Energy& one, const Energy& other) {
+  for (const auto term :
+       {&Energy::kinetic, &Energy::strain, &Energy::gravity, &Energy::contact, &Energy::friction,
+        &Energy::damping, &Energy::input, &Energy::numerical, &Energy::residual_ratio})
+    EXPECT_EQ(one.*term, other.*term);
+}
+
 /// By conjugate gradients, or as it is by default.
 class ResumedRun : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(ByConjugateGradients, ResumedRun, ::testing::Bool());
@@ -100,7 +107,7 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   EXPECT_EQ(resumed.steps, whole.steps);
   EXPECT_EQ(resumed.stages.size(), whole.stages.size());
-  EXPECT_EQ(resumed.energy.friction, whole.energy.friction);
+  expect_equal_energies(resumed.energy, whole.energy);
 
   RunSetup other = setup;
   other.time_step = 0.001;
@@ -108,6 +115,46 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   std::filesystem::resize_file(folder / "checkpoint.bin", 1000);
   EXPECT_THROW(run(setup, options, nobody), InputError);
   std::filesystem::remove_all(folder);
+}
+
+TEST(Run, OtherFilesAreOtherInput) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_files_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  RunSetup setup = shaken_incline(1);
+  setup.files = {{"q.csv", "00ff"}};
+  RunObserver nobody;
+  RunOptions options;
+  options.directory = folder;
+  run(setup, options, nobody);
+  EXPECT_NO_THROW(read_checkpoint(folder, setup));
+  setup.files[0].hash = "00fe";
+  EXPECT_THROW(read_checkpoint(folder, setup), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+// Blocks that overlap at the start are taken as they are: the joint between them is not pressed.
+TEST(Run, GapsAreThoseThatTheJointLawHas) {
+  struct LastContacts final : RunObserver {
+    ContactFrame last;
+    void contacts(const ContactFrame& frame) override { last = frame; }
+  };
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({-0.5, -0.001}, 1.0, 0.5);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages = {stage("settle", StageKind::settle)};
+  LastContacts observer;
+  run(setup, {}, observer);
+  double force = 0.0;
+  for (const ContactRecord& contact : observer.last.contacts) {
+    if (contact.normal_force <= 0.0) continue;
+    force += contact.normal_force;
+    EXPECT_LT(contact.gap, 0.0);
+    EXPECT_GT(contact.gap, -1e-5);
+  }
+  EXPECT_NEAR(force / (2600.0 * g * 0.5), 1.0, 0.01);
 }
 
 RunSetup shaken_wall() {
@@ -124,6 +171,51 @@ RunSetup shaken_wall() {
   setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake),
                   stage("rest", StageKind::rest, 0.5)};
   return setup;
+}
+
+struct StopInRest final : RunObserver {
+  std::atomic<bool> stop = false;
+  void step(const StepRow& row) override { stop = row.stage == 2; }
+};
+
+// Of many contacts, the sum of their energies depends on its order.
+TEST(Run, AResumedRunHasTheSameEnergies) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_energy_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const RunSetup setup = shaken_wall();
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+  StopInRest stopper;
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  EXPECT_TRUE(run(setup, options, stopper).interrupted);
+  options.stop = nullptr;
+  options.resume = true;
+  expect_equal_energies(run(setup, options, nobody).energy, whole.energy);
+  std::filesystem::remove_all(folder);
+}
+
+// Neither a checkpoint nor what begins from it may form them anew: sums depend on their order.
+TEST(Run, StoredEnergiesArePartOfTheState) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("keyblock_stored_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({-0.5, 0.0}, 1.0, 0.5);
+  Simulator simulator(scene);
+  RunState kept;
+  kept.mechanics = simulator.state;
+  kept.mechanics.contact_energy = 0.1;
+  kept.mechanics.support_energy = 0.3;
+  write_checkpoint(folder, scene.setup, kept);
+  RunState read = read_checkpoint(folder, scene.setup);
+  simulator.stepper.resume(read.mechanics);
+  EXPECT_EQ(read.mechanics.contact_energy, 0.1);
+  EXPECT_EQ(read.mechanics.support_energy, 0.3);
+  std::filesystem::remove_all(folder);
 }
 
 // All linear solvers solve the same problem. Before anything slides for good, they differ by no more than tolerances do.

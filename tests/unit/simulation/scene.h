@@ -93,7 +93,7 @@ struct Simulator {
   }
   [[nodiscard]] double energy() const {
     return stepper.kinetic_energy(state) + stepper.strain_energy(state) + stepper.gravity_energy(state) +
-           stepper.contact_energy();
+           dynamics::Stepper::contact_energy(state);
   }
   /// What the energy audit leaves unexplained, J.
   [[nodiscard]] double residual() const {
