@@ -15,6 +15,7 @@
 #include "result_folder.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
+#include "scenario/inputs.h"
 #include "scenario_arguments.h"
 
 namespace keyblock::app {
@@ -37,6 +38,9 @@ void cut_scenario(const CutArguments& arguments) {
   const scenario::Scenario scenario = arguments.scenario.read();
   const int realization = arguments.scenario.realization;
   const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
+  std::vector<std::string> warnings = scenario::rock_mass_warnings(scenario);
+  scenario::add_block_warnings(scenario, model, warnings);
+  print_warnings(arguments.scenario, warnings);
   const std::filesystem::path folder = arguments.folder;
   make_folder(folder);
   check_holds_no_run(folder);

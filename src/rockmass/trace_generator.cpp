@@ -125,6 +125,8 @@ class Generator {
       return factor_ * quantile(set_.spacing, draw(stream, interval, Draw::length));
     };
     const Start start = stationary_start(stream, spacing);
+    const std::string too_many = fmt::format("more than {:.0g}", max_traces);
+    if (!std::isfinite(start.offset)) refuse(set_, too_many);
     const auto each_line = [&](const auto& visit) {
       double position = -start.offset;
       for (int k = 0; position >= -half_across_; position -= spacing(folded(--k))) visit(k, position);
@@ -136,7 +138,7 @@ class Generator {
     const double of_line = expected_of_line();
     double lines = 0.0;
     each_line([&](int, double) {
-      if (++lines * of_line > max_traces) refuse(set_, fmt::format("more than {:.0g}", max_traces));
+      if (++lines * of_line > max_traces) refuse(set_, too_many);
     });
     each_line([&](int number, double position) { add_line(number, position); });
     return std::move(traces_);
