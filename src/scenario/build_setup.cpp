@@ -200,9 +200,9 @@ void check_steps(const Scenario& scenario, const RunSetup& setup, std::vector<st
                                       stage.duration ? "" : " of motion", steps, setup.time_step),
                           fmt::format("1 to {:.0e} steps", most_steps), ""});
     } else if (stage.duration && std::abs(steps - whole) > whole_step_tolerance * std::max(1.0, whole)) {
-      warnings.push_back(
-          fmt::format("{}: {} s is no multiple of the time step {} s; the stage takes {} step{}, {} s", key,
-                      duration, setup.time_step, whole, whole == 1.0 ? "" : "s", whole * setup.time_step));
+      warnings.push_back(fmt::format(
+          "{}: {} s is no multiple of the time step {} s; the stage takes {} step{}, {:.6g} s", key, duration,
+          setup.time_step, whole, whole == 1.0 ? "" : "s", whole * setup.time_step));
     }
   }
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
