@@ -158,12 +158,13 @@ TEST(BuildSetup, AbsurdOrdersAreRefused) {
   Scenario scenario = parse(runnable_domain);
   scenario.rock.order = 5000;
   EXPECT_THAT(refusal(scenario), HasSubstr("expected at most 2e+07 unknowns"));
-  EXPECT_EQ(refusal(parse(runnable_domain, {"rock.order=10"})), "");
-  for (const char* order : {"11", "1000", "0", "2.5"}) {
+  EXPECT_EQ(mistakes(runnable_domain, {"rock.order=12"}), "");
+  EXPECT_EQ(refusal(parse(runnable_domain, {"rock.order=8"})), "");
+  for (const char* order : {"13", "1000", "0", "2.5"}) {
     EXPECT_THAT(mistakes(runnable_domain, {std::string("rock.order=") + order}),
-                HasSubstr("expected an integer from 1 to 10, or \"auto\""));
+                HasSubstr("expected an integer from 1 to 12, or \"auto\""));
   }
-  EXPECT_THAT(mistakes(runnable_domain, {"auto_order.highest_order=11"}), HasSubstr("from 1 to 10"));
+  EXPECT_THAT(mistakes(runnable_domain, {"auto_order.highest_order=13"}), HasSubstr("from 1 to 12"));
 }
 
 TEST(Loads, TractionIsAParabolaThroughThreeValues) {
