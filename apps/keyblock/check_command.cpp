@@ -20,14 +20,16 @@ void check_scenario(const ScenarioArguments& arguments) {
   if (!scenario.stages.empty()) {  // a scenario without stages can still be cut
     warnings.clear();
     scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
+  } else {
+    scenario::add_block_warnings(scenario, blocks, warnings);
   }
   print_warnings(arguments, warnings);
   const auto count = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
-  std::string text =
-      fmt::format("{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
-                  count(blocks.traces.size(), "joint trace"), count(scenario.stages.size(), "stage"));
+  std::string text = fmt::format(
+      "{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
+      count(rockmass::count_traces(blocks.traces), "joint trace"), count(scenario.stages.size(), "stage"));
   if (scenario.study) {
     // Every value of every axis is looked at here.
     const study::Plan plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);

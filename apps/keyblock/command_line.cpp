@@ -72,6 +72,15 @@ int explain(const CLI::App& app, const std::vector<std::string>& words, const CL
 
 }  // namespace
 
+namespace {
+
+/// What was printed may have been lost on a full disk.
+void finish_output() {
+  if (!std::cout.flush()) throw RunError("standard output could not be written");
+}
+
+}  // namespace
+
 int run_command_line(int argc, const char* const* argv) {
   // What would grow beyond the limit for files is an error of writing like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -82,9 +91,9 @@ int run_command_line(int argc, const char* const* argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      return explain(app, {argv + 1, argv + argc}, error);
+      exit_code = explain(app, {argv + 1, argv + argc}, error);
     }
-    std::cout.flush();
+    finish_output();
     return exit_code;
   } catch (const InputError& error) {
     std::cerr << error.what() << "\n";

@@ -15,6 +15,7 @@
 #include "result_folder.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
+#include "scenario/inputs.h"
 #include "scenario_arguments.h"
 
 namespace keyblock::app {
@@ -40,6 +41,9 @@ void cut_scenario(const CutArguments& arguments) {
   check_holds_no_run(folder);
   make_folder(folder);
   const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
+  std::vector<std::string> warnings = scenario::rock_mass_warnings(scenario);
+  scenario::add_block_warnings(scenario, model, warnings);
+  print_warnings(arguments.scenario, warnings);
   // Hundreds of megabytes for many blocks: both files are put together and written at the same time.
   std::future<void> outlines = std::async(std::launch::async, [&] {
     write_file_atomically(folder / "blocks.geojson", cutting::to_geojson(model.system));

@@ -75,6 +75,8 @@ void Basis::orthonormalize(const std::vector<WeightedPoint>& rule) {
     for (int j = 0; j <= i; ++j) {
       double sum = gram[entry(i, j, size_)];
       for (int k = 0; k < j; ++k) sum -= gram[entry(i, k, size_)] * gram[entry(j, k, size_)];
+      // A polynomial that is the sum of those before it but for rounding: the region is too thin for the order.
+      if (i == j && !(sum > 0.0)) throw std::invalid_argument("Basis: the order is too high for the region");
       gram[entry(i, j, size_)] = i == j ? std::sqrt(sum) : sum / gram[entry(j, j, size_)];
     }
   }

@@ -19,7 +19,7 @@ constexpr int basis_size(int order) {
 /// Gram matrix (the second one restores what the first loses at high order).
 class Basis {
  public:
-  /// Throws std::invalid_argument for order < 1 or a region of no area.
+  /// Throws std::invalid_argument for order < 1, a region of no area, and one too thin for the digits of so high an order.
   Basis(const Polygon& region, int order);
 
   [[nodiscard]] int order() const { return order_; }

@@ -6,9 +6,8 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 
@@ -53,17 +52,31 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 }
 
 std::string read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  if (in) content << in.rdbuf();
-  if (!in || std::filesystem::is_directory(path)) {
+  const auto fail = [&] {
     Diagnostic diagnostic;
     diagnostic.where.file = path.string();
-    diagnostic.found = "no readable file";
+    diagnostic.found = fmt::format("no readable file ({})", std::strerror(errno));
     diagnostic.expected = "a file that can be read";
     throw InputError(std::move(diagnostic));
+  };
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail();
+  std::string content;
+  std::vector<char> piece(1 << 20);
+  for (;;) {
+    const ssize_t n = ::read(descriptor, piece.data(), piece.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int reason = errno;
+      ::close(descriptor);
+      errno = reason;
+      fail();
+    }
+    if (n == 0) break;
+    content.append(piece.data(), static_cast<std::size_t>(n));
   }
-  return std::move(content).str();
+  ::close(descriptor);
+  return content;
 }
 
 }  // namespace keyblock

@@ -28,7 +28,7 @@ class AtomicFile {
 /// AtomicFile of a content that is there already.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// The whole file as bytes. Throws InputError when it cannot be read.
+/// The whole file as bytes. Throws InputError, with the reason of the system, when it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace keyblock

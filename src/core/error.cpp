@@ -2,16 +2,25 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace keyblock {
+namespace {
+
+// Characters of a message: what was found may be a line of megabytes, or no text at all.
+constexpr std::size_t longest_path = 4096, longest_key = 300, longest_found = 300, longest_words = 2000;
+
+}  // namespace
 
 std::string Diagnostic::to_string() const {
-  std::string text = where.file;
+  std::string text = printable(where.file, longest_path);
   if (where.line > 0) text += fmt::format(":{}:{}", where.line, where.column);
   if (!text.empty()) text += ": ";
-  if (!key.empty()) text += key + ": ";
-  if (!found.empty()) text += "found " + found;
-  if (!expected.empty()) text += (found.empty() ? "expected " : "; expected ") + expected;
-  if (!hint.empty()) text += "; " + hint;
+  if (!key.empty()) text += printable(key, longest_key) + ": ";
+  if (!found.empty()) text += "found " + printable(found, longest_found);
+  if (!expected.empty())
+    text += (found.empty() ? "expected " : "; expected ") + printable(expected, longest_words);
+  if (!hint.empty()) text += "; " + printable(hint, longest_words);
   return text;
 }
 

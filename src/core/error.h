@@ -12,7 +12,7 @@ struct SourcePosition {
   int column = 0;
 };
 
-/// One mistake in the user's input. Printed as `file:line:column: key: found …; expected …; hint`.
+/// One mistake in the user's input. Printed as `file:line:column: key: found …; expected …; hint`, long texts cut, others escaped.
 struct Diagnostic {
   SourcePosition where;
   std::string key;       ///< full key path, e.g. `joint_set[2].spacing.mean`; empty where no key is meant

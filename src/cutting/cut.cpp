@@ -42,11 +42,14 @@ bool is_joint(EdgeLabel label) {
   return label.kind == EdgeKind::joint_set || label.kind == EdgeKind::trace_map;
 }
 
-/// A set of traces.
+/// A set of traces, of which the pieces are known.
 class TraceMarks {
  public:
-  void add(const std::vector<int>& traces) {
-    for (const int trace : traces) {
+  explicit TraceMarks(const std::vector<int>& trace_of_piece) : trace_of_piece_(trace_of_piece) {}
+
+  void add(const std::vector<int>& pieces) {
+    for (const int piece : pieces) {
+      const int trace = trace_of_piece_[at(piece)];
       if (at(trace) >= marked_.size()) marked_.resize(at(trace) + 1, false);
       marked_[at(trace)] = true;
     }
@@ -56,13 +59,15 @@ class TraceMarks {
   }
 
  private:
+  const std::vector<int>& trace_of_piece_;
   std::vector<bool> marked_;
 };
 
 /// Takes away what bounds no block, and counts it.
-PlanarGraph bounded_blocks(NodedLinework noded, CutStatistics& statistics) {
+PlanarGraph bounded_blocks(NodedLinework noded, const std::vector<int>& trace_of_piece,
+                           CutStatistics& statistics) {
   PlanarGraph& graph = noded.graph;
-  TraceMarks meeting, used;
+  TraceMarks meeting(trace_of_piece), used(trace_of_piece);
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     meeting.add(noded.traces[e]);
     if (is_joint(graph.edges[e].label)) statistics.trace_length += graph.length(graph.edges[e]);
@@ -159,7 +164,7 @@ BlockSystem cut(const CutInput& input) {
       work.grid * std::max(bounds({work.domain, {}}).size().x, bounds({work.domain, {}}).size().y);
   if (norm(work.shift) > far_away * size) system.origin = work.shift;
 
-  PlanarGraph graph = bounded_blocks(node(work), statistics);
+  PlanarGraph graph = bounded_blocks(node(work), rockmass::trace_numbers(input.traces), statistics);
   graph.trace_faces();
   cluster_vertices(graph, vertex_rounding * graph.grid);
   snap_vertices_to_edges(graph, edge_rounding * graph.grid);

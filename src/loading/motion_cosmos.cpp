@@ -26,17 +26,17 @@ struct Announcement {
 
 Announcement read_announcement(const MotionText& text, std::size_t line) {
   const std::string words = squeeze(text.line(line));
-  const auto count = parse_number(std::string_view(words).substr(0, words.find(' ')));
-  if (!count || !(*count >= 1.0)) text.fail(line, "a number of values at the start of the line");
-  Announcement announcement{static_cast<std::size_t>(*count), 0};
+  const auto count = text.count(parse_number(std::string_view(words).substr(0, words.find(' '))));
+  if (!count) text.fail(line, "a number of values, which the file must hold, at the start of the line");
+  Announcement announcement{*count, 0};
   // The width stands between the letter and the point of (6F13.6), or ends the word: (10I8).
   const std::size_t open = words.rfind('(');
   const std::size_t letter = words.find_first_of("FEGIfegi", open == std::string::npos ? words.size() : open);
   if (letter != std::string::npos) {
     const std::size_t end = words.find_first_not_of("0123456789", letter + 1);
-    if (const auto width = parse_number(std::string_view(words).substr(letter + 1, end - letter - 1))) {
-      announcement.width = static_cast<std::size_t>(*width);
-    }
+    const auto width =
+        text.count(parse_number(std::string_view(words).substr(letter + 1, end - letter - 1)), 0);
+    announcement.width = width.value_or(0);
   }
   return announcement;
 }
@@ -52,9 +52,11 @@ std::size_t require(const MotionText& text, std::string_view words, std::size_t 
 
 double time_step(const MotionText& text, std::size_t line, const std::vector<double>& reals) {
   const auto value = [&](std::size_t k) { return k < reals.size() && reals[k] != unknown ? reals[k] : 0.0; };
-  if (value(real_processed_interval) > 0.0) return value(real_processed_interval) / 1000.0;
-  if (value(real_recorded_interval) > 0.0) return value(real_recorded_interval);
-  text.fail(line, "a real header with the sample interval (values 62 or 34)");
+  const double processed = value(real_processed_interval) / 1000.0;
+  const double step = processed > 0.0 ? processed : value(real_recorded_interval);
+  if (is_time_step(step)) return step;
+  text.fail(line,
+            fmt::format("a real header with the sample interval (values 62 or 34): {}", time_step_text));
 }
 
 AccelerationUnit section_unit(const MotionText& text, std::size_t line) {

@@ -72,17 +72,19 @@ std::vector<MotionComponent> read_csmip(const MotionText& text) {
     component.file = text.file();
     component.format = "CSMIP V2";
     const std::string title = squeeze(text.line(line));
-    const auto points = parse_number(std::string_view(title).substr(0, title.find(' ')));
+    const auto points = text.count(parse_number(std::string_view(title).substr(0, title.find(' '))));
     const auto dt = number_after(title, "equally spaced at");
-    if (!points || !(*points >= 1.0)) text.fail(line, "the number of points before `POINTS OF ACCEL DATA`");
-    if (!dt || !(*dt > 0.0)) text.fail(line, "the time step after `EQUALLY SPACED AT`");
+    if (!points) {
+      text.fail(line, "the number of points, which the file must hold, before `POINTS OF ACCEL DATA`");
+    }
+    if (!is_time_step(dt)) text.fail(line, fmt::format("{}, after `EQUALLY SPACED AT`", time_step_text));
     component.dt = *dt;
     component.event = squeeze(text.line(first + 2));
     component.station = squeeze(text.line(first + header_station_line));
     const MotionDirection direction = find_direction(text, first, line, component.label);
     std::size_t next = 0;
-    set_samples(component, text.numbers(line + 1, static_cast<std::size_t>(*points), 0, "samples", &next),
-                block_unit(text, line), direction);
+    set_samples(component, text.numbers(line + 1, *points, 0, "samples", &next), block_unit(text, line),
+                direction);
     check_peak(text, first, line, component);
     components.push_back(std::move(component));
     const std::size_t end = text.find("end of data for channel", next);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "loading/motion_file.h"
 #include "loading/motion_text.h"
@@ -12,6 +13,9 @@ namespace {
 // Steps that differ by less than this share of their mean count as equal: times are often rounded to few
 // digits.
 constexpr double even_spacing_tolerance = 1e-3;
+
+// s. Beyond it the spacing of numbers is coarser than steps of records.
+constexpr double longest_time = 1e10;
 
 bool is_comment(std::string_view line) {
   return trim(line).empty() || trim(line).front() == '#';
@@ -38,14 +42,51 @@ bool is_row(std::string_view line) {
   return fields.size() == 2 && parse_number(fields[0]) && parse_number(fields[1]);
 }
 
-// The unit in a header line such as `time (s), acceleration [cm/s2]` or `t,a_g`.
-std::optional<AccelerationUnit> header_unit(std::string_view header) {
+// Whether a line that is no row was meant as one: a first row that is damaged is no header.
+bool begins_like_row(std::string_view line) {
+  const std::string first = lower(columns(line).front());
+  const bool number = first.find_first_not_of("0123456789+-.e") == std::string::npos &&
+                      first.find_first_of("0123456789") != std::string::npos;
+  return number || first == "nan" || first == "inf" || first == "-inf";
+}
+
+// The end of a header line, which may name the unit: `[cm/s2]`, `g` of `a_g`, `mm/s2` of `acc in mm/s2`.
+struct HeaderEnd {
+  std::string word;
+  bool names_unit = false;  // by its place or its look, whether or not the unit is known
+};
+
+HeaderEnd header_end(std::string_view header) {
   const auto fields = columns(header);
-  std::string word(fields.size() >= 2 ? fields.back() : header);
-  if (const auto unit = acceleration_unit(word)) return unit;
-  std::erase_if(word, [](char c) { return c == ')' || c == ']' || c == '"'; });
-  const std::size_t at = word.find_last_of("([ _:");
-  return at == std::string::npos ? std::nullopt : acceleration_unit(std::string_view(word).substr(at + 1));
+  std::string field(fields.size() >= 2 ? fields.back() : header);
+  std::erase(field, '"');
+  if (acceleration_unit(field)) return {field, true};
+  const std::size_t open = field.find_last_of("([");
+  if (open != std::string::npos) {
+    return {field.substr(open + 1, field.find_first_of(")]", open) - open - 1), true};
+  }
+  const std::string words = squeeze(field);
+  const std::size_t at = words.find_last_of(" _:");
+  const std::string word = at == std::string::npos ? words : words.substr(at + 1);
+  const std::string before = at == std::string::npos ? "" : lower(words.substr(0, at));
+  constexpr std::string_view others[] = {"mm", "cm", "m", "km", "in", "ft", "mg", "mgal", "kine"};
+  const bool looks = word.find_first_of("/%") != std::string::npos ||
+                     std::find(std::begin(others), std::end(others), lower(word)) != std::end(others);
+  return {word, looks || before == "in" || before.ends_with(" in") || acceleration_unit(word).has_value()};
+}
+
+// The unit that a header line names, such as `time (s), acceleration [cm/s2]` or `t,a_g`; absent when it names none.
+std::optional<AccelerationUnit> header_unit(const MotionText& text, std::size_t line) {
+  const std::string words = lower(text.line(line));
+  if (words.find("veloc") != std::string::npos || words.find("displ") != std::string::npos) {
+    text.fail(line, "a time series of acceleration");
+  }
+  const HeaderEnd end = header_end(text.line(line));
+  const auto unit = acceleration_unit(end.word);
+  if (!unit && (end.names_unit || words.find_first_of("([") != std::string::npos)) {
+    text.fail(line, "a unit of acceleration in the header: m/s2, cm/s2 or g");
+  }
+  return unit;
 }
 
 void set_times(MotionComponent& component, std::vector<double> times) {
@@ -70,6 +111,7 @@ bool matches_csv(const MotionText& text) {
   for (std::size_t k = 0; k < text.size(); ++k) {
     if (is_comment(text.line(k))) continue;
     if (is_row(text.line(k))) return true;
+    if (header_lines == 0 && begins_like_row(text.line(k)) && columns(text.line(k)).size() >= 2) return true;
     if (++header_lines > 1) return false;
   }
   return false;
@@ -86,11 +128,9 @@ std::vector<MotionComponent> read_csv(const MotionText& text) {
     const std::string_view line = text.line(k);
     if (is_comment(line)) continue;
     if (!is_row(line)) {
-      if (!header_possible) text.fail(k, "two finite numbers: time in seconds and acceleration");
-      unit = header_unit(line);
-      if (!unit && line.find_first_of("([") != std::string_view::npos) {
-        text.fail(k, "a unit of acceleration in the header: m/s2, cm/s2 or g");
-      }
+      if (!header_possible || begins_like_row(line))
+        text.fail(k, "two finite numbers: time in seconds and acceleration");
+      unit = header_unit(text, k);
       header_possible = false;
       continue;
     }
@@ -100,10 +140,17 @@ std::vector<MotionComponent> read_csv(const MotionText& text) {
     if (!times.empty() && !(time > times.back())) {
       text.fail(k, 1, fmt::format("time {}", time), fmt::format("a time after {}", times.back()));
     }
+    if (!(std::abs(time) <= longest_time)) {
+      text.fail(k, 1, fmt::format("time {}", time), fmt::format("a time within ±{} s", longest_time));
+    }
     times.push_back(time);
     values.push_back(*parse_number(fields[1]));
   }
   if (times.size() < 2) text.fail(text.size() - 1, "at least two rows of time and acceleration");
+  if (!is_time_step((times.back() - times.front()) / static_cast<double>(times.size() - 1))) {
+    text.fail(text.size() - 1, 1, fmt::format("times from {} to {}", times.front(), times.back()),
+              std::string(time_step_text) + ", on average");
+  }
   if (!unit) {
     unit = AccelerationUnit{"m/s2", 1.0};
     component.notes.push_back("the file names no unit; m/s2 is assumed");

@@ -51,11 +51,12 @@ inline constexpr double standard_gravity = 9.80665;
 /// - COSMOS V1/V2: likewise, one data section after the other, accelerations only.
 /// - CSV: two columns, time (s) and acceleration, separated by comma, semicolon or blanks; lines that begin
 /// with `#`
-///   are comments; an optional header line names the unit (m/s2, cm/s2, gal, g), which is m/s² otherwise.
-///   Times must ascend and may be uneven.
+///   are comments; an optional header line, which begins with no number, names the unit (m/s2, cm/s2, gal, g), which
+///   is m/s² when it names none. Times must ascend, within ±1e10 s, and may be uneven.
 ///
 /// Throws InputError, with the line, for a file that is of none of these formats, holds no acceleration, is
-/// cut short, or has a sample that is not a finite number.
+/// cut short or longer than it says, has a sample that is not a finite number, is in another unit, or has steps of less
+/// than 1e-9 s or more than 1e6 s. Samples are at most 1e9 m/s².
 std::vector<MotionComponent> read_motion_file(const std::filesystem::path& path);
 
 }  // namespace keyblock::loading

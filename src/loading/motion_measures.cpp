@@ -7,8 +7,12 @@
 #include <filesystem>
 #include <numbers>
 
+#include "core/text.h"
+
 namespace keyblock::loading {
 namespace {
+
+constexpr std::size_t longest_text = 200;  // characters of an event, a station, a label
 
 // Time at which the ascending cumulative sum reaches `level`, linear between samples.
 double time_of(const MotionComponent& component, const std::vector<double>& cumulative, double level) {
@@ -102,13 +106,13 @@ std::string describe_motion(const std::vector<MotionComponent>& components) {
       file = c.file;
       text += fmt::format("{}{}: {}\n", text.empty() ? "" : "\n",
                           std::filesystem::path(file).filename().string(), c.format);
-      if (!c.event.empty()) text += fmt::format("  event      {}\n", c.event);
-      if (!c.station.empty()) text += fmt::format("  station    {}\n", c.station);
+      if (!c.event.empty()) text += fmt::format("  event      {}\n", printable(c.event, longest_text));
+      if (!c.station.empty()) text += fmt::format("  station    {}\n", printable(c.station, longest_text));
     }
     const MotionMeasures m = measure(c);
     const std::string step = c.times.empty() ? fmt::format("dt {:.6g} s", c.dt) : "uneven steps";
     text += fmt::format("  component  {}{}\n", direction(c),
-                        c.label.empty() ? "" : fmt::format("  ({})", c.label));
+                        c.label.empty() ? "" : fmt::format("  ({})", printable(c.label, longest_text)));
     text +=
         fmt::format("    samples              {}, {}, {:.6g} s\n", c.acceleration.size(), step, c.duration());
     const std::string as_read =

@@ -26,6 +26,16 @@ double tick_step(double range, int most) {
   return 10.0 * power;
 }
 
+// The multiples of `step` in [from, to]. They are counted, so that there are few whatever the numbers are.
+std::vector<double> ticks(double from, double to, double step) {
+  constexpr int most = 20;
+  const double first = std::ceil(from / step);
+  std::vector<double> places;
+  for (int k = 0; k < most && (first + k) * step <= to + 1e-9 * step; ++k)
+    places.push_back((first + k) * step);
+  return places;
+}
+
 // Smallest and largest acceleration of every column of pixels: what a line through all samples would cover.
 std::string outline(const MotionComponent& c, double t0, double seconds_per_pixel, double zero,
                     double pixels_per_unit) {
@@ -37,7 +47,7 @@ std::string outline(const MotionComponent& c, double t0, double seconds_per_pixe
   constexpr double columns_per_pixel = 2.0;
   for (std::size_t k = 0; k < c.acceleration.size();) {
     const double column = std::floor((c.time(k) - t0) / seconds_per_pixel * columns_per_pixel);
-    std::size_t low = k, high = k, next = k;
+    std::size_t low = k, high = k, next = k + 1;
     for (; next < c.acceleration.size(); ++next) {
       if (std::floor((c.time(next) - t0) / seconds_per_pixel * columns_per_pixel) != column) break;
       if (c.acceleration[next] < c.acceleration[low]) low = next;
@@ -69,7 +79,7 @@ std::string plot_motion_svg(const std::vector<MotionComponent>& components) {
     peak = std::max(peak, std::abs(c.acceleration[c.peak_index()]));
   }
   if (components.empty() || !(t1 > t0)) t0 = 0.0, t1 = 1.0;
-  if (!(peak > 0.0)) peak = 1.0;
+  if (!(peak > 1e-100)) peak = 1.0;
   const double value_step = tick_step(2.0 * peak, 5), time_step = tick_step(t1 - t0, 10);
   const double range = 1.08 * peak;
   const double seconds_per_pixel = (t1 - t0) / plot_width, pixels_per_unit = panel_height / (2.0 * range);
@@ -85,16 +95,16 @@ std::string plot_motion_svg(const std::vector<MotionComponent>& components) {
     const double zero = panel + panel_height / 2.0;
     svg += fmt::format("<text x=\"{}\" y=\"{}\" font-weight=\"bold\">{}</text>\n", left, panel - 7.0,
                        xml_text(title(c)));
-    for (double t = std::ceil(t0 / time_step) * time_step; t <= t1 + 1e-9 * time_step; t += time_step) {
+    for (const double t : ticks(t0, t1, time_step)) {
       const double x = left + (t - t0) / seconds_per_pixel;
       svg += fmt::format("<path d=\"M{0:.1f},{1}V{2}\" stroke=\"#ddd\"/>\n", x, panel, panel + panel_height);
     }
-    for (double k = -std::floor(range / value_step); k <= std::floor(range / value_step); ++k) {
-      const double y = zero - k * value_step * pixels_per_unit;
+    for (const double a : ticks(-range, range, value_step)) {
+      const double y = zero - a * pixels_per_unit;
       svg += fmt::format("<path d=\"M{},{:.1f}H{}\" stroke=\"{}\"/>\n", left, y, width - right,
-                         k == 0.0 ? "#888" : "#ddd");
+                         a == 0.0 ? "#888" : "#ddd");
       svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.6g}</text>\n", left - 6.0,
-                         y + 4.0, k * value_step);
+                         y + 4.0, a);
     }
     svg += fmt::format(
         "<text transform=\"translate(16,{}) rotate(-90)\" text-anchor=\"middle\">m/s²</text>\n", zero);
@@ -114,7 +124,7 @@ std::string plot_motion_svg(const std::vector<MotionComponent>& components) {
     panel += panel_height + panel_gap;
   }
   const double axis = height - bottom + 16.0;
-  for (double t = std::ceil(t0 / time_step) * time_step; t <= t1 + 1e-9 * time_step; t += time_step) {
+  for (const double t : ticks(t0, t1, time_step)) {
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>\n",
                        left + (t - t0) / seconds_per_pixel, axis, t);
   }

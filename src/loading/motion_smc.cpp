@@ -55,13 +55,16 @@ std::vector<MotionComponent> read_smc(const MotionText& text) {
       text.numbers(text_lines, integer_count, integer_width, "integers of the header");
   const std::size_t real_start = text_lines + integer_lines;
   const std::vector<double> reals = text.numbers(real_start, real_count, real_width, "reals of the header");
-  const double points = integers[point_count], comments = integers[comment_count];
-  if (!(points >= 1.0))
-    text.fail(text_lines + 2, "the number of points, at least 1, in the first ten columns");
-  if (!(comments >= 0.0)) text.fail(text_lines + 1, "the number of comment lines in the last ten columns");
-  if (reals[sampling_rate] == reals[0] || !(reals[sampling_rate] > 0.0)) {
-    text.fail(real_start, real_width + 1, fmt::format("{}", reals[sampling_rate]),
-              "the sampling rate in samples per second", "unevenly digitized records are not supported");
+  const auto points = text.count(integers[point_count]), comments = text.count(integers[comment_count], 0);
+  if (!points)
+    text.fail(text_lines + 2,
+              "the number of points, which the file must hold, in the first ten columns, at least 1");
+  if (!comments) text.fail(text_lines + 1, "the number of comment lines in the last ten columns");
+  const double rate = reals[sampling_rate];
+  if (rate == reals[0] || !(rate > 0.0) || !is_time_step(1.0 / rate)) {
+    text.fail(real_start, real_width + 1, fmt::format("{}", rate),
+              "the sampling rate in samples per second, 1e-6 to 1e9",
+              "unevenly digitized records are not supported");
   }
   MotionComponent component;
   component.file = text.file();
@@ -73,12 +76,12 @@ std::vector<MotionComponent> read_smc(const MotionText& text) {
     if (station < direction) component.station = squeeze(line.substr(station + 9, direction - station - 9));
     if (direction != std::string::npos) component.label = squeeze(line.substr(direction + 10));
   }
-  component.dt = 1.0 / reals[sampling_rate];
-  const std::size_t data = real_start + real_lines + static_cast<std::size_t>(comments);
+  component.dt = 1.0 / rate;
+  const std::size_t data = real_start + real_lines + *comments;
   std::size_t next = 0;
-  set_samples(component, text.numbers(data, static_cast<std::size_t>(points), sample_width, "samples", &next),
-              {"cm/s2", 0.01}, find_direction(component, integers));
-  if (next < text.size()) text.fail(next, fmt::format("the end of the file after {} samples", points));
+  set_samples(component, text.numbers(data, *points, sample_width, "samples", &next), {"cm/s2", 0.01},
+              find_direction(component, integers));
+  if (next < text.size()) text.fail(next, fmt::format("the end of the file after {} samples", *points));
   check_peak(component, reals);
   return {std::move(component)};
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "loading/motion_file.h"
 
 namespace keyblock::loading {
@@ -22,9 +23,7 @@ bool is_blank(char c) {
 std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 40;
   text = trim(text);
-  return text.empty()            ? std::string("a blank field")
-         : text.size() > longest ? fmt::format("\"{}…\"", text.substr(0, longest))
-                                 : fmt::format("\"{}\"", text);
+  return text.empty() ? std::string("a blank field") : '"' + printable(text, longest) + '"';
 }
 
 // Where the number that starts at `begin` ends, for fields without a fixed width.
@@ -44,7 +43,8 @@ std::size_t free_field_end(std::string_view line, std::size_t begin) {
 
 MotionText::MotionText(std::string file, std::string content)
     : file_(std::move(file)), content_(std::move(content)) {
-  const std::string_view all = content_;
+  std::string_view all = content_;
+  if (all.starts_with("\xEF\xBB\xBF")) all.remove_prefix(3);
   for (std::size_t begin = 0; begin < all.size();) {
     const std::size_t end = std::min(all.find('\n', begin), all.size());
     std::string_view text = all.substr(begin, end - begin);
@@ -79,13 +79,17 @@ std::vector<double> MotionText::numbers(std::size_t first, std::size_t count, st
            fmt::format("{} {}", count, what), "the file may have been cut short");
     }
     const std::string_view row = lines_[k];
-    for (std::size_t begin = 0; begin < row.size() && values.size() < count;) {
+    for (std::size_t begin = 0; begin < row.size();) {
       std::size_t end = begin + width;
       if (width == 0) {
         while (begin < row.size() && (is_blank(row[begin]) || row[begin] == ',')) ++begin;
+        if (begin == row.size()) break;
         end = free_field_end(row, begin);
       }
       const std::string_view field = row.substr(begin, end - begin);
+      if (values.size() == count) {
+        fail(k, begin + 1, quoted(field), fmt::format("the end of the line after {} {}", count, what));
+      }
       const auto value = parse_number(field);
       if (!value) {
         fail(k, begin + 1, quoted(field),
@@ -97,6 +101,12 @@ std::vector<double> MotionText::numbers(std::size_t first, std::size_t count, st
   }
   if (next_line != nullptr) *next_line = k;
   return values;
+}
+
+std::optional<std::size_t> MotionText::count(std::optional<double> stated, std::size_t least) const {
+  const bool fits = stated && *stated >= static_cast<double>(least) &&
+                    *stated <= static_cast<double>(content_.size()) && *stated == std::floor(*stated);
+  return fits ? std::optional(static_cast<std::size_t>(*stated)) : std::nullopt;
 }
 
 void MotionText::fail(std::size_t line, std::size_t column, std::string found, std::string expected,
@@ -162,6 +172,11 @@ std::optional<double> number_after(std::string_view text, std::string_view key) 
   while (!number.empty() && number.back() == '.' && number.find('.') + 1 != number.size())
     number.remove_suffix(1);
   return parse_number(number);
+}
+
+bool is_time_step(std::optional<double> seconds) {
+  constexpr double shortest = 1e-9, longest = 1e6;
+  return seconds && *seconds >= shortest && *seconds <= longest;
 }
 
 std::optional<AccelerationUnit> acceleration_unit(std::string_view word) {

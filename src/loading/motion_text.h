@@ -10,7 +10,7 @@ namespace keyblock::loading {
 struct MotionComponent;
 
 /// The lines of a strong-motion file, with what its readers share. Lines count from 0 here and from 1 in
-/// messages.
+/// messages. A byte order mark at the beginning is left out.
 class MotionText {
  public:
   MotionText(std::string file, std::string content);
@@ -27,9 +27,13 @@ class MotionText {
   /// Reads `count` numbers from line `first` on, in columns of `width` characters; with width 0 numbers end at a
   /// blank, a comma, or where a sign that belongs to no exponent begins the next. `what` they are is for the message.
   /// `next_line` receives the line after the last one read. Throws InputError for anything that is no finite
-  /// number, and when the file ends too early.
+  /// number, when the file ends too early, and when the last line read has more numbers.
   [[nodiscard]] std::vector<double> numbers(std::size_t first, std::size_t count, std::size_t width,
                                             const std::string& what, std::size_t* next_line = nullptr) const;
+
+  /// `stated` as a number of lines or numbers that the file can hold: whole, from `least` to the length of the file in
+  /// characters. Nothing else is a count.
+  [[nodiscard]] std::optional<std::size_t> count(std::optional<double> stated, std::size_t least = 1) const;
 
   [[noreturn]] void fail(std::size_t line, std::size_t column, std::string found, std::string expected,
                          std::string hint = {}) const;
@@ -49,6 +53,11 @@ std::string lower(std::string_view text);
 std::optional<double> parse_number(std::string_view text);
 /// The number that follows `key` in `text` (after any of " =:("), e.g. number_after("NPTS= 12", "NPTS").
 std::optional<double> number_after(std::string_view text, std::string_view key);
+
+/// Whether a step between samples is one: neither so short nor so long that times lose their meaning.
+bool is_time_step(std::optional<double> seconds);
+/// What is expected of one, in words.
+inline constexpr const char* time_step_text = "the time step, 1e-9 to 1e6 s";
 
 /// m/s² per unit for the spellings in use (g, cm/s2, cm/sec/sec, gal, m/s2 …); absent for any other word.
 struct AccelerationUnit {

@@ -193,6 +193,9 @@ GroundMotion project_motion(std::string name,
     start = std::min(start, component.time(0));
     end = std::max(end, component.end());
   }
+  if (!(start < end)) {
+    fail("components", components.front().first.file + " of one sample", "records of two samples or more");
+  }
   const auto [t0, t1] = options.window.value_or(std::pair{start, end});
   const double slack = 1e-9 * (end - start);  // for a window typed from rounded times
   if (!(t0 < t1) || t0 < start - slack || t1 > end + slack) {

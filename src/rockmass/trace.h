@@ -1,4 +1,7 @@
 #pragma once
+#include <cstddef>
+#include <vector>
+
 #include "geometry/vec2.h"
 
 namespace keyblock::rockmass {
@@ -15,6 +18,12 @@ struct Trace {
   Vec2 a;
   Vec2 b;
   TraceSource source;
+  int polyline = -1;  ///< which one of its map it is a piece of; −1: it is a whole trace
 };
+
+/// For every piece the number of its trace, counted from 0. Pieces of one trace follow each other.
+std::vector<int> trace_numbers(const std::vector<Trace>& pieces);
+/// How many traces the pieces make.
+std::size_t count_traces(const std::vector<Trace>& pieces);
 
 }  // namespace keyblock::rockmass

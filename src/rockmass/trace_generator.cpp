@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -74,6 +75,15 @@ bool meets(const Box& box, Vec2 a, Vec2 b) {
   return *low <= 0.0 && *high >= 0.0;
 }
 
+[[noreturn]] void refuse(const JointSet& set, const std::string& number) {
+  Diagnostic diagnostic;
+  diagnostic.key = fmt::format("joint_set.'{}'", set.name);
+  diagnostic.found = fmt::format("statistics that give {} traces in the domain", number);
+  diagnostic.expected = fmt::format("at most {:.0g}", max_traces);
+  diagnostic.hint = "larger spacing, length or gap, or a smaller domain";
+  throw InputError(std::move(diagnostic));
+}
+
 /// One joint set in one section.
 class Generator {
  public:
@@ -100,9 +110,12 @@ class Generator {
 
   [[nodiscard]] double expected() const {
     const double spacing = factor_ * truncated_mean(set_.spacing);
+    return (2.0 * half_across_ / spacing) * expected_of_line();
+  }
+
+  [[nodiscard]] double expected_of_line() const {
     const double length = truncated_mean(set_.length);
-    const double cycle = length + truncated_mean(set_.gap);
-    return (2.0 * half_across_ / spacing) * ((2.0 * half_along_ + length) / cycle);
+    return (2.0 * half_along_ + length) / (length + truncated_mean(set_.gap));
   }
 
   std::vector<Trace> run() {
@@ -112,10 +125,22 @@ class Generator {
       return factor_ * quantile(set_.spacing, draw(stream, interval, Draw::length));
     };
     const Start start = stationary_start(stream, spacing);
-    double position = -start.offset;
-    for (int k = 0; position >= -half_across_; position -= spacing(folded(--k))) add_line(k, position);
-    position = spacing(start.interval) - start.offset;
-    for (int k = 1; position <= half_across_; position += spacing(folded(k++))) add_line(k, position);
+    const std::string too_many = fmt::format("more than {:.0g}", max_traces);
+    if (!std::isfinite(start.offset)) refuse(set_, too_many);
+    const auto each_line = [&](const auto& visit) {
+      double position = -start.offset;
+      for (int k = 0; position >= -half_across_; position -= spacing(folded(--k))) visit(k, position);
+      position = spacing(start.interval) - start.offset;
+      for (int k = 1; position <= half_across_; position += spacing(folded(k++))) visit(k, position);
+    };
+    // The statistics may expect few traces and yet draw many, as a lognormal spacing of enormous deviation does. Lines
+    // are counted first, as counting costs little.
+    const double of_line = expected_of_line();
+    double lines = 0.0;
+    each_line([&](int, double) {
+      if (++lines * of_line > max_traces) refuse(set_, too_many);
+    });
+    each_line([&](int number, double position) { add_line(number, position); });
     return std::move(traces_);
   }
 
@@ -155,6 +180,7 @@ class Generator {
     }
     const Vec2 a = on_grid(middle - 0.5 * length * direction);
     const Vec2 b = on_grid(middle + 0.5 * length * direction);
+    if (++drawn_ > max_traces) refuse(set_, fmt::format("more than {:.0g}", max_traces));
     if (!(a == b) && meets(window_, a, b)) traces_.push_back({a, b, source_});
   }
 
@@ -175,6 +201,7 @@ class Generator {
   double factor_ = 1.0;
   double half_along_ = 0.0;   ///< half the stretch of a line that can hold traces of the window, m
   double half_across_ = 0.0;  ///< half the stretch across the lines, m
+  double drawn_ = 0.0;        ///< traces so far, with those beside the window
   std::vector<Trace> traces_;
 };
 
@@ -188,14 +215,7 @@ std::vector<Trace> generate_traces(const JointSet& set, int set_index, double se
                                    const Box& window, std::uint64_t seed, int realization) {
   Generator generator(set, set_index, section_azimuth, window, seed, realization);
   const double expected = generator.expected();
-  if (!(expected <= max_traces)) {
-    Diagnostic diagnostic;
-    diagnostic.key = fmt::format("joint_set.'{}'", set.name);
-    diagnostic.found = fmt::format("statistics that give about {:.2g} traces in the domain", expected);
-    diagnostic.expected = fmt::format("at most {:.0g}", max_traces);
-    diagnostic.hint = "larger spacing, length or gap, or a smaller domain";
-    throw InputError(std::move(diagnostic));
-  }
+  if (!(expected <= max_traces)) refuse(set, fmt::format("about {:.2g}", expected));
   return generator.run();
 }
 

@@ -32,7 +32,7 @@ double expected_traces(const JointSet& set, double section_azimuth, const Box& w
 /// centre keeps the traces it had. Directions are rounded to 2⁻⁴⁰, coordinates to 2⁻³⁰ m (1e-9 m), so that
 /// the last bits of a machine's sines and logarithms do not show.
 ///
-/// Throws InputError when more than max_traces are expected.
+/// Throws InputError when more than max_traces are expected, or drawn.
 std::vector<Trace> generate_traces(const JointSet& set, int set_index, double section_azimuth,
                                    const Box& window, std::uint64_t seed, int realization);
 

@@ -22,6 +22,11 @@ struct BlockModel {
 /// Generates traces, reads trace maps and cuts the domain. Needs neither stages nor motions. Throws InputError.
 BlockModel build_blocks(const Scenario& scenario, int realization);
 
+/// What seems wrong with the cutting of a scenario that can be cut, added to `warnings`: excavations that hold no block or
+/// every block, trace maps outside the domain.
+void add_block_warnings(const Scenario& scenario, const BlockModel& model,
+                        std::vector<std::string>& warnings);
+
 /// Everything a run needs, but for `version`. Of a block's keys those of its [[block]] go before those of the last
 /// [[region]] that holds its centroid, and those before [rock].
 ///
@@ -29,8 +34,8 @@ BlockModel build_blocks(const Scenario& scenario, int realization);
 ///     σ_yy = −ρ g (h + y_top − y),   σ_xx = K0 σ_yy.
 ///
 /// `warnings`, if given, receives what plausibility_warnings and read_motions have to say, and what shows only when
-/// blocks are cut. Throws InputError for mistakes in files, no stages, points outside all blocks, and a model with an
-/// absurd number of unknowns; RunError when cutting fails.
+/// blocks are cut. Throws InputError for mistakes in files, no stages, stages of less than one step or too many, points
+/// outside all blocks, and a model with an absurd number of unknowns; RunError when cutting fails.
 simulation::RunSetup build_setup(const Scenario& scenario, int realization,
                                  std::vector<std::string>* warnings = nullptr);
 

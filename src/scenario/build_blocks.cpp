@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/error.h"
 #include "cutting/cut.h"
 #include "rockmass/intensity.h"
 #include "rockmass/trace_generator.h"
@@ -33,12 +35,28 @@ cutting::CutTolerances tolerances_of(const CuttingKeys& keys, const Box& window,
   return tolerances;
 }
 
+// What the generator refuses shows at the joint set in the file.
+std::vector<rockmass::Trace> generate(const Scenario& scenario, std::size_t k, const Box& window,
+                                      int realization) {
+  const JointSetSpec& spec = scenario.joint_sets[k];
+  try {
+    return rockmass::generate_traces(spec.set, static_cast<int>(k), *scenario.section_azimuth, window,
+                                     scenario.seed, realization);
+  } catch (const InputError& error) {
+    std::vector<Diagnostic> diagnostics = error.diagnostics();
+    for (Diagnostic& diagnostic : diagnostics) {
+      diagnostic.key = spec.path;
+      diagnostic.where = scenario.where(spec.path);
+    }
+    throw InputError(std::move(diagnostics));
+  }
+}
+
 void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   const Domain& domain = *scenario.domain;
   const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
   for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k) {
-    const auto set = rockmass::generate_traces(scenario.joint_sets[k].set, static_cast<int>(k),
-                                               *scenario.section_azimuth, window, scenario.seed, realization);
+    const auto set = generate(scenario, k, window, realization);
     model.traces.insert(model.traces.end(), set.begin(), set.end());
   }
   const auto mapped = read_trace_maps(scenario);

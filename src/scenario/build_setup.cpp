@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "block/basis.h"
 #include "overlap/overlap.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/polygon_checks.h"
+#include "simulation/step_count.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -18,6 +21,11 @@ constexpr double most_unknowns = 2e7;
 // Overlaps of explicit blocks deeper than this share of the size of the smallest block are warned of, the deepest ones.
 constexpr double overlap_share = 1e-4;
 constexpr std::size_t most_overlaps = 5;
+
+// Steps of a stage beyond which it is refused.
+constexpr double most_steps = 1e9;
+// A duration that differs from whole steps by more than this share of a step is worth a warning.
+constexpr double whole_step_tolerance = 1e-6;
 
 using simulation::BlockProperties;
 using simulation::RunSetup;
@@ -143,6 +151,26 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   }
 }
 
+// The polynomials of thin blocks, and of blocks that fill little of the box around them, run out of digits at high orders.
+void check_orders(const Scenario& scenario, const cutting::BlockSystem& system,
+                  const std::vector<BlockProperties>& properties) {
+  constexpr int safe_order = 6;
+  for (std::size_t b = 0; b < properties.size(); ++b) {
+    const BlockProperties& block = properties[b];
+    const int order = block.automatic_order ? scenario.automatic.highest_order : block.order;
+    if (order <= safe_order || block.fixed) continue;
+    try {
+      static_cast<void>(block::Basis(system.blocks[b].polygon, order));
+    } catch (const std::invalid_argument&) {
+      const Vec2 at = centroid(system.blocks[b].polygon) + system.origin;
+      fail(scenario, block.automatic_order ? "auto_order.highest_order" : "rock.order",
+           fmt::format("order {} for the block {} at [{:.6g}, {:.6g}], whose shape is too thin for it", order,
+                       b, at.x, at.y),
+           "a lower order");
+    }
+  }
+}
+
 void check_size(const Scenario& scenario, const std::vector<BlockProperties>& properties) {
   double unknowns = 0.0;
   for (const BlockProperties& block : properties) {
@@ -155,15 +183,29 @@ void check_size(const Scenario& scenario, const std::vector<BlockProperties>& pr
   }
 }
 
-void warn_of_empty_excavations(const Scenario& scenario, const cutting::BlockSystem& system,
-                               std::vector<std::string>& warnings) {
-  for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
-    const bool holds_blocks = std::any_of(system.blocks.begin(), system.blocks.end(), [&](const auto& block) {
-      return std::find(block.excavations.begin(), block.excavations.end(), static_cast<int>(k)) !=
-             block.excavations.end();
-    });
-    if (!holds_blocks) warnings.push_back(scenario.excavations[k].path + ": holds no block");
+// A stage takes whole steps: it must have one, and should last no longer or shorter than the user thinks.
+void check_steps(const Scenario& scenario, const RunSetup& setup, std::vector<std::string>& warnings) {
+  std::vector<Diagnostic> mistakes;
+  for (const simulation::Stage& stage : setup.stages) {
+    if (stage.kind == simulation::StageKind::settle) continue;
+    const double duration =
+        stage.duration ? *stage.duration : setup.motions[static_cast<std::size_t>(stage.motion)].duration();
+    const double steps = duration / setup.time_step;
+    const double whole = simulation::step_count(duration, setup.time_step);
+    const std::string path = join_path("stage", stage.name);
+    const std::string key = stage.duration ? join_path(path, "duration") : path;
+    if (!(steps >= 1.0 - whole_step_tolerance && steps <= most_steps)) {
+      mistakes.push_back({scenario.where(key), key,
+                          fmt::format("{} s{}, {:.3g} steps of {} s", duration,
+                                      stage.duration ? "" : " of motion", steps, setup.time_step),
+                          fmt::format("1 to {:.0e} steps", most_steps), ""});
+    } else if (stage.duration && std::abs(steps - whole) > whole_step_tolerance * std::max(1.0, whole)) {
+      warnings.push_back(fmt::format(
+          "{}: {} s is no multiple of the time step {} s; the stage takes {} step{}, {:.6g} s", key, duration,
+          setup.time_step, whole, whole == 1.0 ? "" : "s", whole * setup.time_step));
+    }
   }
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
 
 // Contact takes blocks that overlap at the start as they are: nothing pushes them apart.
@@ -213,6 +255,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   const Vec2 origin = setup.system.origin;
   setup.properties = properties_of(scenario, setup.system);
   check_size(scenario, setup.properties);
+  check_orders(scenario, setup.system, setup.properties);
   if (scenario.domain) {
     const Domain& domain = *scenario.domain;
     setup.frame = domain.frame;
@@ -235,11 +278,12 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.files = input_files(scenario);
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
+  check_steps(scenario, setup, notes);
   setup.damage = scenario.damage;
   setup.output = scenario.output;
   setup.automatic_order = scenario.automatic;
   setup.solver = scenario.solver;
-  warn_of_empty_excavations(scenario, setup.system, notes);
+  add_block_warnings(scenario, blocks, notes);
   if (warnings != nullptr) warn_of_overlaps(scenario, setup.system, notes);
   if (warnings != nullptr) warnings->insert(warnings->end(), notes.begin(), notes.end());
   return setup;

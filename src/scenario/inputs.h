@@ -30,6 +30,9 @@ std::vector<loading::GroundMotion> read_motions(const Scenario& scenario, std::v
 /// files.
 std::vector<std::string> plausibility_warnings(const Scenario& scenario);
 
+/// Those of them that concern joints and the outlines of excavations, for who only cuts.
+std::vector<std::string> rock_mass_warnings(const Scenario& scenario);
+
 /// All of the above, for `keyblock check`: returns the warnings, throws the mistakes of all files together.
 std::vector<std::string> check_inputs(const Scenario& scenario);
 

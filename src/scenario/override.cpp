@@ -1,9 +1,16 @@
 #include "scenario/override.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "core/text.h"
 
 namespace keyblock::scenario {
 namespace {
+
+constexpr std::size_t deepest_key = 32;
+constexpr std::size_t longest_shown = 40;  // characters of a path that is deeper
 
 void move_to(Value& value, const SourcePosition& where) {
   value.where = where;
@@ -94,6 +101,13 @@ void replace(Value& slot, const Value& value) {
 
 Override parse_override(const std::string& text) {
   const SourcePosition where{"--set " + text, 0, 0};
+  if (const std::size_t at = find_invalid_utf8(text); at != std::string::npos) {
+    Diagnostic diagnostic;
+    diagnostic.where = where;
+    diagnostic.found = "'" + text.substr(at, 1) + "', which is no UTF-8";
+    diagnostic.expected = "text in UTF-8";
+    throw InputError(std::move(diagnostic));
+  }
   const std::size_t equals = find_equals_sign(text);
   if (equals == std::string::npos) {
     Diagnostic diagnostic;
@@ -109,6 +123,11 @@ Override parse_override(const std::string& text) {
 
 Override make_override(const std::string& path, Value value) {
   auto segments = parse_key_path(path);
+  if (segments && segments->size() > deepest_key) {
+    Diagnostic diagnostic = no_path(value.where, path.substr(0, longest_shown) + "…");
+    diagnostic.expected += fmt::format(", of at most {} keys", deepest_key);
+    throw InputError(std::move(diagnostic));
+  }
   if (!segments) throw InputError(no_path(value.where, path));
   return {std::move(*segments), std::move(value)};
 }

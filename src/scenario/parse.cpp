@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/atomic_file.h"
+#include "core/text.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/override.h"
@@ -226,7 +227,9 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
   Scenario scenario = std::move(reading.scenario);
   scenario.text = text;
   if (!scenario.text.empty() && scenario.text.back() != '\n') scenario.text += '\n';
-  for (const std::string& override_ : overrides) scenario.text += "# --set " + override_ + "\n";
+  for (const std::string& override_ : overrides) {
+    scenario.text += "# --set " + printable(override_, std::string::npos) + "\n";
+  }
   return scenario;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "rockmass/distribution.h"
+#include "rockmass/intensity.h"
+#include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/sections.h"
@@ -17,15 +19,27 @@ using simulation::StageKind;
 // Cutting off a distribution that moves its mean by more than this share is worth a warning.
 constexpr double mean_tolerance = 0.01;
 
+Box box_of(const Domain& domain) {
+  return {{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+}
+
 class Plausibility {
  public:
   explicit Plausibility(const Scenario& scenario) : scenario_(scenario) {}
 
+  std::vector<std::string> rock_mass_warnings() {
+    check_distributions();
+    check_outlines();
+    return std::move(warnings_);
+  }
+
   std::vector<std::string> warnings() {
     check_distributions();
-    check_excavations();
+    check_outlines();
+    check_excavated();
     check_in_situ();
     check_stages();
+    check_velocities();
     return std::move(warnings_);
   }
 
@@ -33,6 +47,16 @@ class Plausibility {
   template <class... Values>
   void warn(fmt::format_string<Values...> text, Values&&... values) {
     warnings_.push_back(fmt::format(text, std::forward<Values>(values)...));
+  }
+
+  // A stage that settles sets every velocity to zero.
+  void check_velocities() {
+    if (scenario_.stages.empty() || scenario_.stages.front().kind != StageKind::settle) return;
+    for (const BlockSpec& block : scenario_.blocks) {
+      if (block.velocity == Vec2{} && block.spin == 0.0) continue;
+      warn("{}.{}: is lost, as the first stage settles", block.path,
+           block.velocity == Vec2{} ? "spin" : "velocity");
+    }
   }
 
   void check_distributions() {
@@ -49,7 +73,7 @@ class Plausibility {
     }
   }
 
-  void check_excavations() {
+  void check_excavated() {
     for (std::size_t k = 0; k < scenario_.excavations.size(); ++k) {
       const ExcavationSpec& spec = scenario_.excavations[k];
       const int index = static_cast<int>(k);
@@ -58,9 +82,13 @@ class Plausibility {
             return std::find(stage.excavate.begin(), stage.excavate.end(), index) != stage.excavate.end();
           });
       if (!taken_out && !scenario_.stages.empty()) warn("{}: no stage excavates it", spec.path);
-      if (!scenario_.domain) continue;
-      const Domain& domain = *scenario_.domain;
-      const Box box{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+    }
+  }
+
+  void check_outlines() {
+    if (!scenario_.domain) return;
+    const Box box = box_of(*scenario_.domain);
+    for (const ExcavationSpec& spec : scenario_.excavations) {
       const Ring outline = excavation_outline(spec);
       if (!std::all_of(outline.begin(), outline.end(), [&](Vec2 p) { return box.contains(p); })) {
         warn("{}: reaches beyond the domain", spec.path);
@@ -85,14 +113,19 @@ class Plausibility {
       warn("no [[stage]]: there is nothing to run, only to cut");
       return;
     }
-    bool settled = true;  // since the last excavation
+    // Since the last excavation; at the start rock that fills a domain or is under stress has not.
+    bool settled = !scenario_.domain && !scenario_.in_situ;
+    bool excavated = false;
     const Stage* before = nullptr;
     for (const Stage& stage : scenario_.stages) {
       const std::string path = join_path("stage", stage.name);
-      if (!stage.excavate.empty()) settled = false;
+      if (!stage.excavate.empty()) {
+        settled = false;
+        excavated = true;
+      }
       if (stage.kind == StageKind::settle) settled = true;
       if (stage.kind == StageKind::shake && !settled) {
-        warn("{}: shakes before the rock has settled after an excavation", path);
+        warn("{}: shakes before the rock has settled{}", path, excavated ? " after an excavation" : "");
       } else if (stage.kind == StageKind::shake && before != nullptr && before->kind == StageKind::settle &&
                  has_opening()) {
         warn(
@@ -121,6 +154,41 @@ class Plausibility {
 };
 
 }  // namespace
+
+std::vector<std::string> rock_mass_warnings(const Scenario& scenario) {
+  return Plausibility(scenario).rock_mass_warnings();
+}
+
+void add_block_warnings(const Scenario& scenario, const BlockModel& model,
+                        std::vector<std::string>& warnings) {
+  const std::vector<cutting::CutBlock>& blocks = model.system.blocks;
+  for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
+    const auto held = std::count_if(blocks.begin(), blocks.end(), [&](const cutting::CutBlock& block) {
+      return std::find(block.excavations.begin(), block.excavations.end(), static_cast<int>(k)) !=
+             block.excavations.end();
+    });
+    const std::string& path = scenario.excavations[k].path;
+    if (held == 0) warnings.push_back(path + ": holds no block");
+    if (held > 0 && static_cast<std::size_t>(held) == blocks.size())
+      warnings.push_back(path + ": holds every block; no rock is left");
+  }
+  if (!scenario.domain) return;
+  for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
+    const rockmass::TraceSource source{rockmass::TraceSource::Kind::trace_map, static_cast<int>(k)};
+    Box map;
+    double inside = 0.0;
+    for (const rockmass::Trace& trace : model.traces) {
+      if (!(trace.source == source)) continue;
+      map.add(trace.a);
+      map.add(trace.b);
+      inside += rockmass::length_inside(trace, box_of(*scenario.domain));
+    }
+    if (inside > 0.0) continue;
+    warnings.push_back(fmt::format(
+        "{}: no trace meets the domain; the map reaches from [{:.6g}, {:.6g}] to [{:.6g}, {:.6g}]",
+        scenario.trace_maps[k].path, map.min.x, map.min.y, map.max.x, map.max.y));
+  }
+}
 
 std::vector<std::string> plausibility_warnings(const Scenario& scenario) {
   return Plausibility(scenario).warnings();

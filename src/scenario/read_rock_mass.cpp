@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
 
+#include "block/order.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -31,10 +35,32 @@ void read_section(TableReader& t, Scenario& scenario) {
             .at_most = 360.0});
 }
 
+// Cutting rounds to a grid of 2⁻⁴⁴ of the larger extent, and coordinates have 16 digits.
+void check_extents(TableReader& t, const Domain& domain) {
+  constexpr double least = 1e-6, most = 1e9, least_ratio = 1e-6, least_of_coordinate = 1e-9;
+  const std::pair<const char*, const std::pair<double, double>*> sides[] = {{"x", &domain.x},
+                                                                            {"y", &domain.y}};
+  const double larger = std::max(domain.x.second - domain.x.first, domain.y.second - domain.y.first);
+  for (const auto& [key, side] : sides) {
+    const double extent = side->second - side->first;
+    const double far = std::max(std::abs(side->first), std::abs(side->second));
+    const double at_least =
+        std::max({least, least_ratio * std::min(larger, most), least_of_coordinate * far});
+    if (extent >= at_least && extent <= most) continue;
+    t.fail(key, fmt::format("an extent of {} m", extent),
+           fmt::format(
+               "{:.3g} to {:.0e} m: lengths that can be told apart beside the other side and so far from 0",
+               at_least, most));
+  }
+}
+
 void read_domain(TableReader& t, Scenario& scenario) {
   Domain& domain = scenario.domain.emplace();
-  t.interval("x", domain.x, {.meaning = "Horizontal extent of the rock.", .unit = "m", .required = true});
-  t.interval("y", domain.y, {.meaning = "Vertical extent, y upwards.", .unit = "m", .required = true});
+  const bool wide =
+      t.interval("x", domain.x, {.meaning = "Horizontal extent of the rock.", .unit = "m", .required = true});
+  const bool high =
+      t.interval("y", domain.y, {.meaning = "Vertical extent, y upwards.", .unit = "m", .required = true});
+  if (wide && high) check_extents(t, domain);
   t.word("boundary", domain.frame, boundaries,
          {.meaning = "`frame`: fixed blocks around the domain, along which the rock can slide but not move "
                      "outwards. `free`: nothing."});
@@ -246,8 +272,10 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
             .fallback = inherited});
   t.word("state", rock.state, plane_states,
          {.meaning = "No stress, or no strain, normal to the section.", .fallback = inherited});
+  static const std::string order_text =
+      fmt::format("an integer from 1 to {}, or \"auto\"", block::highest_order);
   const Value* order =
-      t.any("order", "integer of at least 1, or \"auto\"",
+      t.any("order", std::string_view(order_text).substr(3),
             {.meaning = "Order of the displacement polynomial of a block: 1 has uniform strain, 2 bends, …; "
                         "\"auto\": chosen block by block while the rock settles, see [auto_order].",
              .fallback = required ? "1" : inherited});
@@ -255,10 +283,10 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
   if (order->is(Value::Type::string) && order->text == "auto") {
     rock.order = automatic_order;
   } else if (order->is(Value::Type::integer) && order->integer >= 1 &&
-             order->integer <= std::numeric_limits<int>::max()) {
+             order->integer <= block::highest_order) {
     rock.order = static_cast<int>(order->integer);
   } else {
-    t.fail("order", describe(*order), "an integer of at least 1, or \"auto\"");
+    t.fail("order", describe(*order), order_text);
   }
 }
 

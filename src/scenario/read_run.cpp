@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "block/order.h"
 #include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
@@ -160,9 +161,10 @@ void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic)
            "this share of the RMS stress of the rock, and a lower one below a quarter of it.",
        .above = 0.0,
        .below = 1.0});
-  t.integer(
-      "highest_order", automatic.highest_order,
-      {.meaning = "Highest order; contact divides the edges of blocks as for this order.", .at_least = 1.0});
+  t.integer("highest_order", automatic.highest_order,
+            {.meaning = "Highest order; contact divides the edges of blocks as for this order.",
+             .at_least = 1.0,
+             .at_most = block::highest_order});
 }
 
 void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
@@ -244,7 +246,8 @@ void read_run(TableReader& root, Scenario& scenario) {
              {.meaning = "Time step; halved for a while where a step does not converge.",
               .unit = "s",
               .required = true,
-              .above = 0.0});
+              .at_least = 1e-12,
+              .at_most = 1e6});
     check_step_count(t, scenario);
   });
   root.tables("history", scenario.histories,

@@ -9,7 +9,7 @@
 namespace keyblock::scenario {
 namespace {
 
-constexpr int fewest_chords = 8;
+constexpr int fewest_chords = 8, most_chords = 10000;
 
 constexpr Word<ExcavationShape> shapes[] = {{"circle", ExcavationShape::circle},
                                             {"polygon", ExcavationShape::polygon},
@@ -72,6 +72,7 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
   t.integer("chords", spec.chords,
             {.meaning = "Chords of a full circle.",
              .at_least = fewest_chords,
+             .at_most = most_chords,
              .applies = round,
              .condition = "shape = \"circle\" or \"horseshoe\""});
 }

@@ -14,6 +14,8 @@
 namespace keyblock::scenario {
 namespace {
 
+constexpr int deepest = 32;  // keys of a path, and brackets within brackets
+
 SourcePosition position(const toml::source_region& region, const std::string& file) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
@@ -57,11 +59,12 @@ Value convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
-// Finds characters beyond ASCII outside of strings and comments, where TOML has none. The parser of toml++ 3.3 has
-// undefined behaviour for some of them. Up to the first mistake in the text this walks as the parser does.
-class StrayCharacters {
+// Finds what the parser of toml++ 3.3 does not survive: characters beyond ASCII outside of strings and comments, where
+// TOML has none and it has undefined behaviour for some of them, and tables so deep in each other that its recursion, and
+// ours, runs out of stack. Up to the first mistake in the text this walks as the parser does.
+class Hazards {
  public:
-  explicit StrayCharacters(std::string_view text) : text_(text) {
+  explicit Hazards(std::string_view text) : text_(text) {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // byte order mark
   }
 
@@ -69,7 +72,7 @@ class StrayCharacters {
   std::size_t find() {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
-      if (static_cast<unsigned char>(c) >= 0x80) return at_;
+      if (static_cast<unsigned char>(c) >= 0x80 || is_too_deep(c)) return at_;
       if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size());
       if (c == '"' || c == '\'') skip_string(c);
     }
@@ -77,6 +80,15 @@ class StrayCharacters {
   }
 
  private:
+  // Counts the open brackets, and the points of a key.
+  bool is_too_deep(char c) {
+    if (c == '[' || c == '{') ++brackets_;
+    if ((c == ']' || c == '}') && brackets_ > 0) --brackets_;
+    if (std::string_view("[]{},=\n").find(c) != std::string_view::npos) points_ = 0;
+    if (c == '.') ++points_;
+    return brackets_ > deepest || points_ >= deepest;
+  }
+
   // Moves to the last character of the string that begins here.
   void skip_string(char quote) {
     const std::string three(3, quote);
@@ -96,6 +108,7 @@ class StrayCharacters {
 
   std::string_view text_;
   std::size_t at_ = 0;
+  int brackets_ = 0, points_ = 0;
 };
 
 bool continues_character(char c) {
@@ -113,8 +126,8 @@ std::string character_at(std::string_view text, std::size_t at) {
   return fmt::format("the character '{}' (U+{:04X})", text.substr(at, end - at), code);
 }
 
-void refuse_stray_characters(std::string_view text, const std::string& file) {
-  const std::size_t at = StrayCharacters(text).find();
+void refuse_hazards(std::string_view text, const std::string& file) {
+  const std::size_t at = Hazards(text).find();
   if (at == std::string_view::npos) return;
   const std::string_view before = text.substr(0, at);
   const std::size_t newline = before.rfind('\n');
@@ -124,15 +137,20 @@ void refuse_stray_characters(std::string_view text, const std::string& file) {
       file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
       1 + static_cast<int>(line.size() - static_cast<std::size_t>(
                                              std::count_if(line.begin(), line.end(), continues_character)))};
-  diagnostic.found = character_at(text, at);
-  diagnostic.expected = "letters, digits and signs of ASCII outside of strings and comments";
+  if (static_cast<unsigned char>(text[at]) < 0x80) {
+    diagnostic.found = fmt::format("more than {} tables or lists in each other", deepest);
+    diagnostic.expected = "keys and values of fewer levels";
+  } else {
+    diagnostic.found = character_at(text, at);
+    diagnostic.expected = "letters, digits and signs of ASCII outside of strings and comments";
+  }
   throw InputError(std::move(diagnostic));
 }
 
 }  // namespace
 
 Value parse_toml(std::string_view text, const std::string& file) {
-  refuse_stray_characters(text, file);
+  refuse_hazards(text, file);
   try {
     return convert(toml::parse(text, file), file);
   } catch (const toml::parse_error& error) {

@@ -17,6 +17,7 @@
 #include "simulation/order_control.h"
 #include "simulation/recorder.h"
 #include "simulation/settle.h"
+#include "simulation/step_count.h"
 
 namespace keyblock::simulation {
 
@@ -79,7 +80,8 @@ class Runner {
   [[nodiscard]] double total_energy() const;
   [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
   [[nodiscard]] long every(double interval) const {
-    return std::max(1L, std::lround(interval / setup_.time_step));
+    constexpr double never = 1e15;
+    return static_cast<long>(std::clamp(step_count(interval, setup_.time_step), 1.0, never));
   }
 
   const RunSetup& setup_;
@@ -301,7 +303,7 @@ void Runner::shake(StageRecord& record) {
       record.motion.push_back(stage.scale * ground.accelerations()[k]);
     }
   }
-  const long steps = std::lround(duration / setup_.time_step);
+  const auto steps = static_cast<long>(step_count(duration, setup_.time_step));
   while (now_.stage_step < steps && !stopped()) {
     const dynamics::StepReport report =
         stepper_->advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);

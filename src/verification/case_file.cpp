@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "block/order.h"
 #include "core/atomic_file.h"
 #include "scenario/key_path.h"
 #include "scenario/override.h"
@@ -130,9 +131,12 @@ void read_strings(TableReader& t, std::string_view key, std::vector<std::string>
 void read_orders(TableReader& t, std::vector<int>& orders, const Rule& rule) {
   const Value* value = t.any("orders", "array of integers", rule);
   if (value == nullptr) return;
-  const auto is_order = [](const Value& item) { return item.is(Value::Type::integer) && item.integer >= 1; };
+  const auto is_order = [](const Value& item) {
+    return item.is(Value::Type::integer) && item.integer >= 1 && item.integer <= block::highest_order;
+  };
   if (!is_array(*value) || !std::all_of(value->items.begin(), value->items.end(), is_order)) {
-    t.fail("orders", describe(*value), "an array of integers of at least 1");
+    t.fail("orders", describe(*value),
+           fmt::format("an array of integers from 1 to {}", block::highest_order));
     return;
   }
   for (const Value& item : value->items) orders.push_back(static_cast<int>(item.integer));

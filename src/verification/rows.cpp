@@ -146,11 +146,14 @@ std::optional<std::size_t> order_place(const RunSpec& run, const Simulation& sim
 }
 
 bool holds(const Row& row) {
+  // Nothing is shown by a number that is not finite, on whichever side it stands.
   if (!std::isfinite(row.computed)) return false;
-  if (row.at_most) return row.computed <= *row.at_most;
-  if (row.at_least) return row.computed >= *row.at_least;
+  if (row.at_most) return std::isfinite(*row.at_most) && row.computed <= *row.at_most;
+  if (row.at_least) return std::isfinite(*row.at_least) && row.computed >= *row.at_least;
   const double error = std::abs(row.computed - *row.expected);
-  return error <= row.absolute_tolerance.value_or(row.tolerance.value_or(0.0) * std::abs(*row.expected));
+  const double tolerance =
+      row.absolute_tolerance.value_or(row.tolerance.value_or(0.0) * std::abs(*row.expected));
+  return std::isfinite(*row.expected) && std::isfinite(tolerance) && error <= tolerance;
 }
 
 // The numbers of a row. Throws std::runtime_error when an expression asks for what is not there.

@@ -3,9 +3,10 @@
 
 import json
 import re
+import subprocess
 import unittest
 
-from program import ROOT, Scenario
+from program import PROGRAM, ROOT, Scenario
 
 COMMANDS = ("run", "check", "cut", "report", "export", "motion", "study")
 
@@ -83,8 +84,27 @@ class Cut(Scenario):
         self.assertNotEqual(a, b)
         self.assertEqual(b, c)
 
+    def test_warns_of_what_cutting_shows(self):
+        tunnel = (ROOT / "examples/01-tunnel.toml").read_text().split("[[motion]]")[0]
+        self.write("far.toml", tunnel + '[[trace_map]]\nname = "map"\nfile = "far.csv"\n')
+        self.write("far.csv", "trace,x,y\n1,7.1,46.2\n1,7.2,46.3\n")
+        text = self.keyblock("cut", "far.toml", "-o", "out", "--set", "excavation.tunnel.diameter=50").stderr
+        self.assertIn("warning: trace_map.map: no trace meets the domain", text)
+        self.assertIn("warning: excavation.tunnel: holds every block", text)
+        self.assertNotIn("[[stage]]", text)
+
     def test_a_folder_that_cannot_be_made(self):
         self.assertIn("incline.toml/out", self.keyblock("cut", "incline.toml", "-o", "incline.toml/out", expect=1).stderr)
+
+
+class FullDisk(Scenario):
+    def test_output_that_is_lost_is_a_failure(self):
+        self.write("a.csv", "time,acceleration\n0,0\n0.01,1.5\n")
+        for words in (["check", "incline.toml"], ["motion", "a.csv"], ["--help"]):
+            with open("/dev/full", "w") as full:
+                ended = subprocess.run([PROGRAM, *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(ended.returncode, 2, words)
+            self.assertIn("standard output could not be written", ended.stderr)
 
 
 class Motion(Scenario):

@@ -34,6 +34,16 @@ TEST(Diagnostic, LeavesOutWhatIsNotKnown) {
   EXPECT_EQ(d.to_string(), "expected a number above 0");
 }
 
+TEST(Diagnostic, IsOneLineOfReasonableLength) {
+  Diagnostic d = complete;
+  d.found = std::string(5000000, '7') + "\n";
+  EXPECT_LT(d.to_string().size(), 1000U);
+  d.found = "\"\x1b[31m\xFC\n\"";
+  EXPECT_EQ(d.to_string(),
+            "tunnel.toml:12:3: rock.young: found \"\\x1b[31m\\xfc\\n\"; expected a number above 0; Pa, as in "
+            "3.0e9");
+}
+
 TEST(InputError, CarriesEveryMistake) {
   Diagnostic second = complete;
   second.key = "rock.poisson";

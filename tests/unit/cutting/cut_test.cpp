@@ -51,6 +51,18 @@ TEST(Cut, LabelsFollowTheirJoints) {
   EXPECT_EQ(system.statistics.joints_used, 2);
 }
 
+// Joints are counted, not the straight pieces of a polyline, nor those beyond the domain.
+TEST(Cut, APolylineCountsOnce) {
+  CutInput input;
+  input.domain = square;
+  input.traces = {{{-1, 5}, {4, 5}, map_2, 0}, {{4, 5}, {6, 6}, map_2, 0}, {{6, 6}, {11, 6}, map_2, 0},
+                  {{2, 2}, {3, 2}, map_2, 1},  {{3, 2}, {3, 3}, map_2, 1}, {{20, 2}, {21, 2}, map_2, 2}};
+  const BlockSystem system = cut(input);
+  EXPECT_EQ(system.blocks.size(), 2u);
+  EXPECT_EQ(system.statistics.traces, 2);
+  EXPECT_EQ(system.statistics.joints_used, 1);
+}
+
 TEST(Cut, OverlapsTakeTheLabelOfHigherRank) {
   CutInput input;
   input.domain = square;

@@ -243,6 +243,90 @@ TEST(MotionFile, OtherQuantitiesAndUnitsAreRefused) {
   EXPECT_THROW(read_motion_file(data / "no-such-file"), InputError);
 }
 
+// A count that the file cannot hold would be cut to a size of its own, and a broken one to the whole number below.
+TEST(MotionFile, CountsAreWholeNumbersThatTheFileHolds) {
+  const std::string smc = content(data / "excerpt.smc"), v2 = content(data / "excerpt.V2");
+  for (const std::string count : {"1e30", "1.5", "0", "-7", "1e9"}) {
+    SCOPED_TRACE(count);
+    EXPECT_THAT(error_of(replaced(classical_at2, "     7,", " " + count + ",")).expected,
+                HasSubstr("number of samples"));
+    EXPECT_THAT(error_of(replaced(v2, "16 POINTS OF ACCEL", count + " POINTS OF ACCEL")).expected,
+                HasSubstr("number of points"));
+    EXPECT_THAT(error_of(replaced(cosmos, "       3 acceleration pts", count + " acceleration pts")).expected,
+                HasSubstr("number of values"));
+    const std::string field = std::string(10 - count.size(), ' ') + count;
+    EXPECT_THAT(error_of(replaced(smc, "        20    -32768", field + "    -32768")).expected,
+                HasSubstr("number of points"));
+    if (count == "0") continue;  // a record without comments
+    EXPECT_THAT(error_of(replaced(smc, "       101         8", "       101" + field)).expected,
+                HasSubstr("number of comment lines"));
+  }
+  // No width of a column: numbers end at blanks.
+  EXPECT_EQ(read_text(replaced(cosmos, "(10I8)", "(10I99999999999999999999)")).size(), 2U);
+}
+
+TEST(MotionFile, MoreNumbersThanAnnounced) {
+  const Diagnostic d = error_of(replaced(classical_at2, "NPTS=     7", "NPTS=     6"));
+  EXPECT_EQ(d.where.line, 6);
+  EXPECT_EQ(d.found, "\"-.7000000E-02\"");
+  EXPECT_THAT(d.expected, HasSubstr("the end of the line after 6 samples"));
+}
+
+TEST(MotionFile, TimesAndSamplesStayWithinReason) {
+  for (const std::string dt : {"1e308", "1e-300", "0", "-0.01"}) {
+    EXPECT_THAT(error_of(replaced(classical_at2, "DT= .00500", "DT= " + dt)).expected,
+                HasSubstr("1e-9 to 1e6 s"));
+  }
+  EXPECT_THAT(error_of(replaced(content(data / "excerpt.smc"), "0.2000000E+03", "0.2000000E+30")).expected,
+              HasSubstr("sampling rate"));
+  EXPECT_THAT(error_of("1e17,1\n100000000000000016,2\n").expected, HasSubstr("a time within"));
+  EXPECT_THAT(error_of("0,1\n1e-300,2\n").expected, HasSubstr("the time step"));
+  EXPECT_THAT(error_of(replaced(classical_at2, ".4000000E-02", " .400000E308")).found, HasSubstr("sample 4"));
+}
+
+TEST(MotionFile, WordsOfTheTitleAreNoUnit) {
+  const auto hospital = read_text(replaced(classical_at2, "IMPERIAL VALLEY 10/15/79 2319, EL CENTRO ARRAY 6",
+                                           "NORTHRIDGE, COMMUNITY HOSPITAL"));
+  EXPECT_EQ(hospital[0].station, "COMMUNITY HOSPITAL");
+  EXPECT_EQ(hospital[0].file_unit, "g");
+  EXPECT_TRUE(hospital[0].notes.empty());
+  const auto title = read_text(replaced(classical_at2, "EL CENTRO ARRAY 6", "UNIT (1) OF A POWER PLANT"));
+  EXPECT_EQ(title[0].file_unit, "g");
+  const auto words = read_text(replaced(classical_at2, "UNITS OF G", "UNITS OF CM/S/S, CORRECTED"));
+  EXPECT_EQ(words[0].file_unit, "cm/s2");
+}
+
+TEST(MotionFile, ADamagedFirstRowOfACsvIsNoHeader) {
+  for (const std::string row : {"0,nan", "0,5,", "nan,0", "0;", "1e999,2"}) {
+    SCOPED_TRACE(row);
+    const Diagnostic d = error_of(row + "\n0.01,1\n0.02,2\n");
+    EXPECT_EQ(d.where.line, 1);
+    EXPECT_THAT(d.expected, HasSubstr("two finite numbers"));
+  }
+  const auto marked = read_text(
+      "\xEF\xBB\xBF"
+      "0,5\n0.01,1\n");
+  EXPECT_THAT(marked[0].acceleration, testing::ElementsAre(5.0, 1.0));
+}
+
+TEST(MotionFile, AHeaderThatNamesAnotherUnitIsRefused) {
+  for (const std::string header :
+       {"time,acc in mm/s2", "t,a_mm", "t,acc in furlongs", "time (s),acc", "t,a [ft/s2]"}) {
+    EXPECT_THAT(error_of(header + "\n0,1\n1,2\n").expected, HasSubstr("m/s2, cm/s2 or g")) << header;
+  }
+  EXPECT_THAT(error_of("t,v_cm/s\n0,1\n1,2\n").expected, HasSubstr("unit of acceleration"));
+  EXPECT_THAT(error_of("t,velocity (m/s)\n0,1\n1,2\n").expected, HasSubstr("time series of acceleration"));
+  const std::pair<std::string, std::string> known[] = {
+      {"t,a_g", "g"}, {"t,acc in gal", "cm/s2"}, {"t,a [cm/s2]", "cm/s2"}};
+  for (const auto& [header, unit] : known) {
+    const auto components = read_text(header + "\n0,1\n1,2\n");
+    EXPECT_EQ(components[0].file_unit, unit) << header;
+    EXPECT_TRUE(components[0].notes.empty());
+  }
+  EXPECT_THAT(read_text("time,acceleration\n0,1\n1,2\n")[0].notes,
+              testing::ElementsAre(HasSubstr("assumed")));
+}
+
 TEST(MotionFile, AWrongPeakInTheHeaderIsNoted) {
   const auto components = read_text(replaced(content(data / "excerpt.V2"), "PEAK ACCELERATION =    -5.659",
                                              "PEAK ACCELERATION =    -7.659"));

@@ -155,6 +155,13 @@ TEST(Projection, WindowRestartsTime) {
   }
 }
 
+TEST(Projection, ARecordOfOneSampleHasNoDuration) {
+  EXPECT_EQ(error_key([] {
+              project_motion("m", {{component(1.0, {1.0}), {false, 0.0}}}, {});
+            }),
+            "components");
+}
+
 TEST(Projection, Baselines) {
   std::vector<double> samples;
   for (int k = 0; k <= 1000; ++k) samples.push_back(std::sin(0.05 * k) + 0.3 + 0.0007 * k);

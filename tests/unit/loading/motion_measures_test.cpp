@@ -36,6 +36,16 @@ TEST(MotionMeasures, OfASine) {
   EXPECT_NEAR(m.significant_duration, 0.9 * 5.0, 1e-3);
 }
 
+// Ticks are counted: adding a step to a time of 1e17 s would never end.
+TEST(MotionPlot, EndsForAnyTimes) {
+  MotionComponent c;
+  c.acceleration = {1.0, 2.0};
+  c.times = {1e17, 1e17 + 16.0};
+  EXPECT_THAT(plot_motion_svg({c}), testing::EndsWith("</svg>\n"));
+  c.times = {0.0, HUGE_VAL};
+  EXPECT_THAT(plot_motion_svg({c}), testing::EndsWith("</svg>\n"));
+}
+
 TEST(MotionMeasures, VelocityPeaksBetweenSamples) {
   MotionComponent c;
   c.dt = 1.0;

@@ -83,6 +83,33 @@ TEST_F(TraceMap, CsvWithoutItsColumns) {
   EXPECT_EQ(mistakes("trace,x,y\na,1,1\na,1,1\n").at(0).found, "a trace of 2 equal vertices");
 }
 
+TEST_F(TraceMap, CsvWithMoreThanItsHeaderSays) {
+  const auto found = mistakes("trace,x,y\n1,0,0\n1,1,1,junk\n1,2,2,\n");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].where.line, 3);
+  EXPECT_EQ(found[0].where.column, 7);
+  EXPECT_EQ(found[0].found, "4 cells");
+  const auto twice = mistakes("trace,x,y,x\n1,0,0,1\n");
+  ASSERT_EQ(twice.size(), 1u);
+  EXPECT_EQ(twice[0].key, "x");
+  EXPECT_EQ(twice[0].where.column, 11);
+}
+
+// A trace of a map is one joint, of however many pieces; a generated one is a joint of its own.
+TEST_F(TraceMap, PiecesOfAPolylineAreOneTrace) {
+  const auto traces = read_trace_map(file("trace,x,y\na,0,0\na,1,0\nb,5,5\na,2,1\nb,6,6\nb,7,6\n"), 1);
+  ASSERT_EQ(traces.size(), 4u);
+  EXPECT_EQ(trace_numbers(traces), (std::vector<int>{0, 0, 1, 1}));
+  EXPECT_EQ(count_traces(traces), 2u);
+  EXPECT_EQ(count_traces(read_trace_map(KEYBLOCK_SOURCE_DIR "/examples/traces/KB11_traces_100.geojson", 0)),
+            100u);
+  std::vector<Trace> several{{{0, 0}, {1, 0}, {}}, {{1, 0}, {2, 0}, {}}};
+  several.insert(several.end(), traces.begin(), traces.end());
+  several.push_back({{0, 0}, {1, 0}, {TraceSource::Kind::trace_map, 2}, 1});
+  EXPECT_EQ(trace_numbers(several), (std::vector<int>{0, 1, 2, 2, 3, 3, 4}));
+  EXPECT_EQ(count_traces({}), 0u);
+}
+
 TEST_F(TraceMap, GeoJsonGeometries) {
   const auto traces = read_trace_map(file(R"( {"type": "FeatureCollection", "features": [
     {"type": "Feature", "geometry": null, "properties": {}},
@@ -114,9 +141,26 @@ TEST_F(TraceMap, GeoJsonMistakes) {
   EXPECT_EQ(several[2].key, "features[2].geometry.coordinates[1]");
   EXPECT_EQ(several[3].found, "null");
   EXPECT_EQ(several[4].found, "7");
+  const auto place = [&](std::size_t k) { return std::pair(several[k].where.line, several[k].where.column); };
+  EXPECT_EQ(place(0), std::pair(2, 46));
+  EXPECT_EQ(place(1), std::pair(3, 75));
+  EXPECT_EQ(place(2), std::pair(4, 84));
+  EXPECT_EQ(place(3), std::pair(5, 37));  // of the geometry that lacks its coordinates
+  EXPECT_EQ(place(4), std::pair(5, 62));
   EXPECT_EQ(mistakes(R"({"type":"LineString","coordinates":[[0,0],[1e999,1]]})").size(), 1u);
   EXPECT_EQ(mistakes(R"({"type":"FeatureCollection"})").at(0).found, "nothing");
   EXPECT_EQ(mistakes(R"({"type":"FeatureCollection","features":[]})").at(0).found, "no trace");
+}
+
+TEST_F(TraceMap, GeoJsonOfAnyDepth) {
+  std::string collections, lists(1000000, '[');
+  for (int k = 0; k < 200000; ++k) collections += R"({"type":"GeometryCollection","geometries":[)";
+  for (const std::string& text : {collections, R"({"type":"LineString","coordinates":)" + lists}) {
+    const auto found = mistakes(text);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].where.line, 1);
+    EXPECT_EQ(found[0].found, "more than 32 levels of lists and objects");
+  }
 }
 
 TEST_F(TraceMap, AMissingFileIsTheUsersMistake) {

@@ -119,9 +119,52 @@ TEST(BuildSetup, AHistoryNeedsABlock) {
   EXPECT_EQ(refusal(parse(runnable_domain + history, {"history.h.point=[0.1, 0.1]"})), "");
 }
 
+TEST(BuildSetup, AStageTakesAStepAtLeast) {
+  const auto refused = [](const std::vector<std::string>& overrides) {
+    return refusal(parse(two_blocks, overrides));
+  };
+  EXPECT_THAT(
+      refused({"stage.quiet.duration=0.004"}),
+      HasSubstr("stage.quiet.duration: found 0.004 s, 0.4 steps of 0.01 s; expected 1 to 1e+09 steps"));
+  EXPECT_THAT(refused({"stage.quiet.duration=0.009"}), HasSubstr("0.9 steps"));
+  EXPECT_EQ(refused({"stage.quiet.duration=0.01"}), "");
+  const std::string shaken = two_blocks +
+                             "[[motion]]\nname = \"m\"\nx = [[0, 0], [0.004, 1]]\n"
+                             "[[stage]]\nname = \"shaken\"\nkind = \"shake\"\nmotion = \"m\"\n";
+  EXPECT_THAT(refusal(parse(shaken)),
+              HasSubstr("stage.shaken: found 0.004 s of motion, 0.4 steps of 0.01 s"));
+  EXPECT_THAT(refusal(parse(shaken, {"motion.m.x=[[0, 0], [1e8, 1]]"})), HasSubstr("1e+10 steps"));
+  EXPECT_THAT(mistakes(two_blocks, {"time.step=1e-300"}), HasSubstr("time.step: found the number 1e-300"));
+}
+
+TEST(BuildSetup, JointsWithoutNumberAreRefusedWhereTheyStand) {
+  for (const char* std : {"1e30", "1e200"}) {
+    const std::string set =
+        std::string("joint_set.bedding.spacing={mean=0.3, std=") + std + ", distribution=\"lognormal\"}";
+    EXPECT_THAT(refusal(parse(runnable_domain, {set})),
+                HasSubstr("joint_set.bedding: found statistics that give more"))
+        << std;
+  }
+}
+
+TEST(BuildSetup, OrdersThatAShapeCannotCarryAreRefused) {
+  const std::string thin = "block.top.outer=[[1, 3], [2, -1], [1.2, 3.8], [1, 3.9]]";
+  EXPECT_THAT(refusal(parse(two_blocks, {thin, "rock.order=10"})),
+              HasSubstr("rock.order: found order 10 for the block 1 at"));
+  EXPECT_EQ(refusal(parse(two_blocks, {thin, "rock.order=6"})), "");
+}
+
 TEST(BuildSetup, AbsurdOrdersAreRefused) {
-  EXPECT_THAT(refusal(parse(runnable_domain, {"rock.order=5000"})),
-              HasSubstr("expected at most 2e+07 unknowns"));
+  Scenario scenario = parse(runnable_domain);
+  scenario.rock.order = 5000;
+  EXPECT_THAT(refusal(scenario), HasSubstr("expected at most 2e+07 unknowns"));
+  EXPECT_EQ(mistakes(runnable_domain, {"rock.order=12"}), "");
+  EXPECT_EQ(refusal(parse(runnable_domain, {"rock.order=8"})), "");
+  for (const char* order : {"13", "1000", "0", "2.5"}) {
+    EXPECT_THAT(mistakes(runnable_domain, {std::string("rock.order=") + order}),
+                HasSubstr("expected an integer from 1 to 12, or \"auto\""));
+  }
+  EXPECT_THAT(mistakes(runnable_domain, {"auto_order.highest_order=13"}), HasSubstr("from 1 to 12"));
 }
 
 TEST(Loads, TractionIsAParabolaThroughThreeValues) {

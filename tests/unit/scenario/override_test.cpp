@@ -1,5 +1,6 @@
 #include "scenario/override.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario_text.h"
@@ -79,6 +80,22 @@ TEST(Override, IsKeptWithTheText) {
   EXPECT_EQ(parse(two_blocks, {"rock.order=2", "title=new"}).text,
             two_blocks + "# --set rock.order=2\n# --set title=new\n");
   EXPECT_EQ(parse(two_blocks).text, two_blocks);
+  // A comment is one line: the text must stay TOML.
+  const std::string lines = parse(two_blocks, {"title=one\ntwo = 2"}).text;
+  EXPECT_EQ(lines, two_blocks + "# --set title=one\\ntwo = 2\n");
+  EXPECT_NO_THROW(parse(lines));
+}
+
+TEST(Override, MustBeUtf8) {
+  EXPECT_THAT(mistakes(two_blocks, {"title=Gr\xFCn"}), testing::HasSubstr("\\xfc', which is no UTF-8"));
+  EXPECT_EQ(mistakes(two_blocks, {"title=Grün"}), "");
+}
+
+TEST(Override, OfAnyDepth) {
+  std::string deep = "a";
+  for (int k = 0; k < 100000; ++k) deep += ".a";
+  EXPECT_THAT(mistakes(two_blocks, {deep + "=1"}), testing::HasSubstr("of at most 32 keys"));
+  EXPECT_THAT(mistakes(two_blocks, {"title=" + std::string(100000, '[')}), "");
 }
 
 TEST(Override, LeavesTheDocumentWhenItFails) {

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario_text.h"
@@ -53,6 +56,60 @@ motion = "sine"
   EXPECT_THAT(warnings_of(shaken, {"stage.settled.excavate=[]", "stage.shaken.excavate=['tunnel']"}),
               UnorderedElementsAre(HasSubstr("shakes before the rock has settled")));
   EXPECT_THAT(plausibility_warnings(parse(jointed_domain)), UnorderedElementsAre(HasSubstr("no [[stage]]")));
+}
+
+TEST(Warnings, OfShakingRockThatNeverSettled) {
+  const std::string shaken = jointed_domain + R"(
+[time]
+step = 0.01
+[[excavation]]
+name = "tunnel"
+shape = "circle"
+center = [2, 1.5]
+diameter = 1
+[[motion]]
+name = "sine"
+x = { amplitude = 1.0, frequency = 1.0, cycles = 1 }
+[[stage]]
+name = "shaken"
+kind = "shake"
+motion = "sine"
+)";
+  EXPECT_THAT(warnings_of(shaken, {"in_situ.depth=30", "in_situ.k0=0.5"}),
+              UnorderedElementsAre(HasSubstr("no stage excavates it"),
+                                   HasSubstr("stage.shaken: shakes before the rock has settled")));
+}
+
+TEST(Warnings, OfVelocitiesThatSettlingTakesAway) {
+  const std::string settled = two_blocks + "[[stage]]\nname = \"s\"\nkind = \"settle\"\n";
+  EXPECT_THAT(warnings_of(settled, {"block.top.velocity=[1, 0]"}), IsEmpty());
+  const std::vector<std::string> first{"stage=[{name=\"s\", kind=\"settle\"}]", "block.top.spin=2"};
+  EXPECT_THAT(warnings_of(two_blocks, first), UnorderedElementsAre(HasSubstr("block.top.spin: is lost")));
+}
+
+TEST(Warnings, OfStagesThatAreNoWholeSteps) {
+  EXPECT_THAT(warnings_of(two_blocks, {"time.step=0.07", "stage.quiet.duration=0.1"}),
+              UnorderedElementsAre(HasSubstr("the stage takes 1 step, 0.07 s")));
+  EXPECT_THAT(warnings_of(two_blocks, {"time.step=0.06", "stage.quiet.duration=0.1"}),
+              UnorderedElementsAre(HasSubstr("the stage takes 2 steps, 0.12 s")));
+  EXPECT_THAT(warnings_of(two_blocks, {"time.step=0.001", "stage.quiet.duration=0.3"}), IsEmpty());
+}
+
+TEST(Warnings, OfRockThatIsNotThere) {
+  EXPECT_THAT(warnings_of(runnable_domain, {"excavation.tunnel.diameter=100"}),
+              testing::Contains(HasSubstr("excavation.tunnel: holds every block")));
+}
+
+TEST(Warnings, OfTraceMapsElsewhere) {
+  const std::filesystem::path map = std::filesystem::path(testing::TempDir()) / "elsewhere.csv";
+  std::ofstream(map) << "trace,x,y\n1,100,100\n1,101,102\n";
+  const std::string text =
+      runnable_domain + "[[trace_map]]\nname = \"map\"\nfile = \"" + map.string() + "\"\n";
+  EXPECT_THAT(warnings_of(text),
+              UnorderedElementsAre(
+                  HasSubstr("no trace meets the domain; the map reaches from [100, 100] to [101, 102]")));
+  std::ofstream(map) << "trace,x,y\n1,1,1\n1,101,102\n";
+  EXPECT_THAT(warnings_of(text), IsEmpty());
 }
 
 TEST(Warnings, OfBlocksThatOverlap) {

@@ -37,6 +37,27 @@ TEST(Outline, CircleAndHorseshoe) {
   EXPECT_FALSE(self_intersects(low));
 }
 
+TEST(Domain, HasExtentsThatCuttingCanTellApart) {
+  using testing::HasSubstr;
+  for (const char* x : {"[0, 1e-300]", "[0, 1e-7]", "[0, 1e12]", "[1e12, 1000000000000.5]", "[0, 4e6]"}) {
+    EXPECT_THAT(mistakes(jointed_domain, {std::string("domain.x=") + x}), HasSubstr("an extent of")) << x;
+  }
+  EXPECT_EQ(mistakes(jointed_domain, {"domain.x=[466000, 466004]"}), "");
+}
+
+TEST(Outline, HasNoMoreChordsThanCanBeCut) {
+  EXPECT_THAT(mistakes(runnable_domain, {"excavation.tunnel.chords=1000000000"}),
+              testing::HasSubstr("expected an integer from 8 to 10000"));
+}
+
+// The halves of a bow tie have no area together, but that is not what is wrong with it.
+TEST(Polygons, ThatCrossThemselvesSaySo) {
+  EXPECT_THAT(mistakes(two_blocks, {"block.top.outer=[[1, 1], [3, 2], [3, 1], [1, 2]]"}),
+              testing::HasSubstr("crosses or touches itself"));
+  EXPECT_THAT(mistakes(two_blocks, {"block.top.outer=[[1, 1], [3, 2], [5, 3], [4, 2.5]]"}),
+              testing::HasSubstr("without area"));
+}
+
 TEST(Blocks, AreTurnedBeforeTheRun) {
   const auto top = [](const std::string& key) { return parse(two_blocks, {key}).blocks[1].polygon.outer; };
   const Ring about_centroid = top("block.top.rotation=90.0");

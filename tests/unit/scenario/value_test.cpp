@@ -89,6 +89,29 @@ d = '''
   }
 }
 
+// The parser recurses, and so does what reads its tables.
+TEST(Toml, OfAnyDepth) {
+  const auto many = [](const std::string& piece) {
+    std::string all;
+    for (int k = 0; k < 100000; ++k) all += piece;
+    return all;
+  };
+  for (const std::string& deep :
+       {many("a.") + "b = 1", "[" + many("a.") + "b]\nc = 1", many("'a'.") + "b = 1", "a = " + many("["),
+        "a = " + many("{a="), "x = 1\n" + many("a . ") + "b = 1"}) {
+    try {
+      parse_toml(deep, "f.toml");
+      ADD_FAILURE() << deep.substr(0, 20);
+    } catch (const InputError& error) {
+      const Diagnostic& d = error.diagnostics().front();
+      EXPECT_EQ(d.found, "more than 32 tables or lists in each other") << d.to_string();
+      EXPECT_EQ(d.where.line, deep[0] == 'x' ? 2 : 1);
+    }
+  }
+  const Value flat = parse_toml("a = [" + many("0.5, [1.5, 2.5], ") + "]\nb.c.d.e = 1.0", "");
+  EXPECT_EQ(flat.items.front().items.size(), 200000U);
+}
+
 TEST(Describe, TypeAndValue) {
   const Value document = parse_toml(text, "");
   EXPECT_EQ(describe(*document.find("title")), R"(the string "a \"b\"")");

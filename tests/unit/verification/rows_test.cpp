@@ -127,6 +127,24 @@ TEST(Rows, TolerancesAndBounds) {
   EXPECT_FALSE(rows[5].published.has_value());
 }
 
+TEST(Rows, WhatIsNotFiniteShowsNothing) {
+  Case c;
+  for (const char* text : {"1/0", "-1/0", "0/0"}) {
+    auto& expected = c.add("expected", "end('s.ux')");
+    expected.expected = formula(text);
+    expected.tolerance = formula("0.05");
+    auto& tolerance = c.add("tolerance", "end('s.ux')");
+    tolerance.expected = formula("1");
+    tolerance.tolerance = formula(text);
+    auto& absolute = c.add("absolute", "end('s.ux')");
+    absolute.expected = formula("1");
+    absolute.absolute_tolerance = formula(text);
+    c.add("most", "end('s.ux')").at_most = formula(text);
+    c.add("least", "end('s.ux')").at_least = formula(text);
+  }
+  for (const Row& row : c.rows()) EXPECT_FALSE(row.pass) << row.quantity;
+}
+
 TEST(Rows, OtherRows) {
   Case c;
   c.add("one", "end('s.ux')").at_most = formula("1e9");

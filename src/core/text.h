@@ -1,0 +1,19 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace keyblock {
+
+/// Bytes of the UTF-8 character that begins at `at`, which lies within the text; 0 when none does (RFC 3629: no overlong forms, no
+/// surrogates, nothing beyond U+10FFFF).
+std::size_t utf8_length(std::string_view text, std::size_t at);
+
+/// Offset of the first byte that belongs to no UTF-8 character, or npos.
+std::size_t find_invalid_utf8(std::string_view text);
+
+/// Text as it may stand on one line of a message, whatever it holds: control characters and bytes that are no UTF-8 are
+/// written as \n, \t, \r and \x1b. What is longer than `longest` characters ends there, with `…`.
+std::string printable(std::string_view text, std::size_t longest);
+
+}  // namespace keyblock

@@ -1,0 +1,21 @@
+#include "rockmass/trace.h"
+
+namespace keyblock::rockmass {
+
+std::vector<int> trace_numbers(const std::vector<Trace>& pieces) {
+  std::vector<int> numbers;
+  numbers.reserve(pieces.size());
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const bool goes_on = k > 0 && pieces[k].polyline >= 0 && pieces[k].polyline == pieces[k - 1].polyline &&
+                         pieces[k].source == pieces[k - 1].source;
+    numbers.push_back(k == 0 ? 0 : numbers.back() + (goes_on ? 0 : 1));
+  }
+  return numbers;
+}
+
+std::size_t count_traces(const std::vector<Trace>& pieces) {
+  const std::vector<int> numbers = trace_numbers(pieces);
+  return numbers.empty() ? 0 : static_cast<std::size_t>(numbers.back()) + 1;
+}
+
+}  // namespace keyblock::rockmass
