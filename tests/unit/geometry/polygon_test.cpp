@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "geometry/moments.h"
+#include "shapes.h"
 
 namespace keyblock {
 namespace {
-
-const Polygon frame{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, {{{1, 1}, {1, 2}, {2, 2}, {2, 1}}}};
-const Polygon l_shape{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}, {}};
 
 TEST(Polygon, AreaPerimeterCentroid) {
   EXPECT_DOUBLE_EQ(area(frame), 11.0);

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "geometry/polygon.h"
+#include "shapes.h"
 
 namespace keyblock {
 namespace {
-
-const Polygon frame{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, {{{1, 1}, {1, 2}, {2, 2}, {2, 1}}}};
-const Polygon l_shape{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}, {}};
 
 // Triangles of positive area whose sum is that of the polygon, none with its middle outside.
 void expect_covered(const Polygon& polygon, double tolerance) {
