@@ -70,10 +70,6 @@ int explain(const CLI::App& app, const std::vector<std::string>& words, const CL
   return input_wrong;
 }
 
-}  // namespace
-
-namespace {
-
 /// What was printed may have been lost on a full disk.
 void finish_output() {
   if (!std::cout.flush()) throw RunError("standard output could not be written");

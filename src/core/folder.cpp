@@ -41,8 +41,8 @@ std::string host_name() {
 
 // Whoever held the lock before may have taken the file away meanwhile: then others lock another file of this name.
 bool is_file_of_name(int file, const fs::path& path) {
-  struct stat opened {
-  }, named{};
+  struct stat opened = {};
+  struct stat named = {};
   return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
          opened.st_ino == named.st_ino;
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstddef>
 #if defined(__AVX512F__)
 #include "core/lanes_whole.h"
 #else
@@ -42,11 +41,6 @@ inline Lanes least(Lanes a, Lanes b) {
 inline Lanes largest(Lanes a, Lanes b) {
   return where(a < b, b, a);
 }
-/// Whether a lane is one of the first `count`.
-inline LaneCondition first_lanes(std::size_t count) {
-  return lanes_from(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0) < broadcast(static_cast<double>(count));
-}
-
 /// The largest of all lanes.
 inline double largest(Lanes v) {
   double x = v[0];

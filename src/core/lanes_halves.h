@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -97,20 +98,21 @@ inline Lanes where(LaneCondition condition, Lanes yes, Lanes no) {
   return {condition.low ? yes.low : no.low, condition.high ? yes.high : no.high};
 }
 
-#if defined(__AVX__)
-/// Of the lanes that are among the first `count`, the highest bit.
-inline LaneCondition mask_of_first(int count) {
-  const std::int64_t n = count;
+/// Whether a lane is one of the first `count`.
+inline LaneCondition first_lanes(std::size_t count) {
+  const auto n = static_cast<std::int64_t>(count);
   const LaneCondition::Half low{0, 1, 2, 3}, high{4, 5, 6, 7};
   return {low < n, high < n};
 }
+
+#if defined(__AVX__)
 inline Lanes load_first(const double* p, int count) {
-  const LaneCondition mask = mask_of_first(count);
+  const LaneCondition mask = first_lanes(static_cast<std::size_t>(count));
   return {_mm256_maskload_pd(p, reinterpret_cast<__m256i>(mask.low)),
           _mm256_maskload_pd(p + 4, reinterpret_cast<__m256i>(mask.high))};
 }
 inline void store_first(double* p, Lanes v, int count) {
-  const LaneCondition mask = mask_of_first(count);
+  const LaneCondition mask = first_lanes(static_cast<std::size_t>(count));
   _mm256_maskstore_pd(p, reinterpret_cast<__m256i>(mask.low), v.low);
   _mm256_maskstore_pd(p + 4, reinterpret_cast<__m256i>(mask.high), v.high);
 }

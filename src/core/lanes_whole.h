@@ -1,6 +1,7 @@
 #pragma once
 #include <immintrin.h>
 
+#include <cstddef>
 #include <cstdint>
 
 /// Lanes of machines whose registers have room for eight numbers (AVX-512).
@@ -25,6 +26,11 @@ inline Lanes lanes_from(double a, double b, double c, double d, double e, double
 }
 inline AlignedLanes where(LaneCondition condition, AlignedLanes yes, AlignedLanes no) {
   return condition ? yes : no;
+}
+/// Whether a lane is one of the first `count`.
+inline LaneCondition first_lanes(std::size_t count) {
+  const auto n = static_cast<double>(count);
+  return Lanes{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0} < Lanes{n, n, n, n, n, n, n, n};
 }
 inline Lanes load_first(const double* p, int count) {
   return _mm512_maskz_loadu_pd(static_cast<__mmask8>((1U << count) - 1U), p);

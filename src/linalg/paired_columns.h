@@ -97,25 +97,27 @@ class RowProducts {
 #pragma GCC unroll 6
     for (int c = 0; c < rows; ++c)
       half[c] = column_[c] + __builtin_shufflevector(column_[c], column_[c], 3, 4, 5, 3, 3, 3, 3, 3);
-    // Columns 0 and 4 in the two halves of a register, 1 and 5, 2, 3; then their rows.
-    const auto both = [&](NarrowLanes low, NarrowLanes high) {
+    // Columns 0 and 4 in the two halves of a register, 1 and 5, 2, 3; pairs of their numbers; then rows.
+    const auto halves = [](NarrowLanes low, NarrowLanes high) {
       return __builtin_shufflevector(low, high, 0, 1, 2, 3, 8, 9, 10, 11);
     };
-    const auto first_two = [](NarrowLanes x, NarrowLanes y) {
+    const auto first_pairs = [](NarrowLanes x, NarrowLanes y) {
       return __builtin_shufflevector(x, y, 0, 8, 1, 9, 4, 12, 5, 13);
     };
-    const auto third = [](NarrowLanes x, NarrowLanes y) {
+    const auto last_pairs = [](NarrowLanes x, NarrowLanes y) {
       return __builtin_shufflevector(x, y, 2, 10, 3, 11, 6, 14, 7, 15);
     };
-    const NarrowLanes c04 = both(half[0], half[4]), c15 = both(half[1], half[5]),
-                      c2 = both(half[2], NarrowLanes{}), c3 = both(half[3], NarrowLanes{}),
-                      c0145 = first_two(c04, c15), c23 = first_two(c2, c3);
-    const auto low = [](NarrowLanes x, NarrowLanes y) {
+    const auto first_twos = [](NarrowLanes x, NarrowLanes y) {
       return __builtin_shufflevector(x, y, 0, 1, 8, 9, 4, 5, 12, 13);
     };
-    const NarrowLanes row_0 = low(c0145, c23),
-                      row_1 = __builtin_shufflevector(c0145, c23, 2, 3, 10, 11, 6, 7, 14, 15),
-                      row_2 = low(third(c04, c15), third(c2, c3));
+    const auto last_twos = [](NarrowLanes x, NarrowLanes y) {
+      return __builtin_shufflevector(x, y, 2, 3, 10, 11, 6, 7, 14, 15);
+    };
+    const NarrowLanes zero{}, c04 = halves(half[0], half[4]), c15 = halves(half[1], half[5]),
+                              c2 = halves(half[2], zero), c3 = halves(half[3], zero);
+    const NarrowLanes c0145 = first_pairs(c04, c15), c23 = first_pairs(c2, c3);
+    const NarrowLanes row_0 = first_twos(c0145, c23), row_1 = last_twos(c0145, c23),
+                      row_2 = first_twos(last_pairs(c04, c15), last_pairs(c2, c3));
     return (row_0 + row_1) + row_2;
   }
 

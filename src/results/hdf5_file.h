@@ -99,8 +99,8 @@ template <class T>
 Array<T> read_array(hid_t group, const std::string& name);
 std::vector<std::string> read_strings(hid_t group, const std::string& name);
 
-/// A dataset that grows by rows, compressed and with checksums. Rows gather in memory until flush(). A row of doubles that was made room
-/// for but not yet written, when the process is killed, reads as NaN.
+/// A dataset that grows by rows, compressed and with checksums. Rows gather in memory until flush(). A row of doubles that was
+/// made room for but not yet written, when the process is killed, reads as NaN.
 template <class T>
 class Column {
  public:

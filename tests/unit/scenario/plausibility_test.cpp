@@ -33,6 +33,16 @@ TEST(Warnings, OfStress) {
   EXPECT_THAT(warnings_of(two_blocks, {"in_situ.syy=1e6"}), UnorderedElementsAre(HasSubstr("tension")));
 }
 
+const std::string shaking = R"(
+[[motion]]
+name = "sine"
+x = { amplitude = 1.0, frequency = 1.0, cycles = 1 }
+[[stage]]
+name = "shaken"
+kind = "shake"
+motion = "sine"
+)";
+
 TEST(Warnings, OfExcavations) {
   EXPECT_THAT(warnings_of(runnable_domain, {"stage.settled.excavate=[]"}),
               UnorderedElementsAre(HasSubstr("excavation.tunnel: no stage excavates it")));
@@ -43,15 +53,7 @@ TEST(Warnings, OfExcavations) {
 }
 
 TEST(Warnings, OfStages) {
-  const std::string shaken = runnable_domain + R"(
-[[motion]]
-name = "sine"
-x = { amplitude = 1.0, frequency = 1.0, cycles = 1 }
-[[stage]]
-name = "shaken"
-kind = "shake"
-motion = "sine"
-)";
+  const std::string shaken = runnable_domain + shaking;
   EXPECT_THAT(warnings_of(shaken), UnorderedElementsAre(HasSubstr("comes down during the shaking")));
   EXPECT_THAT(warnings_of(shaken, {"stage.settled.excavate=[]", "stage.shaken.excavate=['tunnel']"}),
               UnorderedElementsAre(HasSubstr("shakes before the rock has settled")));
@@ -67,14 +69,7 @@ name = "tunnel"
 shape = "circle"
 center = [2, 1.5]
 diameter = 1
-[[motion]]
-name = "sine"
-x = { amplitude = 1.0, frequency = 1.0, cycles = 1 }
-[[stage]]
-name = "shaken"
-kind = "shake"
-motion = "sine"
-)";
+)" + shaking;
   EXPECT_THAT(warnings_of(shaken, {"in_situ.depth=30", "in_situ.k0=0.5"}),
               UnorderedElementsAre(HasSubstr("no stage excavates it"),
                                    HasSubstr("stage.shaken: shakes before the rock has settled")));
