@@ -1,12 +1,16 @@
-# keyblock_module(name DEPENDS module... LINK library...)
+# keyblock_module(name DEPENDS module... LINK library... [UNITY])
 #
 # One static library per folder of src/: every *.cpp of the folder, linked to the modules below it.
 # Third-party libraries that appear only in the sources are given after LINK.
+# UNITY: files are compiled eight at once, as the headers for JSON cost more time than what is written here.
 function(keyblock_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "UNITY" "" "DEPENDS;LINK" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(sources)
     add_library(keyblock_${name} STATIC ${sources})
+    if(ARG_UNITY)
+      set_target_properties(keyblock_${name} PROPERTIES UNITY_BUILD ON)
+    endif()
     set(scope PUBLIC)
     target_link_libraries(keyblock_${name} PRIVATE ${ARG_LINK})
   else()
@@ -20,13 +24,14 @@ function(keyblock_module name)
 endfunction()
 
 # keyblock_tests(module...): tests/unit/<module>/*.cpp become the executable test_<module>; the target unit_tests
-# builds them all, `ctest -L unit` runs them.
+# builds them all, `ctest -L unit` runs them. Compiled eight files at once, for the headers of the test libraries.
 function(keyblock_tests)
   add_custom_target(unit_tests)
   foreach(module IN LISTS ARGN)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${module}/*.cpp)
     if(sources)
       add_executable(test_${module} ${sources})
+      set_target_properties(test_${module} PROPERTIES UNITY_BUILD ON)
       target_link_libraries(test_${module} PRIVATE keyblock_${module} GTest::gtest_main GTest::gmock rapidcheck Eigen3::Eigen)
       target_compile_definitions(test_${module} PRIVATE
         KEYBLOCK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KEYBLOCK_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")

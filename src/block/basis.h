@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "geometry/polygon.h"
@@ -13,13 +14,15 @@ constexpr int basis_size(int order) {
 
 /// Polynomials φ_k, k = 0 … N−1, of total degree ≤ n, orthonormal over a region Ω: ∫ φ_i φ_j dA = δ_ij.
 ///
-/// They span the displacement polynomials of Hsiung 2001, equation (1). φ_0 = 1/√A; φ_1 and φ_2 are linear
-/// and of zero mean; degrees ascend. The mass matrix of a block is therefore ρ I. Built from products of
-/// Legendre polynomials on the bounding box of Ω, orthonormalized over Ω by two passes of Cholesky of the
-/// Gram matrix (the second one restores what the first loses at high order).
+/// They span the displacement polynomials of Hsiung 2001, equation (1). φ_0 = 1/√A; φ_1 and φ_2 are linear and of zero mean; degrees
+/// ascend, and a basis of order n begins with those of all lower orders, to the last bit. The mass matrix of a block is therefore ρ I.
+/// Those of degree d ≥ 2 are made from those of degree d − 1 times a linear one, less what the polynomials before them share with the
+/// product (Arnoldi's method; Brubeck, Nakatsukasa & Trefethen 2021), and evaluated by the same recurrence: unlike coefficients of
+/// given polynomials, it keeps its digits at high orders, and for thin and for inclined regions.
 class Basis {
  public:
-  /// Throws std::invalid_argument for order < 1, a region of no area, and one too thin for the digits of so high an order.
+  /// Throws std::invalid_argument for order < 1, a region of no area, and one on which a polynomial of the order
+  /// (nearly) vanishes: two crossed slits.
   Basis(const Polygon& region, int order);
 
   [[nodiscard]] int order() const { return order_; }
@@ -31,14 +34,26 @@ class Basis {
   /// Coefficients a of the identity x(X) = X: N vectors, of which only the first three are not zero.
   [[nodiscard]] std::vector<Vec2> identity() const;
 
+  /// What a polynomial of degree ≥ 2 is made from: one of the degree below, and φ_1 or φ_2.
+  struct Product {
+    int parent, factor;
+  };
+
  private:
-  void legendre(Vec2 point, double* value, Vec2* gradient) const;
-  void orthonormalize(const std::vector<WeightedPoint>& rule);
+  /// Coefficients of φ_0 to φ_2: lower triangle, by rows, of 1 and the two coordinates over the half sides of the box around Ω.
+  using Linear = std::array<std::array<double, 3>, 3>;
+  void orthonormalize_linear(const std::vector<WeightedPoint>& rule);
+  void append_degree(int degree, const std::vector<WeightedPoint>& rule);
+  [[nodiscard]] std::vector<std::vector<double>> values_at(const std::vector<WeightedPoint>& rule) const;
+  void evaluate_linear(Vec2 point, double* phi) const;
 
   int order_;
   int size_;
   Vec2 centre_, half_size_;
-  std::vector<double> coefficient_;  ///< lower triangular N × N, by rows: φ_i = Σ_j coefficient_[i, j] P_j
+  Linear linear_{};
+  std::vector<Product> products_;  ///< of k = 3 … N−1
+  /// Rows k = 3 … N−1 of k + 1 numbers h: h_kk φ_k = φ_factor φ_parent / φ_0 − Σ_{j < k} h_kj φ_j.
+  std::vector<double> recurrence_;
   std::vector<Vec2> identity_;
 };
 

@@ -2,8 +2,7 @@
 
 namespace keyblock::block {
 
-/// Highest order of a displacement polynomial. Beyond it products of the polynomials of triangles lose too many digits to be
-/// made orthonormal, and a step of one block takes seconds. Measured on triangles, beams and polygons of one block.
-constexpr int highest_order = 12;
+/// Highest order of a displacement polynomial: the last at which those of triangles keep nine digits (docs/decisions/0011-orders.md).
+constexpr int highest_order = 24;
 
 }  // namespace keyblock::block

@@ -11,7 +11,7 @@ namespace keyblock {
 
 inline constexpr int lane_count = 8;
 static_assert(sizeof(Lanes) == lane_count * sizeof(double));
-using NarrowLanes = float __attribute__((vector_size(lane_count * sizeof(float)), aligned(4)));
+using NarrowLanes __attribute__((vector_size(lane_count * sizeof(float)), aligned(4))) = float;
 
 inline NarrowLanes load(const float* p) {
   return *reinterpret_cast<const NarrowLanes*>(p);

@@ -12,7 +12,7 @@ namespace keyblock {
 
 using HalfLanes = double __attribute__((vector_size(4 * sizeof(double))));
 /// The same at any place in memory.
-using LooseHalf = double __attribute__((vector_size(4 * sizeof(double)), aligned(8)));
+using LooseHalf __attribute__((vector_size(4 * sizeof(double)), aligned(8))) = double;
 
 /// What comparisons give: in each lane all bits or none.
 struct LaneCondition {

@@ -7,13 +7,13 @@
 /// Lanes of machines whose registers have room for eight numbers (AVX-512).
 namespace keyblock {
 
-using Lanes = double __attribute__((vector_size(8 * sizeof(double)), aligned(8)));
+using Lanes __attribute__((vector_size(8 * sizeof(double)), aligned(8))) = double;
 /// The same where it is stored by itself: compilers take no type of another alignment than its own for an argument of a template.
 using AlignedLanes = double __attribute__((vector_size(8 * sizeof(double))));
 /// What comparisons give: in each lane all bits or none.
 using LaneCondition = decltype(Lanes{} < Lanes{});
 /// As many as a register has room for.
-using SixteenLanes = float __attribute__((vector_size(16 * sizeof(float)), aligned(4)));
+using SixteenLanes __attribute__((vector_size(16 * sizeof(float)), aligned(4))) = float;
 
 inline Lanes load(const double* p) {
   return *reinterpret_cast<const Lanes*>(p);

@@ -25,7 +25,7 @@ inline NarrowLanes narrow(Lanes v) {
 }
 #else
 using NarrowHalf = float __attribute__((vector_size(4 * sizeof(float))));
-using LooseNarrowHalf = float __attribute__((vector_size(4 * sizeof(float)), aligned(4)));
+using LooseNarrowHalf __attribute__((vector_size(4 * sizeof(float)), aligned(4))) = float;
 inline Lanes widen(NarrowLanes v) {
   const NarrowHalf low = __builtin_shufflevector(v, v, 0, 1, 2, 3),
                    high = __builtin_shufflevector(v, v, 4, 5, 6, 7);

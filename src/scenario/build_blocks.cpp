@@ -54,7 +54,7 @@ std::vector<rockmass::Trace> generate(const Scenario& scenario, std::size_t k, c
 
 void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   const Domain& domain = *scenario.domain;
-  const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+  const Box window = domain.box();
   for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k) {
     const auto set = generate(scenario, k, window, realization);
     model.traces.insert(model.traces.end(), set.begin(), set.end());

@@ -151,26 +151,6 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   }
 }
 
-// The polynomials of thin blocks, and of blocks that fill little of the box around them, run out of digits at high orders.
-void check_orders(const Scenario& scenario, const cutting::BlockSystem& system,
-                  const std::vector<BlockProperties>& properties) {
-  constexpr int safe_order = 6;
-  for (std::size_t b = 0; b < properties.size(); ++b) {
-    const BlockProperties& block = properties[b];
-    const int order = block.automatic_order ? scenario.automatic.highest_order : block.order;
-    if (order <= safe_order || block.fixed) continue;
-    try {
-      static_cast<void>(block::Basis(system.blocks[b].polygon, order));
-    } catch (const std::invalid_argument&) {
-      const Vec2 at = centroid(system.blocks[b].polygon) + system.origin;
-      fail(scenario, block.automatic_order ? "auto_order.highest_order" : "rock.order",
-           fmt::format("order {} for the block {} at [{:.6g}, {:.6g}], whose shape is too thin for it", order,
-                       b, at.x, at.y),
-           "a lower order");
-    }
-  }
-}
-
 void check_size(const Scenario& scenario, const std::vector<BlockProperties>& properties) {
   double unknowns = 0.0;
   for (const BlockProperties& block : properties) {
@@ -255,7 +235,6 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   const Vec2 origin = setup.system.origin;
   setup.properties = properties_of(scenario, setup.system);
   check_size(scenario, setup.properties);
-  check_orders(scenario, setup.system, setup.properties);
   if (scenario.domain) {
     const Domain& domain = *scenario.domain;
     setup.frame = domain.frame;

@@ -14,8 +14,7 @@ using nlohmann::ordered_json;
 ordered_json joint_sets(const Scenario& scenario, const BlockModel& model) {
   ordered_json sets = ordered_json::array();
   if (!scenario.domain || !scenario.section_azimuth) return sets;
-  const Domain& domain = *scenario.domain;
-  const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+  const Box window = scenario.domain->box();
   for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k) {
     const rockmass::JointSet& set = scenario.joint_sets[k].set;
     const rockmass::TraceSource source{rockmass::TraceSource::Kind::joint_set, static_cast<int>(k)};

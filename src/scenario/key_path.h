@@ -6,6 +6,9 @@
 
 namespace keyblock::scenario {
 
+/// Most segments of a key path, and most brackets within brackets of a file.
+constexpr int deepest_path = 32;
+
 /// A step of a key path: a key of a table, or the name or place of an element of a list.
 struct PathSegment {
   std::string key;  ///< the key or name; digits of an index, too

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "scenario/key_path.h"
 
 namespace keyblock::scenario {
 namespace {
 
-constexpr std::size_t deepest_key = 32;
 constexpr std::size_t longest_shown = 40;  // characters of a path that is deeper
 
 void move_to(Value& value, const SourcePosition& where) {
@@ -123,9 +123,9 @@ Override parse_override(const std::string& text) {
 
 Override make_override(const std::string& path, Value value) {
   auto segments = parse_key_path(path);
-  if (segments && segments->size() > deepest_key) {
+  if (segments && segments->size() > std::size_t{deepest_path}) {
     Diagnostic diagnostic = no_path(value.where, path.substr(0, longest_shown) + "…");
-    diagnostic.expected += fmt::format(", of at most {} keys", deepest_key);
+    diagnostic.expected += fmt::format(", of at most {} keys", deepest_path);
     throw InputError(std::move(diagnostic));
   }
   if (!segments) throw InputError(no_path(value.where, path));

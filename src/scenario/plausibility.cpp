@@ -19,10 +19,6 @@ using simulation::StageKind;
 // Cutting off a distribution that moves its mean by more than this share is worth a warning.
 constexpr double mean_tolerance = 0.01;
 
-Box box_of(const Domain& domain) {
-  return {{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
-}
-
 class Plausibility {
  public:
   explicit Plausibility(const Scenario& scenario) : scenario_(scenario) {}
@@ -87,7 +83,7 @@ class Plausibility {
 
   void check_outlines() {
     if (!scenario_.domain) return;
-    const Box box = box_of(*scenario_.domain);
+    const Box box = scenario_.domain->box();
     for (const ExcavationSpec& spec : scenario_.excavations) {
       const Ring outline = excavation_outline(spec);
       if (!std::all_of(outline.begin(), outline.end(), [&](Vec2 p) { return box.contains(p); })) {
@@ -181,7 +177,7 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
       if (!(trace.source == source)) continue;
       map.add(trace.a);
       map.add(trace.b);
-      inside += rockmass::length_inside(trace, box_of(*scenario.domain));
+      inside += rockmass::length_inside(trace, scenario.domain->box());
     }
     if (inside > 0.0) continue;
     warnings.push_back(fmt::format(

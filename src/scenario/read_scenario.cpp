@@ -61,7 +61,7 @@ class Consistency {
     if (!scenario_.domain || !scenario_.section_azimuth) return;
     const Domain& domain = *scenario_.domain;
     if (domain.x.first >= domain.x.second || domain.y.first >= domain.y.second) return;
-    const Box window{{domain.x.first, domain.y.first}, {domain.x.second, domain.y.second}};
+    const Box window = domain.box();
     for (const JointSetSpec& spec : scenario_.joint_sets) {
       const rockmass::JointSet& set = spec.set;
       if (set.spacing.mean <= 0.0 || set.length.mean <= 0.0) continue;

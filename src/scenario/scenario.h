@@ -40,6 +40,8 @@ struct Domain {
   std::pair<double, double> x, y;
   bool frame = true;            ///< fixed blocks around the domain
   double frame_friction = 0.0;  ///< degrees
+
+  [[nodiscard]] Box box() const { return {{x.first, y.first}, {x.second, y.second}}; }
 };
 
 /// Tolerances of cutting; those not given scale with the domain (cutting::CutTolerances).

@@ -9,12 +9,11 @@
 #include <sstream>
 #include <tuple>
 
+#include "scenario/key_path.h"
 #include "scenario/value.h"
 
 namespace keyblock::scenario {
 namespace {
-
-constexpr int deepest = 32;  // keys of a path, and brackets within brackets
 
 SourcePosition position(const toml::source_region& region, const std::string& file) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
@@ -86,7 +85,7 @@ class Hazards {
     if ((c == ']' || c == '}') && brackets_ > 0) --brackets_;
     if (std::string_view("[]{},=\n").find(c) != std::string_view::npos) points_ = 0;
     if (c == '.') ++points_;
-    return brackets_ > deepest || points_ >= deepest;
+    return brackets_ > deepest_path || points_ >= deepest_path;
   }
 
   // Moves to the last character of the string that begins here.
@@ -138,7 +137,7 @@ void refuse_hazards(std::string_view text, const std::string& file) {
       1 + static_cast<int>(line.size() - static_cast<std::size_t>(
                                              std::count_if(line.begin(), line.end(), continues_character)))};
   if (static_cast<unsigned char>(text[at]) < 0x80) {
-    diagnostic.found = fmt::format("more than {} tables or lists in each other", deepest);
+    diagnostic.found = fmt::format("more than {} tables or lists in each other", deepest_path);
     diagnostic.expected = "keys and values of fewer levels";
   } else {
     diagnostic.found = character_at(text, at);

@@ -22,7 +22,7 @@ const InSituStress stress{-1e6, -2e6, 1e5, 1e4, 2e4, 1.0};
 
 TEST(Basis, IsOrthonormalAtEveryOrder) {
   for (const Polygon& region : {l_shape, holed}) {
-    for (int order : {1, 2, 3, 5, 10}) {
+    for (int order : {1, 2, 3, 5, 10, 24}) {
       const Basis basis(region, order);
       const auto n = static_cast<std::size_t>(basis.size());
       std::vector<double> phi(n), gram(n * n, 0.0);
@@ -35,6 +35,57 @@ TEST(Basis, IsOrthonormalAtEveryOrder) {
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = 0; j < n; ++j) EXPECT_NEAR(gram[i * n + j], i == j ? 1.0 : 0.0, 1e-11) << order;
       }
+    }
+  }
+}
+
+// Looked at between the points it was made from: a polynomial of the order, and its gradient, come back from their projection.
+TEST(Basis, KeepsItsDigitsAtHighOrdersOnAnyShape) {
+  const Vec2 along{std::cos(0.5), std::sin(0.5)}, across{-along.y, along.x};
+  const Polygon triangle{{{0, 0}, {3, 0}, {0.5, 1}}, {}}, needle{{{1, 3}, {2, -1}, {1.2, 3.8}, {1, 3.9}}, {}},
+      plank{{{0, 0}, 100.0 * along, 100.0 * along + across, across}, {}};
+  for (const Polygon& region : {triangle, needle, plank, l_shape, holed}) {
+    const Box box = bounds(region);
+    const Vec2 centre = 0.5 * (box.min + box.max), slope{0.6 / norm(box.size()), 1.6 / norm(box.size())};
+    for (const int order : {12, 24}) {
+      const auto power = [&](Vec2 p, int n) { return std::pow(dot(slope, p - centre), n); };
+      const Basis basis(region, order);
+      std::vector<double> phi(static_cast<std::size_t>(basis.size())), a(phi.size(), 0.0);
+      std::vector<Vec2> g(phi.size());
+      for (const WeightedPoint& w : polygon_rule(region, 2 * order + 6)) {
+        basis.evaluate(w.point, phi.data());
+        for (std::size_t k = 0; k < a.size(); ++k) a[k] += w.weight * phi[k] * power(w.point, order);
+      }
+      double largest = 0.0;
+      for (const Vec2 p : region.outer) largest = std::max(largest, std::abs(power(p, order)));
+      for (std::size_t e = 0; e < region.outer.size(); ++e) {
+        const Vec2 p = lerp(region.outer[e], region.outer[(e + 1) % region.outer.size()], 0.3);
+        basis.evaluate(p, phi.data());
+        basis.gradients(p, g.data());
+        double value = 0.0;
+        Vec2 gradient;
+        for (std::size_t k = 0; k < a.size(); ++k) {
+          value += a[k] * phi[k];
+          gradient += a[k] * g[k];
+        }
+        EXPECT_NEAR(value / largest, power(p, order) / largest, 1e-9) << order;
+        const Vec2 error = gradient - order * power(p, order - 1) * slope;
+        EXPECT_NEAR(norm(error) / (order * norm(slope) * largest), 0.0, 1e-8) << order;
+      }
+    }
+  }
+}
+
+TEST(Basis, BeginsWithThoseOfLowerOrders) {
+  const Polygon square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {}};
+  for (const Polygon& region : {square, l_shape, holed}) {
+    const Basis higher(region, 7);
+    std::vector<double> all(static_cast<std::size_t>(higher.size()));
+    higher.evaluate(region.outer[2], all.data());
+    for (int order = 1; order < higher.order(); ++order) {
+      std::vector<double> phi(static_cast<std::size_t>(basis_size(order)));
+      Basis(region, order).evaluate(region.outer[2], phi.data());
+      for (std::size_t k = 0; k < phi.size(); ++k) EXPECT_EQ(phi[k], all[k]) << order;
     }
   }
 }

@@ -100,7 +100,7 @@ TEST_F(CaseFileTest, ListsHaveTheirLength) {
   EXPECT_THAT(
       mistakes(run + "[run.points]\nkeys = [\"a\"]\nlabels = [\"x\", \"y\"]\nvalues = [[1]]\n" + quantity),
       HasSubstr("one for each of the 1 values"));
-  EXPECT_THAT(mistakes(run + "orders = [0]\n" + quantity), HasSubstr("an array of integers from 1 to 12"));
+  EXPECT_THAT(mistakes(run + "orders = [0]\n" + quantity), HasSubstr("an array of integers from 1 to 24"));
 }
 
 TEST_F(CaseFileTest, BuiltInChecksHaveNoScenario) {
