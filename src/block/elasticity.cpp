@@ -20,7 +20,7 @@ namespace {
 double add_up(double x) {
   return x;
 }
-double add_up(AlignedLanes x) {
+double add_up(Lanes x) {
   return sum(x);
 }
 
@@ -56,7 +56,7 @@ Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material
     const WeightedPoint& w = rule[std::min(q, rule.size() - 1)];
     const Stress initial = in_situ_at(in_situ, w.point);
     const std::size_t group = q / width, lane = q % width;
-    Point<AlignedLanes>& point = points_[group];
+    Point<Lanes>& point = points_[group];
     point.weight[lane] = q < rule.size() ? w.weight : 0.0;
     point.initial.xx[lane] = initial.xx;
     point.initial.yy[lane] = initial.yy;
@@ -75,7 +75,7 @@ void Elasticity::with_points(const Do& what) const {
     if constexpr (std::is_same_v<decltype(size), std::integral_constant<int, 3>>) {
       what(size, std::span<const Point<double>>(&point_, 1), gradient_.data());
     } else {
-      what(size, std::span<const Point<AlignedLanes>>(points_), gradients_.data());
+      what(size, std::span<const Point<Lanes>>(points_), gradients_.data());
     }
   });
 }

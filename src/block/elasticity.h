@@ -90,8 +90,8 @@ class Elasticity {
   Point<double> point_;
   std::array<Gradient<double>, 3> gradient_;
   // Of other orders, by groups of as many points as there are lanes; what the last lacks has no weight.
-  std::vector<Point<AlignedLanes>> points_;
-  std::vector<Gradient<AlignedLanes>> gradients_;  ///< ∇φ_k in group g: [g N + k]
+  std::vector<Point<Lanes>> points_;
+  std::vector<Gradient<Lanes>> gradients_;  ///< ∇φ_k in group g: [g N + k]
   std::optional<InSituStress> in_situ_;
 };
 

@@ -15,7 +15,7 @@ namespace keyblock::contact {
 ///
 /// Spring and dashpot together are a spring of stiffness k + c about a shifted origin, so everything else sees one spring.
 ///
-/// Number: double, or AlignedLanes for as many contacts at once.
+/// Number: double, or Lanes for as many contacts at once.
 template <typename Number>
 class BasicSpring {
  public:
@@ -125,6 +125,6 @@ class BasicSpring {
 };
 
 using Spring = BasicSpring<double>;
-using SpringLanes = BasicSpring<AlignedLanes>;
+using SpringLanes = BasicSpring<Lanes>;
 
 }  // namespace keyblock::contact

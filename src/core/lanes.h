@@ -11,13 +11,14 @@ namespace keyblock {
 
 inline constexpr int lane_count = 8;
 static_assert(sizeof(Lanes) == lane_count * sizeof(double));
-using NarrowLanes __attribute__((vector_size(lane_count * sizeof(float)), aligned(4))) = float;
+using NarrowLanes = float __attribute__((vector_size(lane_count * sizeof(float))));
+using LooseNarrowLanes __attribute__((aligned(4))) = NarrowLanes;
 
 inline NarrowLanes load(const float* p) {
-  return *reinterpret_cast<const NarrowLanes*>(p);
+  return *reinterpret_cast<const LooseNarrowLanes*>(p);
 }
 inline void store(float* p, NarrowLanes v) {
-  *reinterpret_cast<NarrowLanes*>(p) = v;
+  *reinterpret_cast<LooseNarrowLanes*>(p) = v;
 }
 /// Calls what(first, count) for `n` numbers, as many at once as there are lanes.
 template <typename Do>

@@ -12,7 +12,7 @@ namespace keyblock {
 
 using HalfLanes = double __attribute__((vector_size(4 * sizeof(double))));
 /// The same at any place in memory.
-using LooseHalf __attribute__((vector_size(4 * sizeof(double)), aligned(8))) = double;
+using LooseHalf __attribute__((aligned(8))) = HalfLanes;
 
 /// What comparisons give: in each lane all bits or none.
 struct LaneCondition {
@@ -76,7 +76,6 @@ struct Lanes {
   friend LaneCondition operator>=(Lanes a, double b) { return {a.low >= b, a.high >= b}; }
   friend LaneCondition operator==(Lanes a, double b) { return {a.low == b, a.high == b}; }
 };
-using AlignedLanes = Lanes;
 
 inline HalfLanes load_half(const double* p) {
   return *reinterpret_cast<const LooseHalf*>(p);

@@ -7,24 +7,25 @@
 /// Lanes of machines whose registers have room for eight numbers (AVX-512).
 namespace keyblock {
 
-using Lanes __attribute__((vector_size(8 * sizeof(double)), aligned(8))) = double;
-/// The same where it is stored by itself: compilers take no type of another alignment than its own for an argument of a template.
-using AlignedLanes = double __attribute__((vector_size(8 * sizeof(double))));
+using Lanes = double __attribute__((vector_size(8 * sizeof(double))));
+/// The same among other numbers in memory, at any place.
+using LooseLanes __attribute__((aligned(8))) = Lanes;
 /// What comparisons give: in each lane all bits or none.
 using LaneCondition = decltype(Lanes{} < Lanes{});
 /// As many as a register has room for.
-using SixteenLanes __attribute__((vector_size(16 * sizeof(float)), aligned(4))) = float;
+using SixteenLanes = float __attribute__((vector_size(16 * sizeof(float))));
+using LooseSixteenLanes __attribute__((aligned(4))) = SixteenLanes;
 
 inline Lanes load(const double* p) {
-  return *reinterpret_cast<const Lanes*>(p);
+  return *reinterpret_cast<const LooseLanes*>(p);
 }
 inline void store(double* p, Lanes v) {
-  *reinterpret_cast<Lanes*>(p) = v;
+  *reinterpret_cast<LooseLanes*>(p) = v;
 }
 inline Lanes lanes_from(double a, double b, double c, double d, double e, double f, double g, double h) {
   return Lanes{a, b, c, d, e, f, g, h};
 }
-inline AlignedLanes where(LaneCondition condition, AlignedLanes yes, AlignedLanes no) {
+inline Lanes where(LaneCondition condition, Lanes yes, Lanes no) {
   return condition ? yes : no;
 }
 /// Whether a lane is one of the first `count`.

@@ -255,7 +255,7 @@ void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force befo
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
-  const auto [errors, scales] = sum_of<Sums<AlignedLanes>>(
+  const auto [errors, scales] = sum_of<Sums<Lanes>>(
       *team_, (springs_->size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
       [&](std::size_t group) {
         const std::size_t c = group * lane_count;
@@ -268,7 +268,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
                     change = largest(least(elastic, wanted), -wanted) -
                              largest(least(elastic, bound_now), -bound_now);
         const auto counts = (mu >= zero) & first_lanes(springs_->size() - c);
-        return Sums<AlignedLanes>{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
+        return Sums<Lanes>{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
       });
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;

@@ -136,11 +136,11 @@ class Stepper {
   /// Where the energy of as many contacts as there are lanes went in the step, and how deep they are.
   struct ContactAccounts {
     contact::SpringLanes::Balance balance;
-    AlignedLanes stored_before{};  ///< J per thickness, at the start
-    AlignedLanes input{};          ///< J per thickness, by what fixed blocks are moved
-    AlignedLanes turned{};  ///< J per thickness, of the normal force over Drive::turned: no block gets it
-    AlignedLanes penetration{};  ///< m
-    AlignedLanes closed{};       ///< at the end: 1, else 0
+    Lanes stored_before{};  ///< J per thickness, at the start
+    Lanes input{};          ///< J per thickness, by what fixed blocks are moved
+    Lanes turned{};         ///< J per thickness, of the normal force over Drive::turned: no block gets it
+    Lanes penetration{};    ///< m
+    Lanes closed{};         ///< at the end: 1, else 0
     void add(const ContactAccounts& other);
     /// Zero where a lane is none of the first `count`.
     void leave_out_beyond(std::size_t count);

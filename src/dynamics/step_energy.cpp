@@ -88,15 +88,15 @@ void Stepper::ContactAccounts::add(const ContactAccounts& other) {
   stored_before += other.stored_before;
   input += other.input;
   turned += other.turned;
-  penetration = largest(penetration, AlignedLanes(other.penetration));
+  penetration = largest(penetration, Lanes(other.penetration));
   closed += other.closed;
 }
 
 void Stepper::ContactAccounts::leave_out_beyond(std::size_t count) {
   if (count >= lane_count) return;
-  for (AlignedLanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
-                              &stored_before, &input, &turned, &penetration, &closed})
-    *lanes = where(first_lanes(count), *lanes, AlignedLanes{});
+  for (Lanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
+                       &stored_before, &input, &turned, &penetration, &closed})
+    *lanes = where(first_lanes(count), *lanes, Lanes{});
 }
 
 void Stepper::ContactAccounts::enter(EnergyLedger& ledger) const {

@@ -16,7 +16,7 @@ inline constexpr int rows = 6, block_size = rows * rows, read_beyond = 4;
 using PairLanes = SixteenLanes;
 
 inline PairLanes load_pair(const float* p) {
-  return *reinterpret_cast<const PairLanes*>(p);
+  return *reinterpret_cast<const LooseSixteenLanes*>(p);
 }
 
 /// x by rows, for either column.

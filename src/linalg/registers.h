@@ -25,7 +25,7 @@ inline NarrowLanes narrow(Lanes v) {
 }
 #else
 using NarrowHalf = float __attribute__((vector_size(4 * sizeof(float))));
-using LooseNarrowHalf __attribute__((vector_size(4 * sizeof(float)), aligned(4))) = float;
+using LooseNarrowHalf __attribute__((aligned(4))) = NarrowHalf;
 inline Lanes widen(NarrowLanes v) {
   const NarrowHalf low = __builtin_shufflevector(v, v, 0, 1, 2, 3),
                    high = __builtin_shufflevector(v, v, 4, 5, 6, 7);
@@ -106,8 +106,8 @@ struct Registers {
 template <>
 struct Registers<float, 16> {
   using Register = SixteenLanes;
-  static Register load_from(const float* p) { return *reinterpret_cast<const SixteenLanes*>(p); }
-  static void store_to(float* p, Register v) { *reinterpret_cast<SixteenLanes*>(p) = v; }
+  static Register load_from(const float* p) { return *reinterpret_cast<const LooseSixteenLanes*>(p); }
+  static void store_to(float* p, Register v) { *reinterpret_cast<LooseSixteenLanes*>(p) = v; }
   static Register all(float x) { return _mm512_set1_ps(x); }
 };
 #else
