@@ -36,4 +36,6 @@ int main(int argc, char** argv) {
   keyblock::report::write_report(far, std::filesystem::path(argv[1]) / "far_and_still");
   // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.
   write("large", {.columns = 32, .rows = 28, .edge_pieces = 3, .frames_per_stage = 75});
+  // Blocks smaller than pixels.
+  write("tiny_blocks", {.columns = 200, .rows = 60, .frames_per_stage = 2, .excavation = false});
 }

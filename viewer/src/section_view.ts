@@ -18,11 +18,12 @@ const axisBottom = 24;
 const leastAxisLeft = 46;
 const besideLabels = 11;
 
-/** Draws the block system on a canvas: one moment, as a Look says, through a camera that can zoom and pan. */
-const smallestWithEdges = 2.5; // pixels
+/** Pixels of a block. Smaller ones have no edges, as these could not be told apart. */
+const smallestWithEdges = 2.5;
 const blocksPerPath = 512;
 const piecesPerPath = 2048;
 
+/** Draws the block system on a canvas: one moment, as a Look says, through a camera that can zoom and pan. */
 export class SectionView {
   readonly canvas: HTMLCanvasElement;
   look: Look;
@@ -255,21 +256,30 @@ export class SectionView {
   private drawBlocks(): void {
     const { run, look, context: c } = this;
     const colors = this.fields.blockColors(look.blocks, look.moment, this.u, this.since, look.since);
+    // Paper shows between blocks that fill pixels in part, which makes patterns of small ones: they cover the seams themselves.
+    const withEdges = this.blockPixels() >= smallestWithEdges;
+    c.lineWidth = 1;
     for (let b = 0; b < run.blockCount; b++) {
       if (!this.isShown(b)) continue;
       c.beginPath();
       this.tracePath(b);
       c.fillStyle = run.fixed[b] ? (this.hatch ?? css("--fixed")) : colors[b];
       c.fill("evenodd");
+      if (withEdges || run.fixed[b]) continue;
+      c.strokeStyle = colors[b];
+      c.stroke();
     }
-    this.strokeBlocks();
+    if (withEdges) this.strokeBlocks();
   }
 
-  /** The edges of all blocks; none where blocks are too small for edges to be told apart. */
+  /** The side of a mean block. */
+  private blockPixels(): number {
+    return this.scaleNow * Math.sqrt(this.run.rockArea() / this.run.blockCount);
+  }
+
   private strokeBlocks(): void {
     const { run, look, context: c } = this;
-    const pixels = Math.sqrt((this.scaleNow * this.scaleNow * run.rockArea()) / run.blockCount);
-    if (pixels < smallestWithEdges) return;
+    const pixels = this.blockPixels();
     const small = Math.min(1, pixels / 24);
     c.lineJoin = "round";
     c.lineWidth = 0.35 + 0.45 * small;
