@@ -277,6 +277,7 @@ export class SectionView {
     return this.scaleNow * Math.sqrt(this.run.rockArea() / this.run.blockCount);
   }
 
+  /** The edges of all blocks. */
   private strokeBlocks(): void {
     const { run, look, context: c } = this;
     const pixels = this.blockPixels();
