@@ -105,6 +105,22 @@ TEST(Basis, ReproducesTheIdentity) {
   EXPECT_NEAR(phi[1], 0.0, 1e-13);
   EXPECT_NEAR(phi[2], 0.0, 1e-13);
   EXPECT_THROW(Basis(l_shape, 0), std::invalid_argument);
+  constexpr double w = 1e-11;  // x y vanishes on two crossed slits
+  const Polygon slits{{{-1, -w},
+                       {-w, -w},
+                       {-w, -1},
+                       {w, -1},
+                       {w, -w},
+                       {1, -w},
+                       {1, w},
+                       {w, w},
+                       {w, 1},
+                       {-w, 1},
+                       {-w, w},
+                       {-1, w}},
+                      {}};
+  EXPECT_NO_THROW(Basis(slits, 1));
+  EXPECT_THROW(Basis(slits, 2), std::invalid_argument);
 }
 
 std::vector<double> coefficients(const Basis& basis) {
