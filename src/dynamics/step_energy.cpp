@@ -88,7 +88,7 @@ void Stepper::ContactAccounts::add(const ContactAccounts& other) {
   stored_before += other.stored_before;
   input += other.input;
   turned += other.turned;
-  penetration = largest(penetration, Lanes(other.penetration));
+  penetration = largest(penetration, other.penetration);
   closed += other.closed;
 }
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "block/basis.h"
 #include "overlap/overlap.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
