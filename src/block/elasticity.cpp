@@ -5,6 +5,7 @@
 
 #include "core/index.h"
 #include "core/known_size.h"
+#include "geometry/compact_rule.h"
 
 namespace keyblock::block {
 
@@ -40,7 +41,7 @@ Elasticity::Elasticity(const Polygon& region, const Basis& basis, const Material
   c33_ = e / (2.0 * (1.0 + nu));
   // A linear S₀ times the quadratic E has degree 2(n − 1) + 1, above 4(n − 1) only at n = 1.
   const int degree = std::max(4 * (basis.order() - 1), in_situ ? 2 * (basis.order() - 1) + 1 : 0);
-  const std::vector<WeightedPoint> rule = thinned_rule(polygon_rule(region, degree), degree);
+  const std::vector<WeightedPoint> rule = compact_rule(region, degree);
   std::vector<Vec2> gradients(at(size_));
   if (basis.order() == 1) {  // the centroid alone
     basis.gradients(rule[0].point, gradients.data());

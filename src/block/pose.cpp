@@ -34,7 +34,7 @@ Pose::Pose(const Polygon& region, const Basis& basis) : size_(basis.size()) {
   std::vector<Vec2> g(at(size_));
   w_.assign(at((size_ - 1) * (size_ - 2) / 2), 0.0);
   const int degree = 2 * (basis.order() - 1);
-  for (const WeightedPoint& point : thinned_rule(polygon_rule(region, degree), degree)) {
+  for (const WeightedPoint& point : polygon_rule(region, degree)) {
     basis.gradients(point.point, g.data());
     double* w = w_.data();
     for (std::size_t k = 1; k < g.size(); ++k) {

@@ -25,9 +25,4 @@ struct WeightedPoint {
 /// is exact for polynomials, which is what it is for. Rules of degree ≤ 1 are the centroid alone.
 std::vector<WeightedPoint> polygon_rule(const Polygon& polygon, int degree);
 
-/// A rule with the same moments up to `degree` on some of the same points: as many as there are monomials, (d + 1)(d + 2)/2, at
-/// most. No weight changes its sign (Carathéodory; the points are exchanged as in the simplex method). Rules above degree 12 or that
-/// cannot be thinned to the last digits are returned as they are.
-std::vector<WeightedPoint> thinned_rule(const std::vector<WeightedPoint>& rule, int degree);
-
 }  // namespace keyblock

@@ -301,6 +301,34 @@ TEST_P(ElasticityOrder, FreeSpinKeepsAreaAndEnergy) {
 
 INSTANTIATE_TEST_SUITE_P(Orders, ElasticityOrder, ::testing::Values(1, 2, 3, 5));
 
+// The basis of a plank that is turned is another one of the same space: norm and trace of its stiffness stay.
+TEST(Elasticity, StiffnessOfAThinPlankDoesNotDependOnHowItLies) {
+  for (const int order : {2, 3, 4}) {
+    for (const double width : {0.1, 0.01, 0.001}) {
+      const auto stiffness = [&](double angle) {
+        const Vec2 along{std::cos(angle), std::sin(angle)}, across = width * perpendicular(along);
+        const Polygon plank{{{}, along, along + across, across}, {}};
+        const Basis basis(plank, order);
+        std::vector<double> a;
+        for (const Vec2 x : basis.identity()) a.insert(a.end(), {x.x, x.y});
+        const Eigen::Index n = 2 * basis.size();
+        Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(n, n);
+        std::vector<double> geometric(static_cast<std::size_t>(n * n));
+        Elasticity(plank, basis, rock, std::nullopt)
+            .add_material_tangent(a.data(), 0.0, tangent.data(), static_cast<int>(n), geometric.data());
+        const Eigen::MatrixXd whole = tangent.selfadjointView<Eigen::Lower>();
+        return std::pair{whole.trace(), whole.norm()};
+      };
+      const auto lying = stiffness(0.0);
+      for (const double angle : {0.5, 0.7, 2.0}) {
+        const auto turned = stiffness(angle);
+        EXPECT_NEAR(turned.first / lying.first, 1.0, 1e-9) << order << " " << width << " " << angle;
+        EXPECT_NEAR(turned.second / lying.second, 1.0, 1e-9) << order << " " << width << " " << angle;
+      }
+    }
+  }
+}
+
 TEST(Pose, RotationAgreesWithTheLibrary) {
   for (double w : {0.0, 1e-9, 0.01, 0.3, -2.0, 7.5}) {
     double c, s;
