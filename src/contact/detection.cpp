@@ -272,10 +272,12 @@ double Detection::to_nearest_other_edge(const Surface& surface, const Candidate&
 }
 
 /// Whether a vertex deep behind an edge is nearer to another: one that has come in by one face of a sharp corner, or that has slid past a
-/// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face.
+/// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face, nor one that the face has held since
+/// before it was behind it, how deep an impact may press it in.
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                       const CandidateList& candidates) const {
   if (rival.gap >= -deep(rival)) return false;
+  if (rival.memory >= 0 && candidates.memory[at(rival.memory)].offset <= 0.0) return false;
   const Candidate& c = candidates.pairs[at(rival.candidate)];
   for (const Vec2 side : sides(c)) {
     const Vec2 inwards = line_inwards(rival, c);

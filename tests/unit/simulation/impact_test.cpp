@@ -256,6 +256,28 @@ TEST(Contact, TipsThatHavePassedASharpCornerAreFree) {
   }
 }
 
+// Rock comes down with its tip on a sharp corner, and is pressed in by 3 to 4 mm: nearer to the far face of the corner than to the one that
+// holds it. It is not let through.
+TEST(Contact, TipsPressedDeepIntoASharpCornerAreHeld) {
+  for (int k = 0; k < 10; ++k) {
+    Scene scene(3e8, 39.0, 2270.0);
+    scene.add({{0.0, 0.0}, {0.7, -0.06}, {0.7, 0.37}}, true);
+    const Vec2 tip{0.0025 + 0.0005 * k, 0.012};
+    const int stone = scene.add({tip, tip + Vec2{0.4, 1.5}, tip + Vec2{-0.4, 1.5}});
+    scene.setup.properties[static_cast<std::size_t>(stone)].velocity = {0.0, -9.6};
+    Simulator s(scene);
+    double deepest = 0.0, last = 0.0;
+    for (int step = 0; step < 40; ++step) {
+      s.run(0.002, 0.002);
+      const std::vector<Polygon> two{deformed_polygon(s.model, 0), deformed_polygon(s.model, 1)};
+      last = overlap::largest_overlap(two).depth;
+      deepest = std::max(deepest, last);
+    }
+    EXPECT_LT(last, 1e-4) << tip.x;
+    EXPECT_LT(deepest, 5e-3) << tip.x;
+  }
+}
+
 // The tip of a slab meets the corner of a stone and pushes it along a bed, both at one place on it, until the stone runs into a wall within
 // a step. All the while nothing tells which side of the stone the tip will pass; it does not go through.
 TEST(Contact, TipsStayOutOfCornersThatTheyPush) {
