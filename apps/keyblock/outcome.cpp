@@ -19,6 +19,8 @@ using simulation::StageRecord;
 constexpr std::size_t table_columns = 9;
 using Row = std::array<std::string, table_columns>;
 
+constexpr double largest_overlap = 1e-3;  // m, that is none to speak of
+
 const Row heading{"stage",     "steps",       "time s",   "PGA m/s2", "fallen",
                   "fallen m2", "loosened m2", "filled %", "slip mm"};
 
@@ -80,6 +82,12 @@ std::vector<std::string> warnings(const RunRecord& run) {
   if (run.open_close.unconverged_steps > 0) {
     texts.push_back(fmt::format("{} steps did not converge", run.open_close.unconverged_steps));
   }
+  const simulation::OverlapRecord& overlap = run.max_overlap;
+  if (overlap.depth >= largest_overlap && overlap.block_a >= 0) {
+    texts.push_back(fmt::format(
+        "blocks {} and {} overlap by {:.1f} mm at {:.2f} s, in stage \"{}\": a smaller time step may help",
+        overlap.block_a, overlap.block_b, 1000.0 * overlap.depth, overlap.time, overlap.stage));
+  }
   return texts;
 }
 
@@ -94,7 +102,7 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
       "per step\n"
       "largest overlap {:.3f} mm, energy residual {:.2f} %, state {}\n\n",
       block_count, run.dof, run.steps, run.wall_time, per_step, run.open_close.mean_iterations,
-      1000.0 * run.max_overlap, 100.0 * run.energy.residual_ratio, run.state_hash);
+      1000.0 * run.max_overlap.depth, 100.0 * run.energy.residual_ratio, run.state_hash);
   text += aligned(rows);
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
   return text;

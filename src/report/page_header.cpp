@@ -64,6 +64,12 @@ ordered_json model_json(const simulation::ModelRecord& model) {
             {"sliver_area_m2", cut.sliver_area}}}};
 }
 
+/// Which blocks, when and in what stage; null where none overlap.
+ordered_json overlap_json(const simulation::OverlapRecord& overlap) {
+  if (overlap.block_a < 0) return nullptr;
+  return {{"blocks", {overlap.block_a, overlap.block_b}}, {"time_s", overlap.time}, {"stage", overlap.stage}};
+}
+
 ordered_json run_json(const simulation::RunRecord& run) {
   ordered_json stages = ordered_json::array();
   for (const simulation::StageRecord& record : run.stages) stages.push_back(stage_json(record));
@@ -72,7 +78,8 @@ ordered_json run_json(const simulation::RunRecord& run) {
           {"dof", run.dof},
           {"state_hash", run.state_hash},
           {"open_close", results::open_close_json(run.open_close)},
-          {"max_overlap_m", run.max_overlap},
+          {"max_overlap_m", run.max_overlap.depth},
+          {"max_overlap_at", overlap_json(run.max_overlap)},
           {"max_area_change", run.max_area_change},
           {"energy", results::energy_json(run.energy)},
           {"stages", stages},

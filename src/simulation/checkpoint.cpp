@@ -92,7 +92,12 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.wall_time);
   archive(s.iterations);
   archive(s.record.open_close);
-  archive(s.record.max_overlap);
+  archive(s.record.max_overlap.depth);
+  archive(s.record.max_overlap.block_a);
+  archive(s.record.max_overlap.block_b);
+  archive(s.record.max_overlap.where);
+  archive(s.record.max_overlap.time);
+  archive(s.record.max_overlap.stage);
   archive(s.record.max_area_change);
 }
 

@@ -163,13 +163,22 @@ struct OpenCloseStatistics {
   long unconverged_steps = 0;
 };
 
+/// A true overlap of two blocks.
+struct OverlapRecord {
+  double depth = 0.0;  ///< m; 0: there was none
+  int block_a = -1, block_b = -1;
+  Vec2 where;         ///< in both
+  double time = 0.0;  ///< s, simulated
+  std::string stage;  ///< its name
+};
+
 struct RunRecord {
   long steps = 0;
   double wall_time = 0.0;  ///< s
   int dof = 0;
   std::string state_hash;  ///< of the final state, hexadecimal
   OpenCloseStatistics open_close;
-  double max_overlap = 0.0;      ///< m, true polygon overlap
+  OverlapRecord max_overlap;     ///< the largest that was seen
   double max_area_change = 0.0;  ///< relative
   Energy energy;
   std::vector<StageRecord> stages;

@@ -161,12 +161,19 @@ HistoryRow Recorder::history(const dynamics::State& state) const {
   return row;
 }
 
-double Recorder::overlap(double least_depth) const {
+std::optional<OverlapRecord> Recorder::overlap(const dynamics::State& state, int stage,
+                                               double least_depth) const {
   std::vector<Polygon> polygons;
+  std::vector<int> blocks;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (model_.surface.present[b]) polygons.push_back(deformed_polygon(model_, b));
+    if (model_.surface.present[b] == 0) continue;
+    polygons.push_back(deformed_polygon(model_, b));
+    blocks.push_back(static_cast<int>(b));
   }
-  return overlap::largest_overlap(polygons, least_depth).depth;
+  const overlap::Overlap found = overlap::largest_overlap(polygons, least_depth);
+  if (found.block_a < 0) return std::nullopt;
+  return OverlapRecord{found.depth, blocks[at(found.block_a)],    blocks[at(found.block_b)], found.where,
+                       state.time,  setup_.stages[at(stage)].name};
 }
 
 double Recorder::area_change(const dynamics::State& state) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "dynamics/step.h"
@@ -19,8 +20,9 @@ class Recorder {
   [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
                                       int stage) const;
   [[nodiscard]] HistoryRow history(const dynamics::State& state) const;
-  /// Largest true overlap of any two blocks that exceeds `least_depth`, m; else 0.
-  [[nodiscard]] double overlap(double least_depth) const;
+  /// Largest true overlap of any two blocks, if it is deeper than `least_depth`, m.
+  [[nodiscard]] std::optional<OverlapRecord> overlap(const dynamics::State& state, int stage,
+                                                     double least_depth) const;
   /// Largest relative change of area of a block.
   [[nodiscard]] double area_change(const dynamics::State& state) const;
 

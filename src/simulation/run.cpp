@@ -180,7 +180,8 @@ void Runner::record_frame() {
 
 void Runner::check_overlap() {
   const Profile::Scope scope(profile_, Phase::output);
-  now_.record.max_overlap = std::max(now_.record.max_overlap, recorder_.overlap(now_.record.max_overlap));
+  const auto overlap = recorder_.overlap(now_.mechanics, now_.stage, now_.record.max_overlap.depth);
+  if (overlap) now_.record.max_overlap = *overlap;
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 

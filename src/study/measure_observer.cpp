@@ -78,7 +78,7 @@ void MeasureObserver::end(const simulation::RunRecord& run) {
   result_.wall_time = run.wall_time;
   result_.state_hash = run.state_hash;
   result_.unconverged_steps = run.open_close.unconverged_steps;
-  result_.max_overlap = run.max_overlap;
+  result_.max_overlap = run.max_overlap.depth;
   result_.energy_residual_ratio = run.energy.residual_ratio;
   for (std::size_t b = 0; b < blocks_; ++b) {
     if (fell_[b] < 0) continue;

@@ -312,6 +312,10 @@ const tests = {
     assert.match(await text(page, "#verdict thead"), /Mass\s*t\/m/);
     assert.ok((await page.locator("#quality td.attention").count()) >= 3);
     assert.match(
+      await text(page, "#quality tbody"),
+      /2\.4\s*mm, of blocks 3 and 7, at 1\.50\s*s in “shake”/,
+    );
+    assert.match(
       await text(page, "#quality tbody tr:last-child"),
       /Marginal static stages\s*“excavated”: no equilibrium, 3 blocks still moving/,
     );

@@ -130,8 +130,20 @@ export interface Check {
 
 /** How far the numbers can be trusted. */
 export function checks(run: Run): Check[] {
-  const { open_close: oc, max_overlap_m, max_area_change, energy, steps } = run.header.run;
+  const {
+    open_close: oc,
+    max_overlap_m,
+    max_overlap_at: at,
+    max_area_change,
+    energy,
+    steps,
+  } = run.header.run;
   const overlap = max_overlap_m ?? Infinity;
+  const overlapIsSmall = overlap < 1e-3;
+  const overlapPlace =
+    at && !overlapIsSmall
+      ? `, of blocks ${at.blocks[0]} and ${at.blocks[1]}, at ${fixed(at.time_s, 2)}\u00a0s in ${quoted(at.stage)}`
+      : "";
   const residual = energy.residual_ratio ?? Infinity;
   const result: Check[] = [
     {
@@ -142,9 +154,9 @@ export function checks(run: Run): Check[] {
     },
     {
       name: "Largest true overlap of two blocks",
-      value: length(max_overlap_m),
+      value: `${length(max_overlap_m)}${overlapPlace}`,
       limit: "below 1 mm",
-      good: overlap < 1e-3,
+      good: overlapIsSmall,
     },
     {
       name: "Energy residual, of the largest term",

@@ -19,7 +19,7 @@ RunRecord settled_and_shaken() {
   run.dof = 5502;
   run.state_hash = "00ff";
   run.open_close.mean_iterations = 3.25;
-  run.max_overlap = 4e-4;
+  run.max_overlap.depth = 4e-4;
   StageRecord settled;
   settled.stage.name = "in situ";
   settled.equilibrium_reached = true;
@@ -55,6 +55,11 @@ TEST(OutcomeText, SaysWhatToBeWaryOf) {
   run.stages[0].worst_residual_ratio = 0.05;
   EXPECT_THAT(outcome_text(run, 9),
               HasSubstr("note: stage \"in situ\" ended before equilibrium: worst residual 5.0e-02"));
+  run.max_overlap = {6.895e-3, 347, 552, {1.36, -2.39}, 1.0, "first earthquake"};
+  EXPECT_THAT(
+      outcome_text(run, 9),
+      HasSubstr("note: blocks 347 and 552 overlap by 6.9 mm at 1.00 s, in stage \"first earthquake\": "
+                "a smaller time step may help\n"));
   run.stages[0].moving = {{17, 0.25}};
   EXPECT_THAT(outcome_text(run, 9),
               HasSubstr("note: stage \"in situ\": 1 block keeps moving (share of the weight that is "

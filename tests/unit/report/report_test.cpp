@@ -50,7 +50,7 @@ TEST(Report, TextThatIsNoUtf8IsShownAllTheSame) {
 
 TEST(Report, NumbersThatAreNoneBecomeNull) {
   results::RunData run = made_up::synthetic_run({.frames = false});
-  run.run.max_overlap = std::numeric_limits<double>::quiet_NaN();
+  run.run.max_overlap.depth = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(page_header(run, page_arrays(run)), HasSubstr("\"max_overlap_m\":null"));
 }
 

@@ -325,7 +325,7 @@ class Wall {
     record.state_hash = "9f2c44d1a07be863";
     record.interrupted = options_.interrupted;
     record.open_close = {1.62, 14, 3, options_.marginal ? 2 : 0};
-    record.max_overlap = options_.marginal ? 2.4e-3 : 8.7e-5;
+    record.max_overlap = {options_.marginal ? 2.4e-3 : 8.7e-5, 3, 7, {0.5, 0.5}, 1.5, "shake"};
     record.max_area_change = 3.2e-5;
     record.energy.residual_ratio = 0.0021;
   }

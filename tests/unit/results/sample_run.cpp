@@ -295,7 +295,7 @@ simulation::RunRecord SampleRun::run() {
   record.dof = 36;
   record.state_hash = "0123456789abcdef";
   record.open_close = {3.7, 9, 2, 0};
-  record.max_overlap = 1.0 / 7.0;
+  record.max_overlap = {1.0 / 7.0, 0, 2, {0.1, -2.5}, 1.0 / 3.0, "shake “it”"};
   record.max_area_change = 1e-12;
   record.energy = step_row(1, 30).energy;
   record.stages = {stage(0), stage(1)};
@@ -350,7 +350,12 @@ void expect_equal(const RunData& a, const RunData& b) {
   EXPECT_EQ(a.run.open_close.max_iterations, b.run.open_close.max_iterations);
   EXPECT_EQ(a.run.open_close.retried_steps, b.run.open_close.retried_steps);
   EXPECT_EQ(a.run.open_close.unconverged_steps, b.run.open_close.unconverged_steps);
-  EXPECT_TRUE(same(a.run.max_overlap, b.run.max_overlap));
+  EXPECT_TRUE(same(a.run.max_overlap.depth, b.run.max_overlap.depth));
+  EXPECT_EQ(a.run.max_overlap.block_a, b.run.max_overlap.block_a);
+  EXPECT_EQ(a.run.max_overlap.block_b, b.run.max_overlap.block_b);
+  EXPECT_EQ(a.run.max_overlap.where, b.run.max_overlap.where);
+  EXPECT_EQ(a.run.max_overlap.stage, b.run.max_overlap.stage);
+  EXPECT_EQ(a.run.max_overlap.time, b.run.max_overlap.time);
   EXPECT_TRUE(same(a.run.max_area_change, b.run.max_area_change));
   expect_equal(a.run.energy, b.run.energy);
   EXPECT_EQ(a.run.interrupted, b.run.interrupted);

@@ -74,7 +74,13 @@ TEST(Summary, NumbersComeBackToTheLastBit) {
   EXPECT_EQ(summary["seed"].get<std::uint64_t>(), sample.model.seed);
   EXPECT_EQ(summary["title"], sample.model.title);
   EXPECT_EQ(summary["step_size"].get<double>(), sample.model.step_size);
-  EXPECT_EQ(summary["max_overlap_m"].get<double>(), run.max_overlap);
+  EXPECT_EQ(summary["max_overlap_m"].get<double>(), run.max_overlap.depth);
+  const json& overlap = summary["max_overlap_at"];
+  EXPECT_EQ(overlap["blocks"], json({0, 2}));
+  EXPECT_EQ(overlap["x"], sample.model.origin.x + run.max_overlap.where.x);
+  EXPECT_EQ(overlap["y"], sample.model.origin.y + run.max_overlap.where.y);
+  EXPECT_EQ(overlap["stage"], run.max_overlap.stage);
+  EXPECT_EQ(overlap["time_s"], run.max_overlap.time);
   EXPECT_EQ(summary["energy"]["numerical"].get<double>(), run.energy.numerical);
   EXPECT_EQ(summary["stages"][0]["damage"]["closure_horizontal_m"].get<double>(), 1e-17);
   EXPECT_EQ(summary["ms_per_step"].get<double>(), 1e3 * run.wall_time / 30.0);
@@ -110,7 +116,7 @@ TEST(Summary, AreasOfWhatWasExcavated) {
 TEST(Summary, WhatIsNoNumberIsNull) {
   SampleRun sample;
   auto run = sample.run();
-  run.max_overlap = std::nan("");
+  run.max_overlap.depth = std::nan("");
   run.energy.input = HUGE_VAL;
   run.steps = 0;
   const json summary = json::parse(summary_json(sample.model, run));
