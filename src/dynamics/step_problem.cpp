@@ -213,8 +213,19 @@ void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) cons
 void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
                                     std::span<double> out) const {
   with_known_size(bodies_[b].size, [&](auto size) {
-    for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
-      add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], &out[bodies_[b].first]);
+    const auto add = [&](double* sums) {
+      for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
+        add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], sums);
+    };
+    double* coefficients = &out[bodies_[b].first];
+    if constexpr (std::is_same_v<decltype(size), int>) {
+      add(coefficients);
+    } else {  // a copy that nothing else may point to: it stays in registers
+      std::array<double, 2 * at(size)> sums;
+      std::copy_n(coefficients, sums.size(), sums.begin());
+      add(sums.data());
+      std::copy_n(sums.begin(), sums.size(), coefficients);
+    }
   });
 }
 

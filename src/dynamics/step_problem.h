@@ -70,7 +70,8 @@ class StepProblem {
     }
     /// r, but for the known part.
     [[nodiscard]] Vec2 relative(std::span<const Vec2> u) const {
-      return u[vertex] - lerp(u[from], u[to], position);
+      return vec2_of(load_pair(u[vertex]) -
+                     ((1.0 - position) * load_pair(u[from]) + position * load_pair(u[to])));
     }
   };
   static_assert(sizeof(Row) == 64);
@@ -211,10 +212,14 @@ class StepProblem {
       const Row& row = rows_[c];
       const Vec2 force = force_of(c);
       if (force == Vec2{}) return;
-      if (owner.has(row.unknown_a)) at_vertices[row.vertex] += force;
+      const Pair pair = pair_of(force);
+      const auto add = [&](std::uint32_t v, Pair p) {
+        store_pair(at_vertices[v], load_pair(at_vertices[v]) + p);
+      };
+      if (owner.has(row.unknown_a)) add(row.vertex, pair);
       if (!owner.has(row.unknown_b)) return;
-      at_vertices[row.from] -= (1.0 - row.position) * force;
-      at_vertices[row.to] -= row.position * force;
+      add(row.from, -(1.0 - row.position) * pair);
+      add(row.to, -row.position * pair);
     });
   }
   void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;

@@ -4,24 +4,23 @@
 #include "contact/surface.h"
 #include "core/index.h"
 #include "core/known_size.h"
+#include "geometry/pair.h"
 
 namespace keyblock::dynamics {
 
 /// Σ φ_k c_k: what a block's coefficients (x and y of each, N times) are at a point. N = 3 is order 1.
 template <typename Size>
 Vec2 field_at(const double* phi, Size size, const double* coefficients) {
-  Vec2 sum;
-  for (int k = 0; k < size; ++k) sum += phi[k] * Vec2{coefficients[2 * k], coefficients[2 * k + 1]};
-  return sum;
+  Pair sum{};
+  for (int k = 0; k < size; ++k) sum += phi[k] * load_pair(coefficients + 2 * k);
+  return vec2_of(sum);
 }
 
 /// out_k += φ_k force.
 template <typename Size>
 void add_at(const double* phi, Size size, Vec2 force, double* out) {
-  for (int k = 0; k < size; ++k) {
-    out[2 * k] += phi[k] * force.x;
-    out[2 * k + 1] += phi[k] * force.y;
-  }
+  const Pair pair = pair_of(force);
+  for (int k = 0; k < size; ++k) store_pair(out + 2 * k, load_pair(out + 2 * k) + phi[k] * pair);
 }
 
 /// Calls of_vertex(v, x) with what the coefficients of block b, of N basis functions, are at each of its vertices.
