@@ -99,24 +99,32 @@ Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
   return are_known ? Turns::are_known : Turns::are_others;
 }
 
-/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised.
+/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
+/// it went.
 bool Stepper::moved_too_far() {
   std::atomic<bool> any = false;
   for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
+    const std::size_t begin = at(model_.surface.block_begin[b]), end = at(model_.surface.block_begin[b + 1]);
+    const std::span<const Vec2> went = open_close_.displacement();
     double moved = 0.0;
-    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
-      moved = std::max(moved, squared_norm(open_close_.displacement()[v]));
+    for (std::size_t v = begin; v < end; ++v) moved = std::max(moved, squared_norm(went[v]));
     moved = std::sqrt(moved);
-    if (moved > reach_[b] + 0.5 * tolerances_.activation) {
-      reach_[b] = 1.5 * moved;
-      any = true;
-    }
-    if (std::abs(spin_[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside) {
+    const bool is_far = moved > reach_[b] + 0.5 * tolerances_.activation,
+               is_turned = std::abs(spin_[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside;
+    if (is_far) reach_[b] = 1.5 * moved;
+    if (is_turned) {
       turn_[b] = 1.5 * std::abs(spin_[b]);
       reach_[b] = std::max(reach_[b], turn_[b] * block.radius);
-      any = true;
     }
+    if (!is_far && !is_turned) return;
+    any = true;
+    double against_first = 0.0;
+    for (std::size_t v = begin; v < end; ++v) {
+      ahead_[v] = went[v];
+      against_first = std::max(against_first, squared_norm(went[v] - went[begin]));
+    }
+    way_ahead_[b] = std::sqrt(against_first);
   });
   return any;
 }

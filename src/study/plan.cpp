@@ -45,12 +45,8 @@ std::string key_of(int realization, const std::string& hash) {
 }
 
 void add_files(const Scenario& scenario, std::map<fs::path, std::string>& files) {
-  const auto add = [&](const fs::path& file) {
+  for (const fs::path& file : scenario::input_paths(scenario)) {
     if (!files.contains(file)) files[file] = hash_text(read_file(file));
-  };
-  for (const auto& map : scenario.trace_maps) add(map.file);
-  for (const auto& motion : scenario.motions) {
-    for (const auto& component : motion.components) add(component.file);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "results/result_writer.h"
 #include "results/summary.h"
 #include "scenario/build.h"
+#include "scenario/inputs.h"
 #include "scenario/parse.h"
 #include "simulation/fan_out.h"
 #include "simulation/run.h"
@@ -48,10 +49,7 @@ scenario::Scenario scenario_of(const Plan& plan, const PlannedRun& run) {
   for (const std::string& text : overrides_of(plan, run)) overrides.push_back(text);
   scenario::Scenario scenario =
       scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out);
-  for (const auto& map : scenario.trace_maps) check_file(plan, map.file);
-  for (const auto& motion : scenario.motions) {
-    for (const auto& component : motion.components) check_file(plan, component.file);
-  }
+  for (const fs::path& path : scenario::input_paths(scenario)) check_file(plan, path);
   apply_variant(scenario, run.variant, plan.marginal.value_or(MarginalCheck{}));
   if (!run.variant.empty()) scenario.text += fmt::format("# variant {}\n", run.variant);
   return scenario;

@@ -256,6 +256,29 @@ TEST(Contact, TipsThatHavePassedASharpCornerAreFree) {
   }
 }
 
+// A stone lies with its tip on a bed, 2.5 mm before the tip of another, whose line and its own are a tie. A third one strikes it: in that
+// step it goes where no velocity at the beginning says, and meets the other.
+TEST(Contact, TipsThatAreStruckTowardsEachOtherMeet) {
+  for (int k = -5; k <= 5; ++k) {
+    Scene scene(3e9, 39.0, 2270.0);
+    scene.add({{-1.0, 0.0}, {-1.0, -0.5}, {1.0, -0.5}, {1.0, 0.0}}, true);
+    const Vec2 other{0.0, 0.00036 + 1e-5 * k}, tip{-0.00248, 1e-6};
+    scene.add({other, other + Vec2{0.251, 0.017}, other + Vec2{0.0535, 0.1347}}, true);
+    scene.add({tip, tip + Vec2{-0.068, 0.1038}, tip + Vec2{-0.1329, 0.057}});
+    const double face = tip.x - 0.1329 - 1e-5;
+    const int striker = scene.add({{face, 0.02}, {face, 0.3}, {face - 0.3, 0.3}, {face - 0.3, 0.02}});
+    scene.setup.properties[static_cast<std::size_t>(striker)].velocity = {4.0, 0.0};
+    Simulator s(scene);
+    double deepest = 0.0;
+    for (int step = 0; step < 10; ++step) {
+      s.run(0.002, 0.002);
+      const std::vector<Polygon> two{deformed_polygon(s.model, 1), deformed_polygon(s.model, 2)};
+      deepest = std::max(deepest, overlap::largest_overlap(two).depth);
+    }
+    EXPECT_LT(deepest, 5e-4) << other.y;
+  }
+}
+
 // Rock comes down with its tip on a sharp corner, and is pressed in by 3 to 4 mm: nearer to the far face of the corner than to the one that
 // holds it. It is not let through.
 TEST(Contact, TipsPressedDeepIntoASharpCornerAreHeld) {
