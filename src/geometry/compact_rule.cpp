@@ -98,7 +98,7 @@ class Search {
     middle_ = 0.5 * (box.min + box.max);
     half_ = 0.5 * box.size();
     for (const WeightedPoint& w : polygon_rule(polygon, degree)) {
-      const auto [x, y] = polynomials(w.point);
+      const Legendre x = along_x(w.point), y = along_y(w.point);
       for_moments([&](std::size_t k, std::size_t i, std::size_t j) {
         wanted_[k] += w.weight / area_ * x.value[i] * y.value[j];
       });
@@ -123,7 +123,7 @@ class Search {
     missing_ = wanted_;
     change_.resize(size_ * columns_);
     for (std::size_t q = 0; q < rule_.size(); ++q) {
-      const auto [x, y] = polynomials(rule_[q].point);
+      const Legendre x = along_x(rule_[q].point), y = along_y(rule_[q].point);
       const double weight = rule_[q].weight / area_;
       for_moments([&](std::size_t k, std::size_t i, std::size_t j) {
         const double moment = weight * x.value[i] * y.value[j];
@@ -166,9 +166,8 @@ class Search {
   [[nodiscard]] const std::vector<WeightedPoint>& rule() const { return rule_; }
 
  private:
-  [[nodiscard]] std::pair<Legendre, Legendre> polynomials(Vec2 point) const {
-    return {{degree_, (point.x - middle_.x) / half_.x}, {degree_, (point.y - middle_.y) / half_.y}};
-  }
+  [[nodiscard]] Legendre along_x(Vec2 point) const { return {degree_, (point.x - middle_.x) / half_.x}; }
+  [[nodiscard]] Legendre along_y(Vec2 point) const { return {degree_, (point.y - middle_.y) / half_.y}; }
   /// Calls what(k, i, j) for moment k, of P_i(x) P_j(y).
   template <typename Do>
   void for_moments(const Do& what) const {
