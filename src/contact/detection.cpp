@@ -273,7 +273,7 @@ double Detection::to_nearest_other_edge(const Surface& surface, const Candidate&
 
 /// Whether a vertex deep behind an edge is nearer to another: one that has come in by one face of a sharp corner, or that has slid past a
 /// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face, nor one that the face has held since
-/// before it was behind it, how deep an impact may press it in.
+/// before it was behind it, however deep an impact presses it in.
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                       const CandidateList& candidates) const {
   if (rival.gap >= -deep(rival)) return false;

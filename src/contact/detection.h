@@ -77,8 +77,8 @@ class Detection {
     /// m, per block: length of the way that its vertices have gone against its first one since some time in the past, by the one
     /// that moved furthest in each step.
     std::span<const double> way;
-    /// m, per vertex: where its velocity takes it in the step, unless something stops it; and, per block, how far from where it takes
-    /// the first one at most. Empty: nowhere.
+    /// m, per vertex: where its velocity takes it in the step, unless something stops it, or where it went when the step was looked at
+    /// before; and, per block, how far from where the first one goes at most. Empty: nowhere.
     std::span<const Vec2> ahead = {};
     std::span<const double> way_ahead = {};
   };

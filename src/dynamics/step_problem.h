@@ -70,8 +70,7 @@ class StepProblem {
     }
     /// r, but for the known part.
     [[nodiscard]] Vec2 relative(std::span<const Vec2> u) const {
-      return vec2_of(load_pair(u[vertex]) -
-                     ((1.0 - position) * load_pair(u[from]) + position * load_pair(u[to])));
+      return vec2_of(load_pair(u[vertex]) - lerp(load_pair(u[from]), load_pair(u[to]), position));
     }
   };
   static_assert(sizeof(Row) == 64);

@@ -105,7 +105,8 @@ class Search {
     }
   }
 
-  /// Points spread evenly over a disc with about the moments of the polygon, each a golden angle from the last.
+  /// Points, a multiple of as many as there are lanes, spread evenly over a disc with about the moments of the polygon, each a golden
+  /// angle from the last.
   void start(std::size_t points) {
     constexpr double radius = 1.9;  // a disc of radius 2 has unit second moments
     constexpr Vec2 turn{-0.7373688780783197, 0.6754902942615238};

@@ -26,5 +26,8 @@ inline Pair pair_of(Vec2 v) {
 inline Vec2 vec2_of(Pair v) {
   return {v[0], v[1]};
 }
+inline Pair lerp(Pair a, Pair b, double s) {
+  return (1.0 - s) * a + s * b;
+}
 
 }  // namespace keyblock

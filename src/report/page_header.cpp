@@ -64,13 +64,7 @@ ordered_json model_json(const simulation::ModelRecord& model) {
             {"sliver_area_m2", cut.sliver_area}}}};
 }
 
-/// Which blocks, when and in what stage; null where none overlap.
-ordered_json overlap_json(const simulation::OverlapRecord& overlap) {
-  if (overlap.block_a < 0) return nullptr;
-  return {{"blocks", {overlap.block_a, overlap.block_b}}, {"time_s", overlap.time}, {"stage", overlap.stage}};
-}
-
-ordered_json run_json(const simulation::RunRecord& run) {
+ordered_json run_json(const simulation::RunRecord& run, Vec2 origin) {
   ordered_json stages = ordered_json::array();
   for (const simulation::StageRecord& record : run.stages) stages.push_back(stage_json(record));
   return {{"steps", run.steps},
@@ -79,7 +73,7 @@ ordered_json run_json(const simulation::RunRecord& run) {
           {"state_hash", run.state_hash},
           {"open_close", results::open_close_json(run.open_close)},
           {"max_overlap_m", run.max_overlap.depth},
-          {"max_overlap_at", overlap_json(run.max_overlap)},
+          {"max_overlap_at", results::overlap_place_json(run.max_overlap, origin)},
           {"max_area_change", run.max_area_change},
           {"energy", results::energy_json(run.energy)},
           {"stages", stages},
@@ -105,7 +99,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
   const results::Areas area = results::areas(run.model, run.run);
   const ordered_json header{
       {"model", model_json(run.model)},
-      {"run", run_json(run.run)},
+      {"run", run_json(run.run, run.model.origin)},
       {"area", {{"blocks_m2", area.blocks}, {"excavated_m2", area.excavated}}},
       {"recorded_frames", run.frames.size()},
       {"displacement_quantum", displacement_quantum(run)},

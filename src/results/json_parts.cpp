@@ -73,6 +73,25 @@ simulation::OpenCloseStatistics read_open_close(const ordered_json& json) {
   return statistics;
 }
 
+ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 origin) {
+  if (overlap.block_a < 0) return nullptr;
+  const Vec2 where = origin + overlap.where;
+  return {{"blocks", {overlap.block_a, overlap.block_b}},
+          {"x", where.x},
+          {"y", where.y},
+          {"time_s", overlap.time},
+          {"stage", overlap.stage}};
+}
+
+void read_overlap_place(const ordered_json& json, simulation::OverlapRecord& overlap) {
+  if (json.is_null()) return;
+  json.at("blocks").at(0).get_to(overlap.block_a);
+  json.at("blocks").at(1).get_to(overlap.block_b);
+  overlap.where = {number(json.at("x")), number(json.at("y"))};
+  overlap.time = number(json.at("time_s"));
+  json.at("stage").get_to(overlap.stage);
+}
+
 ordered_json points_json(const std::vector<Vec2>& points) {
   ordered_json json = ordered_json::array();
   for (const Vec2 p : points) json.push_back({p.x, p.y});

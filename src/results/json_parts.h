@@ -14,12 +14,16 @@ nlohmann::ordered_json damage_json(const simulation::Damage& damage);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
 nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics);
+/// Which blocks, where, and when; null where none overlap.
+nlohmann::ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 origin);
 nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, y], …]
 
 simulation::Damage read_damage(const nlohmann::ordered_json& json);
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
 std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
 simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);
+/// Into an overlap, but for its depth; the origin of its coordinates stays in them.
+void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapRecord& overlap);
 std::vector<Vec2> read_points(const nlohmann::ordered_json& json);
 
 /// JSON has no NaN: it is written as null.

@@ -175,38 +175,14 @@ StageLine read_stage_json(const std::string& text) {
   });
 }
 
-namespace {
-
-ordered_json overlap_json(const simulation::OverlapRecord& overlap) {
-  return {{"depth", overlap.depth}, {"blocks", {overlap.block_a, overlap.block_b}},
-          {"x", overlap.where.x},   {"y", overlap.where.y},
-          {"time", overlap.time},   {"stage", overlap.stage}};
-}
-
-simulation::OverlapRecord read_overlap(const ordered_json& json) {
-  simulation::OverlapRecord overlap;
-  if (!json.is_object()) {  // files of earlier versions have the depth alone
-    overlap.depth = number(json);
-    return overlap;
-  }
-  overlap.depth = number(json.at("depth"));
-  json.at("blocks").at(0).get_to(overlap.block_a);
-  json.at("blocks").at(1).get_to(overlap.block_b);
-  overlap.where = {number(json.at("x")), number(json.at("y"))};
-  json.at("stage").get_to(overlap.stage);
-  overlap.time = number(json.at("time"));
-  return overlap;
-}
-
-}  // namespace
-
 std::string run_json(const simulation::RunRecord& run) {
   const ordered_json json{{"steps", run.steps},
                           {"wall_time", run.wall_time},
                           {"dof", run.dof},
                           {"state_hash", run.state_hash},
                           {"open_close", open_close_json(run.open_close)},
-                          {"max_overlap", overlap_json(run.max_overlap)},
+                          {"max_overlap", run.max_overlap.depth},
+                          {"max_overlap_at", overlap_place_json(run.max_overlap, {})},
                           {"max_area_change", run.max_area_change},
                           {"energy", energy_json(run.energy)},
                           {"interrupted", run.interrupted}};
@@ -221,7 +197,9 @@ simulation::RunRecord read_run_json(const std::string& text) {
     json.at("dof").get_to(run.dof);
     json.at("state_hash").get_to(run.state_hash);
     run.open_close = read_open_close(json.at("open_close"));
-    run.max_overlap = read_overlap(json.at("max_overlap"));
+    run.max_overlap.depth = number(json.at("max_overlap"));
+    // Files of earlier versions do not have it.
+    if (json.contains("max_overlap_at")) read_overlap_place(json.at("max_overlap_at"), run.max_overlap);
     run.max_area_change = number(json.at("max_area_change"));
     run.energy = read_energy(json.at("energy"));
     json.at("interrupted").get_to(run.interrupted);

@@ -91,17 +91,6 @@ ordered_json profile(const simulation::RunRecord& run) {
   return json;
 }
 
-/// Which blocks, where in real coordinates, and when; null where none overlap.
-ordered_json place_of(const simulation::OverlapRecord& overlap, const simulation::ModelRecord& model) {
-  if (overlap.block_a < 0) return nullptr;
-  const Vec2 where = model.origin + overlap.where;
-  return {{"blocks", {overlap.block_a, overlap.block_b}},
-          {"x", where.x},
-          {"y", where.y},
-          {"time_s", overlap.time},
-          {"stage", overlap.stage}};
-}
-
 }  // namespace
 
 Areas areas(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
@@ -146,7 +135,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"state_hash", run.state_hash},
       {"open_close", open_close_json(run.open_close)},
       {"max_overlap_m", run.max_overlap.depth},
-      {"max_overlap_at", place_of(run.max_overlap, model)},
+      {"max_overlap_at", overlap_place_json(run.max_overlap, model.origin)},
       {"max_area_change", run.max_area_change},
       {"energy", energy_json(run.energy)},
       {"stages", stages}};

@@ -73,7 +73,7 @@ export interface Header {
       unconverged_steps: number;
     };
     max_overlap_m: number | null;
-    max_overlap_at: { blocks: [number, number]; time_s: number; stage: string } | null;
+    max_overlap_at: { blocks: [number, number]; x: number; y: number; time_s: number; stage: string } | null;
     max_area_change: number | null;
     energy: Record<string, number | null>;
     stages: Stage[];

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "results/record_json.h"
 #include "results/result_writer.h"
 #include "results/run_data.h"
 #include "sample_run.h"
@@ -62,6 +63,17 @@ TEST(ResultFile, ComesBackToTheLastBit) {
   EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
   EXPECT_TRUE(std::filesystem::exists(folder / "histories.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
+}
+
+TEST(ResultFile, FilesOfEarlierVersionsDoNotSayWhereTheLargestOverlapIs) {
+  SampleRun sample;
+  std::string text = run_json(sample.run());
+  const std::size_t begin = text.find("\"max_overlap_at\""), end = text.find("\"max_area_change\"");
+  ASSERT_LT(begin, end);
+  text.erase(begin, end - begin);
+  const simulation::RunRecord run = read_run_json(text);
+  EXPECT_EQ(run.max_overlap.depth, sample.run().max_overlap.depth);
+  EXPECT_EQ(run.max_overlap.block_a, -1);
 }
 
 TEST(ResultFile, HowOftenItIsFlushedDoesNotShow) {
