@@ -16,9 +16,12 @@ using Json = nlohmann::json;
 
 constexpr int deepest = 32;  // levels of lists and objects
 
+std::string shortened(std::string_view text) {
+  return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
+}
+
 std::string text_of(const Json& value) {
-  std::string text = value.dump();
-  return text.size() <= 40 ? text : text.substr(0, 37) + "...";
+  return shortened(value.dump());
 }
 
 // Valid JSON, in which values are found again by their keys.
@@ -52,6 +55,20 @@ class JsonText {
       if (c == ']' || c == '}') --depth;
     }
     return npos;
+  }
+
+  // Offset and text of the first number that a double cannot hold. The text may be anything.
+  [[nodiscard]] std::pair<std::size_t, std::string_view> find_huge_number() const {
+    for (std::size_t at = 0; at < text_.size(); ++at) {
+      if (text_[at] == '"') {
+        at = skip_string(at) - 1;
+      } else if (text_[at] == '-' || (text_[at] >= '0' && text_[at] <= '9')) {
+        const std::string_view number = text_.substr(at, skip_value(at) - at);
+        if (!Json::accept(number)) return {at, number};
+        at += number.size() - 1;
+      }
+    }
+    return {npos, {}};
   }
 
  private:
@@ -202,8 +219,10 @@ void read_geojson(std::string_view text, MapReader& map) {
     const auto [line, column] = line_and_column(text, error.byte > 0 ? error.byte - 1 : 0);
     map.mistake(line, column, "", "text that is no JSON", "GeoJSON");
     return;
-  } catch (const Json::exception&) {
-    map.mistake(0, 0, "", "a number that is not finite", "GeoJSON with finite numbers");
+  } catch (const Json::out_of_range&) {
+    const auto [at, number] = JsonText(text).find_huge_number();
+    const auto [line, column] = line_and_column(text, at);
+    map.mistake(line, column, "", shortened(number), "a finite number");
     return;
   }
   GeoJsonReader(text, map).object(root, "");

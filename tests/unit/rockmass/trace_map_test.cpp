@@ -147,9 +147,20 @@ TEST_F(TraceMap, GeoJsonMistakes) {
   EXPECT_EQ(place(2), std::pair(4, 84));
   EXPECT_EQ(place(3), std::pair(5, 37));  // of the geometry that lacks its coordinates
   EXPECT_EQ(place(4), std::pair(5, 62));
-  EXPECT_EQ(mistakes(R"({"type":"LineString","coordinates":[[0,0],[1e999,1]]})").size(), 1u);
   EXPECT_EQ(mistakes(R"({"type":"FeatureCollection"})").at(0).found, "nothing");
   EXPECT_EQ(mistakes(R"({"type":"FeatureCollection","features":[]})").at(0).found, "no trace");
+}
+
+TEST_F(TraceMap, GeoJsonNumbersThatADoubleCannotHold) {
+  const auto found = mistakes(
+      "{\"type\": \"LineString\", \"note\": \"7e999 \\\" 8e999\",\n \"coordinates\": [[1e-999, 0], [-1e999, "
+      "1e999]]}");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].where.line, 2);
+  EXPECT_EQ(found[0].where.column, 32);
+  EXPECT_EQ(found[0].found, "-1e999");
+  EXPECT_EQ(found[0].expected, "a finite number");
+  EXPECT_EQ(mistakes("{\"type\": " + std::string(400, '9') + "}").at(0).found, std::string(37, '9') + "...");
 }
 
 TEST_F(TraceMap, GeoJsonOfAnyDepth) {
