@@ -95,7 +95,8 @@ class CsvReader {
  private:
   struct Polyline {
     std::string name;
-    int line = 0;
+    int line = 0;          ///< of its first row
+    int last_line = 0;     ///< of its last one so far
     bool complete = true;  ///< no row of it had a mistake
     std::vector<Vec2> vertices;
   };
@@ -129,7 +130,7 @@ class CsvReader {
       map_.mistake(number, 1, "", fmt::format("{} cells", cells.size()), fmt::format("{} or more", needed));
       return;
     }
-    Polyline& trace = trace_named(cells[places_[0]].text, number);
+    Polyline& trace = trace_of(cells[places_[0]], number);
     if (cells.size() > columns_) {
       map_.mistake(number, cells[columns_].column, "", fmt::format("{} cells", cells.size()),
                    fmt::format("at most {}, the columns of the header", columns_));
@@ -152,10 +153,20 @@ class CsvReader {
     }
   }
 
-  Polyline& trace_named(const std::string& name, int number) {
-    const auto [place, is_new] = by_name_.try_emplace(name, traces_.size());
-    if (is_new) traces_.push_back({name, number, true, {}});
-    return traces_[place->second];
+  Polyline& trace_of(const Cell& name, int number) {
+    const auto [place, is_new] = by_name_.try_emplace(name.text, traces_.size());
+    if (is_new) traces_.push_back({name.text, number, number, true, {}});
+    Polyline& trace = traces_[place->second];
+    if (place->second != current_ && !is_new) {
+      map_.mistake(number, name.column, std::string(names[0]),
+                   fmt::format("\"{}\" again, after rows of \"{}\"", name.text, traces_[current_].name),
+                   fmt::format("rows of a trace that follow each other; the one before is in line {}",
+                               trace.last_line));
+      trace.complete = false;
+    }
+    current_ = place->second;
+    trace.last_line = number;
+    return trace;
   }
 
   static constexpr std::array<std::string_view, 3> names{"trace", "x", "y"};
@@ -164,6 +175,7 @@ class CsvReader {
   std::array<std::size_t, 3> places_{};
   std::size_t columns_ = 0;  ///< of the header
   std::vector<Polyline> traces_;
+  std::size_t current_ = 0;  ///< the trace of the last row
   std::map<std::string, std::size_t> by_name_;
 };
 

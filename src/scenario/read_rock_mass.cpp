@@ -202,7 +202,7 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
   t.file("file", map.file,
          {.meaning =
               "GeoJSON (LineString and MultiLineString features) or CSV (columns `trace,x,y`, one row per "
-              "vertex), in the coordinates of the domain.",
+              "vertex, those of a trace one after the other), in the coordinates of the domain.",
           .required = true});
   t.name("name", map.name, "trace_map", {.meaning = "Name in results.", .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();

@@ -48,7 +48,7 @@ TEST_F(TraceMap, PublishedMapKeepsItsDigits) {
 TEST_F(TraceMap, CsvInAnyColumnOrder) {
   const auto traces = read_trace_map(
       file("y, note "
-           ",x,trace\r\n1,a,0,\"t,1\"\r\n1,,2.5e0,\"t,1\"\r\n\r\n5,b,5,t2\n3,c,+2.5,\"t,1\"\n6,d,5,t2\n"),
+           ",x,trace\r\n1,a,0,\"t,1\"\r\n1,,2.5e0,\"t,1\"\r\n\r\n3,c,+2.5,\"t,1\"\n5,b,5,t2\n6,d,5,t2\n"),
       1);
   ASSERT_EQ(traces.size(), 3u);
   EXPECT_EQ(traces[0].a, (Vec2{0, 1}));
@@ -58,7 +58,7 @@ TEST_F(TraceMap, CsvInAnyColumnOrder) {
 }
 
 TEST_F(TraceMap, CsvSaysWhereEveryMistakeIs) {
-  const auto found = mistakes("trace,x,y\n1,0,0\n1,nan,1\n1, 1,1.0.0\n2,3,4\n1,5\n1,inf,0\n1,1e999,0\n");
+  const auto found = mistakes("trace,x,y\n2,3,4\n1,nan,1\n1, 1,1.0.0\n1,0,0\n1,5\n1,inf,0\n1,1e999,0\n");
   ASSERT_EQ(found.size(), 6u);
   const auto place = [&](std::size_t k) { return std::pair(found[k].where.line, found[k].where.column); };
   EXPECT_EQ(place(0), std::pair(3, 3));
@@ -69,8 +69,20 @@ TEST_F(TraceMap, CsvSaysWhereEveryMistakeIs) {
   EXPECT_EQ(place(2), std::pair(6, 1));
   EXPECT_EQ(place(3), std::pair(7, 3));
   EXPECT_EQ(place(4), std::pair(8, 3));
-  EXPECT_EQ(place(5), std::pair(5, 1));
+  EXPECT_EQ(place(5), std::pair(2, 1));
   EXPECT_EQ(found[5].found, "a trace of one vertex");
+}
+
+TEST_F(TraceMap, CsvTracesStandTogether) {
+  const auto found = mistakes("trace,x,y\na,0,0\na,1,0\n\nb,5,5\n a,2,0\na,3,0\nb,6,6\nc,7,7\nc,8,8\n");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].where.line, 6);
+  EXPECT_EQ(found[0].where.column, 2);
+  EXPECT_EQ(found[0].key, "trace");
+  EXPECT_EQ(found[0].found, "\"a\" again, after rows of \"b\"");
+  EXPECT_EQ(found[0].expected, "rows of a trace that follow each other; the one before is in line 3");
+  EXPECT_EQ(found[1].where.line, 8);
+  EXPECT_THAT(found[1].expected, testing::HasSubstr("line 5"));
 }
 
 TEST_F(TraceMap, CsvWithoutItsColumns) {
@@ -97,7 +109,7 @@ TEST_F(TraceMap, CsvWithMoreThanItsHeaderSays) {
 
 // A trace of a map is one joint, of however many pieces; a generated one is a joint of its own.
 TEST_F(TraceMap, PiecesOfAPolylineAreOneTrace) {
-  const auto traces = read_trace_map(file("trace,x,y\na,0,0\na,1,0\nb,5,5\na,2,1\nb,6,6\nb,7,6\n"), 1);
+  const auto traces = read_trace_map(file("trace,x,y\na,0,0\na,1,0\na,2,1\nb,5,5\nb,6,6\nb,7,6\n"), 1);
   ASSERT_EQ(traces.size(), 4u);
   EXPECT_EQ(trace_numbers(traces), (std::vector<int>{0, 0, 1, 1}));
   EXPECT_EQ(count_traces(traces), 2u);
