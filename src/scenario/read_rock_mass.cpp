@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "block/order.h"
+#include "rockmass/distribution.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -13,6 +14,7 @@ namespace {
 
 using rockmass::Distribution;
 using rockmass::DistributionKind;
+using rockmass::most_lognormal_variation;
 using rockmass::SpacingMeasure;
 
 constexpr Word<PlaneState> plane_states[] = {{"plane-stress", PlaneState::plane_stress},
@@ -73,6 +75,14 @@ void read_domain(TableReader& t, Scenario& scenario) {
             .condition = "boundary = \"frame\""});
 }
 
+void check_variation(TableReader& t, const Distribution& distribution) {
+  if (distribution.kind != DistributionKind::lognormal || distribution.mean <= 0.0) return;
+  const double variation = distribution.std / distribution.mean;
+  if (variation <= most_lognormal_variation) return;
+  t.fail("std", fmt::format("{:.3g} times the mean", variation),
+         fmt::format("at most {} times the mean for \"lognormal\"", most_lognormal_variation));
+}
+
 void read_distribution(TableReader& t, std::string_view key, Distribution& distribution, bool zero_allowed,
                        std::string_view meaning) {
   const Rule rule{.meaning = meaning,
@@ -106,14 +116,18 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
               .above = zero_allowed && constant ? -HUGE_VAL : 0.0,
               .at_least = zero_allowed && constant ? 0.0 : -HUGE_VAL});
     const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
-    d.number("std", distribution.std,
-             {.meaning =
-                  "Standard deviation. Needed for `uniform`, `normal` and `lognormal`; the others have none "
-                  "of their own and leave it aside.",
-              .unit = "m",
-              .required = needs_std && !t.documenting(),
-              .at_least = 0.0,
-              .fallback = "required where used"});
+    static const std::string std_text = fmt::format(
+        "Standard deviation. Needed for `uniform`, `normal` and `lognormal`; the others have none of their "
+        "own and leave it aside. That of `lognormal` is at most {} times the mean: beyond, half of the total "
+        "length is that of fewer than 2 joints in 100.",
+        most_lognormal_variation);
+    const bool given = d.number("std", distribution.std,
+                                {.meaning = std_text,
+                                 .unit = "m",
+                                 .required = needs_std && !t.documenting(),
+                                 .at_least = 0.0,
+                                 .fallback = "required where used"});
+    if (given) check_variation(d, distribution);
   });
 }
 

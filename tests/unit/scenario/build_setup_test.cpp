@@ -138,12 +138,10 @@ TEST(BuildSetup, AStageTakesAStepAtLeast) {
 }
 
 TEST(BuildSetup, JointsWithoutNumberAreRefusedWhereTheyStand) {
-  for (const char* std : {"1e30", "1e200"}) {
-    const std::string set =
-        std::string("joint_set.bedding.spacing={mean=0.3, std=") + std + ", distribution=\"lognormal\"}";
-    EXPECT_THAT(refusal(parse(runnable_domain, {set})),
-                HasSubstr("joint_set.bedding: found statistics that give more"))
-        << std;
+  Scenario scenario = parse(runnable_domain);
+  for (const double std : {1e30, 1e200}) {
+    scenario.joint_sets[0].set.spacing = {rockmass::DistributionKind::lognormal, 0.3, std};
+    EXPECT_THAT(refusal(scenario), HasSubstr("joint_set.bedding: found statistics that give more")) << std;
   }
 }
 
