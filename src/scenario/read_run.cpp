@@ -52,8 +52,8 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.name("name", stage.name, "stage", {.meaning = "Name in results and key paths.", .required = true});
   const bool known = t.word(
       "kind", stage.kind, stage_kinds,
-      {.meaning = "`settle`: static steps to equilibrium; `shake`: dynamic under a ground motion; `rest`: "
-                  "dynamic without one.",
+      {.meaning = "`settle`: static steps to equilibrium under gravity, loads or in-situ stress; `shake`: "
+                  "dynamic under a ground motion; `rest`: dynamic without one.",
        .required = true});
   const bool any = t.documenting() || !known;
   const bool settle = any || stage.kind == StageKind::settle;

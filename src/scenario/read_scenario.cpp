@@ -21,6 +21,7 @@ class Consistency {
     const Value* section = root_.find("section");
     if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
     check_trace_counts();
+    check_weights();
   }
 
  private:
@@ -72,6 +73,34 @@ class Consistency {
            fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",
                        rockmass::max_traces));
     }
+  }
+
+  // Residuals are measured by what has to be carried. A load that was not understood may be that.
+  void check_weights() {
+    if (!root_.context().diagnostics.empty() || has_weights()) return;
+    const auto& stages = scenario_.stages;
+    const auto settling = std::find_if(stages.begin(), stages.end(), [](const simulation::Stage& stage) {
+      return stage.kind == simulation::StageKind::settle;
+    });
+    if (settling == stages.end()) return;
+    const std::string key = join_path(join_path("stage", settling->name), "kind");
+    fail(key, key, "\"settle\" without anything to carry",
+         "gravity, a load on a block that moves, or a stress in [in_situ], by which equilibrium is measured");
+  }
+
+  [[nodiscard]] bool has_weights() const {
+    const auto& in_situ = scenario_.in_situ;
+    if (in_situ && (in_situ->sxx != 0.0 || in_situ->syy != 0.0 || in_situ->sxy != 0.0)) return true;
+    return scenario_.gravity != Vec2{} ||
+           std::any_of(scenario_.loads.begin(), scenario_.loads.end(), [&](const loading::Load& load) {
+             const auto is_none = [&](double s) { return load.traction(s) == Vec2{}; };
+             return is_on_moving_block(load) && !(is_none(0.0) && is_none(0.5) && is_none(1.0));
+           });
+  }
+
+  [[nodiscard]] bool is_on_moving_block(const loading::Load& load) const {
+    return std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(),
+                       [&](const BlockSpec& block) { return block.name == load.block && !block.fixed; });
   }
 
   TableReader& root_;

@@ -138,6 +138,18 @@ scale = 0.5
   EXPECT_EQ(s.stages[1].scale, 0.5);
 }
 
+TEST(Stages, SettleUnderWhateverHasToBeCarried) {
+  const auto settling = [](const std::string& more) {
+    return mistakes(with(more), {"gravity=[0, 0]", "stage=[{name=\"s\", kind=\"settle\"}]"});
+  };
+  EXPECT_NE(settling(""), "");
+  EXPECT_EQ(settling("[in_situ]\nsxy = 1e3\n"), "");
+  EXPECT_EQ(settling("[[load]]\nblock = \"top\"\npoint = [2, 2]\nforce = [0, -1e3]\n"), "");
+  EXPECT_EQ(settling("[[load]]\nblock = \"top\"\nfrom = [1, 2]\nto = [3, 2]\ntraction = [0, 0]\n"
+                     "traction_end = [0, -1e3]\n"),
+            "");
+}
+
 TEST(Study, ValuesAreKeptAsToml) {
   const Scenario s = parse(with(R"(
 [study]
