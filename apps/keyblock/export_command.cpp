@@ -7,7 +7,6 @@
 #include <string>
 
 #include "commands.h"
-#include "core/folder.h"
 #include "results/export.h"
 #include "results/run_data.h"
 
@@ -25,7 +24,6 @@ void export_results(const ExportArguments& arguments) {
   const std::filesystem::path output = arguments.output.empty()
                                            ? std::filesystem::path(arguments.folder) / arguments.format
                                            : std::filesystem::path(arguments.output);
-  make_folder(output);
   const auto files = results::export_run(data, output, results::export_format(arguments.format).value());
   std::cout << fmt::format("{} {} in {}", files.size(), files.size() == 1 ? "file" : "files",
                            output.string());

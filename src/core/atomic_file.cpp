@@ -39,8 +39,12 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::close() {
   if (::fsync(descriptor_) != 0 || ::close(std::exchange(descriptor_, -1)) != 0) fail("write");
+}
+
+void AtomicFile::commit() {
+  if (descriptor_ >= 0) close();
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("rename");
   committed_ = true;
 }

@@ -15,6 +15,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view bytes);
+  /// No more is written. May be left out before `commit`.
+  void close();
   void commit();
 
  private:

@@ -6,8 +6,6 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/atomic_file.h"
-#include "core/error.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
 #include "results/record_fields.h"
@@ -135,20 +133,16 @@ std::optional<ExportFormat> export_format(std::string_view name) {
   return {};
 }
 
-std::vector<std::filesystem::path> export_csv(const RunData& data, const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files{folder / "blocks.csv", folder / "contacts.csv",
-                                           folder / "steps.csv"};
-  write_file_atomically(files[0], block_table(data));
-  write_file_atomically(files[1], contact_table(data));
-  write_file_atomically(files[2], step_table(data));
-  if (!data.model.history_names.empty()) {
-    write_histories_csv(folder, data.model.history_names, data.histories);
-    files.push_back(folder / "histories.csv");
-  }
+std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out) {
+  std::vector<std::filesystem::path> files{out.write("blocks.csv", block_table(data)),
+                                           out.write("contacts.csv", contact_table(data)),
+                                           out.write("steps.csv", step_table(data))};
+  if (!data.model.history_names.empty())
+    files.push_back(out.write("histories.csv", histories_csv(data.model.history_names, data.histories)));
   return files;
 }
 
-std::vector<std::filesystem::path> export_geojson(const RunData& data, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& out) {
   std::vector<std::filesystem::path> files;
   for (std::size_t k = 0; k < data.run.stages.size(); ++k) {
     const simulation::Frame* last = nullptr;
@@ -157,26 +151,29 @@ std::vector<std::filesystem::path> export_geojson(const RunData& data, const std
     }
     if (last == nullptr) continue;
     const std::string part = file_part(data.run.stages[k].stage.name);
-    files.push_back(folder / fmt::format("stage_{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part));
-    write_file_atomically(files.back(), stage_geojson(data, *last));
+    files.push_back(out.write(fmt::format("stage_{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part),
+                              stage_geojson(data, *last)));
   }
   return files;
 }
 
 std::vector<std::filesystem::path> export_run(const RunData& data, const std::filesystem::path& folder,
                                               ExportFormat format) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw RunError(fmt::format("{}: cannot create: {}", folder.string(), error.message()));
+  FileSet out(folder);
+  std::vector<std::filesystem::path> files;
   switch (format) {
     case ExportFormat::vtk:
-      return export_vtk(data, folder);
+      files = export_vtk(data, out);
+      break;
     case ExportFormat::csv:
-      return export_csv(data, folder);
+      files = export_csv(data, out);
+      break;
     case ExportFormat::geojson:
-      return export_geojson(data, folder);
+      files = export_geojson(data, out);
+      break;
   }
-  return {};
+  out.commit();
+  return files;
 }
 
 }  // namespace keyblock::results

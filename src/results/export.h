@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/file_set.h"
 #include "results/run_data.h"
 
 /// Results in the formats of other programs. Coordinates are real ones (the local origin is added). Blocks that are
@@ -18,7 +19,8 @@ enum class ExportFormat {
 std::optional<ExportFormat> export_format(std::string_view name);
 
 /// Writes into `folder` (made where it is missing) and returns the files written, those to open first in front.
-/// Throws RunError when a file cannot be written.
+/// Throws InputError when there can be no such folder or file, and RunError when one cannot be written; then `folder` is as it was
+/// before.
 std::vector<std::filesystem::path> export_run(const RunData& data, const std::filesystem::path& folder,
                                               ExportFormat format);
 
@@ -28,12 +30,12 @@ std::vector<std::filesystem::path> export_run(const RunData& data, const std::fi
 /// `normal_force`, `shear_force`, `block_a`, `block_b`, `edge_kind` and `edge_index`. The time steps of a series must
 /// differ: where time stands still, as in static stages, each frame counts as a microsecond; the true time, stage and
 /// step stand in the field data TimeValue, stage and step of each file.
-std::vector<std::filesystem::path> export_vtk(const RunData& data, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out);
 
 /// Tables with one row per block and frame, per contact and contact frame, per recorded step.
-std::vector<std::filesystem::path> export_csv(const RunData& data, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out);
 
 /// RFC 7946 as to its form; the coordinates are those of the section, in metres.
-std::vector<std::filesystem::path> export_geojson(const RunData& data, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& out);
 
 }  // namespace keyblock::results

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/atomic_file.h"
 #include "results/block_shape.h"
 #include "results/export.h"
 #include "results/vtk_file.h"
@@ -180,32 +179,30 @@ std::string contact_file(const simulation::ModelRecord& model, const simulation:
 
 // Writes one file per frame and the series of them; returns the series first.
 template <class Frames, class Content>
-std::vector<std::filesystem::path> write_series(const Frames& frames, const std::filesystem::path& folder,
-                                                const std::string& name, const std::string& extension,
-                                                const Content& content) {
-  std::vector<std::filesystem::path> files{folder / (name + ".pvd")};
+std::vector<std::filesystem::path> write_series(const Frames& frames, FileSet& out, const std::string& name,
+                                                const std::string& extension, const Content& content) {
+  std::vector<std::filesystem::path> files(1);
   std::vector<std::pair<double, std::string>> series;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const std::string file = fmt::format("{}_{:05}.{}", name, k, extension);
-    write_file_atomically(folder / file, content(frames[k]));
-    files.push_back(folder / file);
+    files.push_back(out.write(file, content(frames[k])));
     const double time =
         series.empty() ? frames[k].time : std::max(frames[k].time, series.back().first + smallest_time_step);
     series.emplace_back(time, file);
   }
-  write_file_atomically(files.front(), vtk_series(series));
+  files.front() = out.write(name + ".pvd", vtk_series(series));
   return files;
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> export_vtk(const RunData& data, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out) {
   const Cells cells = block_cells(data.model);
-  auto files = write_series(data.frames, folder, "blocks", "vtu", [&](const simulation::Frame& frame) {
+  auto files = write_series(data.frames, out, "blocks", "vtu", [&](const simulation::Frame& frame) {
     return block_file(data.model, frame, cells);
   });
   const auto contacts =
-      write_series(data.contacts, folder, "contacts", "vtp",
+      write_series(data.contacts, out, "contacts", "vtp",
                    [&](const simulation::ContactFrame& frame) { return contact_file(data.model, frame); });
   files.insert(files.begin() + 1, contacts.front());
   files.insert(files.end(), contacts.begin() + 1, contacts.end());

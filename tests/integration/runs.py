@@ -195,12 +195,16 @@ class OtherFiles(Scenario):
 class Trouble(Scenario):
     """Disks and folders that do not take what is written."""
 
+    def limited(self, size, *arguments):
+        """The program where no file may be larger than so many bytes."""
+        return subprocess.run(
+            [PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+        )  # fmt: skip
+
     def test_files_too_large_for_the_disk(self):
         def limit(size):
-            return subprocess.run(
-                [PROGRAM, "run", "incline.toml", "-o", "out"], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,
-                text=True, timeout=60, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
-            )  # fmt: skip
+            return self.limited(size, "run", "incline.toml", "-o", "out")
 
         self.keyblock("run", "incline.toml", "-o", "out")
         before = {p.name: p.read_bytes() for p in (self.folder / "out").iterdir()}
@@ -212,6 +216,15 @@ class Trouble(Scenario):
         done = limit(len(before["result.h5"]) // 2)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("File too large", done.stderr)
+
+    def test_an_export_that_fails_leaves_nothing_behind(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        before = set(self.folder.rglob("*"))
+        for kind in ("vtk", "csv", "geojson"):
+            done = self.limited(500, "export", "out", "--format", kind, "-o", "new/folder")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("File too large", done.stderr)
+            self.assertEqual(set(self.folder.rglob("*")), before, kind)
 
     def test_places_that_cannot_be_read_or_written(self):
         (self.folder / "loop").symlink_to("loop")

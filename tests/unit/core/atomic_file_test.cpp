@@ -18,13 +18,13 @@ using ::testing::HasSubstr;
 using ::testing::Property;
 using ::testing::Throws;
 
-class AtomicFile : public ::testing::Test {
+class AtomicFileTest : public ::testing::Test {
  protected:
-  AtomicFile() {
+  AtomicFileTest() {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
-  ~AtomicFile() override { std::filesystem::remove_all(folder_); }
+  ~AtomicFileTest() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::ptrdiff_t files() const {
     using std::filesystem::directory_iterator;
@@ -37,7 +37,7 @@ class AtomicFile : public ::testing::Test {
                   ::getpid());
 };
 
-TEST_F(AtomicFile, WritesAndReadsBackAllBytes) {
+TEST_F(AtomicFileTest, WritesAndReadsBackAllBytes) {
   std::string content(300000, '\0');
   for (std::size_t i = 0; i < content.size(); ++i) content[i] = static_cast<char>(i * 7);
   write_file_atomically(folder_ / "data", content);
@@ -47,7 +47,7 @@ TEST_F(AtomicFile, WritesAndReadsBackAllBytes) {
   EXPECT_EQ(files(), 1) << "temporary files were left";
 }
 
-TEST_F(AtomicFile, FullDiskLeavesTheOldFile) {
+TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   const auto path = folder_ / "data";
   write_file_atomically(path, "old");
   // Every write to /dev/full fails as on a full disk; the temporary file is made to lead there.
@@ -58,7 +58,7 @@ TEST_F(AtomicFile, FullDiskLeavesTheOldFile) {
   EXPECT_EQ(files(), 1) << "temporary files were left";
 }
 
-TEST_F(AtomicFile, FolderThatIsNotThere) {
+TEST_F(AtomicFileTest, FolderThatIsNotThere) {
   const auto path = folder_ / "gone" / "data";
   const auto write = [&] { write_file_atomically(path, "new"); };
   EXPECT_THAT(write,
@@ -66,7 +66,7 @@ TEST_F(AtomicFile, FolderThatIsNotThere) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "gone"));
 }
 
-TEST_F(AtomicFile, FolderThatCannotBeWritten) {
+TEST_F(AtomicFileTest, FolderThatCannotBeWritten) {
   const auto path = folder_ / "data";
   write_file_atomically(path, "old");
   std::filesystem::permissions(folder_,
@@ -82,7 +82,7 @@ TEST_F(AtomicFile, FolderThatCannotBeWritten) {
   std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
 }
 
-TEST_F(AtomicFile, TargetThatIsAFolder) {
+TEST_F(AtomicFileTest, TargetThatIsAFolder) {
   std::filesystem::create_directories(folder_ / "data" / "inside");
   const auto write = [&] { write_file_atomically(folder_ / "data", "new"); };
   EXPECT_THAT(write, Throws<RunError>(Property(&RunError::what, HasSubstr("cannot rename"))));
@@ -90,7 +90,7 @@ TEST_F(AtomicFile, TargetThatIsAFolder) {
   EXPECT_EQ(files(), 1) << "temporary files were left";
 }
 
-TEST_F(AtomicFile, ReadingWhatIsNoFileIsAnInputError) {
+TEST_F(AtomicFileTest, ReadingWhatIsNoFileIsAnInputError) {
   const auto missing = [&] { static_cast<void>(read_file(folder_ / "gone")); };
   EXPECT_THAT(missing,
               Throws<InputError>(Property(&InputError::what, HasSubstr((folder_ / "gone").string()))));
