@@ -60,14 +60,14 @@ def wait_for(condition, what, seconds=30.0):
     raise TimeoutError(f"waited in vain: {what}")
 
 
-def process_of(words):
-    """The id of a process whose command line contains these words, one after the other."""
+def process_of(words, folder=None):
+    """The id of a process whose command line contains these words, one after the other, and which runs in the folder."""
     wanted = "\0".join(words) + "\0"
     for entry in os.listdir("/proc"):
         if not entry.isdigit():
             continue
         with contextlib.suppress(OSError), open(f"/proc/{entry}/cmdline", errors="replace") as file:
-            if wanted in file.read():
+            if wanted in file.read() and (folder is None or os.path.samefile(f"/proc/{entry}/cwd", folder)):
                 return int(entry)
     return None
 

@@ -26,8 +26,11 @@ class Interruptions(Study):
         self.addCleanup(parent.stderr.close)
         return parent
 
+    def child(self, *index):
+        return process_of(["study", "task", "out", *map(str, index)], self.folder)
+
     def task(self, index):
-        return wait_for(lambda: process_of(["study", "task", "out", str(index)]), f"run {index}")
+        return wait_for(lambda: self.child(index), f"run {index}")
 
     def test_a_run_that_is_killed_costs_that_run_alone(self):
         parent = self.start()
@@ -52,7 +55,7 @@ class Interruptions(Study):
         before = self.done()
         parent.kill()
         parent.communicate()
-        wait_for(lambda: process_of(["study", "task", "out"]) is None, "the children to end")
+        wait_for(lambda: self.child() is None, "the children to end")
         self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
         self.assertEqual({key: self.done()[key] for key in before}, before)
         self.assertEqual(list(self.out.rglob("*.tmp")), [])
@@ -67,7 +70,7 @@ class Interruptions(Study):
         self.assertIn("--resume", errors)
         self.assertIn("missing", said)
         self.assertNotIn("failed", said)
-        self.assertIsNone(process_of(["study", "task", "out"]))
+        self.assertIsNone(self.child())
         self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
 
     def test_two_in_one_folder(self):
