@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "commands.h"
-#include "core/atomic_file.h"
+#include "core/file_set.h"
 #include "cutting/geojson.h"
 #include "cutting/picture.h"
 #include "result_folder.h"
@@ -39,26 +39,28 @@ void cut_scenario(const CutArguments& arguments) {
   const int realization = arguments.scenario.realization;
   const std::filesystem::path folder = arguments.folder;
   check_holds_no_run(folder);
-  make_folder(folder);
+  FileSet out(folder);
   const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
   std::vector<std::string> warnings = scenario::rock_mass_warnings(scenario);
   scenario::add_block_warnings(scenario, model, warnings);
   print_warnings(arguments.scenario, warnings);
   // Hundreds of megabytes for many blocks: both files are put together and written at the same time.
+  AtomicFile& geojson = out.add("blocks.geojson");
   std::future<void> outlines = std::async(std::launch::async, [&] {
-    write_file_atomically(folder / "blocks.geojson", cutting::to_geojson(model.system));
+    geojson.write(cutting::to_geojson(model.system));
+    geojson.close();
   });
-  write_file_atomically(folder / "blocks.svg", picture(scenario, model));
+  const std::filesystem::path svg = out.write("blocks.svg", picture(scenario, model));
   outlines.get();
-  write_file_atomically(folder / "summary.json",
-                        scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION));
+  out.write("summary.json", scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION));
+  out.commit();
   const cutting::CutStatistics& cut = model.system.statistics;
   std::cout << fmt::format(
       "{} blocks from {} of {} traces; {:.1f} m of {:.1f} m end in rock or bound no block; {} slivers "
       "merged\n"
       "picture: {}\n",
       model.system.blocks.size(), cut.joints_used, cut.traces, cut.removed_length, cut.trace_length,
-      cut.merged_slivers, (folder / "blocks.svg").string());
+      cut.merged_slivers, svg.string());
 }
 
 }  // namespace

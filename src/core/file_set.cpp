@@ -37,13 +37,17 @@ void FileSet::remove_made_folders() {
   for (const fs::path& path : made_) ::rmdir(path.c_str());
 }
 
-fs::path FileSet::write(const std::string& name, std::string_view content) {
+AtomicFile& FileSet::add(const std::string& name) {
   const fs::path path = folder_ / name;
   check_can_write(path);
-  AtomicFile& file = files_.emplace_back(path);
+  return files_.emplace_back(path);
+}
+
+fs::path FileSet::write(const std::string& name, std::string_view content) {
+  AtomicFile& file = add(name);
   file.write(content);
   file.close();
-  return path;
+  return folder_ / name;
 }
 
 void FileSet::commit() {

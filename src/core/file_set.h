@@ -19,7 +19,9 @@ class FileSet {
   FileSet(const FileSet&) = delete;
   FileSet& operator=(const FileSet&) = delete;
 
-  /// Returns the path that the file will have. Throws RunError as AtomicFile does, and InputError when a folder has its name.
+  /// A file to be written, by another thread too. Throws RunError as AtomicFile does, and InputError when a folder has its name.
+  AtomicFile& add(const std::string& name);
+  /// The same, written; returns the path that it will have.
   std::filesystem::path write(const std::string& name, std::string_view content);
   /// Throws RunError.
   void commit();

@@ -217,14 +217,15 @@ class Trouble(Scenario):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("File too large", done.stderr)
 
-    def test_an_export_that_fails_leaves_nothing_behind(self):
+    def test_an_export_or_a_cut_that_fails_leaves_nothing_behind(self):
         self.keyblock("run", "incline.toml", "-o", "out")
         before = set(self.folder.rglob("*"))
-        for kind in ("vtk", "csv", "geojson"):
-            done = self.limited(500, "export", "out", "--format", kind, "-o", "new/folder")
+        exports = (("export", "out", "--format", kind) for kind in ("vtk", "csv", "geojson"))
+        for command in (*exports, ("cut", "incline.toml")):
+            done = self.limited(500, *command, "-o", "new/folder")
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("File too large", done.stderr)
-            self.assertEqual(set(self.folder.rglob("*")), before, kind)
+            self.assertEqual(set(self.folder.rglob("*")), before, command)
 
     def test_places_that_cannot_be_read_or_written(self):
         (self.folder / "loop").symlink_to("loop")
