@@ -28,11 +28,14 @@ std::string content(const std::filesystem::path& path) {
 
 // Reads `text` as a file of its own.
 std::vector<MotionComponent> read_text(const std::string& text) {
-  const auto path =
-      std::filesystem::path(testing::TempDir()) /
-      (std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
-  std::ofstream(path, std::ios::binary) << text;
-  return read_motion_file(path);
+  struct File {
+    std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) /
+        (std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
+    ~File() { std::filesystem::remove(path); }
+  } file;
+  std::ofstream(file.path, std::ios::binary) << text;
+  return read_motion_file(file.path);
 }
 
 Diagnostic error_of(const std::string& text) {

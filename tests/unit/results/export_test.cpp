@@ -88,7 +88,8 @@ TEST(LastOrders, AreThoseOfTheLastFrame) {
 }
 
 TEST(Export, Csv) {
-  const auto folder = fresh_folder() / "made";
+  const FreshFolder fresh;
+  const auto folder = fresh / "made";
   const RunData data = small_motions();
   const auto files = export_run(data, folder, ExportFormat::csv);
   EXPECT_THAT(files, testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv",
@@ -107,7 +108,7 @@ TEST(Export, Csv) {
 }
 
 TEST(Export, GeoJsonOfEveryStageEnd) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::geojson);
   ASSERT_THAT(files, testing::ElementsAre(folder / "stage_1_in-situ.geojson",
                                           folder / "stage_2_first-earthquake.geojson"));
@@ -126,7 +127,7 @@ TEST(Export, GeoJsonOfEveryStageEnd) {
 }
 
 TEST(Export, VtkSeriesHasTimesThatAscend) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
   EXPECT_EQ(files[0], folder / "blocks.pvd");
   EXPECT_EQ(files[1], folder / "contacts.pvd");
@@ -143,7 +144,7 @@ TEST(Export, VtkSeriesHasTimesThatAscend) {
 
 TEST(Export, VtkFilesAreReadByVtk) {
   if (!python_has("vtkmodules")) GTEST_SKIP() << "python3-vtk9 is not installed";
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   export_run(small_motions(), folder, ExportFormat::vtk);
   const PythonResult result = python(folder, R"(
 import sys
@@ -193,7 +194,7 @@ TEST(ResultFileDocs, ThePythonExampleRuns) {
   const std::size_t begin = page.find("```python\n") + 10, end = page.find("```", begin);
   ASSERT_NE(end, std::string::npos);
   const std::string script = page.substr(begin, end - begin);
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   ResultWriter writer(folder, false, 0.0);
   sample.play(writer, 1, 26, false);

@@ -52,7 +52,7 @@ void in_killed_process(const std::function<void()>& work) {
 }
 
 TEST(ResultFile, ComesBackToTheLastBit) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder);
@@ -77,7 +77,7 @@ TEST(ResultFile, FilesOfEarlierVersionsDoNotSayWhereTheLargestOverlapIs) {
 }
 
 TEST(ResultFile, HowOftenItIsFlushedDoesNotShow) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder, false, 0.0);  // after every event
@@ -87,7 +87,7 @@ TEST(ResultFile, HowOftenItIsFlushedDoesNotShow) {
 }
 
 TEST(ResultFile, ARunWithoutContactsHistoriesOrFrames) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   sample.model.history_names.clear();
   simulation::RunRecord run = sample.run();
@@ -108,7 +108,7 @@ TEST(ResultFile, ARunWithoutContactsHistoriesOrFrames) {
 }
 
 TEST(ResultFile, ManyRows) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder, false, never);
@@ -125,7 +125,7 @@ TEST(ResultFile, ManyRows) {
 }
 
 TEST(ResultFile, SurvivesBeingKilled) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   // Flushed at the end of stage 0 (step 10) alone.
   in_killed_process([&] {
@@ -149,7 +149,7 @@ TEST(ResultFile, SurvivesBeingKilled) {
 }
 
 TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   in_killed_process([&] {
     ResultWriter writer(folder, false, 0.0);
@@ -172,7 +172,7 @@ TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
 
 // The kill may come at any moment, in the middle of a flush, too.
 TEST(ResultFile, SurvivesAKillAtAnyMoment) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   int with_frames = 0;
   for (int round = 0; round < 40; ++round) {
@@ -214,7 +214,7 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
 }
 
 TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   ResultWriter writer(folder, false, 0.0);
   sample.play(writer, 1, 12, false);
@@ -224,7 +224,7 @@ TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
 }
 
 TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   in_killed_process([&] {
     ResultWriter writer(folder, false, 0.0);
@@ -239,7 +239,7 @@ TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
 }
 
 TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder, true);
@@ -249,7 +249,7 @@ TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
 }
 
 TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   int calls = 0;
   ResultWriter writer(folder);
@@ -264,7 +264,7 @@ TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
 
 // Of a file that ends before the model does, nothing is left.
 TEST(ResultFile, AFileThatCannotBeCreatedLeavesNothing) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -287,7 +287,7 @@ TEST(ResultFile, AFileThatCannotBeCreatedLeavesNothing) {
 }
 
 TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder);
@@ -304,7 +304,7 @@ TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
 }
 
 TEST(ResultFile, AFailedStartLeavesEarlierResultsAlone) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder);
@@ -319,7 +319,7 @@ TEST(ResultFile, AFailedStartLeavesEarlierResultsAlone) {
 }
 
 TEST(ResultFile, WhatIsNoResultFileIsNamed) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   EXPECT_THAT(error_of(folder), HasSubstr("result.h5: found no such file"));
   std::ofstream(folder / "result.h5") << "hello";
   EXPECT_THAT(error_of(folder), HasSubstr("no HDF5 file"));
@@ -338,7 +338,7 @@ TEST(ResultFile, WhatIsNoResultFileIsNamed) {
 
 // Whatever byte is wrong: the file is refused, or the byte is not looked at.
 TEST(ResultFile, AWrongByteIsFound) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   {
     ResultWriter writer(folder);
@@ -363,7 +363,7 @@ TEST(ResultFile, AWrongByteIsFound) {
 
 TEST(ResultFile, PlacesThatAreNotThereAreRefused) {
   const auto error_with = [](const auto& change, const std::string& name) {
-    const auto folder = fresh_folder();
+    const FreshFolder folder;
     SampleRun sample;
     change(sample.model);
     {
@@ -380,7 +380,7 @@ TEST(ResultFile, PlacesThatAreNotThereAreRefused) {
 }
 
 TEST(ResultFile, AFolderThatCannotBeWrittenIsARunError) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   std::ofstream(folder / "file") << "x";
   SampleRun sample;
   ResultWriter writer(folder / "file" / "out");
@@ -388,7 +388,7 @@ TEST(ResultFile, AFolderThatCannotBeWrittenIsARunError) {
 }
 
 TEST(ResultFile, FramesOfAnotherModelAreRefused) {
-  const auto folder = fresh_folder();
+  const FreshFolder folder;
   SampleRun sample;
   ResultWriter writer(folder);
   writer.begin(sample.model);

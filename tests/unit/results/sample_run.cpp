@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 namespace keyblock::results {
 namespace {
@@ -361,14 +362,17 @@ void expect_equal(const RunData& a, const RunData& b) {
   EXPECT_EQ(a.run.interrupted, b.run.interrupted);
 }
 
-std::filesystem::path fresh_folder() {
+FreshFolder::FreshFolder() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string(test->test_suite_name()) + "." + test->name() + "." + std::to_string(::getpid()));
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
+  path_ = std::filesystem::path(testing::TempDir()) /
+          (std::string(test->test_suite_name()) + "." + test->name() + "." + std::to_string(::getpid()));
+  std::filesystem::remove_all(path_);
+  std::filesystem::create_directories(path_);
+}
+
+FreshFolder::~FreshFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace keyblock::results
