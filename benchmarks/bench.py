@@ -4,8 +4,9 @@
     bench.py KEYBLOCK [--json FILE] [--scenes REGEX] [--repeat N] [--instructions]
 
 Each scene is run as a user would run it; the time of a step is that of its shaking stage, from summary.json, the median of the
-repetitions. Machines differ and are shared: compare ratios taken in one run. With --instructions a few steps of each scene are run
-under valgrind, whose counts are the same on every rerun; KEYBLOCK is then the program of the preset `profile`.
+repetitions; that of many tunnels is their mean, each run once. Machines differ and are shared: compare ratios taken in one run. With
+--instructions a few steps of each scene are run under valgrind, whose counts are the same on every rerun; KEYBLOCK is then the program
+of the preset `profile`.
 """
 
 import argparse
@@ -51,8 +52,9 @@ STEPS = {
     "grid of 20,000 blocks, 2 threads": (lambda: (scenes.grid(20_000, GRIDS), []), "shake", None, ["--threads", "2"]),
     "grid of 100,000 blocks": (lambda: (scenes.grid(100_000, GRIDS), []), "shake", None, []),
 }
-# name: order. How hard a tunnel is to compute is decided by what falls in it, so that one says little of the others.
+# How hard a tunnel is to compute is decided by what falls in it, so that one says little of the others.
 SEEDS = range(1, 11)
+# name: order
 MANY = {f"{len(SEEDS)} other tunnels, order {order}, first 1 s": order for order in (1, 2)}
 CUTS = {"cutting 20,000 cells": (20_000, 0.3), "cutting 1,000,000 cells": (1_000_000, 30.0)}
 

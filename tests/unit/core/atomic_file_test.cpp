@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "../fresh_folder.h"
 #include "core/error.h"
 
 namespace keyblock {
@@ -20,21 +21,12 @@ using ::testing::Throws;
 
 class AtomicFileTest : public ::testing::Test {
  protected:
-  AtomicFileTest() {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~AtomicFileTest() override { std::filesystem::remove_all(folder_); }
-
   [[nodiscard]] std::ptrdiff_t files() const {
     using std::filesystem::directory_iterator;
     return std::distance(directory_iterator(folder_), directory_iterator());
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() /
-      fmt::format("keyblock-{}-{}", ::testing::UnitTest::GetInstance()->current_test_info()->name(),
-                  ::getpid());
+  const FreshFolder folder_;
 };
 
 TEST_F(AtomicFileTest, WritesAndReadsBackAllBytes) {
@@ -71,7 +63,7 @@ TEST_F(AtomicFileTest, FolderThatCannotBeWritten) {
   write_file_atomically(path, "old");
   std::filesystem::permissions(folder_,
                                std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  const bool root_writes_anyway = ::access(folder_.c_str(), W_OK) == 0;
+  const bool root_writes_anyway = ::access(folder_.string().c_str(), W_OK) == 0;
   const auto write = [&] { write_file_atomically(path, "new"); };
   if (root_writes_anyway) {
     EXPECT_NO_THROW(write());

@@ -1,12 +1,11 @@
 #include "core/file_set.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <string>
 
+#include "../fresh_folder.h"
 #include "core/error.h"
 
 namespace keyblock {
@@ -16,20 +15,11 @@ namespace fs = std::filesystem;
 
 class FileSetTest : public ::testing::Test {
  protected:
-  FileSetTest() {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~FileSetTest() override { fs::remove_all(path_); }
-
   [[nodiscard]] std::ptrdiff_t entries() const {
     return std::distance(fs::recursive_directory_iterator(path_), fs::recursive_directory_iterator());
   }
 
-  const fs::path path_ =
-      fs::temp_directory_path() / fmt::format("keyblock-{}-{}",
-                                              ::testing::UnitTest::GetInstance()->current_test_info()->name(),
-                                              ::getpid());
+  const FreshFolder path_;
 };
 
 TEST_F(FileSetTest, FilesAppearTogether) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "../fresh_folder.h"
 #include "core/error.h"
 
 namespace keyblock {
@@ -20,17 +21,11 @@ using ::testing::HasSubstr;
 class Folder : public ::testing::Test {
  protected:
   Folder() {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
     std::ofstream(path_ / "file") << "x";
     fs::create_symlink("loop", path_ / "loop");
   }
-  ~Folder() override { fs::remove_all(path_); }
 
-  const fs::path path_ =
-      fs::temp_directory_path() / fmt::format("keyblock-{}-{}",
-                                              ::testing::UnitTest::GetInstance()->current_test_info()->name(),
-                                              ::getpid());
+  const FreshFolder path_;
 };
 
 using FileExists = Folder;

@@ -2,13 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <sstream>
 
+#include "../fresh_folder.h"
 #include "core/error.h"
 
 namespace keyblock::loading {
@@ -28,14 +28,10 @@ std::string content(const std::filesystem::path& path) {
 
 // Reads `text` as a file of its own.
 std::vector<MotionComponent> read_text(const std::string& text) {
-  struct File {
-    std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        (std::to_string(::getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name());
-    ~File() { std::filesystem::remove(path); }
-  } file;
-  std::ofstream(file.path, std::ios::binary) << text;
-  return read_motion_file(file.path);
+  const FreshFolder folder;
+  const auto path = folder / "record";
+  std::ofstream(path, std::ios::binary) << text;
+  return read_motion_file(path);
 }
 
 Diagnostic error_of(const std::string& text) {

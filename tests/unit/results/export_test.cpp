@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "results/block_shape.h"
 #include "results/result_writer.h"

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 
+#include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "results/record_json.h"

@@ -1,12 +1,10 @@
 #include "sample_run.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 namespace keyblock::results {
 namespace {
@@ -360,19 +358,6 @@ void expect_equal(const RunData& a, const RunData& b) {
   EXPECT_TRUE(same(a.run.max_area_change, b.run.max_area_change));
   expect_equal(a.run.energy, b.run.energy);
   EXPECT_EQ(a.run.interrupted, b.run.interrupted);
-}
-
-FreshFolder::FreshFolder() {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  path_ = std::filesystem::path(testing::TempDir()) /
-          (std::string(test->test_suite_name()) + "." + test->name() + "." + std::to_string(::getpid()));
-  std::filesystem::remove_all(path_);
-  std::filesystem::create_directories(path_);
-}
-
-FreshFolder::~FreshFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace keyblock::results

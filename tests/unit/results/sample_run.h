@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <random>
 #include <string>
 
@@ -29,20 +28,5 @@ class SampleRun {
 
 /// Same to the last bit (for NaN, too).
 void expect_equal(const RunData& a, const RunData& b);
-
-/// An empty folder of its own for the running test, as long as the object lives.
-class FreshFolder {
- public:
-  FreshFolder();
-  ~FreshFolder();
-  FreshFolder(const FreshFolder&) = delete;
-  FreshFolder& operator=(const FreshFolder&) = delete;
-  operator const std::filesystem::path&() const { return path_; }
-  [[nodiscard]] std::string string() const { return path_.string(); }
-  std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace keyblock::results
