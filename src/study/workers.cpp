@@ -136,6 +136,7 @@ class Workers {
     const PlannedRun& run = plan_.runs[k];
     RunState& state = files_.states[k];
     state = read_run_state(directory_, plan_, run);
+    if (state.kind != RunState::Kind::done) read_running();
     update_enough(plan_, files_);
     if (!files_.asked(run) && state.kind != RunState::Kind::done) return;
     if (state.kind == RunState::Kind::done) {
@@ -149,6 +150,13 @@ class Workers {
     }
     const bool done = state.kind == RunState::Kind::done;
     report(run.key, done ? "" : state.problem);
+  }
+
+  // A run that ended without a result may have found enough realizations in the folder: with that of another, which has written it
+  // but has not been seen to end.
+  void read_running() {
+    for (const Running& other : running_)
+      files_.states[other.index] = read_run_state(directory_, plan_, plan_.runs[other.index]);
   }
 
   // The run itself may have said why; one that was killed has not.
