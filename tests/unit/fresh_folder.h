@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -27,10 +28,15 @@ class FreshFolder {
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
 
  private:
+  /// Of the running test; one with parameters has a slash in its name.
+  static std::string name() {
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '-');
+    return name;
+  }
+
   const std::filesystem::path path_ =
-      std::filesystem::temp_directory_path() /
-      fmt::format("keyblock-{}-{}", testing::UnitTest::GetInstance()->current_test_info()->name(),
-                  ::getpid());
+      std::filesystem::temp_directory_path() / fmt::format("keyblock-{}-{}", name(), ::getpid());
 };
 
 }  // namespace keyblock

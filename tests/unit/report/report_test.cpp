@@ -2,11 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "report/page_data.h"
@@ -98,16 +98,12 @@ TEST(Report, DisplacementsAreFinerThanAnyPixel) {
 }
 
 TEST(Report, IsWrittenBesideNothingElse) {
-  const auto directory =
-      std::filesystem::temp_directory_path() / ("keyblock_report_" + std::to_string(::getpid()));
-  std::filesystem::remove_all(directory);
-  std::filesystem::create_directory(directory);
+  const FreshFolder directory;
   const results::RunData run = made_up::synthetic_run({.frames_per_stage = 2});
   write_report(run, directory);
   EXPECT_EQ(read_file(directory / "report.html"), render_report(run));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory), {}), 1);
   EXPECT_THROW(write_report(run, directory / "missing"), RunError);
-  std::filesystem::remove_all(directory);
 }
 
 }  // namespace

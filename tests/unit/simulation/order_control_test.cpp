@@ -1,12 +1,11 @@
 #include "simulation/order_control.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 
+#include "../fresh_folder.h"
 #include "scene.h"
 #include "simulation/run.h"
 
@@ -102,9 +101,7 @@ TEST(OrderControl, StateKeepsItsShapeWhenOrdersChange) {
 }
 
 TEST(OrderControl, ResumedRunEndsInTheSameBits) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("keyblock_orders_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const FreshFolder folder;
   Tip nobody, stopper;
   const RunRecord whole = run(slab(0), {}, nobody);
   stopper.after = whole.stages[0].steps + 10;
@@ -115,7 +112,6 @@ TEST(OrderControl, ResumedRunEndsInTheSameBits) {
   options.stop = nullptr;
   options.resume = true;
   EXPECT_EQ(run(slab(0), options, nobody).state_hash, whole.state_hash);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

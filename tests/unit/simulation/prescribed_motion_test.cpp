@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 
+#include "../fresh_folder.h"
 #include "scene.h"
 #include "simulation/run.h"
 
@@ -96,9 +95,7 @@ TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
 
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("keyblock_prescribed_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const FreshFolder folder;
   Stopper stopper(2500);
   RunOptions options;
   options.directory = folder;
@@ -107,7 +104,6 @@ TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
   options.stop = nullptr;
   options.resume = true;
   EXPECT_EQ(run(setup, options, nobody).state_hash, whole.state_hash);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

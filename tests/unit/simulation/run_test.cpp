@@ -1,11 +1,11 @@
 #include "simulation/run.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
 
+#include "../fresh_folder.h"
 #include "core/error.h"
 #include "scene.h"
 #include "simulation/checkpoint.h"
@@ -85,9 +85,7 @@ class ResumedRun : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(ByConjugateGradients, ResumedRun, ::testing::Bool());
 
 TEST_P(ResumedRun, EndsInTheSameBits) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("keyblock_resume_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const FreshFolder folder;
   RunSetup setup = shaken_incline(5);
   if (GetParam()) setup.solver.linear = dynamics::LinearSolver::iterative;
   RunObserver nobody;
@@ -114,13 +112,10 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   EXPECT_THROW(run(other, options, nobody), InputError);
   std::filesystem::resize_file(folder / "checkpoint.bin", 1000);
   EXPECT_THROW(run(setup, options, nobody), InputError);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Run, OtherFilesAreOtherInput) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("keyblock_files_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const FreshFolder folder;
   RunSetup setup = shaken_incline(1);
   setup.files = {{"q.csv", "00ff"}};
   RunObserver nobody;
@@ -130,7 +125,6 @@ TEST(Run, OtherFilesAreOtherInput) {
   EXPECT_NO_THROW(read_checkpoint(folder, setup));
   setup.files[0].hash = "00fe";
   EXPECT_THROW(read_checkpoint(folder, setup), InputError);
-  std::filesystem::remove_all(folder);
 }
 
 // Blocks that overlap at the start are taken as they are: the joint between them is not pressed.
@@ -180,9 +174,7 @@ struct StopInRest final : RunObserver {
 
 // Of many contacts, the sum of their energies depends on its order.
 TEST(Run, AResumedRunHasTheSameEnergies) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("keyblock_energy_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const FreshFolder folder;
   const RunSetup setup = shaken_wall();
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
@@ -194,14 +186,11 @@ TEST(Run, AResumedRunHasTheSameEnergies) {
   options.stop = nullptr;
   options.resume = true;
   expect_equal_energies(run(setup, options, nobody).energy, whole.energy);
-  std::filesystem::remove_all(folder);
 }
 
 // Neither a checkpoint nor what begins from it may form them anew: sums depend on their order.
 TEST(Run, StoredEnergiesArePartOfTheState) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("keyblock_stored_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const FreshFolder folder;
   Scene scene(1e9, 30.0);
   scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
   scene.rectangle({-0.5, 0.0}, 1.0, 0.5);
@@ -215,7 +204,6 @@ TEST(Run, StoredEnergiesArePartOfTheState) {
   simulator.stepper.resume(read.mechanics);
   EXPECT_EQ(read.mechanics.contact_energy, 0.1);
   EXPECT_EQ(read.mechanics.support_energy, 0.3);
-  std::filesystem::remove_all(folder);
 }
 
 // All linear solvers solve the same problem. Before anything slides for good, they differ by no more than tolerances do.

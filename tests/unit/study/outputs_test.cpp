@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "study/measures.h"
@@ -20,17 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, gone afterwards.
 class Outputs : public ::testing::Test {
  protected:
-  void SetUp() override {
-    directory = fs::temp_directory_path() / (std::string("keyblock-outputs-") +
-                                             ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(directory);
-    fs::create_directories(directory);
-  }
-  void TearDown() override { fs::remove_all(directory); }
-  fs::path directory;
+  const FreshFolder directory;
 };
 
 /// RFC 4180, as a reader does it.

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <set>
 
+#include "../fresh_folder.h"
 #include "core/error.h"
 #include "study/folder.h"
 #include "study/plan_json.h"
@@ -18,21 +19,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 const std::filesystem::path gallery_file = std::filesystem::path(KEYBLOCK_TEST_DATA) / "study/gallery.toml";
-
-/// A folder that is removed with what is in it.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("keyblock-plan-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 Plan plan_of(const std::vector<std::string>& overrides = {}) {
   return make_plan(gallery_file, overrides, "1.2.3");
@@ -121,17 +107,17 @@ TEST(Plan, VariantsMultiplyTheRuns) {
 }
 
 TEST(Plan, IsReadAsItWasWritten) {
-  const Folder folder;
+  const FreshFolder folder;
   Plan plan =
       plan_of({"study.marginal={friction=2.5}", "study.map.cell=0.3",
                "study.level=[{name='any', measure='fallen_blocks', threshold=0}]", "study.confidence=0.9"});
   plan.runs[2].wanted = false;
   plan.until = scenario::UntilSpec{"slip_max_m", 0.1, std::nullopt, 4, 50};
   plan.files = {{"motions/a.smc", "0123"}};
-  std::ofstream(plan_path(folder.path())) << plan_json(plan, folder.path());
-  std::ofstream(scenario_path(folder.path())) << plan.text;
-  const Plan read = read_plan(folder.path());
-  EXPECT_EQ(plan_json(read, folder.path()), plan_json(plan, folder.path()));
+  std::ofstream(plan_path(folder)) << plan_json(plan, folder);
+  std::ofstream(scenario_path(folder)) << plan.text;
+  const Plan read = read_plan(folder);
+  EXPECT_EQ(plan_json(read, folder), plan_json(plan, folder));
   EXPECT_EQ(read.text, plan.text);
   EXPECT_EQ(read.runs[2].wanted, false);
   EXPECT_EQ(read.scenario, plan.scenario.lexically_normal());
@@ -141,21 +127,21 @@ TEST(Plan, IsReadAsItWasWritten) {
 }
 
 TEST(EnterPlan, NamesWhatDiffers) {
-  const Folder folder;
+  const FreshFolder folder;
   Plan plan = plan_of();
-  enter_plan(folder.path(), plan, false);
+  enter_plan(folder, plan, false);
   Plan other = plan_of({"rock.young=1e9", "stage.after.duration=3"});
   try {
-    enter_plan(folder.path(), other, true);
+    enter_plan(folder, other, true);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("rock.young: 2000000000.0 there, 1000000000.0 here"));
     EXPECT_THAT(error.what(), HasSubstr("stage[3].duration: 0.2 there, 3 here"));
   }
   other = make_plan(gallery_file, {}, "9.9.9");
-  EXPECT_THROW(enter_plan(folder.path(), other, true), InputError);
-  EXPECT_THROW(enter_plan(folder.path(), plan, false), InputError);
-  EXPECT_NO_THROW(enter_plan(folder.path(), plan, true));
+  EXPECT_THROW(enter_plan(folder, other, true), InputError);
+  EXPECT_THROW(enter_plan(folder, plan, false), InputError);
+  EXPECT_NO_THROW(enter_plan(folder, plan, true));
 }
 
 /// Leaves what a run leaves that is done.
@@ -166,15 +152,15 @@ void write_run(const std::filesystem::path& directory, const Plan& plan, const P
 
 // The same runs with the axes, and the keys of one that joins several, in another order.
 TEST(ReadRunState, TakesItsPlaceFromThePlan) {
-  const Folder folder;
+  const FreshFolder folder;
   const auto plan_with = [](const std::string& axes) {
     return plan_of({"study.realizations=1", "study.vary=" + axes});
   };
   const std::string scale = "{key='stage.shaken.scale', values=[1, 2]}",
                     order = "{key='rock.order', values=[2, 1]}";
   Plan plan = plan_with("[" + scale + ", " + order + "]");
-  enter_plan(folder.path(), plan, false);
-  for (const PlannedRun& run : plan.runs) write_run(folder.path(), plan, run);
+  enter_plan(folder, plan, false);
+  for (const PlannedRun& run : plan.runs) write_run(folder, plan, run);
   const std::vector<std::pair<std::string, std::vector<std::string>>> later{
       {"[" + order + ", " + scale + "]", {"2/1", "2/2", "1/1", "1/2"}},
       {"[{keys=['rock.order', 'stage.shaken.scale'], values=[[1, 1], [2, 1], [1, 2], [2, 2]]}]",
@@ -182,10 +168,10 @@ TEST(ReadRunState, TakesItsPlaceFromThePlan) {
   for (const auto& [axes, expected] : later) {
     Plan next = plan_with(axes);
     const std::vector<PlannedRun> runs = next.runs;
-    enter_plan(folder.path(), next, true);
+    enter_plan(folder, next, true);
     ASSERT_EQ(next.runs.size(), plan.runs.size());
     for (std::size_t k = 0; k < runs.size(); ++k) {
-      const RunState state = read_run_state(folder.path(), next, runs[k]);
+      const RunState state = read_run_state(folder, next, runs[k]);
       ASSERT_EQ(state.kind, RunState::Kind::done) << state.problem;
       std::string values;
       for (const std::string& value : state.result.values) values += (values.empty() ? "" : "/") + value;
@@ -196,18 +182,18 @@ TEST(ReadRunState, TakesItsPlaceFromThePlan) {
 
 // Runs of a value that was dropped are used when it comes back: with the file as it was.
 TEST(EnterPlan, RemembersFilesOfEarlierPlans) {
-  const Folder folder;
+  const FreshFolder folder;
   Plan plan = plan_of();
   plan.files = {{"a.smc", "0123"}, {"b.smc", "4567"}};
-  enter_plan(folder.path(), plan, false);
+  enter_plan(folder, plan, false);
   Plan fewer = plan_of();
   fewer.files = {{"a.smc", "0123"}};
-  enter_plan(folder.path(), fewer, true);
-  EXPECT_EQ(read_plan(folder.path()).files.size(), 2U);
+  enter_plan(folder, fewer, true);
+  EXPECT_EQ(read_plan(folder).files.size(), 2U);
   Plan again = plan_of();
   again.files = {{"a.smc", "0123"}, {"b.smc", "89ab"}};
   try {
-    enter_plan(folder.path(), again, true);
+    enter_plan(folder, again, true);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("the content of b.smc"));
@@ -215,49 +201,49 @@ TEST(EnterPlan, RemembersFilesOfEarlierPlans) {
 }
 
 TEST(EnterPlan, MapsOfOtherCellsAreRefusedOnceRunsAreDone) {
-  const Folder folder;
+  const FreshFolder folder;
   Plan plan = plan_of();
-  enter_plan(folder.path(), plan, false);
+  enter_plan(folder, plan, false);
   Plan finer = plan_of({"study.map.cell=0.1"});
-  EXPECT_NO_THROW(enter_plan(folder.path(), finer, true));
-  write_run(folder.path(), finer, finer.runs[1]);
+  EXPECT_NO_THROW(enter_plan(folder, finer, true));
+  write_run(folder, finer, finer.runs[1]);
   plan = plan_of();
   try {
-    enter_plan(folder.path(), plan, true);
+    enter_plan(folder, plan, true);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("study.map.cell: 0.1 there, 0.05 here"));
   }
-  EXPECT_EQ(read_plan(folder.path()).grid.cell, 0.1);
+  EXPECT_EQ(read_plan(folder).grid.cell, 0.1);
 }
 
 TEST(ReadPlan, RefusesACopyThatWasEdited) {
-  const Folder folder;
+  const FreshFolder folder;
   Plan plan = plan_of({"rock.poisson=0.25"});
-  enter_plan(folder.path(), plan, false);
+  enter_plan(folder, plan, false);
   const std::string text = plan.text;
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string edited = text;
     edited.replace(edited.find(from), from.size(), to);
-    std::ofstream(scenario_path(folder.path())) << edited;
+    std::ofstream(scenario_path(folder)) << edited;
   };
   with("density = 2500.0", "density = 2600.0");
   try {
-    read_plan(folder.path());
+    read_plan(folder);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("study.toml: found a scenario other than that of plan.json"));
   }
   with("realizations = 3", "realizations = 4  # without effect");
-  EXPECT_NO_THROW(read_plan(folder.path()));
+  EXPECT_NO_THROW(read_plan(folder));
 }
 
 TEST(FileLock, IsHeldOnce) {
-  const Folder folder;
-  const auto lock = lock_study(folder.path());
+  const FreshFolder folder;
+  const auto lock = lock_study(folder);
   EXPECT_TRUE(lock->held());
   try {
-    lock_study(folder.path());
+    lock_study(folder);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("process " + std::to_string(::getpid()) + " on "));

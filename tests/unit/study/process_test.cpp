@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "../fresh_folder.h"
 #include "core/atomic_file.h"
 
 namespace keyblock::study {
@@ -15,8 +16,6 @@ namespace {
 
 class Process : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(log); }
-
   static std::string end_of(ChildProcess& child) {
     while (true) {
       if (const auto end = child.poll()) return *end;
@@ -24,8 +23,8 @@ class Process : public testing::Test {
     }
   }
 
-  const std::filesystem::path log =
-      std::filesystem::temp_directory_path() / ("keyblock-process-" + std::to_string(::getpid()));
+  const FreshFolder folder;
+  const std::filesystem::path log = folder / "log";
 };
 
 TEST_F(Process, HowItEnds) {

@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
+#include "../fresh_folder.h"
 #include "verification/simulate.h"
 
 namespace keyblock::verification {
@@ -16,13 +16,7 @@ using ::testing::HasSubstr;
 
 class CaseFileTest : public ::testing::Test {
  protected:
-  CaseFileTest() {
-    std::filesystem::create_directories(folder_);
-    write("s.toml", "");
-  }
-  ~CaseFileTest() override { std::filesystem::remove_all(folder_); }
-  CaseFileTest(const CaseFileTest&) = delete;
-  CaseFileTest& operator=(const CaseFileTest&) = delete;
+  CaseFileTest() { write("s.toml", ""); }
 
   std::filesystem::path write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
@@ -41,8 +35,7 @@ class CaseFileTest : public ::testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("keyblock_case_" + std::to_string(::getpid()));
+  const FreshFolder folder_;
 };
 
 const std::string run = "[[run]]\nname = \"r\"\nscenario = \"s.toml\"\n";
