@@ -54,6 +54,7 @@ struct BlockPair {
   double steady = -1.0, reach = 0.0;
   Vec2 apart;  ///< m, from the first vertex of block a to that of block b, when they were looked at
   std::uint64_t contacts = 0;  ///< then: bit k for candidate first + k
+  std::uint64_t at_end = 0;    ///< of these: where two corners meet
 };
 
 /// Candidates in the order (smaller block, larger block, vertex, edge), and what those remember that were contacts in the last

@@ -169,9 +169,12 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   pair.steady = motion_.way[at(pair.block_a)] + motion_.way[at(pair.block_b)] + margin;
   pair.reach = reach_share * reach;
   pair.apart = apart(surface, pair);
-  pair.contacts = 0;
+  pair.contacts = pair.at_end = 0;
   for (const Rival& r : rivals) {
-    if (r.candidate >= 0) pair.contacts |= std::uint64_t{1} << (r.candidate - pair.first);
+    if (r.candidate < 0) continue;
+    const std::uint64_t bit = std::uint64_t{1} << (r.candidate - pair.first);
+    pair.contacts |= bit;
+    if (r.disputed) pair.at_end |= bit;
   }
 }
 
@@ -211,8 +214,8 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
     BlockPair& pair = candidates.block_pairs[p];
     if (next_unsteady == unsteady.end() || *next_unsteady != p) {
       for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1) {
-        const int candidate = pair.first + std::countr_zero(left);
-        found.push_back({candidate, memory_of(at(candidate))});
+        const int k = std::countr_zero(left), candidate = pair.first + k;
+        found.push_back({candidate, memory_of(at(candidate)), (pair.at_end >> k & 1) != 0});
       }
       continue;
     }
@@ -220,7 +223,7 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
     const auto next = std::find_if(r, rivals.end(), [&](const Rival& other) { return at(other.pair) != p; });
     decide(surface, candidates, pair, candidates.end_of_pair(p), {r, next});
     for (; r != next; ++r) {
-      if (r->candidate >= 0) found.push_back({r->candidate, r->memory});
+      if (r->candidate >= 0) found.push_back({r->candidate, r->memory, r->disputed});
     }
   }
 }

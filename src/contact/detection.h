@@ -31,8 +31,10 @@ struct Contact {
   Vec2 normal;
   double position = 0.0;  ///< s, 0 at A, 1 at B; a little outside near the ends
   double gap = 0.0;       ///< m, of the geometry
-  double length = 0.0;    ///< m of joint that belongs to it: half of what each facing pair of edges shares
-  double depth = 0.0;     ///< m, −(gap + offset): what the normal spring sees at the start of the step
+  /// m of joint that belongs to it: half of what each facing pair of edges shares, at either end. Of two corners that meet in one contact
+  /// it has the share of both.
+  double length = 0.0;
+  double depth = 0.0;  ///< m, −(gap + offset): what the normal spring sees at the start of the step
   double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
   double friction_coefficient = 0.0;
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
@@ -111,7 +113,8 @@ class Detection {
   /// A contact of the step.
   struct Found {
     int candidate;
-    int memory;  ///< of the list, that it goes on with; −1: none
+    int memory;   ///< of the list, that it goes on with; −1: none
+    bool at_end;  ///< Rival::disputed: it stands for both corners that meet
   };
   void measure_corners(const Surface& surface, ThreadTeam& team);
   void look_at_pairs(const Surface& surface, CandidateList& candidates, std::size_t first, std::size_t last,
@@ -211,6 +214,8 @@ class Detection {
   };
   [[nodiscard]] Geometry measure(const Surface& surface, const CandidateList& candidates,
                                  std::span<const Found> found) const;
+  [[nodiscard]] double length_beyond(const Surface& surface, const Candidate& candidate,
+                                     double position) const;
   void give_law(const Surface& surface, Contact& contact) const;
 
   Tolerances tolerances_;

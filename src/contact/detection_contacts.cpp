@@ -45,15 +45,36 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
   const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
-  // Length over the edge that an edge of the vertex, of direction u, shares with it, where they face each other.
+  // Length over the edge that an edge of the vertex, of direction u, shares with it, where they face each other: they run against each
+  // other, both with their block on the left.
   const auto shared = [&](Lanes ux, Lanes uy, Lanes length_of_other) {
-    const Lanes across = nx * ux + ny * uy, to = along + (ux * tx + uy * ty) * length_of_other;
+    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, to = along + ahead * length_of_other;
     const Lanes low = largest(Lanes{}, least(along, to)), high = least(length, largest(along, to));
-    const auto turned = across * across > Tolerances::sine_facing * Tolerances::sine_facing;
+    const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
     return where(turned, Lanes{}, largest(Lanes{}, high - low));
   };
   return {gap, along / length,
           0.5 * (shared(vertex[2], vertex[3], vertex[6]) + shared(vertex[4], vertex[5], -length_before))};
+}
+
+/// m, what the contact of two corners has of the edge on the other side of the corner, where face goes on in face: edges of blocks of
+/// order > 1 are divided at the same points on both sides of a joint, and of the contacts of the two vertices that meet there one is
+/// left. position: Contact::position.
+double Detection::length_beyond(const Surface& surface, const Candidate& candidate, double position) const {
+  const Corner &vertex = corners_[at(candidate.vertex)], &edge = corners_[at(candidate.edge)];
+  const Corner& line =
+      corners_[at(position < 0.5 ? surface.previous[at(candidate.edge)] : surface.next[at(candidate.edge)])];
+  if (dot(edge.tangent, line.tangent) < 0.0 ||
+      std::abs(cross(edge.tangent, line.tangent)) > Tolerances::sine_facing)
+    return 0.0;
+  const double along = dot(line.tangent, vertex.position - line.position);
+  const auto shared = [&](Vec2 u, double length_of_other) {
+    const double ahead = dot(u, line.tangent), to = along + ahead * length_of_other;
+    if (ahead > 0.0 || std::abs(cross(u, line.tangent)) > Tolerances::sine_facing) return 0.0;
+    return std::max(0.0, std::min(line.length, std::max(along, to)) - std::max(0.0, std::min(along, to)));
+  };
+  return 0.5 * (shared(vertex.tangent, vertex.length) +
+                shared(vertex.before, -corners_[at(surface.previous[at(candidate.vertex)])].length));
 }
 
 void Detection::give_law(const Surface& surface, Contact& contact) const {
@@ -87,6 +108,7 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
       contact.position = geometry.position[i];
       contact.gap = geometry.gap[i];
       contact.length = geometry.length[i];
+      if (f.at_end) contact.length += length_beyond(surface, candidate, contact.position);
       Memory& memory = contact.memory;
       if (f.memory < 0) {
         memory = {};

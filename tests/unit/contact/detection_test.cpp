@@ -86,6 +86,42 @@ TEST(Detection, EdgeToEdgeIsTwoContactsThatShareItsLengthOnce) {
   }
 }
 
+/// A block from (x0, y0) to (x1, y1) whose lower and upper edges have vertices that divide them into so many parts.
+Polygon divided(double x0, double y0, double x1, double y1, int parts) {
+  Ring ring;
+  for (int k = 0; k < parts; ++k) ring.push_back({x0 + (x1 - x0) * k / parts, y0});
+  for (int k = 0; k < parts; ++k) ring.push_back({x1 + (x0 - x1) * k / parts, y1});
+  ring.insert(ring.begin() + parts, {x1, y0});
+  ring.push_back({x0, y1});
+  return {ring, {}};
+}
+
+// Edges that are divided at the same points, as those of blocks of the same order are: where two vertices meet one contact is left.
+TEST(Detection, DividedEdgesShareTheLengthOfTheirJoint) {
+  for (const auto& [below, above] : {std::pair{1, 1}, {2, 2}, {3, 3}, {6, 6}, {2, 1}, {2, 4}, {3, 2}}) {
+    for (const double shift : {0.0, 0.001, -0.001, 0.01, 0.1}) {
+      Surface surface;
+      add_block(surface, divided(0, 0, 1, 1, below));
+      add_block(surface, divided(shift, 1, 1 + shift, 2, above));
+      const auto contacts = find(surface);
+      // Less than the end zone, 3 mm, counts as none, at each vertex.
+      const double lost = std::abs(shift) < 0.003 ? 0.5 * std::abs(shift) * std::max(below, above) : 0.0;
+      EXPECT_NEAR(total_length(contacts, 0, 1), 1.0 - std::abs(shift), lost + 1e-12)
+          << below << " and " << above << " shifted by " << shift;
+    }
+  }
+}
+
+// A tip so sharp that both its edges lie within 5° of the face below: only the lower one faces it.
+TEST(Detection, ASharpTipFacesWithOneEdge) {
+  for (const double degrees : {1.0, 3.0, 4.5, 6.0}) {
+    Surface surface;
+    add_block(surface, rectangle(-1, -1, 3, 0));
+    add_block(surface, {{{0, 0}, {2, 0}, {2, 2 * std::tan(degrees * std::numbers::pi / 180.0)}}, {}});
+    EXPECT_NEAR(total_length(find(surface), 0, 1), 2.0, 1e-12) << degrees;
+  }
+}
+
 // Faces that are a hair apart and at a small angle: each corner then misses the end of the other face by rounding alone.
 TEST(Detection, CornersThatMeetUpToRoundingMeet) {
   const double apart = 1e-6, slope = 0.0174, miss = 0.5 * apart * slope;
@@ -229,6 +265,7 @@ void compare_with_oracle(Surface surface, std::mt19937& random, Seen& seen) {
     for (std::size_t k = 0; k < fast.size(); ++k) {
       for (const Contact& other : {fast[k], again[k]}) {
         EXPECT_EQ(other.candidate, slow[k].candidate);
+        EXPECT_EQ(other.length, slow[k].length);
         EXPECT_EQ(other.memory.offset, slow[k].memory.offset);
         EXPECT_EQ(other.memory.normal_force, slow[k].memory.normal_force);
       }
