@@ -31,8 +31,8 @@ struct StepReport {
   bool converged = true;
   double penetration = 0.0;       ///< m, largest depth of a contact
   double max_displacement = 0.0;  ///< m, of a vertex
-  int closed_contacts = 0;
-  double contact_energy = 0.0;  ///< J, stored in contact and support springs at the end
+  int closed_contacts = 0;        ///< at the end
+  double contact_energy = 0.0;    ///< J, stored in contact and support springs at the end
 };
 
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.

@@ -130,7 +130,7 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   state.contact_energy = sum(total.balance.stored);
   for (std::size_t i = 0; i < lane_count; ++i)
     report.penetration = std::max(report.penetration, total.penetration[i]);
-  report.closed_contacts += static_cast<int>(sum(total.closed));
+  report.closed_contacts = static_cast<int>(sum(total.closed));
   state.contacts.may_have_bonds = any_bond;
   report.contact_energy = contact_energy(state);
 }

@@ -119,7 +119,8 @@ SpringArray::Piece StepProblem::assumed_piece(contact::State state, std::size_t 
   using Shear = SpringArray::Shear;
   Shear shear = Shear::none;
   if (springs_.bound[c] > 0.0) {
-    if (state == contact::State::locked) {
+    // What is fused never slides, whatever it did.
+    if (state == contact::State::locked || springs_.bound[c] == HUGE_VAL) {
       shear = Shear::held;
     } else if (origin != 0.0) {
       shear = origin > 0.0 ? Shear::forward : Shear::backward;

@@ -334,6 +334,38 @@ TEST(Settling, IsMeasuredByInSituStressWithoutGravity) {
   EXPECT_LT(record.stages[0].worst_residual_ratio, 0.01);
 }
 
+// The outline of an opening that is not there yet, in rock that is pulled along it: what is fused does not slide.
+TEST(Settling, FusedRockMayBePulled) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
+  RunSetup setup = scene.setup;
+  for (cutting::CutBlock& block : setup.system.blocks) {
+    for (cutting::EdgeLabel& label : block.labels[0]) label.kind = cutting::EdgeKind::excavation;
+  }
+  setup.time_step = 0.002;
+  setup.in_situ = InSituStress{};
+  setup.in_situ->syy = 1e4;
+  setup.in_situ->sxy = 1e3;
+  setup.stages.push_back(stage("settle", StageKind::settle));
+  RunObserver nobody;
+  EXPECT_TRUE(run(setup, {}, nobody).stages[0].equilibrium_reached);
+}
+
+TEST(Run, ClosedContactsAreThoseAtTheEndOfAStepThatWasHalved) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
+  Simulator s(scene);
+  s.run(0.1, 0.002);
+  EXPECT_EQ(s.stepper.advance(s.state, 0.002, nullptr).closed_contacts, 2);
+  s.model.solver.max_iterations = 0;
+  s.model.solver.max_halvings = 1;
+  const dynamics::StepReport halved = s.stepper.advance(s.state, 0.002, nullptr);
+  EXPECT_EQ(halved.substeps, 2);
+  EXPECT_EQ(halved.closed_contacts, 2);
+}
+
 TEST(Settling, StepsThatDoNotConvergeAreNoEquilibrium) {
   Scene scene(1e300, 30.0);
   scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
