@@ -82,9 +82,34 @@ def column():
         histories=[(n, n, (int(n[2]) + 0.5, 0.5 * int(n[1]) + 0.25)) for n in names],
         stages='[[stage]]\nname = "stand"\nkind = "rest"\nduration = 1.0\n',
     )
+    scenario(
+        "soft_joints", title="Five blocks on soft joints, pressed together", gravity=(0.0, 0.0), step=0.05,
+        rock='density = 2600.0\nyoung = 1.0e9\npoisson = 0.0\nstate = "plane-stress"',
+        joints="friction = 30.0\nnormal_stiffness = 1.0e9",
+        blocks=[("base", box(0, -1, 1, 1), FIXED)] + [(f"b{k}", box(0, k - 1, 1, 1), "") for k in range(1, 6)],
+        histories=[("top", "b5", (0.5, 5.0)), ("aside", "b3", (0.9, 2.2))],
+        extra='[[load]]\nblock = "b5"\nfrom = [1.0, 5.0]\nto = [0.0, 5.0]\ntraction = [0.0, -1000.0]\n\n',
+        stages='[[stage]]\nname = "settle"\nkind = "settle"\ntolerance = 1.0e-9\nmax_steps = 5000\n',
+    )
+    scenario(
+        "bond_in_tension", title="A block that is pulled off its base", gravity=(0.0, 0.0), step=0.005,
+        rock='density = 2600.0\nyoung = 1.0e9\npoisson = 0.0\nstate = "plane-stress"',
+        joints="friction = 30.0\ncohesion = 1.0e6\ntension = 5.0e4",
+        blocks=[("base", box(0, -1, 1, 1), FIXED), ("block", box(0, 0, 1, 1), "")],
+        histories=[("block", "block", (0.5, 0.5))],
+        extra='''[[load]]
+block = "block"
+from = [1.0, 1.0]
+to = [0.0, 1.0]
+traction = [0.0, 1000.0]
+time = [[0.0, 0.0], [60.0, 60.0]]
+
+''',
+        stages='[[stage]]\nname = "pull"\nkind = "rest"\nduration = 55.0\n',
+    )
     text = '''title = "Column and stack"
 case  = 20
-about = """Five blocks of 1 m on one another, settled: the contacts under each carry the weight above. Nine blocks in three rows, set down at once, keep their places for 1 s of dynamics with any time step."""
+about = """Five blocks of 1 m on one another, settled: the contacts under each carry the weight above. Five on joints as soft as the blocks, pressed together by 1 kPa: blocks and joints get shorter by as much, and the stress is the same everywhere, with any order. A block that is pulled off its base: the bond breaks at its strength times its length. Nine blocks in three rows, set down at once, keep their places for 1 s of dynamics with any time step."""
 
 [[run]]
 name = "column"
@@ -94,6 +119,21 @@ orders = [1, 2, 3]
     for k in range(1, 6):
         below = f"b{k - 1}" if k > 1 else "base"
         text += quantity(f"force under block {k}, from below", f"normal_force('{below}', 'b{k}')", "N/m", expected=f"{6 - k}*2600*9.81", tolerance=1e-6)
+    text += '''
+[[run]]
+name = "soft joints"
+scenario = "scenarios/soft_joints.toml"
+orders = [1, 2, 3, 4, 6]
+'''
+    text += quantity("displacement of the top", "end('top.uy')", "m", expected="-1e3*(5/1e9 + 5/1e9)", tolerance=1e-5)
+    text += quantity("stress aside of the middle", "end('aside.syy')", "Pa", expected="-1e3", tolerance=1e-5)
+    text += '''
+[[run]]
+name = "bond in tension"
+scenario = "scenarios/bond_in_tension.toml"
+orders = [1, 2, 3, 4, 6]
+'''
+    text += quantity("peak of the pull", "1e3*crossing('block.vy', 5e-4)", "N/m", expected="5e4", tolerance=1e-3)
     text += '''
 [[run]]
 name = "stack"

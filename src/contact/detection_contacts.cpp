@@ -28,53 +28,88 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
   memory.stiffness = stiffness;
 }
 
+/// Of lanes, or of one number each.
+template <typename Number>
+struct SharedLength {
+  Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
+  double zone;           ///< m, by which edges may miss each other and still begin or end together
+
+  /// m that the vertex has of what an edge of its block, that goes on to `to`, has in common with this one. Where that edge or this is all
+  /// of it the share is what Surface::start_share gives it of the one or the other, or of both.
+  Number operator()(Number to, Number share_of_other, Number share_of_this) const {
+    const Number low = smaller(along, to), high = larger(along, to), zero{};
+    const Number common = larger(zero, smaller(length, high) - larger(zero, low));
+    const auto is_all_of_other = (low >= -zone) & (high <= length + zone),
+               is_all_of_this = (low <= zone) & (high >= length - zone);
+    const Number half = zero + 0.5, both = 0.5 * (share_of_other + share_of_this);
+    return common * where(is_all_of_other, where(is_all_of_this, both, share_of_other),
+                          where(is_all_of_this, share_of_this, half));
+  }
+
+ private:
+  static Number smaller(Number a, Number b) { return where(b < a, b, a); }
+  static Number larger(Number a, Number b) { return where(a < b, b, a); }
+};
+
 }  // namespace
 
 /// Eight at once, or fewer at the end.
 Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
                                        std::span<const Found> found) const {
   Lanes edge[lane_count], vertex[lane_count], length_before{};
+  Lanes share_of_edge = broadcast(0.5), share_of_next = share_of_edge, share_of_before = share_of_edge;
   for (std::size_t i = 0; i < lane_count; ++i) {
     const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
+    const std::size_t before = at(surface.previous[at(c.vertex)]);
     edge[i] = load(&corners_[at(c.edge)].position.x);
     vertex[i] = load(&corners_[at(c.vertex)].position.x);
-    length_before[i] = corners_[at(surface.previous[at(c.vertex)])].length;
+    length_before[i] = corners_[before].length;
+    if (surface.start_share.empty()) continue;
+    share_of_edge[i] = surface.start_share[at(c.edge)];
+    share_of_next[i] = surface.start_share[at(c.vertex)];
+    share_of_before[i] = surface.start_share[before];
   }
   transpose(edge);
   transpose(vertex);
   const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
-  // Length over the edge that an edge of the vertex, of direction u, shares with it, where they face each other: they run against each
-  // other, both with their block on the left.
-  const auto shared = [&](Lanes ux, Lanes uy, Lanes length_of_other) {
-    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, to = along + ahead * length_of_other;
-    const Lanes low = largest(Lanes{}, least(along, to)), high = least(length, largest(along, to));
+  const SharedLength<Lanes> shared{along, length, tolerances_.end_zone};
+  // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
+  const auto of_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes share_of_other,
+                           Lanes share_of_this) {
+    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty;
     const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
-    return where(turned, Lanes{}, largest(Lanes{}, high - low));
+    return where(turned, Lanes{}, shared(along + ahead * length_of_other, share_of_other, share_of_this));
   };
   return {gap, along / length,
-          0.5 * (shared(vertex[2], vertex[3], vertex[6]) + shared(vertex[4], vertex[5], -length_before))};
+          of_edge(vertex[2], vertex[3], vertex[6], share_of_next, 1.0 - share_of_edge) +
+              of_edge(vertex[4], vertex[5], -length_before, 1.0 - share_of_before, share_of_edge)};
 }
 
 /// m, what the contact of two corners has of the edge on the other side of the corner, where face goes on in face: edges of blocks of
 /// order > 1 are divided at the same points on both sides of a joint, and of the contacts of the two vertices that meet there one is
 /// left. position: Contact::position.
 double Detection::length_beyond(const Surface& surface, const Candidate& candidate, double position) const {
-  const Corner &vertex = corners_[at(candidate.vertex)], &edge = corners_[at(candidate.edge)];
-  const Corner& line =
-      corners_[at(position < 0.5 ? surface.previous[at(candidate.edge)] : surface.next[at(candidate.edge)])];
+  const std::size_t next = at(candidate.vertex), before = at(surface.previous[next]),
+                    beyond = at(position < 0.5 ? surface.previous[at(candidate.edge)]
+                                               : surface.next[at(candidate.edge)]);
+  const Corner &vertex = corners_[next], &edge = corners_[at(candidate.edge)], &line = corners_[beyond];
   if (dot(edge.tangent, line.tangent) < 0.0 ||
       std::abs(cross(edge.tangent, line.tangent)) > Tolerances::sine_facing)
     return 0.0;
-  const double along = dot(line.tangent, vertex.position - line.position);
-  const auto shared = [&](Vec2 u, double length_of_other) {
-    const double ahead = dot(u, line.tangent), to = along + ahead * length_of_other;
-    if (ahead > 0.0 || std::abs(cross(u, line.tangent)) > Tolerances::sine_facing) return 0.0;
-    return std::max(0.0, std::min(line.length, std::max(along, to)) - std::max(0.0, std::min(along, to)));
+  const auto share_of = [&](std::size_t e) {
+    return surface.start_share.empty() ? 0.5 : surface.start_share[e];
   };
-  return 0.5 * (shared(vertex.tangent, vertex.length) +
-                shared(vertex.before, -corners_[at(surface.previous[at(candidate.vertex)])].length));
+  const double along = dot(line.tangent, vertex.position - line.position);
+  const SharedLength<double> shared{along, line.length, tolerances_.end_zone};
+  const auto of_edge = [&](Vec2 u, double length_of_other, double share_of_other, double share_of_this) {
+    const double ahead = dot(u, line.tangent);
+    if (ahead > 0.0 || std::abs(cross(u, line.tangent)) > Tolerances::sine_facing) return 0.0;
+    return shared(along + ahead * length_of_other, share_of_other, share_of_this);
+  };
+  return of_edge(vertex.tangent, vertex.length, share_of(next), 1.0 - share_of(beyond)) +
+         of_edge(vertex.before, -corners_[before].length, 1.0 - share_of(before), share_of(beyond));
 }
 
 void Detection::give_law(const Surface& surface, Contact& contact) const {

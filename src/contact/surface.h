@@ -16,7 +16,9 @@ struct Surface {
   std::vector<int> block, next, previous;  ///< per vertex
   std::vector<std::uint8_t>
       reflex;  ///< per vertex: the block's angle there exceeds 180°; such a vertex touches nothing
-  std::vector<int> joint;      ///< per edge: index of its joint law
+  std::vector<int> joint;  ///< per edge: index of its joint law
+  /// Per edge: share that its start has of the length of joint along it, its end having the rest; empty: a half of each.
+  std::vector<double> start_share;
   std::vector<Vec2> position;  ///< per vertex, now
   /// Basis functions at the vertices: φ(vertex) starts at phi[phi_begin[vertex]] and has the N of its block.
   std::vector<std::size_t> phi_begin;

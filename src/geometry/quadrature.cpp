@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <utility>
 
 namespace keyblock {
 
@@ -34,14 +35,45 @@ LineRule make_gauss_legendre(int n) {
   return rule;
 }
 
+/// Its points are the ends and the zeros of the slope of Legendre's polynomial of degree n − 1.
+LineRule make_gauss_lobatto(int n) {
+  const int degree = n - 1;
+  LineRule rule;
+  for (int i = 0; i < n; ++i) {
+    double x = -std::cos(std::numbers::pi * i / degree), value = 1.0;
+    for (int iteration = 0; iteration < 100; ++iteration) {
+      double before = 1.0;
+      value = x;
+      for (int k = 2; k <= degree; ++k)
+        before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
+      const double step = (x * value - before) / (n * value);
+      x -= step;
+      if (std::abs(step) < 1e-16) break;
+    }
+    rule.points.push_back(0.5 * (1.0 + x));
+    rule.weights.push_back(1.0 / (degree * n * value * value));
+  }
+  return rule;
+}
+
+/// The rule of n points, by make(n) where it is not kept yet.
+const LineRule& kept(std::map<int, LineRule>& rules, int n, LineRule (*make)(int)) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const auto found = rules.find(n);
+  return found != rules.end() ? found->second : rules.emplace(n, make(n)).first->second;
+}
+
 }  // namespace
 
 const LineRule& gauss_legendre(int n) {
-  static std::mutex mutex;
   static std::map<int, LineRule> rules;
-  std::lock_guard lock(mutex);
-  const auto found = rules.find(n);
-  return found != rules.end() ? found->second : rules.emplace(n, make_gauss_legendre(n)).first->second;
+  return kept(rules, n, make_gauss_legendre);
+}
+
+const LineRule& gauss_lobatto(int n) {
+  static std::map<int, LineRule> rules;
+  return kept(rules, n, make_gauss_lobatto);
 }
 
 std::vector<WeightedPoint> polygon_rule(const Polygon& polygon, int degree) {

@@ -11,6 +11,8 @@ struct LineRule {
   std::vector<double> weights;
 };
 const LineRule& gauss_legendre(int n);  ///< n ≥ 1; rules are computed once and kept
+/// Gauss-Lobatto rule of n ≥ 2 points on [0, 1], both ends among them, ascending; exact for degree 2n − 3.
+const LineRule& gauss_lobatto(int n);
 
 /// A point of a rule over a region.
 struct WeightedPoint {

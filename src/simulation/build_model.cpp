@@ -59,6 +59,25 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties, int 
   return block;
 }
 
+/// Where an edge of so many pieces is divided, as a share of it: at the points of Gauss and Lobatto's rule, whose weights are what forces on
+/// the vertices have to be for a traction along the edge to do the same work on a block of that order.
+double start_of_piece(int piece, int pieces) {
+  return gauss_lobatto(pieces + 1).points[at(piece)];
+}
+
+/// Surface::start_share of the pieces: such that each vertex comes to its weight.
+std::vector<double> start_shares(int pieces) {
+  const LineRule& rule = gauss_lobatto(pieces + 1);
+  std::vector<double> shares;
+  double of_piece_before = 0.0;
+  for (std::size_t k = 0; k < at(pieces); ++k) {
+    const double length = rule.points[k + 1] - rule.points[k], at_start = rule.weights[k] - of_piece_before;
+    shares.push_back(at_start / length);
+    of_piece_before = length - at_start;
+  }
+  return shares;
+}
+
 /// Basis functions at the vertices that contact has on the outline of a block, after those of the blocks before it.
 void evaluate_basis(contact::Surface& surface, const Block& block, int vertex) {
   for (std::size_t r = 0; r < block.reference.ring_count(); ++r) {
@@ -69,7 +88,7 @@ void evaluate_basis(contact::Surface& surface, const Block& block, int vertex) {
       for (int piece = 0; piece < pieces; ++piece, ++vertex) {
         surface.phi_begin[at(vertex)] = surface.phi.size();
         surface.phi.resize(surface.phi.size() + at(block.size));
-        block.basis.evaluate(lerp(here, after, static_cast<double>(piece) / pieces),
+        block.basis.evaluate(lerp(here, after, start_of_piece(piece, pieces)),
                              surface.phi.data() + surface.phi_begin[at(vertex)]);
       }
     }
@@ -86,10 +105,12 @@ void add_to_surface(Model& model, const Block& block, const std::vector<std::vec
       const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
                  after = ring[(k + 1) % ring.size()];
       const int pieces = edge_pieces(norm(after - here), block.area, block.edge_order);
+      const std::vector<double> shares = start_shares(pieces);
+      surface.start_share.insert(surface.start_share.end(), shares.begin(), shares.end());
       for (int piece = 0; piece < pieces; ++piece) {
         surface.block.push_back(number);
         surface.joint.push_back(joints[r][k]);
-        surface.position.push_back(lerp(here, after, static_cast<double>(piece) / pieces));
+        surface.position.push_back(lerp(here, after, start_of_piece(piece, pieces)));
         surface.reflex.push_back(piece == 0 && cross(here - before, after - here) < 0.0);
       }
     }
@@ -251,9 +272,12 @@ bool on_or_in(const Polygon& polygon, Vec2 p) {
 }
 
 int edge_pieces(double edge_length, double block_area, int order) {
-  if (order == 1) return 1;
-  const double shortest = 0.15 * std::sqrt(block_area);
-  return std::clamp(static_cast<int>(edge_length / shortest), 1, order);
+  // Of the edge, the share of its first vertex is 1 / (n (n + 1)).
+  constexpr double least = 0.05, rounding = 1e-6;
+  const double most = (1.0 + rounding) * edge_length / (least * std::sqrt(block_area));
+  int pieces = 1;
+  while (pieces < order && (pieces + 1) * (pieces + 2) <= most) ++pieces;
+  return pieces;
 }
 
 Model build_model(const RunSetup& setup) {
@@ -291,6 +315,8 @@ Model build_model(const RunSetup& setup) {
     model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, 1, 1, {}));
     add_to_surface(model, model.blocks.back(), {std::vector<int>(4, 1), std::vector<int>(4, 1)});
   }
+  std::vector<double>& shares = model.surface.start_share;
+  if (std::ranges::all_of(shares, [](double share) { return share == 0.5; })) shares.clear();
   number_coefficients(model);
   add_loads(setup, model);
   add_supports(setup, model);

@@ -112,6 +112,31 @@ TEST(Detection, DividedEdgesShareTheLengthOfTheirJoint) {
   }
 }
 
+// Where a piece of an edge is shared as a whole, its ends have the shares that the surface gives them: here those that make the weights of
+// Simpson's rule of the edges. The other side may be divided alike or not at all.
+TEST(Detection, VerticesOfDividedEdgesHaveTheirWeights) {
+  for (const int above : {1, 2}) {
+    for (const double shift : {0.0, 0.001}) {
+      Surface surface;
+      add_block(surface, divided(-1, 0, 2, 1, 1));
+      add_block(surface, divided(0, 1, 1, 2, 2));
+      add_block(surface, divided(shift, 2, 1 + shift, 3, above));
+      for (std::size_t e = 0; e < surface.position.size(); ++e) {
+        const Vec2 start = surface.position[e], end = surface.position[at(surface.next[e])];
+        const bool is_half = std::abs(std::abs(end.x - start.x) - 0.5) < 1e-9;
+        // From a corner to the middle, or on.
+        const bool from_corner = std::abs(end.x - 0.5) < 1e-9 || std::abs(end.x - 0.5 - shift) < 1e-9;
+        surface.start_share.push_back(!is_half ? 0.5 : from_corner ? 1.0 / 3.0 : 2.0 / 3.0);
+      }
+      for (const Contact& c : find(surface)) {
+        const double x = surface.position[at(c.vertex)].x;
+        const double expected = std::abs(x - 0.5) < 0.1 ? 4.0 / 6.0 : 1.0 / 6.0;
+        EXPECT_NEAR(c.length, expected, c.block_b == 2 || c.block_a == 2 ? shift + 1e-12 : 1e-12) << x;
+      }
+    }
+  }
+}
+
 // A tip so sharp that both its edges lie within 5° of the face below: only the lower one faces it.
 TEST(Detection, ASharpTipFacesWithOneEdge) {
   for (const double degrees : {1.0, 3.0, 4.5, 6.0}) {
