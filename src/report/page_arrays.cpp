@@ -3,9 +3,9 @@
 #include <string>
 
 #include "report/frame_codec.h"
-#include "report/joint_pieces.h"
 #include "report/page_data.h"
 #include "report/thinning.h"
+#include "results/joint_pieces.h"
 
 namespace keyblock::report {
 
@@ -95,24 +95,15 @@ void add_frames(const results::RunData& run, const std::vector<std::size_t>& cho
            }));
 }
 
-/// The frame that shows the moment of a snapshot: the last that is not later, else the first.
-std::size_t frame_of(const ContactFrame& snapshot, const std::vector<Frame>& frames) {
-  const auto later =
-      std::upper_bound(frames.begin(), frames.end(), snapshot, [](const ContactFrame& c, const Frame& f) {
-        return std::pair(c.stage, c.step) < std::pair(f.stage, f.step);
-      });
-  return later == frames.begin() ? 0 : static_cast<std::size_t>(later - frames.begin()) - 1;
-}
-
 void add_contacts(const results::RunData& run, const std::vector<std::size_t>& frames, ArrayPack& pack) {
   std::vector<int> stages;
   for (const ContactFrame& snapshot : run.contacts) stages.push_back(snapshot.stage);
-  const JointLocator locator(run.model);
-  std::vector<JointPiece> pieces;
+  const results::JointLocator locator(run.model);
+  std::vector<results::JointPiece> pieces;
   std::vector<std::uint32_t> frame_index, begin{0};
   for (const std::size_t k : thin_by_stage(stages, max_snapshots)) {
     if (run.frames.empty()) break;
-    const std::size_t frame = frame_of(run.contacts[k], run.frames);
+    const std::size_t frame = results::frame_of(run.contacts[k], run.frames);
     locator.locate(run.contacts[k].contacts, run.frames[frame].displacement, pieces);
     const auto at = std::lower_bound(frames.begin(), frames.end(), frame);
     frame_index.push_back(static_cast<std::uint32_t>(at - frames.begin()));
@@ -122,7 +113,7 @@ void add_contacts(const results::RunData& run, const std::vector<std::size_t>& f
   std::vector<std::uint8_t> from, to, state;
   std::vector<float> slip, gap;
   const auto share = [](float s) { return static_cast<std::uint8_t>(std::lround(255.0F * s)); };
-  for (const JointPiece& piece : pieces) {
+  for (const results::JointPiece& piece : pieces) {
     vertex.push_back(piece.vertex);
     from.push_back(share(piece.from));
     to.push_back(share(piece.to));

@@ -31,7 +31,7 @@ PageData make_page_data(const results::RunData& run);
 /// | frame.stress | u8 | codec | columns: xx of all blocks, then yy, xy; stress_quantum |
 /// | snapshot.frame | u32 | n(snapshots) | frame from which a contact snapshot holds |
 /// | snapshot.begin | u32 | n(snapshots) + 1 | its joint pieces |
-/// | piece.vertex | u32 | n(pieces) | see JointPiece |
+/// | piece.vertex | u32 | n(pieces) | see results::JointPiece |
 /// | piece.from, piece.to | u8 | n(pieces) | shares in 1/255 |
 /// | piece.state | u8 | n(pieces) | ContactState |
 /// | piece.slip, piece.gap | f32 | n(pieces) | m |

@@ -4,6 +4,7 @@
 
 #include "results/block_shape.h"
 #include "results/export.h"
+#include "results/joint_pieces.h"
 #include "results/vtk_file.h"
 
 namespace keyblock::results {
@@ -128,14 +129,20 @@ std::string block_file(const simulation::ModelRecord& model, const simulation::F
   return file.text();
 }
 
-std::string contact_file(const simulation::ModelRecord& model, const simulation::ContactFrame& frame) {
+std::string contact_file(const RunData& data, const JointLocator& locator,
+                         const simulation::ContactFrame& frame) {
+  const simulation::ModelRecord& model = data.model;
+  const std::vector<std::array<float, 2>> displacement =
+      data.frames.empty() ? std::vector<std::array<float, 2>>(model.vertices.size())
+                          : data.frames[frame_of(frame, data.frames)].displacement;
   std::vector<double> points, slip, gap, normal_force, shear_force;
   std::vector<std::int64_t> vertices, end;
   std::vector<std::uint8_t> state, edge_kind;
   std::vector<std::int32_t> edge_index, block_a, block_b;
   for (const simulation::ContactRecord& c : frame.contacts) {
-    const Vec2 middle = model.origin + c.position, half = 0.5 * c.length * perpendicular(c.normal);
-    for (const Vec2 p : {middle - half, middle + half}) {
+    const auto [from, to] = locator.reach(c, displacement);
+    for (const double along : {from, to}) {
+      const Vec2 p = model.origin + c.position + along * perpendicular(c.normal);
       vertices.push_back(static_cast<std::int64_t>(vertices.size()));
       points.insert(points.end(), {p.x, p.y, 0.0});
     }
@@ -201,9 +208,10 @@ std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out)
   auto files = write_series(data.frames, out, "blocks", "vtu", [&](const simulation::Frame& frame) {
     return block_file(data.model, frame, cells);
   });
+  const JointLocator locator(data.model);
   const auto contacts =
       write_series(data.contacts, out, "contacts", "vtp",
-                   [&](const simulation::ContactFrame& frame) { return contact_file(data.model, frame); });
+                   [&](const simulation::ContactFrame& frame) { return contact_file(data, locator, frame); });
   files.insert(files.begin() + 1, contacts.front());
   files.insert(files.end(), contacts.begin() + 1, contacts.end());
   return files;

@@ -141,6 +141,14 @@ std::vector<int> last_orders(const RunData& run) {
   return orders;
 }
 
+std::size_t frame_of(const simulation::ContactFrame& snapshot, const std::vector<simulation::Frame>& frames) {
+  const auto later = std::upper_bound(frames.begin(), frames.end(), snapshot,
+                                      [](const simulation::ContactFrame& c, const simulation::Frame& f) {
+                                        return std::pair(c.stage, c.step) < std::pair(f.stage, f.step);
+                                      });
+  return later == frames.begin() ? 0 : static_cast<std::size_t>(later - frames.begin()) - 1;
+}
+
 RunData read_run(const std::filesystem::path& directory) {
   return with_file(directory, [](hid_t file) {
     RunData data;

@@ -21,6 +21,9 @@ struct RunData {
 /// Of every block, at the end of what was recorded.
 std::vector<int> last_orders(const RunData& run);
 
+/// The frame that shows the moment of a snapshot: the last that is not later, else the first.
+std::size_t frame_of(const simulation::ContactFrame& snapshot, const std::vector<simulation::Frame>& frames);
+
 /// Reads DIR/result.h5. Throws InputError when there is none, or when it is truncated or of another format.
 RunData read_run(const std::filesystem::path& directory);
 

@@ -146,7 +146,14 @@ TEST(Export, VtkSeriesHasTimesThatAscend) {
 TEST(Export, VtkFilesAreReadByVtk) {
   if (!python_has("vtkmodules")) GTEST_SKIP() << "python3-vtk9 is not installed";
   const FreshFolder folder;
-  export_run(small_motions(), folder, ExportFormat::vtk);
+  RunData data = small_motions();
+  // At the right upper corner of block 1, where the joint begins that belongs to it.
+  simulation::ContactRecord& corner = data.contacts.back().contacts[0];
+  corner.block_b = 1;
+  corner.position = {7.3, 6.75};
+  corner.normal = {0.0, 1.0};
+  corner.length = 2.0;
+  export_run(data, folder, ExportFormat::vtk);
   const PythonResult result = python(folder, R"(
 import sys
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLPolyDataReader
@@ -171,6 +178,7 @@ reader.SetFileName(sys.argv[1] + "/contacts_00002.vtp")
 reader.Update()
 lines = reader.GetOutput()
 print("contacts", lines.GetNumberOfLines(), lines.GetNumberOfPoints(), int(lines.GetCellData().GetArray("state").GetValue(1)))
+print("line", [round(v, 5) for p in (0, 1) for v in lines.GetPoint(p)])
 )",
                                      folder.string());
   ASSERT_EQ(result.status, 0) << result.output;
@@ -185,7 +193,8 @@ print("contacts", lines.GetNumberOfLines(), lines.GetNumberOfPoints(), int(lines
             "point [466003.4, 6691603.45, 0.0]\n"
             "magnitude 0.390512\n"
             "step 30\n"
-            "contacts 2 4 1\n");
+            "contacts 2 4 1\n"
+            "line [466007.4, 6691607.45, 0.0, 466005.4, 6691607.45, 0.0]\n");
 }
 
 // The example of docs/result-file.md, on a file whose run has ended and on one whose run has not.

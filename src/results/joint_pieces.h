@@ -1,11 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "simulation/record.h"
 
-namespace keyblock::report {
+namespace keyblock::results {
 
 /// The stretch of joint that a contact stands for, tied to the block it lies on so that it can be drawn at
 /// any moment: from the point at `from` to the one at `to` (shares of the way) between display vertex
@@ -25,6 +26,11 @@ class JointLocator {
  public:
   explicit JointLocator(const simulation::ModelRecord& model);
 
+  /// From where to where that stretch reaches, m, measured from the contact along perpendicular(normal): that is how
+  /// the ring of block_b runs.
+  [[nodiscard]] std::pair<double, double> reach(const simulation::ContactRecord& contact,
+                                                std::span<const std::array<float, 2>> displacement) const;
+
   /// Appends the pieces of all contacts of one snapshot; `displacement` of all display vertices at that
   /// moment.
   void locate(std::span<const simulation::ContactRecord> contacts,
@@ -40,6 +46,13 @@ class JointLocator {
     std::size_t piece = 0;
     double share = 0.0;
   };
+  /// The stretch of a contact: lengths along its chain, m.
+  struct Stretch {
+    const Chain* chain = nullptr;
+    std::vector<double> arc;  ///< of the vertices of the chain
+    double contact = 0.0, begin = 0.0, end = 0.0;
+    double beyond = 0.0;  ///< how far past the end of the chain the contact itself is
+  };
   using Displacement = std::span<const std::array<float, 2>>;
 
   [[nodiscard]] Vec2 position(std::uint32_t vertex, Displacement displacement) const;
@@ -48,9 +61,10 @@ class JointLocator {
   /// −1 behind, 0 both or neither.
   [[nodiscard]] double side_of(const simulation::ContactRecord& contact, Vec2 along,
                                Displacement displacement) const;
+  [[nodiscard]] Stretch stretch(const simulation::ContactRecord& contact, Displacement displacement) const;
   void add_ring(std::span<const std::uint32_t> ring, std::vector<Chain>& chains) const;
   const simulation::ModelRecord& model_;
   std::vector<std::vector<Chain>> chains_;  ///< by block
 };
 
-}  // namespace keyblock::report
+}  // namespace keyblock::results

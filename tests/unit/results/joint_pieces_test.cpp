@@ -1,8 +1,8 @@
-#include "report/joint_pieces.h"
+#include "results/joint_pieces.h"
 
 #include <gtest/gtest.h>
 
-namespace keyblock::report {
+namespace keyblock::results {
 namespace {
 
 using simulation::ContactRecord;
@@ -69,6 +69,24 @@ TEST(JointLocator, ShiftsTheLengthInwardsAtACornerAndGoesOverDisplayVertices) {
   EXPECT_FLOAT_EQ(pieces[1].to, 0.5F);
 }
 
+TEST(JointLocator, ReachIsMeasuredFromTheContactAlongTheRing) {
+  const simulation::ModelRecord model = square();
+  const JointLocator locator(model);
+  const std::vector<std::array<float, 2>> still(model.vertices.size());
+  const auto expect_reach = [&](const ContactRecord& contact, double from, double to) {
+    const auto [first, second] = locator.reach(contact, still);
+    EXPECT_NEAR(first, from, 1e-12);
+    EXPECT_NEAR(second, to, 1e-12);
+  };
+  expect_reach(on_top(1.5, 1.0), -0.5, 0.5);
+  expect_reach(on_top(4.0, 1.0), 0.0, 1.0);  // the ring runs to the left from here
+  expect_reach(on_top(0.0, 1.0), -1.0, 0.0);
+  expect_reach(on_top(4.1, 1.0), 0.1, 1.1);  // beyond the end of the edge
+  ContactRecord corner = on_top(2.0, 0.9);
+  corner.block_a = 2;
+  expect_reach(corner, -0.9, 0.0);
+}
+
 TEST(JointLocator, NeverGoesOverTheEndOfTheEdge) {
   double length = 0.0;
   for (const auto& piece : located(square(), on_top(2.0, 9.0)))
@@ -100,4 +118,4 @@ TEST(JointLocator, EdgesEndWhereTheLabelChanges) {
 }
 
 }  // namespace
-}  // namespace keyblock::report
+}  // namespace keyblock::results

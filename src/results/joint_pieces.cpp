@@ -1,11 +1,11 @@
-#include "report/joint_pieces.h"
+#include "results/joint_pieces.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace keyblock::report {
+namespace keyblock::results {
 
 using simulation::ContactRecord;
 
@@ -103,26 +103,44 @@ double JointLocator::side_of(const ContactRecord& contact, Vec2 along, Displacem
   return std::clamp(side, -1.0, 1.0);
 }
 
+JointLocator::Stretch JointLocator::stretch(const ContactRecord& contact, Displacement displacement) const {
+  Stretch stretch;
+  const Foot foot = foot_of(contact, displacement);
+  if (foot.chain == nullptr) return stretch;
+  const auto& vertices = foot.chain->vertices;
+  std::vector<double> arc(vertices.size(), 0.0);
+  for (std::size_t k = 0; k + 1 < vertices.size(); ++k)
+    arc[k + 1] = arc[k] + norm(position(vertices[k + 1], displacement) - position(vertices[k], displacement));
+  const Vec2 from = position(vertices[foot.piece], displacement);
+  const Vec2 to = position(vertices[foot.piece + 1], displacement);
+  const Vec2 along = normalized(to - from);
+  stretch.beyond = dot(contact.position - lerp(from, to, foot.share), along);
+  stretch.contact = std::lerp(arc[foot.piece], arc[foot.piece + 1], foot.share);
+  const double first = stretch.contact - 0.5 * (1.0 - side_of(contact, along, displacement)) * contact.length;
+  stretch.begin = std::clamp(first, 0.0, std::max(0.0, arc.back() - contact.length));
+  stretch.end = std::min(arc.back(), stretch.begin + contact.length);
+  stretch.chain = foot.chain;
+  stretch.arc = std::move(arc);
+  return stretch;
+}
+
+std::pair<double, double> JointLocator::reach(const ContactRecord& contact, Displacement displacement) const {
+  const Stretch found = stretch(contact, displacement);
+  const double contact_at = found.contact + found.beyond;
+  return {found.begin - contact_at, found.end - contact_at};
+}
+
 void JointLocator::locate(std::span<const ContactRecord> contacts, Displacement displacement,
                           std::vector<JointPiece>& pieces) const {
   for (const ContactRecord& contact : contacts) {
-    const Foot foot = foot_of(contact, displacement);
-    if (foot.chain == nullptr) continue;
-    const auto& vertices = foot.chain->vertices;
-    std::vector<double> arc(vertices.size(), 0.0);
-    for (std::size_t k = 0; k + 1 < vertices.size(); ++k)
-      arc[k + 1] =
-          arc[k] + norm(position(vertices[k + 1], displacement) - position(vertices[k], displacement));
-    const Vec2 along = normalized(position(vertices[foot.piece + 1], displacement) -
-                                  position(vertices[foot.piece], displacement));
-    const double at = std::lerp(arc[foot.piece], arc[foot.piece + 1], foot.share);
-    const double first = at - 0.5 * (1.0 - side_of(contact, along, displacement)) * contact.length;
-    const double begin = std::clamp(first, 0.0, std::max(0.0, arc.back() - contact.length));
-    const double end = std::min(arc.back(), begin + contact.length);
+    const Stretch found = stretch(contact, displacement);
+    if (found.chain == nullptr) continue;
+    const auto& [vertices] = *found.chain;
+    const std::vector<double>& arc = found.arc;
     for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
       const double length = arc[k + 1] - arc[k];
-      const double from = std::max(begin, arc[k]);
-      const double to = std::min(end, arc[k + 1]);
+      const double from = std::max(found.begin, arc[k]);
+      const double to = std::min(found.end, arc[k + 1]);
       if (!(to > from)) continue;
       pieces.push_back({vertices[k], static_cast<float>((from - arc[k]) / length),
                         static_cast<float>((to - arc[k]) / length),
@@ -132,4 +150,4 @@ void JointLocator::locate(std::span<const ContactRecord> contacts, Displacement 
   }
 }
 
-}  // namespace keyblock::report
+}  // namespace keyblock::results
