@@ -20,6 +20,11 @@ std::optional<double> optional_number(const ordered_json& value) {
   return value.is_null() ? std::nullopt : std::optional(value.get<double>());
 }
 
+// Of a field that files of version 0.1 do not have.
+std::optional<double> later_number(const ordered_json& json, const char* name) {
+  return json.contains(name) ? optional_number(json.at(name)) : std::nullopt;
+}
+
 // Field names beside members, for writing and reading alike.
 template <class Record, class Visit>
 void visit_cutting(Record& c, const Visit& visit) {
@@ -80,12 +85,15 @@ std::string model_json(const simulation::ModelRecord& model) {
                           {"threads", model.threads},
                           {"step_size", model.step_size},
                           {"origin", {model.origin.x, model.origin.y}},
+                          {"stage_names", model.stage_names},
                           {"joint_set_names", model.joint_set_names},
                           {"trace_map_names", model.trace_map_names},
                           {"excavation_names", model.excavation_names},
                           {"excavation_outlines", outlines},
                           {"history_names", model.history_names},
                           {"opening_width", or_null(model.opening_width)},
+                          {"slip_limit", or_null(model.slip_limit)},
+                          {"opening_limit", or_null(model.opening_limit)},
                           {"cutting", cutting}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -99,6 +107,7 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     json.at("threads").get_to(model.threads);
     model.step_size = number(json.at("step_size"));
     model.origin = {number(json.at("origin").at(0)), number(json.at("origin").at(1))};
+    if (json.contains("stage_names")) json.at("stage_names").get_to(model.stage_names);
     json.at("joint_set_names").get_to(model.joint_set_names);
     json.at("trace_map_names").get_to(model.trace_map_names);
     json.at("excavation_names").get_to(model.excavation_names);
@@ -106,6 +115,8 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
       model.excavation_outlines.push_back(read_points(outline));
     json.at("history_names").get_to(model.history_names);
     model.opening_width = optional_number(json.at("opening_width"));
+    model.slip_limit = later_number(json, "slip_limit");
+    model.opening_limit = later_number(json, "opening_limit");
     visit_cutting(model.cutting, Read{json.at("cutting")});
     return 0;
   });
@@ -125,6 +136,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"steps", r.steps},
                           {"start_time", r.start_time},
                           {"duration", r.duration},
+                          {"planned_duration", or_null(r.planned_duration)},
                           {"pga", r.pga},
                           {"pgv", r.pgv},
                           {"arias", r.arias},
@@ -159,6 +171,7 @@ StageLine read_stage_json(const std::string& text) {
     json.at("steps").get_to(r.steps);
     r.start_time = number(json.at("start_time"));
     r.duration = number(json.at("duration"));
+    r.planned_duration = later_number(json, "planned_duration");
     r.pga = number(json.at("pga"));
     if (json.contains("pgv")) r.pgv = number(json.at("pgv"));  // not in files of version 0.1
     if (json.contains("arias")) r.arias = number(json.at("arias"));

@@ -39,11 +39,13 @@ struct ModelRecord {
   std::vector<Block> blocks;
   std::vector<Vec2> vertices;  ///< reference positions of all display vertices, m
   std::vector<cutting::EdgeLabel>
-      edge_label;  ///< of the piece from each display vertex to the next of its ring
+      edge_label;                        ///< of the piece from each display vertex to the next of its ring
+  std::vector<std::string> stage_names;  ///< of the whole plan; a run that is stopped has records of fewer
   std::vector<std::string> joint_set_names, trace_map_names, excavation_names;
   std::vector<std::vector<Vec2>> excavation_outlines;
   std::vector<std::string> history_names;
-  std::optional<double> opening_width;  ///< m
+  std::optional<double> opening_width;              ///< m
+  std::optional<double> slip_limit, opening_limit;  ///< m, beyond which a joint counts as slipped, opened
   cutting::CutStatistics cutting;
 };
 
@@ -141,9 +143,11 @@ struct StageRecord {
   Stage stage;
   long steps = 0;
   double start_time = 0.0, duration = 0.0;  ///< s
-  double pga = 0.0;    ///< m/s², of the scaled motion in the section, as far as the stage applies it
-  double pgv = 0.0;    ///< m/s, of its velocity from rest
-  double arias = 0.0;  ///< m/s, its Arias intensity, sum of both components
+  std::optional<double>
+      planned_duration;  ///< s, what `duration` is unless the stage is interrupted; none when static
+  double pga = 0.0;      ///< m/s², of the scaled motion in the section, as far as the stage applies it
+  double pgv = 0.0;      ///< m/s, of its velocity from rest
+  double arias = 0.0;    ///< m/s, its Arias intensity, sum of both components
   bool equilibrium_reached = false;   ///< settle only
   double worst_residual_ratio = 0.0;  ///< settle only: over blocks that are not moving
   std::vector<MovingBlock> moving;

@@ -83,6 +83,7 @@ ModelRecord Recorder::model() const {
   }
   record.vertices = start_;
   record.edge_label = labels_;
+  for (const Stage& stage : setup_.stages) record.stage_names.push_back(stage.name);
   record.joint_set_names = setup_.joint_set_names;
   record.trace_map_names = setup_.trace_map_names;
   for (const Excavation& excavation : setup_.excavations) {
@@ -91,6 +92,8 @@ ModelRecord Recorder::model() const {
   }
   for (const History& history : setup_.histories) record.history_names.push_back(history.name);
   record.opening_width = gauge_.opening_width();
+  record.slip_limit = setup_.damage.slip;
+  record.opening_limit = setup_.damage.opening;
   record.cutting = setup_.system.statistics;
   return record;
 }

@@ -70,6 +70,7 @@ class Runner {
   void orders_changed();
   void excavate(const Stage& stage);
   void run_stage();
+  void plan_motion(StageRecord& record) const;
   void settle(StageRecord& record);
   void shake(StageRecord& record);
   void after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction);
@@ -286,14 +287,14 @@ void Runner::settle(StageRecord& record) {
   settler_.reset();
 }
 
-void Runner::shake(StageRecord& record) {
+/// How long a dynamic stage lasts and what shakes it: known before its first step.
+void Runner::plan_motion(StageRecord& record) const {
   const Stage& stage = record.stage;
-  std::optional<StageMotion> motion;
+  if (stage.kind == StageKind::settle) return;
   double duration = stage.duration.value_or(0.0);
   if (stage.kind == StageKind::shake) {
     const loading::GroundMotion& ground = setup_.motions.at(static_cast<std::size_t>(stage.motion));
     if (!stage.duration) duration = ground.duration();
-    motion.emplace(ground, stage.scale, record.start_time);
     const loading::ShakingMeasures shaking = loading::measure(ground, stage.scale, duration);
     record.pga = shaking.peak;
     record.pgv = shaking.peak_velocity;
@@ -304,7 +305,16 @@ void Runner::shake(StageRecord& record) {
       record.motion.push_back(stage.scale * ground.accelerations()[k]);
     }
   }
-  const auto steps = static_cast<long>(step_count(duration, setup_.time_step));
+  record.planned_duration = step_count(duration, setup_.time_step) * setup_.time_step;
+}
+
+void Runner::shake(StageRecord& record) {
+  const Stage& stage = record.stage;
+  std::optional<StageMotion> motion;
+  if (stage.kind == StageKind::shake) {
+    motion.emplace(setup_.motions.at(static_cast<std::size_t>(stage.motion)), stage.scale, record.start_time);
+  }
+  const auto steps = static_cast<long>(step_count(record.planned_duration.value_or(0.0), setup_.time_step));
   while (now_.stage_step < steps && !stopped()) {
     const dynamics::StepReport report =
         stepper_->advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
@@ -328,6 +338,7 @@ void Runner::run_stage() {
   first_step_of_stage_ = now_.stage_step;
   stage_iterations_ = 0;
   record.steps = now_.stage_step;
+  plan_motion(record);
   if (now_.stage_step == 0) {
     excavate(record.stage);
     observer_.stage_begin(now_.stage, record);

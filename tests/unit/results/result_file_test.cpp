@@ -168,6 +168,8 @@ TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
   EXPECT_EQ(data.run.stages[1].steps, 13);
   EXPECT_EQ(data.run.steps, 23);
   EXPECT_DOUBLE_EQ(data.run.stages[1].duration, sample.step_row(1, 23).time);
+  EXPECT_EQ(data.run.stages[1].planned_duration, sample.stage(1).planned_duration);
+  EXPECT_EQ(data.run.stages[1].motion, sample.stage(1).motion);
   EXPECT_EQ(data.run.energy.kinetic, sample.step_row(1, 23).energy.kinetic);
 }
 

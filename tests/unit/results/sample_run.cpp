@@ -51,12 +51,15 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
   }
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.edge_label, b.edge_label);
+  EXPECT_EQ(a.stage_names, b.stage_names);
   EXPECT_EQ(a.joint_set_names, b.joint_set_names);
   EXPECT_EQ(a.trace_map_names, b.trace_map_names);
   EXPECT_EQ(a.excavation_names, b.excavation_names);
   EXPECT_EQ(a.excavation_outlines, b.excavation_outlines);
   EXPECT_EQ(a.history_names, b.history_names);
   EXPECT_EQ(a.opening_width, b.opening_width);
+  EXPECT_EQ(a.slip_limit, b.slip_limit);
+  EXPECT_EQ(a.opening_limit, b.opening_limit);
   EXPECT_EQ(a.cutting.traces, b.cutting.traces);
   EXPECT_EQ(a.cutting.joints_used, b.cutting.joints_used);
   EXPECT_EQ(a.cutting.removed_pieces, b.cutting.removed_pieces);
@@ -141,6 +144,7 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
   EXPECT_EQ(a.stage.tolerance, b.stage.tolerance);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_TRUE(same(a.start_time, b.start_time) && same(a.duration, b.duration) && same(a.pga, b.pga));
+  EXPECT_EQ(a.planned_duration, b.planned_duration);
   EXPECT_TRUE(same(a.pgv, b.pgv) && same(a.arias, b.arias));
   EXPECT_EQ(a.equilibrium_reached, b.equilibrium_reached);
   EXPECT_TRUE(same(a.worst_residual_ratio, b.worst_residual_ratio));
@@ -188,12 +192,14 @@ SampleRun::SampleRun() {
   for (std::size_t k = 0; k < model.vertices.size(); ++k) {
     model.edge_label.push_back({static_cast<cutting::EdgeKind>(k % 5), static_cast<std::int16_t>(k)});
   }
+  model.stage_names = {"in situ", "first \"earthquake\"", "after"};
   model.joint_set_names = {"J1", "J 2"};
   model.trace_map_names = {"map"};
   model.excavation_names = {"tunnel", "niche"};
   model.excavation_outlines = {{{0, 0}, {1, 0}, {0.1, 1}}, {}};
   model.history_names = {"crown", "a/b, \"c\""};
   model.opening_width = 5.5;
+  model.slip_limit = 0.1 / 3.0;
   model.cutting = {10, 7, 12.3, 4.5, 6, 2, 8, 16.0, 1e-5};
 }
 
@@ -270,6 +276,7 @@ simulation::StageRecord SampleRun::stage(int index) {
     record.stage.motion = 0;
     record.stage.scale = 0.3;
     record.stage.duration = 20 * step_size;
+    record.planned_duration = 20 * step_size;
     record.pga = noise(1, 1);
     record.pgv = noise(1, 2);
     record.arias = noise(1, 3);

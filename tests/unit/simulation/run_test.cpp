@@ -167,6 +167,32 @@ RunSetup shaken_wall() {
   return setup;
 }
 
+// A run that is killed leaves no more than this of the stage it was in.
+TEST(Run, TellsWhatIsPlannedBeforeAStageBegins) {
+  struct Begun final : RunObserver {
+    ModelRecord model;
+    std::vector<StageRecord> stages;
+    void begin(const ModelRecord& record) override { model = record; }
+    void stage_begin(int, const StageRecord& record) override { stages.push_back(record); }
+  };
+  RunSetup setup = shaken_incline(1);
+  setup.stages.push_back(stage("rest", StageKind::rest, 0.0041));
+  Begun begun;
+  const RunRecord record = run(setup, {}, begun);
+  EXPECT_EQ(begun.model.stage_names, (std::vector<std::string>{"settle", "shake", "rest"}));
+  EXPECT_EQ(begun.model.slip_limit, setup.damage.slip);
+  ASSERT_EQ(begun.stages.size(), 3U);
+  EXPECT_FALSE(begun.stages[0].planned_duration);
+  for (const std::size_t k : {1U, 2U}) {
+    EXPECT_EQ(begun.stages[k].duration, 0.0);
+    EXPECT_EQ(begun.stages[k].planned_duration, record.stages[k].duration);
+  }
+  EXPECT_DOUBLE_EQ(begun.stages[2].planned_duration.value_or(0.0), 0.004);
+  EXPECT_EQ(begun.stages[1].pga, record.stages[1].pga);
+  EXPECT_EQ(begun.stages[1].motion, record.stages[1].motion);
+  EXPECT_GT(begun.stages[1].pga, 1.0);
+}
+
 struct StopInRest final : RunObserver {
   std::atomic<bool> stop = false;
   void step(const StepRow& row) override { stop = row.stage == 2; }
