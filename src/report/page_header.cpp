@@ -21,6 +21,7 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"steps", record.steps},
           {"start_time", record.start_time},
           {"duration", record.duration},
+          {"planned_duration", results::or_null(record.planned_duration)},
           {"pga_m_s2", record.pga},
           {"equilibrium_reached", record.equilibrium_reached},
           {"worst_residual_ratio", record.worst_residual_ratio},
@@ -46,12 +47,15 @@ ordered_json model_json(const simulation::ModelRecord& model) {
           {"origin", {model.origin.x, model.origin.y}},
           {"scenario", model.scenario},
           {"block_names", names},
+          {"stages", model.stage_names},
           {"joint_sets", model.joint_set_names},
           {"trace_maps", model.trace_map_names},
           {"excavations", model.excavation_names},
           {"excavation_outlines", outlines},
           {"histories", model.history_names},
           {"opening_width_m", results::or_null(model.opening_width)},
+          {"slip_limit_m", results::or_null(model.slip_limit)},
+          {"opening_limit_m", results::or_null(model.opening_limit)},
           {"cutting",
            {{"traces", cut.traces},
             {"joints_used", cut.joints_used},
@@ -64,20 +68,22 @@ ordered_json model_json(const simulation::ModelRecord& model) {
             {"sliver_area_m2", cut.sliver_area}}}};
 }
 
-ordered_json run_json(const simulation::RunRecord& run, Vec2 origin) {
+ordered_json run_json(const results::RunData& data) {
+  const simulation::RunRecord& run = data.run;
   ordered_json stages = ordered_json::array();
   for (const simulation::StageRecord& record : run.stages) stages.push_back(stage_json(record));
   return {{"steps", run.steps},
           {"wall_time_s", run.wall_time},
           {"dof", run.dof},
           {"state_hash", run.state_hash},
-          {"open_close", results::open_close_json(run.open_close)},
+          {"open_close", data.cut_off ? ordered_json() : results::open_close_json(run.open_close)},
           {"max_overlap_m", run.max_overlap.depth},
-          {"max_overlap_at", results::overlap_place_json(run.max_overlap, origin)},
+          {"max_overlap_at", results::overlap_place_json(run.max_overlap, data.model.origin)},
           {"max_area_change", run.max_area_change},
           {"energy", results::energy_json(run.energy)},
           {"stages", stages},
-          {"interrupted", run.interrupted}};
+          {"interrupted", run.interrupted},
+          {"cut_off", data.cut_off}};
 }
 
 /// The smallest number of steps from one row of a stage to the next; 0 where there are no two rows.
@@ -99,7 +105,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
   const results::Areas area = results::areas(run.model, run.run);
   const ordered_json header{
       {"model", model_json(run.model)},
-      {"run", run_json(run.run, run.model.origin)},
+      {"run", run_json(run)},
       {"area", {{"blocks_m2", area.blocks}, {"excavated_m2", area.excavated}}},
       {"recorded_frames", run.frames.size()},
       {"displacement_quantum", displacement_quantum(run)},

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/error.h"
 #include "core/folder.h"
+#include "results/record_fields.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
 #include "results/run_data.h"
@@ -71,6 +73,27 @@ auto with_file(const std::filesystem::path& directory, const Read& read) {
   }
 }
 
+simulation::Damage unknown_damage() {
+  simulation::Damage damage;
+  for (const auto& [name, member] : damage_fields) damage.*member = std::nan("");
+  return damage;
+}
+
+// What of the measures the statuses of blocks tell.
+simulation::Damage damage_of(const simulation::ModelRecord& model, const simulation::Frame& frame) {
+  simulation::Damage damage = unknown_damage();
+  damage.fallen_area = damage.loosened_area = 0.0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (model.blocks[b].fixed) continue;
+    if (frame.status[b] == simulation::BlockStatus::fallen) {
+      ++damage.fallen_blocks;
+      damage.fallen_area += model.blocks[b].area;
+    }
+    if (frame.status[b] == simulation::BlockStatus::loosened) damage.loosened_area += model.blocks[b].area;
+  }
+  return damage;
+}
+
 // The stage a run was killed in, as far as its rows tell.
 void complete_killed_stage(const RunData& data, int index, simulation::StageRecord& stage) {
   double time = stage.start_time;
@@ -88,6 +111,22 @@ void complete_killed_stage(const RunData& data, int index, simulation::StageReco
   stage.interrupted = true;
   stage.duration = time - stage.start_time;
   stage.steps = std::max(stage.steps, last - first);
+  stage.wall_time = stage.worst_residual_ratio = std::nan("");
+  // Files of version 0.1 tell of the motion at the end alone.
+  if (stage.motion_time.empty() && stage.stage.kind == simulation::StageKind::shake)
+    stage.pga = stage.pgv = stage.arias = std::nan("");
+  stage.damage = unknown_damage();
+  for (const simulation::Frame& frame : data.frames)
+    if (frame.stage == index) stage.damage = damage_of(data.model, frame);
+}
+
+// Degrees of freedom: two for each term of the polynomials.
+int unknowns(const RunData& data) {
+  const std::vector<int> orders = last_orders(data);
+  int sum = 0;
+  for (std::size_t b = 0; b < orders.size(); ++b)
+    if (!data.model.blocks[b].fixed) sum += (orders[b] + 1) * (orders[b] + 2);
+  return sum;
 }
 
 void read_run_record(hid_t file, RunData& data) {
@@ -100,15 +139,17 @@ void read_run_record(hid_t file, RunData& data) {
   if (!run.empty()) {
     data.run = read_run_json(run.back());
   } else {
-    data.run.interrupted = true;
+    data.cut_off = data.run.interrupted = true;
+    data.run.dof = unknowns(data);
+    data.run.energy.residual_ratio = std::nan("");
     if (!data.steps.empty()) data.run.energy = data.steps.back().energy;
+    data.run.wall_time = data.run.max_overlap.depth = data.run.max_area_change = std::nan("");
+    data.run.open_close.mean_iterations = std::nan("");
   }
   for (auto& [index, line] : stages) {
     if (!line.ended) complete_killed_stage(data, index, line.stage);
     data.run.stages.push_back(std::move(line.stage));
-    if (!run.empty()) continue;
-    data.run.steps += data.run.stages.back().steps;
-    data.run.wall_time += data.run.stages.back().wall_time;
+    if (data.cut_off) data.run.steps += data.run.stages.back().steps;
   }
 }
 

@@ -9,9 +9,11 @@ namespace keyblock::results {
 /// A whole result file in memory.
 struct RunData {
   simulation::ModelRecord model;
-  /// Of a run that was killed: the stages that had ended, the one it was killed in (as far as it is known, marked as
-  /// interrupted), and the sums that follow from both.
   simulation::RunRecord run;
+  /// There is no record of the end of the run: it was killed, or still goes on. `run` then holds the stages that had
+  /// ended, the one that had not, marked as interrupted, and what follows from these and the rows. Of that stage, fallen
+  /// and loosened blocks are those of its last frame. What is not known is not a number, or 0 where it is of whole numbers.
+  bool cut_off = false;
   std::vector<simulation::Frame> frames;
   std::vector<simulation::ContactFrame> contacts;
   std::vector<simulation::HistoryRow> histories;

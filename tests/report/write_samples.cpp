@@ -1,9 +1,32 @@
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include "../unit/report/synthetic_run.h"
 #include "report/report.h"
+#include "simulation/damage_fields.h"
+
+namespace {
+
+/// What results::read_run finds of a run that was killed.
+void forget_end(keyblock::results::RunData& data) {
+  const double unknown = std::nan("");
+  keyblock::simulation::RunRecord& run = data.run;
+  keyblock::simulation::StageRecord& last = run.stages.back();
+  const keyblock::simulation::Damage known = last.damage;
+  for (const auto& [name, measure] : keyblock::simulation::damage_fields) last.damage.*measure = unknown;
+  last.damage.fallen_area = known.fallen_area;
+  last.damage.loosened_area = known.loosened_area;
+  last.wall_time = last.worst_residual_ratio = unknown;
+  run.wall_time = run.max_overlap.depth = run.max_area_change = unknown;
+  run.max_overlap.block_a = -1;
+  run.state_hash.clear();
+  run.open_close = {};
+  data.cut_off = true;
+}
+
+}  // namespace
 
 /// write_samples DIR: one folder with a report.html for each kind of run that the browser test opens.
 int main(int argc, char** argv) {
@@ -21,6 +44,11 @@ int main(int argc, char** argv) {
   write("tunnel", {});
   write("marginal", {.marginal = true});
   write("interrupted", {.interrupted = true});
+  keyblock::results::RunData killed = synthetic_run({.interrupted = true});
+  forget_end(killed);
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "killed");
+  keyblock::report::write_report(killed, std::filesystem::path(argv[1]) / "killed");
+  write("short", {.frames_per_stage = 5, .interrupted = true, .shake_duration = 0.08});
   write("no_frames", {.frames = false});
   write("no_excavation", {.excavation = false});
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "empty");

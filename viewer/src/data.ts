@@ -1,16 +1,18 @@
 /** What report.html carries: facts as JSON and numbers as packed arrays (src/report/page_data.h says how). */
 
+/** null: not known, as the run left no record of the end of the stage. */
 export interface Damage {
+  /** Holds where the area of the fallen blocks is known. */
   fallen_blocks: number;
-  fallen_area_m2: number;
-  opening_filled_ratio: number;
-  loosened_area_m2: number;
-  slip_max_m: number;
-  slip_mean_m: number;
-  slipped_length_m: number;
-  opened_length_m: number;
-  closure_vertical_m: number;
-  closure_horizontal_m: number;
+  fallen_area_m2: number | null;
+  opening_filled_ratio: number | null;
+  loosened_area_m2: number | null;
+  slip_max_m: number | null;
+  slip_mean_m: number | null;
+  slipped_length_m: number | null;
+  opened_length_m: number | null;
+  closure_vertical_m: number | null;
+  closure_horizontal_m: number | null;
 }
 
 export interface Stage {
@@ -22,12 +24,14 @@ export interface Stage {
   steps: number;
   start_time: number;
   duration: number;
-  pga_m_s2: number;
+  /** What the duration is unless the stage is interrupted; null for static stages. */
+  planned_duration: number | null;
+  pga_m_s2: number | null;
   equilibrium_reached: boolean;
   worst_residual_ratio: number | null;
   moving: { block: number; carried: number | null }[];
   damage: Damage;
-  wall_time_s: number;
+  wall_time_s: number | null;
   interrupted: boolean;
 }
 
@@ -42,12 +46,16 @@ export interface Header {
     origin: [number, number];
     scenario: string;
     block_names: Record<string, string>;
+    /** All that were planned, by name. */
+    stages: string[];
     joint_sets: string[];
     trace_maps: string[];
     excavations: string[];
     excavation_outlines: [number, number][][];
     histories: string[];
     opening_width_m: number | null;
+    slip_limit_m: number | null;
+    opening_limit_m: number | null;
     cutting: {
       traces: number;
       joints_used: number;
@@ -63,7 +71,7 @@ export interface Header {
   area: { blocks_m2: number; excavated_m2: number };
   run: {
     steps: number;
-    wall_time_s: number;
+    wall_time_s: number | null;
     dof: number;
     state_hash: string;
     open_close: {
@@ -71,13 +79,15 @@ export interface Header {
       max_iterations: number;
       retried_steps: number;
       unconverged_steps: number;
-    };
+    } | null;
     max_overlap_m: number | null;
     max_overlap_at: { blocks: [number, number]; x: number; y: number; time_s: number; stage: string } | null;
     max_area_change: number | null;
     energy: Record<string, number | null>;
     stages: Stage[];
     interrupted: boolean;
+    /** There is no record of the end: the run was killed, or still goes on. */
+    cut_off: boolean;
   };
   recorded_frames: number;
   displacement_quantum: number;

@@ -1,5 +1,19 @@
-import { fixed, integer } from "./format";
+import type { Stage } from "./data";
+import { fixed, integer, significant } from "./format";
 import type { Run, Moment } from "./run";
+
+/** Decimals of a time within a stage, s: more where the stage is short. */
+function decimals(stage: Stage): number {
+  const whole = stage.planned_duration ?? stage.duration;
+  return whole > 0 ? Math.min(6, Math.max(2, 2 - Math.floor(Math.log10(whole)))) : 2;
+}
+
+/** How long a dynamic stage has lasted: "20 s", or "14.04 of 20 s" where it was interrupted. */
+export function stageTime(stage: Stage): string {
+  if (!stage.interrupted) return `${significant(stage.duration, 4)} s`;
+  const whole = stage.planned_duration === null ? "" : ` of ${significant(stage.planned_duration, 4)}`;
+  return `${fixed(stage.duration, decimals(stage))}${whole} s`;
+}
 
 /** "first earthquake · 3.42 s of 20 s · run time 5.42 s · step 2,710": where in the run a moment is. */
 export function momentLabel(run: Run, moment: Moment): string {
@@ -13,8 +27,10 @@ export function momentLabel(run: Run, moment: Moment): string {
     parts.push("static");
   } else {
     const start = record ? record.start_time : run.time[first];
-    const whole = record && record.duration > 0 ? ` of ${fixed(record.duration, 1)}` : "";
-    parts.push(`${fixed(time - start, 2)}${whole} s`, `run time ${fixed(time, 2)} s`);
+    const planned = record && !record.interrupted ? record.duration : (record?.planned_duration ?? 0);
+    const whole = planned > 0 ? ` of ${significant(planned, 4)}` : "";
+    const places = record ? decimals(record) : 2;
+    parts.push(`${fixed(time - start, places)}${whole} s`, `run time ${fixed(time, places)} s`);
   }
   parts.push(`step ${integer(run.stepAt(moment))}`);
   return parts.join(" · ");

@@ -1,7 +1,7 @@
 import { choice, h } from "./dom";
 import { blockFields, jointFields, type BlockField, type Fields, type JointField } from "./fields";
 import { count, fixed } from "./format";
-import { damageStart, sinceChoices } from "./labels";
+import { damageStart, sinceChoices, stageTime } from "./labels";
 import { legendElement } from "./legend";
 import type { Moment, Run } from "./run";
 import { SectionView, type Look } from "./section_view";
@@ -58,11 +58,13 @@ export class Pictures {
       const facts: string[] = [];
       if (stage?.excavate.length)
         facts.push(`${stage.excavate.map((e) => run.header.model.excavations[e]).join(", ")} excavated`);
-      if (stage?.kind === "shake") facts.push(`peak ${fixed(stage.pga_m_s2 / 9.81, 2)} g`);
-      if (stage && stage.kind !== "settle") facts.push(`${fixed(stage.duration, 1)} s`);
+      if (stage?.kind === "shake" && stage.pga_m_s2 !== null)
+        facts.push(`peak ${fixed(stage.pga_m_s2 / 9.81, 2)} g`);
+      if (stage && stage.kind !== "settle") facts.push(stageTime(stage));
       if (stage?.kind === "settle") facts.push(count(stage.steps, "static step"));
       if (!stage || stage.interrupted) facts.push("interrupted");
-      pictures.push({ title: `After “${run.stageName(k)}”`, text: facts.join(" · "), moment });
+      const when = stage && !stage.interrupted ? "After" : "Within";
+      pictures.push({ title: `${when} “${run.stageName(k)}”`, text: facts.join(" · "), moment });
     }
     return pictures;
   }

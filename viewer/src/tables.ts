@@ -1,8 +1,9 @@
 import type { Damage, Stage } from "./data";
 import { column, factList, h, tableBox, type Child } from "./dom";
 import { count, duration, fixed, integer, signed, significant } from "./format";
+import { stageTime } from "./labels";
 import type { Run } from "./run";
-import { checks, marginalStages } from "./verdict";
+import { checks, marginalStages, type Check } from "./verdict";
 
 export function runFacts(run: Run): HTMLElement {
   const { model, run: record, area } = run.header;
@@ -28,8 +29,16 @@ export function runFacts(run: Run): HTMLElement {
     ["Seed, realization", `${model.seed}, ${model.realization}`],
     ["Time step", `${significant(1e3 * model.step_size_s, 4)} ms`],
     ["Steps", integer(record.steps)],
-    ["Wall time", `${duration(record.wall_time_s)} with ${count(model.threads, "thread")}`],
-    ["Per step", record.steps > 0 ? `${significant((1e3 * record.wall_time_s) / record.steps, 3)} ms` : "–"],
+    [
+      "Wall time",
+      `${record.wall_time_s === null ? "not known," : duration(record.wall_time_s)} with ${count(model.threads, "thread")}`,
+    ],
+    [
+      "Per step",
+      record.steps > 0 && record.wall_time_s !== null
+        ? `${significant((1e3 * record.wall_time_s) / record.steps, 3)} ms`
+        : "–",
+    ],
     ["Program", `keyblock ${model.version}`],
     ["State hash", h("code", {}, record.state_hash || "–")],
   ];
@@ -44,7 +53,7 @@ const kinds = { settle: "static", shake: "shaking", rest: "dynamic, no shaking" 
 
 function equilibrium(stage: Stage): string {
   if (stage.kind !== "settle") return "–";
-  if (!stage.equilibrium_reached) return "not reached";
+  if (!stage.equilibrium_reached) return stage.interrupted ? "not yet" : "not reached";
   return stage.moving.length > 0 ? "of the others" : "reached";
 }
 
@@ -66,17 +75,30 @@ export function stageTable(run: Run): HTMLElement {
     h("td", { class: "text" }, kinds[s.kind]),
     h("td", { class: "text" }, s.excavate.map((e) => run.header.model.excavations[e]).join(", ") || "–"),
     h("td", {}, integer(s.steps)),
-    h("td", {}, s.kind === "settle" ? "–" : significant(s.duration, 4)),
+    h("td", {}, s.kind === "settle" ? "–" : stageTime(s).replace(/ s$/, "")),
     h(
       "td",
       {},
-      s.kind === "shake" ? `${significant(s.pga_m_s2, 3)} (${fixed(s.pga_m_s2 / 9.81, 2)} g)` : "–",
+      s.kind === "shake" && s.pga_m_s2 !== null
+        ? `${significant(s.pga_m_s2, 3)} (${fixed(s.pga_m_s2 / 9.81, 2)} g)`
+        : "–",
     ),
     h("td", { class: "text" }, equilibrium(s)),
     h("td", {}, s.kind === "settle" ? significant(s.worst_residual_ratio, 2) : "–"),
-    h("td", {}, s.kind === "settle" ? count(s.moving.length, "block") : "–"),
+    h(
+      "td",
+      {},
+      s.kind === "settle" && !(s.interrupted && run.header.run.cut_off)
+        ? count(s.moving.length, "block")
+        : "–",
+    ),
     h("td", {}, duration(s.wall_time_s)),
   ]);
+  for (const name of run.header.model.stages.slice(run.stages.length))
+    rows.push([
+      h("th", { scope: "row" }, name),
+      h("td", { class: "text", colspan: head.length - 1 }, "not run"),
+    ]);
   return tableBox("Stages as they were run", [head], rows);
 }
 
@@ -84,28 +106,36 @@ interface Measure {
   name: string;
   unit: string;
   decimals: number;
-  of: (d: Damage) => number;
+  of: (d: Damage) => number | null;
 }
 
+const times = (factor: number, x: number | null) => (x === null ? null : factor * x);
+
 const measures: Measure[] = [
-  { name: "Fallen blocks", unit: "", decimals: 0, of: (d) => d.fallen_blocks },
+  {
+    name: "Fallen blocks",
+    unit: "",
+    decimals: 0,
+    of: (d) => (d.fallen_area_m2 === null ? null : d.fallen_blocks),
+  },
   { name: "Fallen area", unit: "m²", decimals: 2, of: (d) => d.fallen_area_m2 },
-  { name: "Opening filled", unit: "%", decimals: 1, of: (d) => 100 * d.opening_filled_ratio },
+  { name: "Opening filled", unit: "%", decimals: 1, of: (d) => times(100, d.opening_filled_ratio) },
   { name: "Loosened area", unit: "m²", decimals: 2, of: (d) => d.loosened_area_m2 },
-  { name: "Largest slip", unit: "mm", decimals: 1, of: (d) => 1e3 * d.slip_max_m },
-  { name: "Mean slip", unit: "mm", decimals: 2, of: (d) => 1e3 * d.slip_mean_m },
+  { name: "Largest slip", unit: "mm", decimals: 1, of: (d) => times(1e3, d.slip_max_m) },
+  { name: "Mean slip", unit: "mm", decimals: 2, of: (d) => times(1e3, d.slip_mean_m) },
   { name: "Slipped joints", unit: "m", decimals: 1, of: (d) => d.slipped_length_m },
   { name: "Opened joints", unit: "m", decimals: 1, of: (d) => d.opened_length_m },
-  { name: "Closure, vertical", unit: "mm", decimals: 2, of: (d) => 1e3 * d.closure_vertical_m },
-  { name: "Closure, horizontal", unit: "mm", decimals: 2, of: (d) => 1e3 * d.closure_horizontal_m },
+  { name: "Closure, vertical", unit: "mm", decimals: 2, of: (d) => times(1e3, d.closure_vertical_m) },
+  { name: "Closure, horizontal", unit: "mm", decimals: 2, of: (d) => times(1e3, d.closure_horizontal_m) },
 ];
 
 function stageCell(stage: Stage): HTMLElement {
+  const peak = stage.pga_m_s2 === null ? "not known" : `${fixed(stage.pga_m_s2 / 9.81, 2)} g`;
   const facts =
     stage.kind === "shake"
-      ? `${significant(stage.duration, 3)} s, peak ${fixed(stage.pga_m_s2 / 9.81, 2)} g`
+      ? `${stageTime(stage)}, peak ${peak}`
       : stage.kind === "rest"
-        ? `${significant(stage.duration, 3)} s at rest`
+        ? `${stageTime(stage)} at rest`
         : "static";
   return h(
     "th",
@@ -121,14 +151,16 @@ function stageCell(stage: Stage): HTMLElement {
  */
 export function damageTable(run: Run): HTMLElement | null {
   const excavated = run.stages.findIndex((s) => s.excavate.length > 0);
-  const shown = measures.filter((m) => excavated >= 0 || run.stages.some((s) => m.of(s.damage) !== 0));
+  const shown = measures.filter((m) => excavated >= 0 || run.stages.some((s) => (m.of(s.damage) ?? 0) !== 0));
   if (shown.length === 0) return null;
   const head = [column("At the end of"), ...shown.map((m) => column(m.name, m.unit || "number"))];
-  const rows = run.stages.slice(Math.max(0, excavated)).map((stage, k, all) => [
+  const stages = run.stages.slice(Math.max(0, excavated));
+  const rows = stages.map((stage, k) => [
     stageCell(stage),
     ...shown.map((m) => {
       const now = m.of(stage.damage);
-      const change = k > 0 ? signed(now - m.of(all[k - 1].damage), m.decimals) : "";
+      const before = k > 0 ? m.of(stages[k - 1].damage) : null;
+      const change = now !== null && before !== null ? signed(now - before, m.decimals) : "";
       return h("td", {}, fixed(now, m.decimals), h("span", { class: "sub" }, change));
     }),
   ]);
@@ -178,32 +210,48 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
   );
 }
 
+function checksVerdict(all: readonly Check[]): HTMLElement {
+  const bad = all.filter((c) => c.good === false).length;
+  const unknown = all.filter((c) => c.good === null).length;
+  if (bad + unknown === 0)
+    return h("p", { class: "finding good" }, "All checks of the computation are passed.");
+  const checked = count(all.length, "check");
+  const parts = [
+    ...(bad > 0
+      ? [`${bad} of ${checked} of the computation ${bad === 1 ? "needs" : "need"} attention.`]
+      : []),
+    ...(unknown > 0
+      ? [`${unknown} of ${checked} cannot be made, as the run left no record of its end.`]
+      : []),
+  ];
+  return h("p", { class: "finding attention" }, parts.join(" "));
+}
+
 /** The checks with their limits, and above them what they say together. */
 export function qualityTable(run: Run): HTMLElement {
   const all = checks(run);
-  const bad = all.filter((c) => !c.good).length;
-  const verdict =
-    bad === 0
-      ? h("p", { class: "finding good" }, "All checks of the computation are passed.")
-      : h(
-          "p",
-          { class: "finding attention" },
-          `${bad} of ${count(all.length, "check")} of the computation ${bad === 1 ? "needs" : "need"} attention.`,
-        );
+  const verdict = checksVerdict(all);
   const rows = all.map((c) => [
     h("th", { scope: "row" }, c.name),
     h("td", {}, c.value),
     h("td", { class: "text" }, c.limit),
-    h("td", { class: c.good ? "text good" : "text attention" }, c.good ? "✓ passed" : "! look here"),
+    c.good === null
+      ? h("td", { class: "text" }, "–")
+      : h("td", { class: c.good ? "text good" : "text attention" }, c.good ? "✓ passed" : "! look here"),
   ]);
   const head = [column("Check", "", true), column("Found"), column("Wanted", "", true), column("", "", true)];
   const { open_close: oc, steps } = run.header.run;
   const effort = factList([
     [
       "Open-close iterations per step",
-      `${significant(oc.mean_iterations, 3)} on average, ${integer(oc.max_iterations)} at most`,
+      oc
+        ? `${significant(oc.mean_iterations, 3)} on average, ${integer(oc.max_iterations)} at most`
+        : "not known",
     ],
-    ["Steps retried with a smaller time step", `${integer(oc.retried_steps)} of ${integer(steps)}`],
+    [
+      "Steps retried with a smaller time step",
+      oc ? `${integer(oc.retried_steps)} of ${integer(steps)}` : "not known",
+    ],
   ]);
   return h(
     "div",

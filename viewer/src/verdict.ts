@@ -1,6 +1,7 @@
-import type { Stage } from "./data";
+import type { Damage, Stage } from "./data";
 import type { Finding } from "./findings";
 import { count, fixed, integer, length, list, significant } from "./format";
+import { stageTime } from "./labels";
 import type { Run } from "./run";
 
 const quoted = (name: string) => `“${name}”`;
@@ -10,16 +11,19 @@ export function acceleration(a: number): string {
   return `${significant(a, 3)}\u00a0m/s² (${fixed(a / 9.81, 2)}\u00a0g)`;
 }
 
-function fallen(blocks: number, area: number): string {
+function fallen(blocks: number, area: number | null): string {
   return `${count(blocks, "block")} (${significant(area, 3)}\u00a0m²)`;
 }
 
-/** Settle stages that did not end in equilibrium: the case is marginal, and what moved is listed. */
+/** Settle stages that ended, but not in equilibrium: the case is marginal, and what moved is listed. */
 export function marginalStages(run: Run): { index: number; stage: Stage }[] {
   return run.stages
     .map((stage, index) => ({ index, stage }))
     .filter(
-      ({ stage }) => stage.kind === "settle" && (!stage.equilibrium_reached || stage.moving.length > 0),
+      ({ stage }) =>
+        stage.kind === "settle" &&
+        !stage.interrupted &&
+        (!stage.equilibrium_reached || stage.moving.length > 0),
     );
 }
 
@@ -34,42 +38,59 @@ export function findings(run: Run): Finding[] {
   ];
 }
 
-function interruption(run: Run): Finding {
+/** Where a run stopped: "within “first earthquake”, after 14.04 of 20 s". */
+function whereItStopped(run: Run): string {
   const last = run.stages[run.stages.length - 1];
-  const where = last
-    ? last.interrupted
-      ? `within ${quoted(last.name)}`
-      : `after ${quoted(last.name)}`
-    : "before its first stage";
-  return {
-    grade: "attention",
-    text: `The run was interrupted ${where}: the numbers hold for what was computed until then.`,
-  };
+  if (!last) return "before its first stage";
+  if (!last.interrupted) return `after ${quoted(last.name)}`;
+  const after = last.kind === "settle" ? count(last.steps, "static step") : stageTime(last);
+  return `within ${quoted(last.name)}, after ${after}`;
+}
+
+function interruption(run: Run): Finding {
+  const left = run.header.model.stages.slice(run.stages.length).map(quoted);
+  const notRun = left.length === 0 ? "" : `; ${list(left)} ${left.length === 1 ? "was" : "were"} not run`;
+  const text = run.header.run.cut_off
+    ? `The run was cut off ${whereItStopped(run)}, step ${integer(run.header.run.steps)}${notRun}. It left no record of its end (it was killed, or still goes on): blocks are counted in the last recorded frame, and what is measured at the end of a stage is not known of this one.`
+    : `The run was interrupted ${whereItStopped(run)}${notRun}. The numbers hold for what was computed until then.`;
+  return { grade: "attention", text };
+}
+
+/** The last stage of which something is known. */
+function lastKnown(run: Run, measure: (damage: Damage) => number | null): number {
+  let k = run.stages.length - 1;
+  while (k >= 0 && measure(run.stages[k].damage) === null) k--;
+  return k;
 }
 
 function damageFindings(run: Run, excavated: number): Finding[] {
   const { stages } = run;
-  const end = stages[stages.length - 1].damage;
-  const loosened =
-    end.loosened_area_m2 > 0
-      ? `${significant(end.loosened_area_m2, 3)} m² more are loosened`
-      : "nothing more is loosened";
   const openings = list(run.header.model.excavations);
+  const last = lastKnown(run, (d) => d.fallen_area_m2);
+  if (last < excavated)
+    return [{ grade: "attention", text: `Nothing is known of the time after the excavation (${openings}).` }];
+  const end = stages[last].damage;
+  const loosenedArea = end.loosened_area_m2 ?? 0;
+  const loosened =
+    loosenedArea > 0 ? `${significant(loosenedArea, 3)} m² more are loosened` : "nothing more is loosened";
+  const filled =
+    end.opening_filled_ratio === null
+      ? ` since the excavation (${openings})`
+      : `; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled`;
   const verdict =
     end.fallen_blocks > 0
-      ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled; ${loosened}.`
+      ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen${filled}; ${loosened}.`
       : `No block has fallen since the excavation (${openings}); ${loosened.replace(" more", "")}.`;
   const result: Finding[] = [{ grade: "plain", text: verdict }];
   const parts: string[] = [];
-  for (let k = excavated; k < stages.length; k++) {
+  for (let k = excavated; k <= last; k++) {
+    const { name, kind, pga_m_s2: pga, damage } = stages[k];
     const before = k > 0 ? stages[k - 1].damage : { fallen_blocks: 0, fallen_area_m2: 0 };
-    const blocks = stages[k].damage.fallen_blocks - before.fallen_blocks;
-    const area = stages[k].damage.fallen_area_m2 - before.fallen_area_m2;
-    const peak = stages[k].kind === "shake" ? `, peak ${acceleration(stages[k].pga_m_s2)},` : "";
-    if (blocks > 0)
-      parts.push(`${fallen(blocks, area)} came down in ${quoted(stages[k].name)}${peak.replace(/,$/, "")}`);
-    else if (peak)
-      parts.push(`nothing further came down in ${quoted(stages[k].name)}${peak.replace(/,$/, "")}`);
+    const blocks = damage.fallen_blocks - before.fallen_blocks;
+    const area = (damage.fallen_area_m2 ?? 0) - (before.fallen_area_m2 ?? 0);
+    const stage = `${quoted(name)}${kind === "shake" && pga !== null ? `, peak ${acceleration(pga)}` : ""}`;
+    if (blocks > 0) parts.push(`${fallen(blocks, area)} came down in ${stage}`);
+    else if (kind === "shake") parts.push(`nothing further came down in ${stage}`);
   }
   if (end.fallen_blocks > 0 && parts.length > 0)
     result.push({ grade: "plain", text: `${capital(list(parts))}.` });
@@ -77,13 +98,16 @@ function damageFindings(run: Run, excavated: number): Finding[] {
 }
 
 function slipFindings(run: Run): Finding[] {
-  const end = run.stages[run.stages.length - 1]?.damage;
-  if (!end || !(end.slip_max_m > 0)) return [];
+  const k = lastKnown(run, (d) => d.slip_max_m);
+  const end = run.stages[k]?.damage;
+  if (!end || !((end.slip_max_m ?? 0) > 0)) return [];
   const slipped = `${significant(end.slipped_length_m, 3)} m of joint slipped and ${significant(end.opened_length_m, 3)} m opened`;
+  const when =
+    k < run.stages.length - 1 ? `By the end of ${quoted(run.stages[k].name)} joints had` : "Joints";
   return [
     {
       grade: "plain",
-      text: `Joints slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${slipped}.`,
+      text: `${when} slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${slipped}.`,
     },
   ];
 }
@@ -125,7 +149,8 @@ export interface Check {
   name: string;
   value: string;
   limit: string;
-  good: boolean;
+  /** null: it was not measured. */
+  good: boolean | null;
 }
 
 /** How far the numbers can be trusted. */
@@ -137,7 +162,9 @@ export function checks(run: Run): Check[] {
     max_area_change,
     energy,
     steps,
+    cut_off,
   } = run.header.run;
+  const unknown = { value: "not known", good: null };
   const overlap = max_overlap_m ?? Infinity;
   const overlapIsSmall = overlap < 1e-3;
   const overlapPlace =
@@ -148,30 +175,41 @@ export function checks(run: Run): Check[] {
   const result: Check[] = [
     {
       name: "Steps that did not converge",
-      value: `${integer(oc.unconverged_steps)} of ${integer(steps)}`,
       limit: "none",
-      good: oc.unconverged_steps === 0,
+      ...(oc === null
+        ? unknown
+        : {
+            value: `${integer(oc.unconverged_steps)} of ${integer(steps)}`,
+            good: oc.unconverged_steps === 0,
+          }),
     },
     {
       name: "Largest true overlap of two blocks",
-      value: `${length(max_overlap_m)}${overlapPlace}`,
       limit: "below 1 mm",
-      good: overlapIsSmall,
+      ...(cut_off ? unknown : { value: `${length(max_overlap_m)}${overlapPlace}`, good: overlapIsSmall }),
     },
     {
       name: "Energy residual, of the largest term",
-      value: `${significant(Number.isFinite(residual) ? 100 * residual : null, 2)} %`,
       limit: "below 1 %",
-      good: residual < 0.01,
+      ...(cut_off && energy.residual_ratio === null
+        ? unknown
+        : {
+            value: `${significant(Number.isFinite(residual) ? 100 * residual : null, 2)} %`,
+            good: residual < 0.01,
+          }),
     },
     {
       name: "Largest change of a block's area, elastic strain included",
-      value: `${significant(max_area_change === null ? null : 100 * max_area_change, 2)} %`,
       limit: "below 1 %",
-      good: (max_area_change ?? Infinity) < 0.01,
+      ...(cut_off
+        ? unknown
+        : {
+            value: `${significant(max_area_change === null ? null : 100 * max_area_change, 2)} %`,
+            good: (max_area_change ?? Infinity) < 0.01,
+          }),
     },
   ];
-  const settled = run.stages.filter((s) => s.kind === "settle");
+  const settled = run.stages.filter((s) => s.kind === "settle" && !s.interrupted);
   if (settled.length > 0) {
     const marginal = marginalStages(run).map(({ stage }) => `${quoted(stage.name)}: ${leftOver(stage)}`);
     result.push({

@@ -54,6 +54,17 @@ TEST(Report, NumbersThatAreNoneBecomeNull) {
   EXPECT_THAT(page_header(run, page_arrays(run)), HasSubstr("\"max_overlap_m\":null"));
 }
 
+TEST(Report, OfARunWithoutAnEndTellsNothingThatOnlyItsEndTells) {
+  results::RunData run = made_up::synthetic_run({.frames = false, .interrupted = true});
+  EXPECT_THAT(page_header(run, page_arrays(run)), HasSubstr("\"cut_off\":false"));
+  run.cut_off = true;
+  const std::string header = page_header(run, page_arrays(run));
+  EXPECT_THAT(header, HasSubstr("\"cut_off\":true"));
+  EXPECT_THAT(header, HasSubstr("\"open_close\":null"));
+  EXPECT_THAT(header, HasSubstr("\"planned_duration\":10.0"));
+  EXPECT_THAT(header, HasSubstr("\"stages\":[\"in situ\",\"excavated\",\"first earthquake\",\"after\"]"));
+}
+
 TEST(Report, SaysOfHowManyStepsThereAreRows) {
   results::RunData run = made_up::synthetic_run({.frames = false});
   const auto header = [&] { return page_header(run, page_arrays(run)); };

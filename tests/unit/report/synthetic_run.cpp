@@ -43,6 +43,7 @@ class Wall {
              {options.excavation ? "excavated" : "loaded", StageKind::settle, 0.0, 0.0, 0.0},
              {"first earthquake", StageKind::shake, 0.0, options.shake_duration, 2.31},
              {"after", StageKind::rest, options.shake_duration, 2.0, 0.0}};
+    for (const StagePlan& stage : plan_) run_.model.stage_names.emplace_back(stage.name);
     if (options.interrupted) plan_.pop_back();
   }
 
@@ -65,6 +66,7 @@ class Wall {
     model.step_size = 0.002;
     model.scenario =
         "title = \"Brick wall <synthetic> & shaken\"\n# </script><b>not markup</b>\n[time]\nstep = 0.002\n";
+    model.slip_limit = model.opening_limit = 0.001;
     model.joint_set_names = {"bed joints", "head joints"};
     model.history_names = {"crown", "springline"};
     model.cutting.traces = 412;
@@ -307,6 +309,7 @@ class Wall {
       stage.steps = step_of(static_cast<int>(k), cut ? 0.6 : 1.0) - step_of(static_cast<int>(k), 0.0);
       stage.start_time = plan.start;
       stage.duration = (cut ? 0.6 : 1.0) * plan.duration;
+      if (plan.kind != StageKind::settle) stage.planned_duration = plan.duration;
       stage.pga = plan.pga;
       stage.wall_time = 1.3e-3 * static_cast<double>(stage.steps);
       stage.equilibrium_reached = plan.kind == StageKind::settle && !(options_.marginal && k == 1);

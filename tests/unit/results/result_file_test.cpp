@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <functional>
@@ -171,6 +172,40 @@ TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
   EXPECT_EQ(data.run.stages[1].planned_duration, sample.stage(1).planned_duration);
   EXPECT_EQ(data.run.stages[1].motion, sample.stage(1).motion);
   EXPECT_EQ(data.run.energy.kinetic, sample.step_row(1, 23).energy.kinetic);
+}
+
+// What nothing in the file tells is not 0.
+TEST(ResultFile, OfAKilledRunWhatIsNotKnownIsNoNumber) {
+  const FreshFolder folder;
+  SampleRun sample;
+  sample.model.blocks[0].fixed = false;
+  in_killed_process([&] {
+    ResultWriter writer(folder, false, 0.0);
+    sample.play(writer, 1, 23, false);
+    ::kill(::getpid(), SIGKILL);
+  });
+  const RunData data = read_run(folder);
+  EXPECT_TRUE(data.cut_off);
+  EXPECT_TRUE(std::isnan(data.run.wall_time));
+  EXPECT_TRUE(std::isnan(data.run.max_overlap.depth));
+  EXPECT_TRUE(std::isnan(data.run.max_area_change));
+  EXPECT_EQ(data.run.energy.residual_ratio, sample.step_row(1, 23).energy.residual_ratio);
+  const simulation::StageRecord& last = data.run.stages.at(1);
+  EXPECT_TRUE(std::isnan(last.wall_time));
+  // In its last frame, of step 20, block 1 is loosened and block 2 has fallen.
+  EXPECT_EQ(last.damage.fallen_blocks, 1);
+  EXPECT_EQ(last.damage.fallen_area, sample.model.blocks[2].area);
+  EXPECT_EQ(last.damage.loosened_area, sample.model.blocks[1].area);
+  EXPECT_TRUE(std::isnan(last.damage.slip_max));
+  EXPECT_TRUE(std::isnan(last.damage.opening_filled_ratio));
+  // Orders of that frame: 21, 22, 23.
+  EXPECT_EQ(data.run.dof, 22 * 23 + 23 * 24 + 24 * 25);
+  EXPECT_EQ(data.run.stages[0].wall_time, sample.stage(0).wall_time);
+  {
+    ResultWriter writer(folder, true);
+    sample.play(writer, 19, 30);
+  }
+  EXPECT_FALSE(read_run(folder).cut_off);
 }
 
 // The kill may come at any moment, in the middle of a flush, too.

@@ -330,7 +330,7 @@ void SampleRun::play(simulation::RunObserver& observer, long first, long last, b
 }
 
 RunData SampleRun::expected() {
-  RunData data{model, run(), {}, {}, {}, {}};
+  RunData data{model, run(), false, {}, {}, {}, {}};
   for (long step = 1; step <= 30; ++step) {
     const int index = step <= 10 ? 0 : 1;
     data.steps.push_back(step_row(index, step));
