@@ -150,8 +150,10 @@ std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& 
       if (frame.stage == static_cast<int>(k)) last = &frame;
     }
     if (last == nullptr) continue;
-    const std::string part = file_part(data.run.stages[k].stage.name);
-    files.push_back(out.write(fmt::format("stage_{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part),
+    const simulation::StageRecord& record = data.run.stages[k];
+    const std::string part = file_part(record.stage.name);
+    files.push_back(out.write(fmt::format("stage_{}{}{}{}.geojson", k + 1, part.empty() ? "" : "_", part,
+                                          record.interrupted ? "_unfinished" : ""),
                               stage_geojson(data, *last)));
   }
   return files;

@@ -2,6 +2,8 @@
 """Runs from end to end: what is written, that it is the same again, that nothing is lost, that Ctrl-C is survived."""
 
 import csv
+import json
+import re
 import resource
 import signal
 import subprocess
@@ -297,6 +299,23 @@ class Interrupt(Scenario):
             self.assertEqual(resumed["stages"][0][field], whole["stages"][0][field], field)
         histories = [(self.folder / folder / "histories.csv").read_bytes() for folder in ("out", "whole")]
         self.assertEqual(*histories)
+
+    def test_a_killed_run_has_a_report_and_exports_of_what_it_left(self):
+        run = self.start("out", 1e5)
+        time.sleep(2.5)  # what it has is written every two seconds
+        run.kill()
+        run.communicate(timeout=30)
+        self.keyblock("report", "out")
+        page = (self.folder / "out/report.html").read_text()
+        header = json.loads(re.search(r'<script[^>]*id="header"[^>]*>(.*?)</script>', page, re.DOTALL).group(1))
+        self.assertTrue(header["run"]["cut_off"])
+        self.assertIsNone(header["run"]["wall_time_s"])
+        self.assertEqual(header["run"]["dof"], 6)
+        self.assertEqual(header["run"]["stages"][0]["planned_duration"], 1e5)
+        self.assertIsNone(header["run"]["stages"][0]["damage"]["slip_max_m"])
+        self.keyblock("export", "out", "--format", "geojson")
+        files = [path.name for path in (self.folder / "out/geojson").iterdir()]
+        self.assertEqual(files, ["stage_1_slide_unfinished.geojson"])
 
     def test_a_second_interrupt_ends_at_once(self):
         run = self.start("out", 1e5)

@@ -127,6 +127,15 @@ TEST(Export, GeoJsonOfEveryStageEnd) {
   EXPECT_NEAR(rings[0][0][0].get<double>(), 466003.1 + 0.3, 1e-6);
 }
 
+TEST(Export, GeoJsonOfAStageThatDidNotEndIsNamedSo) {
+  const FreshFolder folder;
+  RunData data = small_motions();
+  data.run.stages.back().interrupted = true;
+  EXPECT_THAT(export_run(data, folder, ExportFormat::geojson),
+              testing::ElementsAre(folder / "stage_1_in-situ.geojson",
+                                   folder / "stage_2_first-earthquake_unfinished.geojson"));
+}
+
 TEST(Export, VtkSeriesHasTimesThatAscend) {
   const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
