@@ -325,6 +325,21 @@ const tests = {
     await close(page);
   },
 
+  async "slips have the digits they need, and the limit that they are measured by"() {
+    const page = await open("tunnel");
+    assert.match(
+      await text(page, "#verdict .findings"),
+      /31\.7\sm of joint slipped by more than 1 mm and 11\.2\sm opened by more than 1 mm\./,
+    );
+    await close(page);
+    const still = await open("far_and_still");
+    const row = await still.$$eval("#damage tbody tr:first-child td", (all) =>
+      all.map((e) => e.firstChild.textContent),
+    );
+    assert.deepEqual(row.slice(4, 6), ["0.013", "0.00072"]);
+    await close(still);
+  },
+
   async "a run without frames has tables and plots"() {
     const page = await open("no_frames");
     assert.equal(await page.locator("canvas:not(.uplot canvas)").count(), 0);

@@ -60,6 +60,11 @@ int main(int argc, char** argv) {
     row.max_displacement = 1e-9 * (1.0 + static_cast<double>(row.step % 7));
     row.energy = {.kinetic = 1.0 + 1e-9 * static_cast<double>(row.step % 11), .input = 1.0};
   }
+  for (auto& stage : far.run.stages) {
+    stage.damage = {};
+    stage.damage.slip_max = 1.26e-5;
+    stage.damage.slip_mean = 7.2e-7;
+  }
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "far_and_still");
   keyblock::report::write_report(far, std::filesystem::path(argv[1]) / "far_and_still");
   // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.

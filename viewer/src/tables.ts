@@ -105,6 +105,7 @@ export function stageTable(run: Run): HTMLElement {
 interface Measure {
   name: string;
   unit: string;
+  /** At least so many. */
   decimals: number;
   of: (d: Damage) => number | null;
 }
@@ -128,6 +129,13 @@ const measures: Measure[] = [
   { name: "Closure, vertical", unit: "mm", decimals: 2, of: (d) => times(1e3, d.closure_vertical_m) },
   { name: "Closure, horizontal", unit: "mm", decimals: 2, of: (d) => times(1e3, d.closure_horizontal_m) },
 ];
+
+/** Decimals with which the largest value of a column has two digits. */
+function decimalsOf(m: Measure, stages: readonly Stage[]): number {
+  const largest = Math.max(...stages.map((s) => Math.abs(m.of(s.damage) ?? 0)));
+  if (m.decimals === 0 || !(largest > 0)) return m.decimals;
+  return Math.min(6, Math.max(m.decimals, 1 - Math.floor(Math.log10(largest))));
+}
 
 function stageCell(stage: Stage): HTMLElement {
   const peak = stage.pga_m_s2 === null ? "not known" : `${fixed(stage.pga_m_s2 / 9.81, 2)} g`;
@@ -158,10 +166,11 @@ export function damageTable(run: Run): HTMLElement | null {
   const rows = stages.map((stage, k) => [
     stageCell(stage),
     ...shown.map((m) => {
+      const decimals = decimalsOf(m, stages);
       const now = m.of(stage.damage);
       const before = k > 0 ? m.of(stages[k - 1].damage) : null;
-      const change = now !== null && before !== null ? signed(now - before, m.decimals) : "";
-      return h("td", {}, fixed(now, m.decimals), h("span", { class: "sub" }, change));
+      const change = now !== null && before !== null ? signed(now - before, decimals) : "";
+      return h("td", {}, fixed(now, decimals), h("span", { class: "sub" }, change));
     }),
   ]);
   const since = excavated >= 0 ? "the first excavation" : "the start";

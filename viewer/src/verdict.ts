@@ -101,7 +101,10 @@ function slipFindings(run: Run): Finding[] {
   const k = lastKnown(run, (d) => d.slip_max_m);
   const end = run.stages[k]?.damage;
   if (!end || !((end.slip_max_m ?? 0) > 0)) return [];
-  const slipped = `${significant(end.slipped_length_m, 3)} m of joint slipped and ${significant(end.opened_length_m, 3)} m opened`;
+  const { slip_limit_m: slip, opening_limit_m: opening } = run.header.model;
+  const beyond = (limit: number | null) =>
+    limit === null ? " beyond the limit" : ` by more than ${length(limit)}`;
+  const slipped = `${significant(end.slipped_length_m, 3)}\u00a0m of joint slipped${beyond(slip)} and ${significant(end.opened_length_m, 3)}\u00a0m opened${beyond(opening)}`;
   const when =
     k < run.stages.length - 1 ? `By the end of ${quoted(run.stages[k].name)} joints had` : "Joints";
   return [
