@@ -26,6 +26,16 @@ void forget_end(keyblock::results::RunData& data) {
   data.cut_off = true;
 }
 
+/// Moves a block up by so much, m, from the shaking on.
+void move_block(keyblock::results::RunData& data, std::size_t block, float up) {
+  const auto& start = data.model.blocks[block].ring_start;
+  for (auto& frame : data.frames) {
+    if (frame.stage < 2) continue;
+    for (int v = start.front(); v < start.back(); ++v)
+      frame.displacement[static_cast<std::size_t>(v)][1] += up;
+  }
+}
+
 }  // namespace
 
 /// write_samples DIR: one folder with a report.html for each kind of run that the browser test opens.
@@ -67,6 +77,15 @@ int main(int argc, char** argv) {
   }
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "far_and_still");
   keyblock::report::write_report(far, std::filesystem::path(argv[1]) / "far_and_still");
+  // Nothing is excavated; one stone falls out of the wall by 4 m, another flies far away, and the first stage is short.
+  keyblock::results::RunData stone =
+      synthetic_run({.columns = 3, .rows = 3, .frames_per_stage = 10, .excavation = false});
+  move_block(stone, 0, -4.0F);
+  move_block(stone, 1, -500.0F);
+  stone.frames.erase(stone.frames.begin(), stone.frames.begin() + 9);
+  for (auto& row : stone.steps) row.closed_contacts = 0;
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "fallen_stone");
+  keyblock::report::write_report(stone, std::filesystem::path(argv[1]) / "fallen_stone");
   // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.
   write("large", {.columns = 32, .rows = 28, .edge_pieces = 3, .frames_per_stage = 75});
   // Blocks smaller than pixels.

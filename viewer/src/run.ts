@@ -1,3 +1,4 @@
+import { emptyBox, sizeOf, union, widened, type Box } from "./box";
 import { Arrays, decodeFrames, type Header, type Stage } from "./data";
 
 export const enum Status {
@@ -14,13 +15,6 @@ export const enum EdgeKind {
   traceMap = 2,
   excavation = 3,
   domain = 4,
-}
-
-export interface Box {
-  minX: number;
-  minY: number;
-  maxX: number;
-  maxY: number;
 }
 
 /** Moments at which the page shows the blocks: a fractional index into the frames, −1 for the reference position. */
@@ -60,6 +54,7 @@ export class Run {
   readonly pieceGap: Float32Array;
   private readonly displacement: Float32Array;
   private readonly stress: Float32Array;
+  private extentFound: Box | null = null;
 
   constructor(
     readonly header: Header,
@@ -217,20 +212,53 @@ export class Run {
     return this.boxOf((b) => !hasDomain || !this.fixed[b]);
   }
 
-  /** What to show of the plane: the rock, and of the frame around it only a margin. */
-  extent(): Box {
+  /**
+   * What to show of the plane: the rock, of the frame around it only a margin, and the blocks that lie elsewhere when a stage
+   * ends. Not those so far away that they, or all else, would hardly be seen.
+   */
+  get extent(): Box {
+    return (this.extentFound ??= this.findExtent());
+  }
+
+  private findExtent(): Box {
     const rock = this.extentOfRock();
-    const margin = 0.03 * Math.max(rock.maxX - rock.minX, rock.maxY - rock.minY);
-    return {
-      minX: rock.minX - margin,
-      minY: rock.minY - margin,
-      maxX: rock.maxX + margin,
-      maxY: rock.maxY + margin,
-    };
+    const margin = 0.03 * sizeOf(rock);
+    const start = widened(rock, margin);
+    let extent = start;
+    for (let k = 0; k < this.stageCount(); k++) {
+      const frame = this.lastFrame(k);
+      if (frame < 0) continue;
+      const at = this.displacementAt(frame);
+      for (let v = 0; v < this.vertexCount; v++) {
+        at[v] += this.position[2 * v];
+        at[this.vertexCount + v] += this.position[2 * v + 1];
+      }
+      for (let b = 0; b < this.blockCount; b++) {
+        if (this.fixed[b] || this.statusAt(frame, b) === Status.excavated) continue;
+        const block = widened(this.boxOfBlock(b, at), margin);
+        const both = union(start, block);
+        if (sizeOf(both) <= Math.max(2 * sizeOf(start), 30 * sizeOf(block))) extent = union(extent, both);
+      }
+    }
+    return extent;
+  }
+
+  /** Of a block, given the x of all vertices, then y. */
+  boxOfBlock(block: number, at: ArrayLike<number>): Box {
+    const box = { ...emptyBox };
+    const ring = this.firstRing[block];
+    for (let v = this.ringBegin[ring]; v < this.ringEnd[ring]; v++) {
+      const y = at[this.vertexCount + v];
+      box.minX = Math.min(box.minX, at[v]);
+      box.maxX = Math.max(box.maxX, at[v]);
+      box.minY = Math.min(box.minY, y);
+      box.maxY = Math.max(box.maxY, y);
+    }
+    return box;
   }
 
   private boxOf(counts: (block: number) => boolean): Box {
-    const box = { minX: Infinity, minY: Infinity, maxX: -Infinity, maxY: -Infinity };
+    const box = { ...emptyBox };
     for (let r = 0; r < this.ringBegin.length; r++) {
       if (!counts(this.ringBlock[r])) continue;
       for (let v = this.ringBegin[r]; v < this.ringEnd[r]; v++) {

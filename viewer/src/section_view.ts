@@ -1,7 +1,10 @@
+import { areApart, type Box } from "./box";
 import { css, textWidths } from "./dom";
 import type { BlockField, Fields, JointField } from "./fields";
+import { count } from "./format";
+import { hatching } from "./hatching";
 import { marks, type Mark } from "./axis_marks";
-import { Status, type Box, type Moment, type Run } from "./run";
+import { Status, type Moment, type Run } from "./run";
 
 export interface Look {
   moment: Moment;
@@ -64,26 +67,13 @@ export class SectionView {
     this.u = new Float32Array(2 * run.vertexCount);
     this.since = new Float32Array(2 * run.vertexCount);
     this.drawn = new Float32Array(2 * run.vertexCount);
-    this.extent = run.extent();
+    this.extent = run.extent;
     this.fit();
     this.readTheme();
   }
 
   readTheme(): void {
-    const tile = document.createElement("canvas");
-    tile.width = tile.height = 8;
-    const c = tile.getContext("2d")!;
-    c.fillStyle = css("--fixed");
-    c.fillRect(0, 0, 8, 8);
-    c.strokeStyle = css("--fixed-hatch");
-    c.lineWidth = 1;
-    c.beginPath();
-    for (const at of [-4, 4, 12]) {
-      c.moveTo(at - 5, 9);
-      c.lineTo(at + 5, -1);
-    }
-    c.stroke();
-    this.hatch = this.context.createPattern(tile, "repeat");
+    this.hatch = hatching(this.context);
   }
 
   /** Makes the canvas as wide as given, and as high as the model then is within the limits of the options. */
@@ -249,6 +239,7 @@ export class SectionView {
     this.drawOutlines();
     this.drawJoints();
     this.drawMarked();
+    this.drawOutside();
     c.restore();
     if (this.options.axes) this.drawAxes();
   }
@@ -388,6 +379,29 @@ export class SectionView {
       c.strokeStyle = css("--mark");
       c.stroke();
     }
+  }
+
+  /** Says how many blocks are not in the picture, unless the reader has zoomed. */
+  private drawOutside(): void {
+    if (this.zoom !== 1) return;
+    const { run, drawn, context: c } = this;
+    const { left, top, width, height } = this.inner();
+    const [minX, minY] = this.toModel(left, top + height);
+    const [maxX, maxY] = this.toModel(left + width, top);
+    let outside = 0;
+    for (let b = 0; b < run.blockCount; b++) {
+      if (run.fixed[b] || !this.isShown(b)) continue;
+      if (areApart(run.boxOfBlock(b, drawn), { minX, minY, maxX, maxY })) outside++;
+    }
+    if (outside === 0) return;
+    const text = `${count(outside, "block")} outside of the picture`;
+    c.font = `${axisFont}px ${css("--font")}`;
+    c.textAlign = "left";
+    c.textBaseline = "middle";
+    c.fillStyle = css("--paper");
+    c.fillRect(left + 1, top + height - 19, c.measureText(text).width + 10, 18);
+    c.fillStyle = css("--ink");
+    c.fillText(text, left + 6, top + height - 10);
   }
 
   /** Marks of the axes in real coordinates, with their labels. */
