@@ -12,6 +12,22 @@ import {
 
 const { screenshots, open, shoot } = await openers();
 
+/** As a browser does it before and after printing. */
+async function onPaper(page, check) {
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  await page.emulateMedia({ media: "print" });
+  await check();
+  await page.emulateMedia({ media: "screen" });
+  await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+}
+
+const tableWidths = (page) =>
+  page.$$eval(".table-box table", (all) =>
+    all.map((t) => t.offsetWidth - t.parentElement.clientWidth),
+  );
+const shown = (page, selector) =>
+  page.$eval(selector, (e) => getComputedStyle(e).display !== "none");
+
 /** Keeps in window.labels what is written on canvases, and in which figure. */
 function keepLabels() {
   const { prototype } = CanvasRenderingContext2D;
@@ -26,6 +42,50 @@ function keepLabels() {
 const script = keepLabels;
 
 const tests = {
+  async "paper has all rows and columns of a table, and charts as wide as it"() {
+    const page = await open("study");
+    const chart = page.locator("#fragility .chart-target");
+    const box = await chart.boundingBox();
+    await page.mouse.move(box.x + 0.5 * box.width, box.y + 50);
+    assert.ok(await shown(page, "#fragility .hair"));
+    const size = () =>
+      page.$eval("#runs table", (e) => getComputedStyle(e).fontSize);
+    const before = await size();
+    await onPaper(page, async () => {
+      const hidden = await page.$eval(
+        "#runs .table-box",
+        (e) => e.scrollHeight - e.clientHeight,
+      );
+      assert.equal(hidden, 0);
+      const beyond = await tableWidths(page);
+      assert.ok(Math.max(...beyond) <= 0, beyond.join());
+      assert.ok(!(await shown(page, "#fragility .hair")));
+      assert.ok(!(await shown(page, "#runs button.screen-only")));
+      assert.match(await text(page, "#runs"), /Printed are 100; all are in/);
+      const [target, drawing] = await chart.evaluate((e) => [
+        e.clientWidth,
+        Number(e.firstChild.getAttribute("width")),
+      ]);
+      assert.equal(drawing, target);
+      assert.ok(target < 700, `${target} px`);
+    });
+    assert.equal(await size(), before);
+    await page.pdf({
+      path: join(screenshots, "study-hover.pdf"),
+      format: "A4",
+    });
+    await close(page);
+  },
+
+  async "paper has all columns of a run's tables"() {
+    const page = await open("marginal", { width: 1400 });
+    await onPaper(page, async () => {
+      const beyond = await tableWidths(page);
+      assert.ok(Math.max(...beyond) <= 0, beyond.join());
+    });
+    await close(page);
+  },
+
   async "pictures hold the blocks that left their place, or say how many they do not"() {
     const page = await open("fallen_stone", { script });
     const labels = async () =>

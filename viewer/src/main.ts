@@ -8,6 +8,7 @@ import { NowFacts } from "./now_facts";
 import { count, integer } from "./format";
 import { Pictures } from "./pictures";
 import type { Plot } from "./plots";
+import { whenPrinting } from "./printing";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { Run } from "./run";
 import { cuttingFacts, damageTable, movingTable, qualityTable, runFacts, stageTable } from "./tables";
@@ -175,15 +176,8 @@ function build(run: Run, main: HTMLElement): void {
     plots.forEach((p) => p.rebuild());
   };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themeChanged);
-  // Paper is white whatever the screen, and as wide as the style says: figures are drawn for it before printing.
-  addEventListener("beforeprint", () => {
-    document.documentElement.dataset.printing = "true";
-    themeChanged();
-  });
-  addEventListener("afterprint", () => {
-    delete document.documentElement.dataset.printing;
-    themeChanged();
-  });
+  // Paper is white whatever the screen.
+  whenPrinting(themeChanged);
 }
 
 void start(async (main) => {

@@ -1,6 +1,7 @@
 import { ticks, type Scale } from "../colors";
 import { h, svg } from "../dom";
 import { significant } from "../format";
+import { whenPrinting } from "../printing";
 
 type Values = readonly (number | null)[];
 
@@ -53,6 +54,7 @@ export class Chart {
   constructor() {
     this.element = h("figure", { class: "plot chart" }, this.caption, this.target);
     new ResizeObserver(() => this.draw()).observe(this.target);
+    whenPrinting(() => this.draw());
     this.target.addEventListener("pointermove", (event) => this.point(event));
     this.target.addEventListener("pointerleave", () => this.read(null));
   }

@@ -1,6 +1,7 @@
 import { h, section, type Child } from "../dom";
 import { findingList } from "../findings";
 import { count, integer } from "../format";
+import { whenPrinting } from "../printing";
 import { readStudy, type Study } from "./data";
 import { Distribution } from "./distribution";
 import { FragilityView, probabilityTable } from "./fragility";
@@ -65,7 +66,7 @@ function statistics(study: Study, selection: Selection): Child[] {
       section("map", "Where rock falls", chosenName(study, selection), wholeHistory(study), map.element),
     );
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => map.draw());
-    for (const moment of ["beforeprint", "afterprint"]) addEventListener(moment, () => map.draw());
+    whenPrinting(() => map.draw());
   }
   parts.push(section("measures", "Measures of damage", new MeasureTables(study, selection).element));
   return parts;

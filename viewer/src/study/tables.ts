@@ -186,10 +186,12 @@ export class RunTable {
     );
     if (left > 0)
       this.element.append(
+        h("p", { class: "print-only" }, `Printed are ${integer(rows.length)}; all are in runs.csv.`),
         h(
           "button",
           {
             type: "button",
+            class: "screen-only",
             click: () => {
               this.shown += 5 * pageSize;
               this.draw();
