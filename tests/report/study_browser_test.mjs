@@ -68,6 +68,7 @@ const tests = {
     assert.match(all, /\d+ of \d+ checked runs are marginal/);
     assert.match(await text(page, "#method"), /18446744073709551615/);
     assert.equal(await sidewaysOverflow(page), 0);
+    assert.doesNotMatch(await text(page, "#measures"), /have none|differences/);
     await shoot(page, "study-1400");
     await close(page);
   },
@@ -241,6 +242,15 @@ const tests = {
     assert.match(
       await text(page, "#gallery figcaption"),
       /m² fallen after “excavated”/,
+    );
+    for (const id of ["distribution", "measures", "runs"])
+      assert.match(
+        await text(page, `#${id} .hint`),
+        /Measures are differences: .* less what was there at the end of “excavated”/,
+      );
+    assert.match(
+      await text(page, "#measures caption"),
+      /bootstrap intervals; fewer than 5 realizations have none/,
     );
     await shoot(page, "study_since-1400");
     await close(page);

@@ -45,6 +45,18 @@ function wholeHistory(study: Study): HTMLElement | null {
     : null;
 }
 
+/** Numbers that are differences, where the study measures from a later stage on. */
+function onlyLater(study: Study): HTMLElement | null {
+  const { stage, since } = study.json;
+  if (!since) return null;
+  const end = stage ? `“${stage}”` : "the last stage";
+  return h(
+    "p",
+    { class: "hint" },
+    `Measures are differences: what was there at the end of ${end} less what was there at the end of “${since}”.`,
+  );
+}
+
 function statistics(study: Study, selection: Selection): Child[] {
   const { levels, fragility, grid } = study.json;
   const parts: Child[] = [];
@@ -56,6 +68,7 @@ function statistics(study: Study, selection: Selection): Child[] {
       "distribution",
       "How much, and how sure",
       chosenName(study, selection),
+      onlyLater(study),
       new Distribution(study, selection).element,
     ),
   );
@@ -68,7 +81,9 @@ function statistics(study: Study, selection: Selection): Child[] {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => map.draw());
     whenPrinting(() => map.draw());
   }
-  parts.push(section("measures", "Measures of damage", new MeasureTables(study, selection).element));
+  parts.push(
+    section("measures", "Measures of damage", onlyLater(study), new MeasureTables(study, selection).element),
+  );
   return parts;
 }
 
@@ -107,6 +122,7 @@ function runs(study: Study, selection: Selection): Child[] {
         h("a", { href: "study.json" }, "study.json"),
         ", the statistics.",
       ),
+      onlyLater(study),
       new RunTable(study).element,
     ),
   );

@@ -28,6 +28,9 @@ function cells(q: Shown, s: MeasureSummary): HTMLElement[] {
   ];
 }
 
+/** smallest_bootstrap_sample of src/statistics/bootstrap.h */
+const fewestForIntervals = 5;
+
 /** All measures of the chosen combination, and the chosen measure in all combinations. */
 export class MeasureTables {
   readonly element = h("div");
@@ -45,7 +48,9 @@ export class MeasureTables {
     const { combinations, measures, confidence } = study.json;
     const chosen = combinations[selection.combination];
     if (!chosen) return;
-    const small = `small print: ${percent(confidence)} bootstrap intervals`;
+    const few = combinations.some((c) => c.n > 0 && c.n < fewestForIntervals);
+    const none = few ? `; fewer than ${fewestForIntervals} realizations have none` : "";
+    const small = `small print: ${percent(confidence)} bootstrap intervals${none}`;
     const own = measures.map((m) => {
       const q = shownAs(m);
       return [h("th", { scope: "row", class: "text" }, label(q)), ...cells(q, chosen.measures[m.name])];
