@@ -86,6 +86,28 @@ const tests = {
     await close(page);
   },
 
+  async "the enlarged picture follows the window and the theme"() {
+    const page = await open("tunnel");
+    await page.locator(".picture").nth(3).click();
+    const width = () =>
+      page.$eval("dialog canvas", (e) => [
+        e.clientWidth,
+        e.parentElement.clientWidth - 32,
+      ]);
+    const picture = () => page.$eval("dialog canvas", (e) => e.toDataURL());
+    const [wide] = await width();
+    await page.setViewportSize({ width: 600, height: 800 });
+    await settle(page);
+    const [narrow, room] = await width();
+    assert.ok(narrow < wide && narrow === room, `${narrow} of ${room} px`);
+    const light = await picture();
+    await page.emulateMedia({ colorScheme: "dark" });
+    await settle(page);
+    assert.notEqual(await picture(), light);
+    await page.screenshot({ path: join(screenshots, "enlarged-dark.png") });
+    await close(page);
+  },
+
   async "pictures hold the blocks that left their place, or say how many they do not"() {
     const page = await open("fallen_stone", { script });
     const labels = async () =>

@@ -20,6 +20,7 @@ export class Pictures {
   private readonly legends = h("div", { class: "legends" });
   private readonly grid = h("div", { class: "pictures" });
   private readonly dialog: HTMLDialogElement;
+  private readonly largeLegends = h("div", { class: "legends" });
   private large: SectionView | null = null;
 
   constructor(
@@ -46,6 +47,7 @@ export class Pictures {
     this.element = h("div", { class: "picture-box" }, this.controls(), this.legends, this.grid, this.dialog);
     this.updateLegends();
     new ResizeObserver(() => this.redraw()).observe(this.grid);
+    addEventListener("resize", () => this.drawLarge());
   }
 
   private pictures(): Picture[] {
@@ -120,7 +122,6 @@ export class Pictures {
       {
         axes: true,
         label: `Block system: ${picture.title}`,
-        maxHeight: Math.max(200, window.innerHeight - 190),
       },
     );
     this.large = view;
@@ -128,11 +129,18 @@ export class Pictures {
     this.dialog.replaceChildren(
       h("div", { class: "dialog-head" }, h("strong", {}, picture.title), h("span", {}, picture.text), close),
       view.canvas,
-      h("div", { class: "legends" }, ...this.legendElements()),
+      this.largeLegends,
     );
     this.dialog.showModal();
-    view.resize(this.dialog.clientWidth - 32);
-    view.draw();
+    this.drawLarge();
+  }
+
+  private drawLarge(): void {
+    if (!this.large) return;
+    this.largeLegends.replaceChildren(...this.legendElements());
+    this.large.options.maxHeight = Math.max(200, window.innerHeight - 190);
+    this.large.resize(this.dialog.clientWidth - 32);
+    this.large.draw();
   }
 
   private closed(): void {
@@ -153,6 +161,7 @@ export class Pictures {
 
   readTheme(): void {
     for (const view of this.views) view.readTheme();
+    this.large?.readTheme();
   }
 
   redraw(): void {
@@ -164,6 +173,6 @@ export class Pictures {
       view.resize(width);
       view.draw();
     }
-    this.large?.draw();
+    this.drawLarge();
   }
 }
