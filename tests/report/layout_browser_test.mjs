@@ -108,6 +108,26 @@ const tests = {
     await close(page);
   },
 
+  async "stages under the slider lie beside each other, however short"() {
+    for (const width of [400, 1400]) {
+      const page = await open("fallen_stone", { width });
+      const boxes = await page.$$eval(".stage-part", (all) =>
+        all.map((e) => {
+          const { left, right } = e.getBoundingClientRect();
+          return [left, right];
+        }),
+      );
+      assert.equal(boxes.length, 4);
+      boxes.forEach(([left, right], k) => {
+        assert.ok(right - left >= 12, `${k}: ${right - left} px`);
+        if (k > 0) assert.ok(left >= boxes[k - 1][1] - 0.5, `${k}: overlap`);
+      });
+      await page.locator(".stage-part").first().click();
+      assert.match(await text(page, "#time-label"), /^in situ/);
+      await close(page);
+    }
+  },
+
   async "pictures hold the blocks that left their place, or say how many they do not"() {
     const page = await open("fallen_stone", { script });
     const labels = async () =>

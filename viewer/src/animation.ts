@@ -148,7 +148,7 @@ export class Animation {
     });
   }
 
-  /** The stages under the slider, each as wide as its frames. */
+  /** The stages under the slider, each as wide as its frames where that is wide enough for a click. */
   private stageBand(): HTMLElement {
     const { run } = this;
     const band = h("div", { class: "stage-band" });
@@ -173,8 +173,7 @@ export class Animation {
         },
         share > 0.08 ? name : "",
       );
-      part.style.left = `${(100 * from) / whole}%`;
-      part.style.width = `${100 * share}%`;
+      part.style.flexGrow = String(Math.max(1e-3, share) * 1e3);
       band.append(part);
     }
     return band;
