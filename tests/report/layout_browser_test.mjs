@@ -155,6 +155,33 @@ const tests = {
     assert.ok(!inTunnel.some((l) => /outside|^−/.test(l)), inTunnel.join("; "));
     await close(tunnel);
   },
+
+  async "an axis of nothing but zeros ends at 1"() {
+    const page = await open("fallen_stone", { script });
+    await page.locator("#quality .plot").last().scrollIntoViewIfNeeded();
+    await settle(page);
+    const labels = await page.evaluate(() => window.labels);
+    const written = labels
+      .filter((l) => /^Closed contacts/.test(l.figure))
+      .map((l) => l.words);
+    assert.ok(written.includes("1"), written.join("; "));
+    assert.ok(!written.includes("100"), written.join("; "));
+    await close(page);
+  },
+
+  async "captions and checks are read in a narrow window without scrolling"() {
+    const page = await open("marginal", { width: 400 });
+    assert.ok((await sidewaysOverflow(page)) <= 0);
+    const right = await page.$$eval("caption span", (all) =>
+      all.map((e) => e.getBoundingClientRect().right),
+    );
+    assert.ok(Math.max(...right) <= 400, right.join());
+    const checks = page.locator("#quality .table-box");
+    const beyond = await checks.evaluate((e) => e.scrollWidth - e.clientWidth);
+    assert.equal(beyond, 0);
+    await shoot(page, "marginal-400");
+    await close(page);
+  },
 };
 
 await run(tests);

@@ -72,7 +72,7 @@ export function tableBox(caption: string, head: Child[][], rows: Child[][], clas
   for (const cells of head) header.append(h("tr", {}, ...cells));
   const body = h("tbody");
   for (const cells of rows) body.append(h("tr", {}, ...cells));
-  const table = h("table", { class: className }, h("caption", {}, caption), header, body);
+  const table = h("table", { class: className }, h("caption", {}, h("span", {}, caption)), header, body);
   return h("div", { class: "table-box", tabindex: "0", role: "region", "aria-label": caption }, table);
 }
 

@@ -151,6 +151,9 @@ export class Plot {
     if (options.right)
       axes.push({ ...axis, scale: "right", side: 1, size: axisWidth, values: number, grid: { show: false } });
     const divisor = options.right?.divisor ?? 1;
+    // Nothing but zeros would be drawn on an axis to 100.
+    const isZero = options.series.every((s) => Array.from(s.values).every((v) => !v));
+    const range = options.range ?? (isZero && !options.logarithmic ? [0, 1] : undefined);
     const plot = new uPlot(
       {
         width,
@@ -160,7 +163,7 @@ export class Plot {
           x: { time: false },
           y: {
             distr: options.logarithmic ? 3 : 1,
-            ...(options.range ? { range: () => options.range! } : {}),
+            ...(range ? { range: () => range } : {}),
           },
           ...(options.right
             ? {

@@ -45,7 +45,7 @@ export function runFacts(run: Run): HTMLElement {
   if (model.opening_width_m !== null)
     facts.splice(4, 0, ["Opening", `${significant(model.opening_width_m, 3)} m wide`]);
   const [ox, oy] = model.origin;
-  if (ox !== 0 || oy !== 0) facts.push(["Local origin", `${significant(ox, 9)}, ${significant(oy, 9)} m`]);
+  if (ox !== 0 || oy !== 0) facts.push(["Local origin", `${significant(ox, 9)} / ${significant(oy, 9)} m`]);
   return factList(facts.filter(([name, value]) => name !== "Excavated at the end" || value !== "0 m²"));
 }
 
@@ -242,7 +242,7 @@ export function qualityTable(run: Run): HTMLElement {
   const verdict = checksVerdict(all);
   const rows = all.map((c) => [
     h("th", { scope: "row" }, c.name),
-    h("td", {}, c.value),
+    h("td", { class: "wrap" }, c.value),
     h("td", { class: "text" }, c.limit),
     c.good === null
       ? h("td", { class: "text" }, "–")

@@ -188,12 +188,12 @@ export function checks(run: Run): Check[] {
     },
     {
       name: "Largest true overlap of two blocks",
-      limit: "below 1 mm",
+      limit: "below 1\u00a0mm",
       ...(cut_off ? unknown : { value: `${length(max_overlap_m)}${overlapPlace}`, good: overlapIsSmall }),
     },
     {
       name: "Energy residual, of the largest term",
-      limit: "below 1 %",
+      limit: "below 1\u00a0%",
       ...(cut_off && energy.residual_ratio === null
         ? unknown
         : {
@@ -203,7 +203,7 @@ export function checks(run: Run): Check[] {
     },
     {
       name: "Largest change of a block's area, elastic strain included",
-      limit: "below 1 %",
+      limit: "below 1\u00a0%",
       ...(cut_off
         ? unknown
         : {
