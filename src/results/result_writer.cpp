@@ -241,7 +241,7 @@ void ResultWriter::end(const simulation::RunRecord& run) {
   if (!state_->file) return;  // the run failed before it began
   if (!state_->published) state_->publish(run.steps + 1);
   state_->file->run.append_line(run_json(run));
-  state_->file->summary.append_line(summary_json(state_->model, run));
+  state_->file->summary.append(summary_json(state_->model, run));
   flush();
   hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string());
   state_->file.reset();
