@@ -368,7 +368,7 @@ RunRecord Runner::run() {
     record.open_close.mean_iterations =
         record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
     record.energy = energy();
-    record.interrupted = stopped();
+    record.interrupted = record.interrupted || stopped();
     record.profile = profile_;
     observer_.end(record);
   };

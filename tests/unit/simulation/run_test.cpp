@@ -114,6 +114,17 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   EXPECT_THROW(run(setup, options, nobody), InputError);
 }
 
+TEST(Run, ThatCannotGoOnHasNotReachedItsEnd) {
+  struct Failing final : RunObserver {
+    bool interrupted = false;
+    void step(const StepRow&) override { throw RunError("the disk is full"); }
+    void end(const RunRecord& record) override { interrupted = record.interrupted; }
+  };
+  Failing observer;
+  EXPECT_THROW(run(shaken_incline(1), {}, observer), RunError);
+  EXPECT_TRUE(observer.interrupted);
+}
+
 TEST(Run, OtherFilesAreOtherInput) {
   const FreshFolder folder;
   RunSetup setup = shaken_incline(1);
