@@ -77,21 +77,20 @@ struct ResultWriter::State {
 
   hdf5::QuietErrors quiet;
   std::filesystem::path directory;
-  bool resume = false;
   std::chrono::duration<double> flush_interval{};
   simulation::ModelRecord model;
   std::optional<OpenFile> file;
   Clock::time_point start, last_flush;
   std::function<void()> before_publishing;
   bool published = false;
-  bool begins_with_stage = false;                           // the first stage reported has no steps yet
-  std::vector<std::pair<int, std::string>> waiting_stages;  // lines from before the first row
+  std::optional<simulation::Reported> earlier;  // by the run that is resumed
+  std::vector<std::string> waiting_stages;      // lines from before the first row
 
   [[nodiscard]] std::filesystem::path path() const { return directory / "result.h5"; }
   [[nodiscard]] std::filesystem::path temporary_path() const { return directory / "result.h5.tmp"; }
   [[nodiscard]] bool flush_is_due() const;
-  void copy_earlier(long first_new_step);
-  void publish(long first_new_step);
+  void copy_earlier();
+  void publish();
   void abandon() {
     file.reset();
     std::error_code ignored;
@@ -106,40 +105,45 @@ bool ResultWriter::State::flush_is_due() const {
   return now - last_flush >= stretch * flush_interval;
 }
 
-// What the earlier run had reported before `first_new_step`.
-void ResultWriter::State::copy_earlier(long first_new_step) {
-  const RunData earlier = read_run(directory);
-  if (earlier.model.vertices != model.vertices || earlier.model.blocks.size() != model.blocks.size() ||
-      earlier.model.history_names != model.history_names) {
+// What the earlier run had reported by its checkpoint.
+void ResultWriter::State::copy_earlier() {
+  const auto refuse = [&](std::string found, std::string expected) {
     Diagnostic diagnostic;
     diagnostic.where.file = path().string();
-    diagnostic.found = fmt::format("results of another model ({} blocks)", earlier.model.blocks.size());
-    diagnostic.expected = fmt::format("results of the run to be resumed ({} blocks)", model.blocks.size());
+    diagnostic.found = std::move(found);
+    diagnostic.expected = std::move(expected);
     diagnostic.hint = "run without --resume, or into another folder";
     throw InputError(std::move(diagnostic));
-  }
-  const int first_new_stage = waiting_stages.empty() ? 0 : waiting_stages.front().first;
-  // A stage that begins with the first new event begins at the step at which the one before ended.
-  const auto copy = [&](const auto& rows, auto& table) {
-    for (const auto& row : rows) {
-      if (row.step < first_new_step || row.stage < first_new_stage) table.append(row);
-    }
   };
-  copy(earlier.frames, file->frames);
-  copy(earlier.contacts, file->contacts);
-  copy(earlier.steps, file->steps);
-  for (const simulation::HistoryRow& row : earlier.histories) {
-    if (row.step < first_new_step + (begins_with_stage ? 1 : 0)) file->histories.append(row);
+  const RunData data = read_run(directory);
+  if (data.model.vertices != model.vertices || data.model.blocks.size() != model.blocks.size() ||
+      data.model.history_names != model.history_names) {
+    refuse(fmt::format("results of another model ({} blocks)", data.model.blocks.size()),
+           fmt::format("results of the run to be resumed ({} blocks)", model.blocks.size()));
   }
-  for (std::size_t k = 0; k < earlier.run.stages.size() && static_cast<int>(k) < first_new_stage; ++k) {
-    file->stages.append_line(stage_json(static_cast<int>(k), earlier.run.stages[k], true));
-  }
+  const auto copy = [&](const char* what, const auto& rows, long count, const auto& append) {
+    if (static_cast<long>(rows.size()) < count) {
+      refuse(fmt::format("{} {}", rows.size(), what),
+             fmt::format("the {} that the run to be resumed had written by its last checkpoint", count));
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) append(k, rows[k]);
+  };
+  const auto to = [](auto& table) { return [&](std::size_t, const auto& row) { table.append(row); }; };
+  copy("frames", data.frames, earlier->frames, to(file->frames));
+  copy("rows of contacts", data.contacts, earlier->contacts, to(file->contacts));
+  copy("rows of histories", data.histories, earlier->histories, to(file->histories));
+  copy("rows of steps", data.steps, earlier->steps, to(file->steps));
+  copy("stages", data.run.stages, earlier->stages + (earlier->within_stage ? 1 : 0),
+       [&](std::size_t k, const simulation::StageRecord& stage) {
+         const int index = static_cast<int>(k);
+         file->stages.append_line(stage_json(index, stage, index < earlier->stages));
+       });
 }
 
 // Gives the file its name, when its first row is to be written.
-void ResultWriter::State::publish(long first_new_step) {
-  if (resume) copy_earlier(first_new_step);
-  for (const auto& [index, line] : waiting_stages) file->stages.append_line(line);
+void ResultWriter::State::publish() {
+  if (earlier) copy_earlier();
+  for (const std::string& line : waiting_stages) file->stages.append_line(line);
   waiting_stages.clear();
   hdf5::check(H5Fflush(file->file, H5F_SCOPE_GLOBAL), path().string());
   hdf5::check(H5Fstart_swmr_write(file->file), path().string());
@@ -150,10 +154,9 @@ void ResultWriter::State::publish(long first_new_step) {
   published = true;
 }
 
-ResultWriter::ResultWriter(std::filesystem::path directory, bool resume, double flush_interval)
+ResultWriter::ResultWriter(std::filesystem::path directory, double flush_interval)
     : state_(std::make_unique<State>()) {
   state_->directory = std::move(directory);
-  state_->resume = resume;
   state_->flush_interval = std::chrono::duration<double>(flush_interval);
 }
 
@@ -182,9 +185,13 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   state_->start = state_->last_flush = Clock::now();
 }
 
+void ResultWriter::resume(const simulation::Reported& reported) {
+  state_->earlier = reported;
+}
+
 // What is to be done before a row is added.
-void ResultWriter::before_event(long step) {
-  if (!state_->published) state_->publish(step);
+void ResultWriter::before_event() {
+  if (!state_->published) state_->publish();
   if (state_->flush_is_due()) flush();
 }
 
@@ -200,37 +207,36 @@ void ResultWriter::flush() {
 void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) {
   const std::string line = stage_json(index, stage, false);
   if (!state_->published) {
-    state_->begins_with_stage = stage.steps == 0;
-    state_->waiting_stages.emplace_back(index, line);
+    state_->waiting_stages.push_back(line);
   } else {
     state_->file->stages.append_line(line);
   }
 }
 
 void ResultWriter::frame(const simulation::Frame& frame) {
-  before_event(frame.step);
+  before_event();
   state_->file->frames.append(frame);
 }
 
 void ResultWriter::contacts(const simulation::ContactFrame& frame) {
-  before_event(frame.step);
+  before_event();
   state_->file->contacts.append(frame);
 }
 
 void ResultWriter::history(const simulation::HistoryRow& row) {
-  before_event(row.step);
+  before_event();
   state_->file->histories.append(row);
 }
 
 void ResultWriter::step(const simulation::StepRow& row) {
-  before_event(row.step);
+  before_event();
   state_->file->steps.append(row);
 }
 
 void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
   const std::string line = stage_json(index, stage, true);
   if (!state_->published) {
-    state_->waiting_stages.emplace_back(index, line);
+    state_->waiting_stages.push_back(line);
     return;
   }
   state_->file->stages.append_line(line);
@@ -239,15 +245,15 @@ void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
 
 void ResultWriter::end(const simulation::RunRecord& run) {
   if (!state_->file) return;  // the run failed before it began
-  if (!state_->published) state_->publish(run.steps + 1);
+  if (!state_->published) state_->publish();
   state_->file->run.append_line(run_json(run));
   state_->file->summary.append(summary_json(state_->model, run));
   flush();
   hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string());
   state_->file.reset();
-  write_summary(state_->directory, state_->model, run);
   const auto& names = state_->model.history_names;
   if (!names.empty()) write_histories_csv(state_->directory, names, read_histories(state_->directory));
+  write_summary(state_->directory, state_->model, run);  // last: has_ended looks for it
 }
 
 }  // namespace keyblock::results

@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0007;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0008;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -91,6 +91,12 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.initial_energy);
   archive(s.wall_time);
   archive(s.iterations);
+  archive(s.reported.frames);
+  archive(s.reported.contacts);
+  archive(s.reported.histories);
+  archive(s.reported.steps);
+  archive(s.reported.stages);
+  archive(s.reported.within_stage);
   archive(s.record.open_close);
   archive(s.record.max_overlap.depth);
   archive(s.record.max_overlap.block_a);

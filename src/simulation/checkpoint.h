@@ -22,6 +22,7 @@ struct RunState {
   double initial_energy = 0.0;  ///< J
   double wall_time = 0.0;       ///< s
   long iterations = 0;
+  Reported reported;
   RunRecord record;  ///< what has been summed up so far, with the stages that have ended
 };
 

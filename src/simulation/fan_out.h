@@ -12,6 +12,7 @@ class FanOut : public RunObserver {
   explicit FanOut(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
 
   void begin(const ModelRecord& r) override { to_all(&RunObserver::begin, r); }
+  void resume(const Reported& r) override { to_all(&RunObserver::resume, r); }
   void stage_begin(int k, const StageRecord& r) override { to_all(&RunObserver::stage_begin, k, r); }
   void frame(const Frame& r) override { to_all(&RunObserver::frame, r); }
   void contacts(const ContactFrame& r) override { to_all(&RunObserver::contacts, r); }

@@ -74,6 +74,7 @@ class Runner {
   void shake(StageRecord& record);
   void after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction);
   void record_frame();
+  void record_contacts();
   void check_overlap();
   void checkpoint();
   [[nodiscard]] Energy energy() const;
@@ -176,6 +177,12 @@ void Runner::excavate(const Stage& stage) {
 void Runner::record_frame() {
   const Profile::Scope scope(profile_, Phase::output);
   observer_.frame(recorder_.frame(now_.mechanics, now_.stage));
+  ++now_.reported.frames;
+}
+
+void Runner::record_contacts() {
+  observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
+  ++now_.reported.contacts;
 }
 
 void Runner::check_overlap() {
@@ -191,6 +198,8 @@ void Runner::checkpoint() {
   if (settler_) now_.settler = settler_->memory();
   now_.orders = orders_.memory();
   now_.wall_time = wall_before_ + seconds_since(run_start_);
+  now_.reported.stages = now_.stage;
+  now_.reported.within_stage = now_.stage_step > 0;
   write_checkpoint(options_.directory, setup_, now_);
 }
 
@@ -217,18 +226,18 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   if (steps_left > 0) {
     if (is_static ? step % setup_.output.settle_frame_interval == 0 : due(setup_.output.frame_interval))
       record_frame();
-    if (!is_static && due(setup_.output.contact_interval)) {
-      observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
-    }
+    if (!is_static && due(setup_.output.contact_interval)) record_contacts();
     if (!is_static && due(overlap_interval)) check_overlap();
   }
   if (!setup_.histories.empty() && (is_static || due(setup_.output.history_interval))) {
     observer_.history(recorder_.history(now_.mechanics));
+    ++now_.reported.histories;
   }
   if (due(step_row_interval)) {
     observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations,
                     setup_.time_step / report.substeps, report.penetration, report.max_displacement,
                     report.closed_contacts, energy()});
+    ++now_.reported.steps;
   }
   if (step % checkpoint_steps == 0) checkpoint();
   if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
@@ -341,7 +350,7 @@ void Runner::run_stage() {
   record.wall_time = seconds_since(stage_start_);
   check_overlap();
   record_frame();
-  observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
+  record_contacts();
   record.damage = gauge_.measure(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
@@ -359,6 +368,7 @@ void Runner::run_stage() {
 RunRecord Runner::run() {
   options_.resume ? resume() : begin();
   observer_.begin(recorder_.model());
+  if (options_.resume) observer_.resume(now_.reported);
   const auto finish = [&] {
     RunRecord& record = now_.record;
     record.steps = now_.mechanics.step;

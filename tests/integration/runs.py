@@ -2,6 +2,7 @@
 """Runs from end to end: what is written, that it is the same again, that nothing is lost, that Ctrl-C is survived."""
 
 import csv
+import json
 import resource
 import signal
 import subprocess
@@ -128,10 +129,28 @@ class Folder(Scenario):
         self.assertEqual(self.summary("new")["state_hash"], self.summary("out")["state_hash"])
 
     def test_resuming_a_finished_run_changes_nothing(self):
-        before = self.summary("out")
+        def resume():
+            self.assertIn("out: this run has ended", self.keyblock("run", "incline.toml", "-o", "out", "--resume").stdout)
+
+        before = self.content()
+        resume()
+        self.assertEqual(self.content(), before)
+        (self.folder / "out/report.html").unlink()
+        resume()
+        self.assertEqual(self.content(), before)
+        (self.folder / "out/checkpoint.bin").unlink()
+        resume()
+
+    def test_what_is_missing_of_a_finished_run_is_written_again(self):
+        before = self.content()
+        (self.folder / "out/summary.json").unlink()
+        (self.folder / "out/histories.csv").unlink()
+        (self.folder / "out/report.html").unlink()
         self.keyblock("run", "incline.toml", "-o", "out", "--resume")
-        for field in ("steps", "state_hash", "stages", "open_close", "max_overlap_m"):
-            self.assertEqual(self.summary("out")[field], before[field], field)
+        self.assertEqual(set(self.content()), set(before))
+        self.assertEqual(self.content()["histories.csv"], before["histories.csv"])
+        self.assertEqual(self.summary("out")["stages"], json.loads(before["summary.json"])["stages"])
+        self.assertIn('"slide"', (self.folder / "out/report.html").read_text())
 
 
 class OtherFiles(Scenario):

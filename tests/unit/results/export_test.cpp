@@ -197,7 +197,7 @@ TEST(ResultFileDocs, ThePythonExampleRuns) {
   const std::string script = page.substr(begin, end - begin);
   const FreshFolder folder;
   SampleRun sample;
-  ResultWriter writer(folder, false, 0.0);
+  ResultWriter writer(folder, 0.0);
   sample.play(writer, 1, 26, false);
   PythonResult result = python(folder, script, folder.string());
   EXPECT_EQ(result.status, 0) << result.output;

@@ -66,6 +66,28 @@ TEST(ResultFile, ComesBackToTheLastBit) {
   EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
 }
 
+TEST(ResultFile, ARunHasEndedWhenAllIsWritten) {
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  EXPECT_TRUE(has_ended(folder));
+  write_file_atomically(folder / "summary.json", "of an earlier end");
+  EXPECT_FALSE(has_ended(folder));
+  std::filesystem::remove(folder / "summary.json");
+  EXPECT_FALSE(has_ended(folder));
+  simulation::RunRecord part = sample.run();
+  part.interrupted = true;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer, 1, 30, false);
+    writer.end(part);
+  }
+  EXPECT_FALSE(has_ended(folder));
+}
+
 TEST(ResultFile, FilesOfEarlierVersionsDoNotSayWhereTheLargestOverlapIs) {
   SampleRun sample;
   std::string text = run_json(sample.run());
@@ -81,7 +103,7 @@ TEST(ResultFile, HowOftenItIsFlushedDoesNotShow) {
   const FreshFolder folder;
   SampleRun sample;
   {
-    ResultWriter writer(folder, false, 0.0);  // after every event
+    ResultWriter writer(folder, 0.0);  // after every event
     sample.play(writer);
   }
   expect_equal(read_run(folder), sample.expected());
@@ -112,7 +134,7 @@ TEST(ResultFile, ManyRows) {
   const FreshFolder folder;
   SampleRun sample;
   {
-    ResultWriter writer(folder, false, never);
+    ResultWriter writer(folder, never);
     writer.begin(sample.model);
     for (long step = 1; step <= 20000; ++step) writer.history(sample.history(step));
     for (long step = 1; step <= 300; ++step) writer.contacts(sample.contacts(0, step, 100));
@@ -130,7 +152,7 @@ TEST(ResultFile, SurvivesBeingKilled) {
   SampleRun sample;
   // Flushed at the end of stage 0 (step 10) alone.
   in_killed_process([&] {
-    ResultWriter writer(folder, false, never);
+    ResultWriter writer(folder, never);
     sample.play(writer, 1, 23, false);
     ::kill(::getpid(), SIGKILL);
   });
@@ -153,7 +175,7 @@ TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
   const FreshFolder folder;
   SampleRun sample;
   in_killed_process([&] {
-    ResultWriter writer(folder, false, 0.0);
+    ResultWriter writer(folder, 0.0);
     sample.play(writer, 1, 23, false);
     ::kill(::getpid(), SIGKILL);
   });
@@ -181,7 +203,7 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      ResultWriter writer(folder, false, 0.0);
+      ResultWriter writer(folder, 0.0);
       writer.begin(sample.model);
       for (long step = 1;; ++step) {
         writer.history(sample.history(step));
@@ -217,33 +239,92 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
 TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
   const FreshFolder folder;
   SampleRun sample;
-  ResultWriter writer(folder, false, 0.0);
+  ResultWriter writer(folder, 0.0);
   sample.play(writer, 1, 12, false);
   const RunData data = read_run(folder);
   EXPECT_EQ(data.frames.size(), 2U);
   EXPECT_TRUE(data.run.interrupted);
 }
 
-TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
+TEST(ResultFile, AResumedRunGoesOnFromItsCheckpoint) {
   const FreshFolder folder;
   SampleRun sample;
   in_killed_process([&] {
-    ResultWriter writer(folder, false, 0.0);
+    ResultWriter writer(folder, 0.0);
     sample.play(writer, 1, 27, false);
     ::kill(::getpid(), SIGKILL);
   });
   {
-    ResultWriter writer(folder, true);
+    ResultWriter writer(folder);
     sample.play(writer, 19, 30);  // from a checkpoint at step 18
   }
   expect_equal(read_run(folder), sample.expected());
+}
+
+// Of a run that is interrupted at the step of its checkpoint, the end is reported at that step, too.
+TEST(ResultFile, WhatWasReportedAfterTheCheckpointIsNotKept) {
+  for (const long checkpoint : {10L, 20L, 25L}) {
+    const FreshFolder folder;
+    SampleRun sample;
+    {
+      ResultWriter writer(folder);
+      sample.play(writer, 1, checkpoint, false);
+      if (checkpoint == 10) writer.stage_begin(1, sample.stage(1));
+      writer.frame(sample.frame(1, checkpoint));
+      writer.contacts(sample.contacts(1, checkpoint, 2));
+      writer.stage_end(1, sample.stage(1));
+      writer.end(sample.run());
+    }
+    ResultWriter writer(folder);
+    sample.play(writer, checkpoint + 1, 30);
+    expect_equal(read_run(folder), sample.expected());
+  }
+}
+
+TEST(ResultFile, AResumedRunThatReportsNothingKeepsWhatTheEarlierOneDid) {
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  {
+    ResultWriter writer(folder);
+    sample.play(writer, 31, 30);
+  }
+  expect_equal(read_run(folder), sample.expected());
+  {
+    ResultWriter writer(folder);
+    sample.play(writer, 19, 18);
+  }
+  const RunData data = read_run(folder);
+  EXPECT_EQ(data.steps.size(), 18U);
+  EXPECT_EQ(data.frames.size(), 3U);
+  ASSERT_EQ(data.run.stages.size(), 2U);
+  EXPECT_FALSE(data.run.stages[0].interrupted);
+  EXPECT_TRUE(data.run.stages[1].interrupted);
+}
+
+TEST(ResultFile, ResumingWithLessThanTheCheckpointKnowsOfIsRefused) {
+  const FreshFolder folder;
+  SampleRun sample;
+  in_killed_process([&] {
+    ResultWriter writer(folder, 0.0);
+    sample.play(writer, 1, 17, false);
+  });
+  const std::string before = read_file(folder / "result.h5");
+  {
+    ResultWriter writer(folder);
+    EXPECT_THROW(sample.play(writer, 26, 30), InputError);
+  }
+  EXPECT_EQ(read_file(folder / "result.h5"), before);
 }
 
 TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
   const FreshFolder folder;
   SampleRun sample;
   {
-    ResultWriter writer(folder, true);
+    ResultWriter writer(folder);
     EXPECT_THROW(sample.play(writer, 19, 30), InputError);
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder));
@@ -297,8 +378,8 @@ TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
   {
     SampleRun other;
     other.model.vertices[0].x += 1.0;
-    ResultWriter writer(folder, true);
-    EXPECT_THROW(other.play(writer), InputError);
+    ResultWriter writer(folder);
+    EXPECT_THROW(other.play(writer, 19), InputError);
   }
   expect_equal(read_run(folder), sample.expected());
   EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
