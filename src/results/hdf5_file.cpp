@@ -1,8 +1,11 @@
 #include "results/hdf5_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -92,6 +95,13 @@ hid_t file_type() {
   if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
 }
 
+// Of a file of the default driver.
+int descriptor_of(hid_t file) {
+  void* descriptor = nullptr;
+  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), "file descriptor");
+  return *static_cast<int*>(descriptor);
+}
+
 }  // namespace
 
 // Files are closed where their handles end. At the end of the program the library would try once more what could not be written
@@ -117,6 +127,10 @@ void check(herr_t status, const std::string& what) {
 hid_t check_id(hid_t id, const std::string& what) {
   check(id < 0 ? -1 : 0, what);
   return id;
+}
+
+void sync(hid_t file) {
+  if (::fsync(descriptor_of(file)) != 0) throw RunError(std::strerror(errno));
 }
 
 Handle create_group(hid_t parent, const std::string& name) {

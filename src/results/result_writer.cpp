@@ -233,6 +233,13 @@ void ResultWriter::step(const simulation::StepRow& row) {
   state_->file->steps.append(row);
 }
 
+// Before the first event of a resumed run, all that the checkpoint counts stands in the file of the earlier one.
+void ResultWriter::checkpoint() {
+  if (!state_->published) return;
+  flush();
+  hdf5::sync(state_->file->file);
+}
+
 void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
   const std::string line = stage_json(index, stage, true);
   if (!state_->published) {

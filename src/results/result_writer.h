@@ -11,8 +11,8 @@ namespace keyblock::results {
 /// were chosen, histories.csv.
 ///
 /// The layout is documented in docs/result-file.md. The file is written in HDF5's single-writer-multiple-reader mode
-/// and flushed at the end of every stage and every `flush_interval` seconds (more seldom in runs of more than a few
-/// minutes: every hundredth of the time that has passed): it can be read while the run goes on, and after it was killed,
+/// and flushed at every checkpoint, at the end of every stage and every `flush_interval` seconds (more seldom in runs of
+/// more than a few minutes: every hundredth of the time that has passed): it can be read while the run goes on, and after it was killed,
 /// up to the last flush (read_run; in Python h5py.File(path, swmr=True)).
 ///
 /// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps of the
@@ -36,6 +36,7 @@ class ResultWriter : public simulation::RunObserver {
   void contacts(const simulation::ContactFrame& frame) override;
   void history(const simulation::HistoryRow& row) override;
   void step(const simulation::StepRow& row) override;
+  void checkpoint() override;
   void stage_end(int index, const simulation::StageRecord& stage) override;
   void end(const simulation::RunRecord& run) override;
 

@@ -18,6 +18,7 @@ class FanOut : public RunObserver {
   void contacts(const ContactFrame& r) override { to_all(&RunObserver::contacts, r); }
   void history(const HistoryRow& r) override { to_all(&RunObserver::history, r); }
   void step(const StepRow& r) override { to_all(&RunObserver::step, r); }
+  void checkpoint() override { to_all(&RunObserver::checkpoint); }
   void progress(const Progress& r) override { to_all(&RunObserver::progress, r); }
   void stage_end(int k, const StageRecord& r) override { to_all(&RunObserver::stage_end, k, r); }
   void end(const RunRecord& r) override { to_all(&RunObserver::end, r); }

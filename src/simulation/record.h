@@ -220,6 +220,8 @@ class RunObserver {
   virtual void contacts(const ContactFrame&) {}
   virtual void history(const HistoryRow&) {}
   virtual void step(const StepRow&) {}
+  /// A checkpoint is about to be written, from which a resumed run goes on: what was reported so far must outlast this one.
+  virtual void checkpoint() {}
   virtual void progress(const Progress&) {}
   virtual void stage_end(int /*index*/, const StageRecord&) {}
   virtual void end(const RunRecord&) {}

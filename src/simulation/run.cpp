@@ -200,6 +200,7 @@ void Runner::checkpoint() {
   now_.wall_time = wall_before_ + seconds_since(run_start_);
   now_.reported.stages = now_.stage;
   now_.reported.within_stage = now_.stage_step > 0;
+  observer_.checkpoint();
   write_checkpoint(options_.directory, setup_, now_);
 }
 

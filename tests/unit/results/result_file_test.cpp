@@ -171,6 +171,22 @@ TEST(ResultFile, SurvivesBeingKilled) {
   expect_equal(data, expected);
 }
 
+TEST(ResultFile, HoldsAllThatWasReportedByACheckpoint) {
+  const FreshFolder folder;
+  SampleRun sample;
+  in_killed_process([&] {
+    ResultWriter writer(folder, never);
+    sample.play(writer, 1, 17, false);
+    writer.checkpoint();
+    writer.step(sample.step_row(1, 18));
+    ::kill(::getpid(), SIGKILL);
+  });
+  const RunData data = read_run(folder);
+  EXPECT_EQ(data.steps.size(), 17U);
+  EXPECT_EQ(data.histories.size(), 17U);
+  EXPECT_EQ(data.frames.size(), 3U);
+}
+
 TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
   const FreshFolder folder;
   SampleRun sample;
