@@ -140,11 +140,13 @@ void ResultWriter::State::copy_earlier() {
        });
 }
 
-// Gives the file its name, when its first row is to be written.
+// Gives the file its name, when its first row is to be written. With what it takes over it is complete by then: the file whose place
+// it takes held that.
 void ResultWriter::State::publish() {
   if (earlier) copy_earlier();
   for (const std::string& line : waiting_stages) file->stages.append_line(line);
   waiting_stages.clear();
+  file->flush();
   hdf5::check(H5Fflush(file->file, H5F_SCOPE_GLOBAL), path().string());
   hdf5::check(H5Fstart_swmr_write(file->file), path().string());
   if (before_publishing) before_publishing();

@@ -259,19 +259,15 @@ class Trouble(Scenario):
             self.assertRegex(error, "loop|incline.toml/out|nowhere|found a folder", words)
 
 
-class Interrupt(Scenario):
-    def test_two_runs_in_one_folder(self):
-        run = self.start("out", 1e5)
-        error = self.keyblock("run", "incline.toml", "-o", "out", "--force", expect=1).stderr
-        self.assertIn(f"out: found a run that process {run.pid} on ", error)
-        run.send_signal(signal.SIGINT)
-        run.communicate(timeout=30)
-        self.assertFalse((self.folder / "out/lock").exists())
+def lasting(duration):
+    return ("--set", f"stage.slide.duration={duration}")
 
-    def start(self, folder, duration):
+
+class Background(Scenario):
+    def start(self, folder, *options):
         """A run that has begun to write its results."""
         run = subprocess.Popen(
-            [PROGRAM, "run", "incline.toml", "-o", folder, "--set", f"stage.slide.duration={duration}"],
+            [PROGRAM, "run", "incline.toml", "-o", folder, *options],
             cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )  # fmt: skip
         self.addCleanup(run.stdout.close)
@@ -281,11 +277,21 @@ class Interrupt(Scenario):
             time.sleep(0.005)
         return run
 
+
+class Interrupt(Background):
+    def test_two_runs_in_one_folder(self):
+        run = self.start("out", *lasting(1e5))
+        error = self.keyblock("run", "incline.toml", "-o", "out", "--force", expect=1).stderr
+        self.assertIn(f"out: found a run that process {run.pid} on ", error)
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=30)
+        self.assertFalse((self.folder / "out/lock").exists())
+
     def interrupted(self, folder):
         """Interrupts a run in its middle; returns how long it would have lasted, in simulated seconds."""
         duration = 16.0  # the first checkpoint comes after 2000 steps, 2 s
         while duration < 1000.0:
-            run = self.start(folder, duration)
+            run = self.start(folder, *lasting(duration))
             run.send_signal(signal.SIGINT)
             _, errors = run.communicate(timeout=30)
             if run.returncode != 0:  # it had not ended by itself
@@ -305,7 +311,7 @@ class Interrupt(Scenario):
         self.assertTrue((self.folder / "out/report.html").stat().st_size > 1000)
         self.keyblock("report", "out")
 
-        length = ("--set", f"stage.slide.duration={duration}")
+        length = lasting(duration)
         self.keyblock("run", "incline.toml", "-o", "out", "--resume", *length)
         self.keyblock("run", "incline.toml", "-o", "whole", *length)
         resumed, whole = self.summary("out"), self.summary("whole")
@@ -318,13 +324,65 @@ class Interrupt(Scenario):
         self.assertEqual(*histories)
 
     def test_a_second_interrupt_ends_at_once(self):
-        run = self.start("out", 1e5)
+        run = self.start("out", *lasting(1e5))
         run.send_signal(signal.SIGSTOP)  # both signals arrive before the next step
         run.send_signal(signal.SIGINT)
         run.send_signal(signal.SIGTERM)
         run.send_signal(signal.SIGCONT)
         run.communicate(timeout=30)
         self.assertIn(run.returncode, (-signal.SIGINT, -signal.SIGTERM))
+
+
+class Killed(Background):
+    """A run that is killed loses nothing that its checkpoint is beyond."""
+
+    # 1000 steps a second, a checkpoint every 2000 of them.
+    OPTIONS = (*lasting(40.0), "--set", "output.frame_interval=1.0")
+
+    def tables(self, folder):
+        """All rows of the result file, and the stages but for their wall time."""
+        tables = {"histories.csv": (self.folder / folder / "histories.csv").read_bytes()}
+        for kind in ("csv", "vtk"):
+            self.keyblock("export", folder, "--format", kind)
+            for path in (self.folder / folder / kind).iterdir():
+                tables[f"{kind}/{path.name}"] = path.read_bytes()
+        stages = self.summary(folder)["stages"]
+        for stage in stages:
+            del stage["wall_time_s"]
+        return tables | {"stages": stages}
+
+    def assert_same(self, folder, whole):
+        tables, expected = self.tables(folder), self.tables(whole)
+        self.assertEqual(set(tables), set(expected))
+        for name, table in expected.items():
+            self.assertEqual(tables[name], table, name)
+        self.assertEqual(self.summary(folder)["state_hash"], self.summary(whole)["state_hash"])
+
+    def inode(self, name):
+        try:
+            return (self.folder / "out" / name).stat().st_ino
+        except FileNotFoundError:
+            return None
+
+    def kill_when_replaced(self, name, count, *options):
+        """Kills a run right after it has given a file its place so many times; returns whether the run had not ended before."""
+        run = self.start("out", *self.OPTIONS, *options)
+        for _ in range(count):
+            before = self.inode(name)
+            while self.inode(name) == before and run.poll() is None:
+                pass
+        run.kill()
+        run.communicate(timeout=30)
+        return run.returncode == -signal.SIGKILL
+
+    def test_resumes_to_the_tables_of_a_run_that_was_never_stopped(self):
+        self.keyblock("run", "incline.toml", "-o", "whole", *self.OPTIONS)
+        kills = self.kill_when_replaced("checkpoint.bin", 2)
+        for name, count in (("result.h5", 1), ("checkpoint.bin", 1), ("result.h5", 1), ("checkpoint.bin", 3), ("result.h5", 1)):
+            kills += self.kill_when_replaced(name, count, "--resume")
+        self.assertGreaterEqual(kills, 3)
+        self.keyblock("run", "incline.toml", "-o", "out", "--resume", *self.OPTIONS)
+        self.assert_same("out", "whole")
 
 
 if __name__ == "__main__":

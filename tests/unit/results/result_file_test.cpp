@@ -277,6 +277,26 @@ TEST(ResultFile, AResumedRunGoesOnFromItsCheckpoint) {
   expect_equal(read_run(folder), sample.expected());
 }
 
+TEST(ResultFile, AResumedRunThatIsKilledKeepsWhatTheEarlierOneDid) {
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  in_killed_process([&] {
+    ResultWriter writer(folder, never);
+    sample.play(writer, 19, 20, false);
+    ::kill(::getpid(), SIGKILL);
+  });
+  const RunData data = read_run(folder);
+  EXPECT_EQ(data.steps.size(), 18U);
+  EXPECT_EQ(data.histories.size(), 18U);
+  EXPECT_EQ(data.frames.size(), 3U);
+  ASSERT_EQ(data.run.stages.size(), 2U);
+  EXPECT_FALSE(data.run.stages[0].interrupted);
+}
+
 // Of a run that is interrupted at the step of its checkpoint, the end is reported at that step, too.
 TEST(ResultFile, WhatWasReportedAfterTheCheckpointIsNotKept) {
   for (const long checkpoint : {10L, 20L, 25L}) {
