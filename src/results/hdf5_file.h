@@ -68,6 +68,8 @@ hid_t native_type() {
 
 /// What HDF5 has handed to the system stands on the disk when it returns.
 void sync(hid_t file);
+/// Nothing more of the file reaches the disk: it stays as a kill would leave it, and can be closed without a further error.
+void detach(hid_t file);
 
 Handle create_group(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);

@@ -31,7 +31,7 @@ constexpr double time_to_first_stretch = 200.0;
 constexpr hsize_t file_page = 4096;
 
 hdf5::Handle create_file(const std::filesystem::path& path, const simulation::ModelRecord& model) {
-  const std::string what = fmt::format("{}: cannot create", path.string());
+  const char* const what = "file";
   const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), what), H5Pclose);
   hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), what);
   // Some cluster file systems know no locks.
@@ -67,6 +67,10 @@ struct ResultWriter::State {
       run.flush();
       summary.flush();
     }
+    void flush_whole() {
+      flush();
+      hdf5::check(H5Fflush(file, H5F_SCOPE_GLOBAL), "file");
+    }
     hdf5::Handle file;
     FrameTable frames;
     ContactTable contacts;
@@ -91,12 +95,26 @@ struct ResultWriter::State {
   [[nodiscard]] bool flush_is_due() const;
   void copy_earlier();
   void publish();
-  void abandon() {
-    file.reset();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_path(), ignored);
+  void abandon();
+  // Calls write(), and gives the file up when that fails: what closing it would still write would make it unreadable where there is
+  // no room for all.
+  template <class Write>
+  void change_file(const Write& write) {
+    try {
+      write();
+    } catch (const RunError& error) {
+      if (file) hdf5::detach(file->file);
+      abandon();
+      throw RunError(fmt::format("{}: cannot write: {}", path().string(), error.what()));
+    }
   }
 };
+
+void ResultWriter::State::abandon() {
+  file.reset();
+  std::error_code ignored;
+  if (!published) std::filesystem::remove(temporary_path(), ignored);
+}
 
 bool ResultWriter::State::flush_is_due() const {
   const Clock::time_point now = Clock::now();
@@ -143,12 +161,13 @@ void ResultWriter::State::copy_earlier() {
 // Gives the file its name, when its first row is to be written. With what it takes over it is complete by then: the file whose place
 // it takes held that.
 void ResultWriter::State::publish() {
-  if (earlier) copy_earlier();
-  for (const std::string& line : waiting_stages) file->stages.append_line(line);
-  waiting_stages.clear();
-  file->flush();
-  hdf5::check(H5Fflush(file->file, H5F_SCOPE_GLOBAL), path().string());
-  hdf5::check(H5Fstart_swmr_write(file->file), path().string());
+  change_file([&] {
+    if (earlier) copy_earlier();
+    for (const std::string& line : waiting_stages) file->stages.append_line(line);
+    waiting_stages.clear();
+    file->flush_whole();
+    hdf5::check(H5Fstart_swmr_write(file->file), "file");
+  });
   if (before_publishing) before_publishing();
   std::error_code error;
   std::filesystem::rename(temporary_path(), path(), error);
@@ -176,14 +195,10 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   if (error)
     throw RunError(fmt::format("{}: cannot create: {}", state_->directory.string(), error.message()));
   state_->model = model;
-  try {
+  state_->change_file([&] {
     state_->file.emplace(state_->temporary_path(), model);
-    state_->file->flush();
-    hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string() + ": cannot write");
-  } catch (const RunError&) {
-    state_->abandon();
-    throw;
-  }
+    state_->file->flush_whole();
+  });
   state_->start = state_->last_flush = Clock::now();
 }
 
@@ -198,11 +213,7 @@ void ResultWriter::before_event() {
 }
 
 void ResultWriter::flush() {
-  try {
-    state_->file->flush();
-  } catch (const RunError& error) {
-    throw RunError(fmt::format("{}: cannot write: {}", state_->path().string(), error.what()));
-  }
+  state_->change_file([&] { state_->file->flush(); });
   state_->last_flush = Clock::now();
 }
 
@@ -211,35 +222,35 @@ void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) 
   if (!state_->published) {
     state_->waiting_stages.push_back(line);
   } else {
-    state_->file->stages.append_line(line);
+    state_->change_file([&] { state_->file->stages.append_line(line); });
   }
 }
 
 void ResultWriter::frame(const simulation::Frame& frame) {
   before_event();
-  state_->file->frames.append(frame);
+  state_->change_file([&] { state_->file->frames.append(frame); });
 }
 
 void ResultWriter::contacts(const simulation::ContactFrame& frame) {
   before_event();
-  state_->file->contacts.append(frame);
+  state_->change_file([&] { state_->file->contacts.append(frame); });
 }
 
 void ResultWriter::history(const simulation::HistoryRow& row) {
   before_event();
-  state_->file->histories.append(row);
+  state_->change_file([&] { state_->file->histories.append(row); });
 }
 
 void ResultWriter::step(const simulation::StepRow& row) {
   before_event();
-  state_->file->steps.append(row);
+  state_->change_file([&] { state_->file->steps.append(row); });
 }
 
 // Before the first event of a resumed run, all that the checkpoint counts stands in the file of the earlier one.
 void ResultWriter::checkpoint() {
   if (!state_->published) return;
   flush();
-  hdf5::sync(state_->file->file);
+  state_->change_file([&] { hdf5::sync(state_->file->file); });
 }
 
 void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
@@ -248,17 +259,18 @@ void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
     state_->waiting_stages.push_back(line);
     return;
   }
-  state_->file->stages.append_line(line);
+  state_->change_file([&] { state_->file->stages.append_line(line); });
   flush();
 }
 
 void ResultWriter::end(const simulation::RunRecord& run) {
-  if (!state_->file) return;  // the run failed before it began
+  if (!state_->file) return;  // the run failed before it began, or the file could not be written
   if (!state_->published) state_->publish();
-  state_->file->run.append_line(run_json(run));
-  state_->file->summary.append(summary_json(state_->model, run));
-  flush();
-  hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string());
+  state_->change_file([&] {
+    state_->file->run.append_line(run_json(run));
+    state_->file->summary.append(summary_json(state_->model, run));
+    state_->file->flush_whole();
+  });
   state_->file.reset();
   const auto& names = state_->model.history_names;
   if (!names.empty()) write_histories_csv(state_->directory, names, read_histories(state_->directory));

@@ -18,7 +18,7 @@ namespace keyblock::results {
 /// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps of the
 /// earlier one what that had reported by its checkpoint; InputError where there is no earlier one, or less of it.
 ///
-/// Every call may throw RunError: the disk may be full.
+/// Every call may throw RunError: the disk may be full. Then nothing more is written, and what was flushed before can be read.
 class ResultWriter : public simulation::RunObserver {
  public:
   static constexpr double default_flush_interval = 2.0;  // s of wall time

@@ -211,15 +211,17 @@ class OtherFiles(Scenario):
         self.keyblock("run", "incline.toml", "-o", "out")
 
 
-class Trouble(Scenario):
-    """Disks and folders that do not take what is written."""
-
+class LittleRoom(Scenario):
     def limited(self, size, *arguments):
         """The program where no file may be larger than so many bytes."""
         return subprocess.run(
             [PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
         )  # fmt: skip
+
+
+class Trouble(LittleRoom):
+    """Disks and folders that do not take what is written."""
 
     def test_files_too_large_for_the_disk(self):
         def limit(size):
@@ -333,8 +335,8 @@ class Interrupt(Background):
         self.assertIn(run.returncode, (-signal.SIGINT, -signal.SIGTERM))
 
 
-class Killed(Background):
-    """A run that is killed loses nothing that its checkpoint is beyond."""
+class Killed(Background, LittleRoom):
+    """A run that is killed, or whose disk is full, loses nothing that its checkpoint is beyond."""
 
     # 1000 steps a second, a checkpoint every 2000 of them.
     OPTIONS = (*lasting(40.0), "--set", "output.frame_interval=1.0")
@@ -383,6 +385,23 @@ class Killed(Background):
         self.assertGreaterEqual(kills, 3)
         self.keyblock("run", "incline.toml", "-o", "out", "--resume", *self.OPTIONS)
         self.assert_same("out", "whole")
+
+    def test_what_was_written_to_a_full_disk_is_readable(self):
+        self.keyblock("run", "incline.toml", "-o", "whole", *self.OPTIONS)
+        size = (self.folder / "whole/result.h5").stat().st_size
+        rows = self.tables("whole")["csv/steps.csv"]
+        for share in (0.3, 0.5, 0.7, 0.9, 0.98):
+            folder = f"out{share}"
+            done = self.limited(int(share * size), "run", "incline.toml", "-o", folder, *self.OPTIONS)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("File too large", done.stderr)
+            self.keyblock("export", folder, "--format", "csv")
+            written = (self.folder / folder / "csv/steps.csv").read_bytes()
+            self.assertGreater(len(written), 0.5 * share * len(rows))
+            self.assertTrue(rows.startswith(written))
+            self.keyblock("report", folder)
+            self.keyblock("run", "incline.toml", "-o", folder, "--resume", *self.OPTIONS)
+            self.assert_same(folder, "whole")
 
 
 if __name__ == "__main__":
