@@ -88,6 +88,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.settler.carried);
   archive(s.stage);
   archive(s.stage_step);
+  archive(s.stage_start);
   archive(s.initial_energy);
   archive(s.wall_time);
   archive(s.iterations);

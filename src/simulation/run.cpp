@@ -330,10 +330,9 @@ void Runner::shake(StageRecord& record) {
 void Runner::run_stage() {
   StageRecord record;
   record.stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
-  record.start_time = now_.mechanics.time;
-  if (record.stage.kind != StageKind::settle) {
-    record.start_time -= static_cast<double>(now_.stage_step) * setup_.time_step;
-  }
+  // Not to be found again from the time and the number of steps: the motion is read at times that count from here.
+  if (now_.stage_step == 0) now_.stage_start = now_.mechanics.time;
+  record.start_time = now_.stage_start;
   stage_start_ = last_progress_ = Clock::now();
   first_step_of_stage_ = now_.stage_step;
   stage_iterations_ = 0;
