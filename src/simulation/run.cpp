@@ -25,9 +25,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr long checkpoint_steps = 2000;      // a checkpoint at least this often
-constexpr double step_row_interval = 0.02;   // s between rows of step statistics
-constexpr double overlap_interval = 1.0;     // s between measurements of the true overlap
+constexpr long checkpoint_steps = 2000;     // between places in a stage for a checkpoint
+constexpr double shortest_repeat = 0.01;    // of the time of a run so far, that a checkpoint in a stage saves
+constexpr double step_row_interval = 0.02;  // s between rows of step statistics
+constexpr double overlap_interval = 1.0;    // s between measurements of the true overlap
 constexpr std::size_t motion_points = 4000;  // of the applied motion kept for plots
 
 double seconds_since(Clock::time_point start) {
@@ -192,14 +193,19 @@ void Runner::check_overlap() {
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 
+// A place for a checkpoint is one whether it is used or not. In long runs not all are: with each, observers write out what they
+// have, which may take room (results::ResultWriter).
 void Runner::checkpoint() {
   stepper_->forget_history();
+  const double elapsed = wall_before_ + seconds_since(run_start_);
+  const bool within_stage = now_.stage_step > 0;
+  if (within_stage && elapsed - now_.wall_time < shortest_repeat * elapsed) return;
   if (options_.directory.empty()) return;
   if (settler_) now_.settler = settler_->memory();
   now_.orders = orders_.memory();
-  now_.wall_time = wall_before_ + seconds_since(run_start_);
+  now_.wall_time = elapsed;
   now_.reported.stages = now_.stage;
-  now_.reported.within_stage = now_.stage_step > 0;
+  now_.reported.within_stage = within_stage;
   observer_.checkpoint();
   write_checkpoint(options_.directory, setup_, now_);
 }
