@@ -88,6 +88,32 @@ class Run(Scenario):
             self.keyblock("export", "out", "--format", kind)
             self.assertGreater(len(set((self.folder / "out").rglob("*")) - before), 0, kind)
 
+    def test_exports_take_the_place_of_nothing_else(self):
+        def content():
+            return {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
+
+        def export(*options, expect=0):
+            return self.keyblock("export", "out", "--format", "csv", *options, expect=expect).stderr
+
+        self.keyblock("run", "incline.toml", "-o", "out")
+        self.keyblock("run", "incline.toml", "-o", "other", "--set", "joints.friction=10")
+        (self.folder / "mine").mkdir()
+        self.write("mine/steps.csv", "mine")
+        (self.folder / "study").mkdir()
+        self.write("study/plan.json", "{}")
+        before = content()
+        for folder in ("out", "other", "study"):
+            self.assertIn("another folder", export("-o", folder, expect=1))
+            export("-o", folder, "--force", expect=1)
+        self.assertIn("steps.csv, which is of no export", export("-o", "mine", expect=1))
+        self.assertEqual(content(), before)
+        export("-o", "mine", "--force")
+        self.assertNotEqual((self.folder / "mine/steps.csv").read_text(), "mine")
+        for _ in range(2):
+            export("-o", "new")
+            export()
+        self.assertEqual((self.folder / "new/steps.csv").read_text(), (self.folder / "out/csv/steps.csv").read_text())
+
     def test_log_in_a_pipe(self):
         log = self.keyblock("run", "incline.toml", "-o", "out").stderr
         self.assertNotIn("\x1b", log)

@@ -10,6 +10,7 @@
 
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "results/block_shape.h"
 #include "results/result_writer.h"
 #include "sample_run.h"
@@ -125,6 +126,50 @@ TEST(Export, GeoJsonOfEveryStageEnd) {
   EXPECT_EQ(rings[0].size(), 5U);
   EXPECT_EQ(rings[0].front(), rings[0].back());
   EXPECT_NEAR(rings[0][0][0].get<double>(), 466003.1 + 0.3, 1e-6);
+}
+
+// What runs to an end early, or is exported anew with fewer frames, leaves no files of the longer one beside its own.
+TEST(Export, TakesThePlaceOfAnEarlierOne) {
+  const FreshFolder folder;
+  RunData data = small_motions();
+  export_run(data, folder, ExportFormat::vtk);
+  export_run(data, folder, ExportFormat::csv);
+  write_file_atomically(folder / "scene.pvsm", "mine");
+  data.frames.resize(4);
+  data.model.history_names.clear();
+  export_run(data, folder, ExportFormat::vtk);
+  EXPECT_TRUE(std::filesystem::exists(folder / "blocks_00003.vtu"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "blocks_00004.vtu"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "histories.csv"));
+  export_run(data, folder, ExportFormat::csv);
+  EXPECT_FALSE(std::filesystem::exists(folder / "histories.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "blocks.csv"));
+  EXPECT_EQ(read_file(folder / "scene.pvsm"), "mine");
+}
+
+TEST(Export, FilesThatAreOfNoExportStayUnlessTheyMayGo) {
+  const FreshFolder folder;
+  const RunData data = small_motions();
+  write_file_atomically(folder / "steps.csv", "mine");
+  EXPECT_THROW(export_run(data, folder, ExportFormat::geojson), InputError);
+  export_run(data, folder, ExportFormat::geojson, true);
+  EXPECT_THROW(export_run(data, folder, ExportFormat::csv), InputError);
+  EXPECT_EQ(read_file(folder / "steps.csv"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder / "blocks.csv"));
+  export_run(data, folder, ExportFormat::csv, true);
+  EXPECT_NE(read_file(folder / "steps.csv"), "mine");
+  export_run(data, folder, ExportFormat::csv);
+}
+
+// A list that somebody has changed leads to no file elsewhere.
+TEST(Export, OnlyFilesOfItsFolderAreRemoved) {
+  const FreshFolder fresh;
+  const auto folder = fresh / "out";
+  export_run(small_motions(), folder, ExportFormat::csv);
+  write_file_atomically(fresh / "mine", "mine");
+  write_file_atomically(folder / "keyblock-export.json", R"({"csv": ["../mine", "..", 3], "vtk": 7})");
+  export_run(small_motions(), folder, ExportFormat::csv, true);
+  EXPECT_EQ(read_file(fresh / "mine"), "mine");
 }
 
 TEST(Export, VtkSeriesHasTimesThatAscend) {
