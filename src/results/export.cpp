@@ -121,10 +121,12 @@ std::string stage_geojson(const RunData& data, const simulation::Frame& frame) {
   return collection.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-// A stage's name as a part of a file name.
+// A stage's name as a part of a file name: what of it is plain, and as much as file systems take.
 std::string file_part(const std::string& name) {
+  constexpr std::size_t longest = 100;
   std::string out;
   for (const char c : name) {
+    if (out.size() == longest) break;
     const bool plain =
         std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
     if (plain)

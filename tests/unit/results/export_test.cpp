@@ -172,6 +172,16 @@ TEST(Export, OnlyFilesOfItsFolderAreRemoved) {
   EXPECT_EQ(read_file(fresh / "mine"), "mine");
 }
 
+TEST(Export, LongNamesOfStages) {
+  const FreshFolder folder;
+  RunData data = small_motions();
+  for (auto& stage : data.run.stages) stage.stage.name = std::string(99, 'a') + " " + std::string(200, 'b');
+  const std::string part(99, 'a');
+  EXPECT_THAT(export_run(data, folder, ExportFormat::geojson),
+              testing::ElementsAre(folder / ("stage_1_" + part + ".geojson"),
+                                   folder / ("stage_2_" + part + ".geojson")));
+}
+
 TEST(Export, VtkSeriesHasTimesThatAscend) {
   const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
