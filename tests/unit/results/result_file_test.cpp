@@ -6,11 +6,11 @@
 
 #include <csignal>
 #include <fstream>
-#include <functional>
 
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "killed_process.h"
 #include "results/record_json.h"
 #include "results/result_writer.h"
 #include "results/run_data.h"
@@ -36,20 +36,6 @@ std::string error_of(const std::filesystem::path& folder) {
     return error.what();
   }
   return "no error";
-}
-
-// Runs `work` in a process that is killed when it returns, as by the kernel: nothing is closed.
-void in_killed_process(const std::function<void()>& work) {
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    work();
-    ::kill(::getpid(), SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status)) << "the work failed";
-  ASSERT_EQ(WTERMSIG(status), SIGKILL);
 }
 
 TEST(ResultFile, ComesBackToTheLastBit) {
@@ -171,22 +157,6 @@ TEST(ResultFile, SurvivesBeingKilled) {
   expect_equal(data, expected);
 }
 
-TEST(ResultFile, HoldsAllThatWasReportedByACheckpoint) {
-  const FreshFolder folder;
-  SampleRun sample;
-  in_killed_process([&] {
-    ResultWriter writer(folder, never);
-    sample.play(writer, 1, 17, false);
-    writer.checkpoint();
-    writer.step(sample.step_row(1, 18));
-    ::kill(::getpid(), SIGKILL);
-  });
-  const RunData data = read_run(folder);
-  EXPECT_EQ(data.steps.size(), 17U);
-  EXPECT_EQ(data.histories.size(), 17U);
-  EXPECT_EQ(data.frames.size(), 3U);
-}
-
 TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
   const FreshFolder folder;
   SampleRun sample;
@@ -262,110 +232,6 @@ TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
   EXPECT_TRUE(data.run.interrupted);
 }
 
-TEST(ResultFile, AResumedRunGoesOnFromItsCheckpoint) {
-  const FreshFolder folder;
-  SampleRun sample;
-  in_killed_process([&] {
-    ResultWriter writer(folder, 0.0);
-    sample.play(writer, 1, 27, false);
-    ::kill(::getpid(), SIGKILL);
-  });
-  {
-    ResultWriter writer(folder);
-    sample.play(writer, 19, 30);  // from a checkpoint at step 18
-  }
-  expect_equal(read_run(folder), sample.expected());
-}
-
-TEST(ResultFile, AResumedRunThatIsKilledKeepsWhatTheEarlierOneDid) {
-  const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
-  in_killed_process([&] {
-    ResultWriter writer(folder, never);
-    sample.play(writer, 19, 20, false);
-    ::kill(::getpid(), SIGKILL);
-  });
-  const RunData data = read_run(folder);
-  EXPECT_EQ(data.steps.size(), 18U);
-  EXPECT_EQ(data.histories.size(), 18U);
-  EXPECT_EQ(data.frames.size(), 3U);
-  ASSERT_EQ(data.run.stages.size(), 2U);
-  EXPECT_FALSE(data.run.stages[0].interrupted);
-}
-
-// Of a run that is interrupted at the step of its checkpoint, the end is reported at that step, too.
-TEST(ResultFile, WhatWasReportedAfterTheCheckpointIsNotKept) {
-  for (const long checkpoint : {10L, 20L, 25L}) {
-    const FreshFolder folder;
-    SampleRun sample;
-    {
-      ResultWriter writer(folder);
-      sample.play(writer, 1, checkpoint, false);
-      if (checkpoint == 10) writer.stage_begin(1, sample.stage(1));
-      writer.frame(sample.frame(1, checkpoint));
-      writer.contacts(sample.contacts(1, checkpoint, 2));
-      writer.stage_end(1, sample.stage(1));
-      writer.end(sample.run());
-    }
-    ResultWriter writer(folder);
-    sample.play(writer, checkpoint + 1, 30);
-    expect_equal(read_run(folder), sample.expected());
-  }
-}
-
-TEST(ResultFile, AResumedRunThatReportsNothingKeepsWhatTheEarlierOneDid) {
-  const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
-  {
-    ResultWriter writer(folder);
-    sample.play(writer, 31, 30);
-  }
-  expect_equal(read_run(folder), sample.expected());
-  {
-    ResultWriter writer(folder);
-    sample.play(writer, 19, 18);
-  }
-  const RunData data = read_run(folder);
-  EXPECT_EQ(data.steps.size(), 18U);
-  EXPECT_EQ(data.frames.size(), 3U);
-  ASSERT_EQ(data.run.stages.size(), 2U);
-  EXPECT_FALSE(data.run.stages[0].interrupted);
-  EXPECT_TRUE(data.run.stages[1].interrupted);
-}
-
-TEST(ResultFile, ResumingWithLessThanTheCheckpointKnowsOfIsRefused) {
-  const FreshFolder folder;
-  SampleRun sample;
-  in_killed_process([&] {
-    ResultWriter writer(folder, 0.0);
-    sample.play(writer, 1, 17, false);
-  });
-  const std::string before = read_file(folder / "result.h5");
-  {
-    ResultWriter writer(folder);
-    EXPECT_THROW(sample.play(writer, 26, 30), InputError);
-  }
-  EXPECT_EQ(read_file(folder / "result.h5"), before);
-}
-
-TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
-  const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    EXPECT_THROW(sample.play(writer, 19, 30), InputError);
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
-}
-
 TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
   const FreshFolder folder;
   SampleRun sample;
@@ -402,23 +268,6 @@ TEST(ResultFile, AFileThatCannotBeCreatedLeavesNothing) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
-}
-
-TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
-  const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
-  {
-    SampleRun other;
-    other.model.vertices[0].x += 1.0;
-    ResultWriter writer(folder);
-    EXPECT_THROW(other.play(writer, 19), InputError);
-  }
-  expect_equal(read_run(folder), sample.expected());
-  EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
 }
 
 TEST(ResultFile, AFailedStartLeavesEarlierResultsAlone) {
