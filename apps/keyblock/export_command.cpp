@@ -7,6 +7,7 @@
 #include <string>
 
 #include "commands.h"
+#include "result_folder.h"
 #include "results/export.h"
 #include "results/run_data.h"
 
@@ -17,14 +18,17 @@ struct ExportArguments {
   std::string folder;
   std::string format;
   std::string output;
+  bool force = false;
 };
 
 void export_results(const ExportArguments& arguments) {
+  const bool own_folder = arguments.output.empty();
+  const std::filesystem::path output = own_folder ? std::filesystem::path(arguments.folder) / arguments.format
+                                                  : std::filesystem::path(arguments.output);
+  check_holds_no_run(output);
   const results::RunData data = results::read_run(arguments.folder);
-  const std::filesystem::path output = arguments.output.empty()
-                                           ? std::filesystem::path(arguments.folder) / arguments.format
-                                           : std::filesystem::path(arguments.output);
-  const auto files = results::export_run(data, output, results::export_format(arguments.format).value());
+  const auto files = results::export_run(data, output, results::export_format(arguments.format).value(),
+                                         own_folder || arguments.force);
   std::cout << fmt::format("{} {} in {}", files.size(), files.size() == 1 ? "file" : "files",
                            output.string());
   if (!files.empty()) std::cout << ", first " << files.front().filename().string();
@@ -50,9 +54,15 @@ void add_export(CLI::App& app) {
       ->type_name("vtk|csv|geojson");
   command
       ->add_option("-o,--output", arguments->output,
-                   "Folder for the files; default DIR/vtk, DIR/csv or DIR/geojson")
+                   "Folder for the files: new, empty, or of an earlier export; default DIR/vtk, DIR/csv or "
+                   "DIR/geojson")
       ->type_name("FOLDER");
-  command->footer("Example:\n  keyblock export out/tunnel --format vtk");
+  command->add_flag("--force", arguments->force,
+                    "Write into a FOLDER with other files, and replace those that are in the way");
+  command->footer(
+      "The files take the place of those that an earlier export of the same format has left.\n\n"
+      "Example:\n"
+      "  keyblock export out/tunnel --format vtk");
   command->callback([arguments] { export_results(*arguments); });
 }
 

@@ -3,6 +3,8 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -18,10 +20,41 @@ struct MotionArguments {
   std::vector<std::string> files;
   bool plot = false;
   std::string output = "motion.svg";
+  bool force = false;
 };
 
+[[noreturn]] void refuse_output(const std::filesystem::path& output, std::string found,
+                                std::string expected) {
+  Diagnostic diagnostic;
+  diagnostic.where.file = output.string();
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  throw InputError(std::move(diagnostic));
+}
+
+bool is_plot(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  const std::string text = read_file(file);
+  return text.starts_with("<svg ") && text.ends_with(">time, s</text>\n</svg>\n");
+}
+
+// Records are never replaced, other files than plots not without being asked to.
+void check_output(const MotionArguments& arguments) {
+  const std::filesystem::path output = arguments.output;
+  check_can_write(output);
+  if (!file_exists(output)) return;
+  for (const std::string& file : arguments.files) {
+    std::error_code error;
+    if (std::filesystem::equivalent(file, output, error))
+      refuse_output(output, "a record that is to be read", "another file for the plot");
+  }
+  if (!arguments.force && !is_plot(output))
+    refuse_output(output, "a file that is no plot of motions", "another file, or --force to replace it");
+}
+
 void show_motions(const MotionArguments& arguments) {
-  if (arguments.plot) check_can_write(arguments.output);
+  if (arguments.plot) check_output(arguments);
   std::vector<loading::MotionComponent> components;
   std::vector<Diagnostic> mistakes;
   for (const std::string& file : arguments.files) {
@@ -53,6 +86,8 @@ void add_motion(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "The SVG file")
       ->type_name("SVG")
       ->capture_default_str()
+      ->needs("--plot");
+  command->add_flag("--force", arguments->force, "Replace the SVG file even if it is no plot of motions")
       ->needs("--plot");
   command->footer("Example:\n  keyblock motion motions/*.smc --plot -o record.svg");
   command->callback([arguments] { show_motions(*arguments); });

@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "results/run_data.h"
 #include "simulation/checkpoint.h"
 
 namespace keyblock::app {
@@ -77,6 +78,8 @@ ResultFolder::ResultFolder(fs::path folder, const std::vector<fs::path>& inputs,
   const fs::path input = folder_ / input_name;
   same_ = file_exists(input) && read_file(input) == input_;
   check_state(use);
+  has_ended_ =
+      use == Use::resume && same_ && file_exists(folder_ / result_name) && results::has_ended(folder_);
   resumes_ = use == Use::resume && same_ && file_exists(simulation::checkpoint_path(folder_));
 }
 

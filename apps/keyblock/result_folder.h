@@ -31,6 +31,9 @@ class ResultFolder {
   /// begins anew, which leads to the same end.
   [[nodiscard]] bool resumes() const { return resumes_; }
 
+  /// Whether the run that is to be resumed has come to its end already.
+  [[nodiscard]] bool has_ended() const { return has_ended_; }
+
   /// New results are about to take the place of earlier ones: unless the run is resumed, keeps its input, and takes away what an
   /// earlier run had concluded.
   void enter();
@@ -45,7 +48,7 @@ class ResultFolder {
   std::string input_;
   std::optional<FileLock> lock_;
   bool same_ = false;  ///< what is there is of the same input
-  bool resumes_ = false, entered_ = false;
+  bool resumes_ = false, has_ended_ = false, entered_ = false;
 };
 
 }  // namespace keyblock::app

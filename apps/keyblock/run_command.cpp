@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/folder.h"
 #include "interrupt.h"
 #include "outcome.h"
 #include "progress.h"
@@ -41,6 +42,10 @@ void write_report(const std::filesystem::path& folder) {
   report::write_report(results::read_run(folder), folder);
 }
 
+void say_where_report_is(const RunArguments& arguments) {
+  std::cout << "report: " << arguments.folder << "/report.html" << std::endl;
+}
+
 std::vector<std::filesystem::path> inputs_of(const scenario::Scenario& scenario) {
   std::vector<std::filesystem::path> inputs = scenario::input_paths(scenario);
   inputs.emplace_back(scenario.file);
@@ -53,7 +58,7 @@ simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const Ru
   if (arguments.resume && !guard.resumes()) {
     std::cerr << arguments.folder << ": nothing to go on from; starting at the beginning\n";
   }
-  results::ResultWriter writer(folder, guard.resumes());
+  results::ResultWriter writer(folder);
   writer.before_publishing([&] { guard.enter(); });
   ProgressObserver progress = ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()));
   simulation::FanOut observers({&writer, &progress});
@@ -76,6 +81,12 @@ void run_scenario(RunArguments arguments) {
                      arguments.resume  ? ResultFolder::Use::resume
                      : arguments.force ? ResultFolder::Use::replace
                                        : ResultFolder::Use::fresh);
+  if (guard.has_ended()) {
+    std::cout << arguments.folder << ": this run has ended; there is nothing to go on with\n";
+    if (!file_exists(std::filesystem::path(arguments.folder) / "report.html")) write_report(arguments.folder);
+    say_where_report_is(arguments);
+    return;
+  }
   simulation::RunRecord record;
   try {
     record = run_and_record(setup, arguments, guard);
@@ -90,7 +101,7 @@ void run_scenario(RunArguments arguments) {
   write_report(arguments.folder);
   std::cout << "\n" << outcome_text(record, setup.system.blocks.size());
   if (arguments.profile) std::cout << "\n" << profile_text(record) << "\n";
-  std::cout << "report: " << arguments.folder << "/report.html" << std::endl;
+  say_where_report_is(arguments);
   if (record.interrupted) {
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
   }

@@ -5,15 +5,27 @@
 #include <cctype>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "results/block_shape.h"
 #include "results/csv.h"
+#include "results/export_folder.h"
 #include "results/record_fields.h"
 
 namespace keyblock::results {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr std::pair<ExportFormat, std::string_view> formats[] = {
+    {ExportFormat::vtk, "vtk"}, {ExportFormat::csv, "csv"}, {ExportFormat::geojson, "geojson"}};
+
+std::string format_name(ExportFormat wanted) {
+  for (const auto& [format, name] : formats) {
+    if (format == wanted) return std::string(name);
+  }
+  return {};
+}
 
 std::string block_table(const RunData& data) {
   const simulation::ModelRecord& model = data.model;
@@ -109,10 +121,12 @@ std::string stage_geojson(const RunData& data, const simulation::Frame& frame) {
   return collection.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-// A stage's name as a part of a file name.
+// A stage's name as a part of a file name: what of it is plain, and as much as file systems take.
 std::string file_part(const std::string& name) {
+  constexpr std::size_t longest = 100;
   std::string out;
   for (const char c : name) {
+    if (out.size() == longest) break;
     const bool plain =
         std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128;
     if (plain)
@@ -127,9 +141,9 @@ std::string file_part(const std::string& name) {
 }  // namespace
 
 std::optional<ExportFormat> export_format(std::string_view name) {
-  if (name == "vtk") return ExportFormat::vtk;
-  if (name == "csv") return ExportFormat::csv;
-  if (name == "geojson") return ExportFormat::geojson;
+  for (const auto& [format, known] : formats) {
+    if (known == name) return format;
+  }
   return {};
 }
 
@@ -160,21 +174,21 @@ std::vector<std::filesystem::path> export_geojson(const RunData& data, FileSet& 
 }
 
 std::vector<std::filesystem::path> export_run(const RunData& data, const std::filesystem::path& folder,
-                                              ExportFormat format) {
-  FileSet out(folder);
+                                              ExportFormat format, bool replace) {
+  ExportFolder out(folder, format_name(format), replace);
   std::vector<std::filesystem::path> files;
   switch (format) {
     case ExportFormat::vtk:
-      files = export_vtk(data, out);
+      files = export_vtk(data, out.files());
       break;
     case ExportFormat::csv:
-      files = export_csv(data, out);
+      files = export_csv(data, out.files());
       break;
     case ExportFormat::geojson:
-      files = export_geojson(data, out);
+      files = export_geojson(data, out.files());
       break;
   }
-  out.commit();
+  out.commit(files);
   return files;
 }
 

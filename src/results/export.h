@@ -18,11 +18,11 @@ enum class ExportFormat {
 };
 std::optional<ExportFormat> export_format(std::string_view name);
 
-/// Writes into `folder` (made where it is missing) and returns the files written, those to open first in front.
-/// Throws InputError when there can be no such folder or file, and RunError when one cannot be written; then `folder` is as it was
-/// before.
+/// Writes into `folder` (made where it is missing) in the place of an earlier export of this format, and returns the files written,
+/// those to open first in front. Throws InputError when there can be no such folder or file, or, unless `replace`, when there are
+/// files that are of no export; and RunError when one cannot be written. Then `folder` is as it was before.
 std::vector<std::filesystem::path> export_run(const RunData& data, const std::filesystem::path& folder,
-                                              ExportFormat format);
+                                              ExportFormat format, bool replace = false);
 
 /// VTK XML files. Blocks are polygons, those with holes sets of triangles, with point data `displacement` (m) and cell
 /// data `block`, `status`, `stress` (xx, yy, xy; Pa), `displacement_magnitude` (m, of the centroid), `order` and

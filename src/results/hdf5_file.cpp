@@ -1,8 +1,12 @@
 #include "results/hdf5_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -92,6 +96,13 @@ hid_t file_type() {
   if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
 }
 
+// Of a file of the default driver.
+int descriptor_of(hid_t file) {
+  void* descriptor = nullptr;
+  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), "file descriptor");
+  return *static_cast<int*>(descriptor);
+}
+
 }  // namespace
 
 // Files are closed where their handles end. At the end of the program the library would try once more what could not be written
@@ -117,6 +128,17 @@ void check(herr_t status, const std::string& what) {
 hid_t check_id(hid_t id, const std::string& what) {
   check(id < 0 ? -1 : 0, what);
   return id;
+}
+
+void sync(hid_t file) {
+  if (::fsync(descriptor_of(file)) != 0) throw RunError(std::strerror(errno));
+}
+
+void detach(hid_t file) {
+  const int descriptor = descriptor_of(file), nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (nowhere < 0) return;
+  ::dup2(nowhere, descriptor);
+  ::close(nowhere);
 }
 
 Handle create_group(hid_t parent, const std::string& name) {

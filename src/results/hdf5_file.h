@@ -66,6 +66,11 @@ hid_t native_type() {
   if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_NATIVE_UINT64;
 }
 
+/// What HDF5 has handed to the system stands on the disk when it returns.
+void sync(hid_t file);
+/// Nothing more of the file reaches the disk: it stays as a kill would leave it, and can be closed without a further error.
+void detach(hid_t file);
+
 Handle create_group(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/folder.h"
 #include "results/record_fields.h"
@@ -201,6 +202,16 @@ RunData read_run(const std::filesystem::path& directory) {
     check_rows(data);
     read_run_record(file, data);
     return data;
+  });
+}
+
+// summary.json is the last that a run writes, after the same text in result.h5.
+bool has_ended(const std::filesystem::path& directory) {
+  return with_file(directory, [&](hid_t file) {
+    const auto run = TextColumn::read_lines(file, "run");
+    const std::filesystem::path summary = directory / "summary.json";
+    return !run.empty() && !read_run_json(run.back()).interrupted && file_exists(summary) &&
+           read_file(summary) == TextColumn::read(file, "summary");
   });
 }
 

@@ -325,19 +325,26 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
   return rows;
 }
 
-void TextColumn::append_line(const std::string& line) {
-  const std::vector<std::uint8_t> bytes(line.begin(), line.end());
+void TextColumn::append(std::string_view text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
   bytes_.append(bytes);
-  bytes_.append('\n');
+}
+
+void TextColumn::append_line(const std::string& line) {
+  append(line + '\n');
+}
+
+std::string TextColumn::read(hid_t file, const std::string& name) {
+  const auto bytes = read_array<std::uint8_t>(file, name);
+  return {bytes.values.begin(), std::find(bytes.values.begin(), bytes.values.end(), std::uint8_t{0})};
 }
 
 std::vector<std::string> TextColumn::read_lines(hid_t file, const std::string& name) {
-  const auto bytes = read_array<std::uint8_t>(file, name);
-  const auto written = std::find(bytes.values.begin(), bytes.values.end(), std::uint8_t{0});
+  const std::string text = read(file, name);
   std::vector<std::string> lines;
-  for (auto begin = bytes.values.begin();;) {
-    const auto end = std::find(begin, written, std::uint8_t{'\n'});
-    if (end == written) return lines;
+  for (auto begin = text.begin();;) {
+    const auto end = std::find(begin, text.end(), '\n');
+    if (end == text.end()) return lines;
     lines.emplace_back(begin, end);
     begin = end + 1;
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "results/hdf5_file.h"
 #include "results/run_data.h"
@@ -85,8 +86,10 @@ class TextColumn {
  public:
   TextColumn() = default;
   TextColumn(hid_t file, const std::string& name) : bytes_(file, name, {}) {}
+  void append(std::string_view text);
   void append_line(const std::string& line);
   void flush() { bytes_.flush(); }
+  static std::string read(hid_t file, const std::string& name);
   /// Complete lines only.
   static std::vector<std::string> read_lines(hid_t file, const std::string& name);
 

@@ -31,7 +31,7 @@ constexpr double time_to_first_stretch = 200.0;
 constexpr hsize_t file_page = 4096;
 
 hdf5::Handle create_file(const std::filesystem::path& path, const simulation::ModelRecord& model) {
-  const std::string what = fmt::format("{}: cannot create", path.string());
+  const char* const what = "file";
   const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), what), H5Pclose);
   hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), what);
   // Some cluster file systems know no locks.
@@ -67,6 +67,10 @@ struct ResultWriter::State {
       run.flush();
       summary.flush();
     }
+    void flush_whole() {
+      flush();
+      hdf5::check(H5Fflush(file, H5F_SCOPE_GLOBAL), "file");
+    }
     hdf5::Handle file;
     FrameTable frames;
     ContactTable contacts;
@@ -77,27 +81,40 @@ struct ResultWriter::State {
 
   hdf5::QuietErrors quiet;
   std::filesystem::path directory;
-  bool resume = false;
   std::chrono::duration<double> flush_interval{};
   simulation::ModelRecord model;
   std::optional<OpenFile> file;
   Clock::time_point start, last_flush;
   std::function<void()> before_publishing;
   bool published = false;
-  bool begins_with_stage = false;                           // the first stage reported has no steps yet
-  std::vector<std::pair<int, std::string>> waiting_stages;  // lines from before the first row
+  std::optional<simulation::Reported> earlier;  // by the run that is resumed
+  std::vector<std::string> waiting_stages;      // lines from before the first row
 
   [[nodiscard]] std::filesystem::path path() const { return directory / "result.h5"; }
   [[nodiscard]] std::filesystem::path temporary_path() const { return directory / "result.h5.tmp"; }
   [[nodiscard]] bool flush_is_due() const;
-  void copy_earlier(long first_new_step);
-  void publish(long first_new_step);
-  void abandon() {
-    file.reset();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_path(), ignored);
+  void copy_earlier();
+  void publish();
+  void abandon();
+  // Calls write(), and gives the file up when that fails: what closing it would still write would make it unreadable where there is
+  // no room for all.
+  template <class Write>
+  void change_file(const Write& write) {
+    try {
+      write();
+    } catch (const RunError& error) {
+      if (file) hdf5::detach(file->file);
+      abandon();
+      throw RunError(fmt::format("{}: cannot write: {}", path().string(), error.what()));
+    }
   }
 };
+
+void ResultWriter::State::abandon() {
+  file.reset();
+  std::error_code ignored;
+  if (!published) std::filesystem::remove(temporary_path(), ignored);
+}
 
 bool ResultWriter::State::flush_is_due() const {
   const Clock::time_point now = Clock::now();
@@ -106,43 +123,51 @@ bool ResultWriter::State::flush_is_due() const {
   return now - last_flush >= stretch * flush_interval;
 }
 
-// What the earlier run had reported before `first_new_step`.
-void ResultWriter::State::copy_earlier(long first_new_step) {
-  const RunData earlier = read_run(directory);
-  if (earlier.model.vertices != model.vertices || earlier.model.blocks.size() != model.blocks.size() ||
-      earlier.model.history_names != model.history_names) {
+// What the earlier run had reported by its checkpoint.
+void ResultWriter::State::copy_earlier() {
+  const auto refuse = [&](std::string found, std::string expected) {
     Diagnostic diagnostic;
     diagnostic.where.file = path().string();
-    diagnostic.found = fmt::format("results of another model ({} blocks)", earlier.model.blocks.size());
-    diagnostic.expected = fmt::format("results of the run to be resumed ({} blocks)", model.blocks.size());
+    diagnostic.found = std::move(found);
+    diagnostic.expected = std::move(expected);
     diagnostic.hint = "run without --resume, or into another folder";
     throw InputError(std::move(diagnostic));
-  }
-  const int first_new_stage = waiting_stages.empty() ? 0 : waiting_stages.front().first;
-  // A stage that begins with the first new event begins at the step at which the one before ended.
-  const auto copy = [&](const auto& rows, auto& table) {
-    for (const auto& row : rows) {
-      if (row.step < first_new_step || row.stage < first_new_stage) table.append(row);
-    }
   };
-  copy(earlier.frames, file->frames);
-  copy(earlier.contacts, file->contacts);
-  copy(earlier.steps, file->steps);
-  for (const simulation::HistoryRow& row : earlier.histories) {
-    if (row.step < first_new_step + (begins_with_stage ? 1 : 0)) file->histories.append(row);
+  const RunData data = read_run(directory);
+  if (data.model.vertices != model.vertices || data.model.blocks.size() != model.blocks.size() ||
+      data.model.history_names != model.history_names) {
+    refuse(fmt::format("results of another model ({} blocks)", data.model.blocks.size()),
+           fmt::format("results of the run to be resumed ({} blocks)", model.blocks.size()));
   }
-  for (std::size_t k = 0; k < earlier.run.stages.size() && static_cast<int>(k) < first_new_stage; ++k) {
-    file->stages.append_line(stage_json(static_cast<int>(k), earlier.run.stages[k], true));
-  }
+  const auto copy = [&](const char* what, const auto& rows, long count, const auto& append) {
+    if (static_cast<long>(rows.size()) < count) {
+      refuse(fmt::format("{} {}", rows.size(), what),
+             fmt::format("the {} that the run to be resumed had written by its last checkpoint", count));
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) append(k, rows[k]);
+  };
+  const auto to = [](auto& table) { return [&](std::size_t, const auto& row) { table.append(row); }; };
+  copy("frames", data.frames, earlier->frames, to(file->frames));
+  copy("rows of contacts", data.contacts, earlier->contacts, to(file->contacts));
+  copy("rows of histories", data.histories, earlier->histories, to(file->histories));
+  copy("rows of steps", data.steps, earlier->steps, to(file->steps));
+  copy("stages", data.run.stages, earlier->stages + (earlier->within_stage ? 1 : 0),
+       [&](std::size_t k, const simulation::StageRecord& stage) {
+         const int index = static_cast<int>(k);
+         file->stages.append_line(stage_json(index, stage, index < earlier->stages));
+       });
 }
 
-// Gives the file its name, when its first row is to be written.
-void ResultWriter::State::publish(long first_new_step) {
-  if (resume) copy_earlier(first_new_step);
-  for (const auto& [index, line] : waiting_stages) file->stages.append_line(line);
-  waiting_stages.clear();
-  hdf5::check(H5Fflush(file->file, H5F_SCOPE_GLOBAL), path().string());
-  hdf5::check(H5Fstart_swmr_write(file->file), path().string());
+// Gives the file its name, when its first row is to be written. With what it takes over it is complete by then: the file whose place
+// it takes held that.
+void ResultWriter::State::publish() {
+  change_file([&] {
+    if (earlier) copy_earlier();
+    for (const std::string& line : waiting_stages) file->stages.append_line(line);
+    waiting_stages.clear();
+    file->flush_whole();
+    hdf5::check(H5Fstart_swmr_write(file->file), "file");
+  });
   if (before_publishing) before_publishing();
   std::error_code error;
   std::filesystem::rename(temporary_path(), path(), error);
@@ -150,10 +175,9 @@ void ResultWriter::State::publish(long first_new_step) {
   published = true;
 }
 
-ResultWriter::ResultWriter(std::filesystem::path directory, bool resume, double flush_interval)
+ResultWriter::ResultWriter(std::filesystem::path directory, double flush_interval)
     : state_(std::make_unique<State>()) {
   state_->directory = std::move(directory);
-  state_->resume = resume;
   state_->flush_interval = std::chrono::duration<double>(flush_interval);
 }
 
@@ -171,83 +195,86 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   if (error)
     throw RunError(fmt::format("{}: cannot create: {}", state_->directory.string(), error.message()));
   state_->model = model;
-  try {
+  state_->change_file([&] {
     state_->file.emplace(state_->temporary_path(), model);
-    state_->file->flush();
-    hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string() + ": cannot write");
-  } catch (const RunError&) {
-    state_->abandon();
-    throw;
-  }
+    state_->file->flush_whole();
+  });
   state_->start = state_->last_flush = Clock::now();
 }
 
+void ResultWriter::resume(const simulation::Reported& reported) {
+  state_->earlier = reported;
+}
+
 // What is to be done before a row is added.
-void ResultWriter::before_event(long step) {
-  if (!state_->published) state_->publish(step);
+void ResultWriter::before_event() {
+  if (!state_->published) state_->publish();
   if (state_->flush_is_due()) flush();
 }
 
 void ResultWriter::flush() {
-  try {
-    state_->file->flush();
-  } catch (const RunError& error) {
-    throw RunError(fmt::format("{}: cannot write: {}", state_->path().string(), error.what()));
-  }
+  state_->change_file([&] { state_->file->flush(); });
   state_->last_flush = Clock::now();
 }
 
 void ResultWriter::stage_begin(int index, const simulation::StageRecord& stage) {
   const std::string line = stage_json(index, stage, false);
   if (!state_->published) {
-    state_->begins_with_stage = stage.steps == 0;
-    state_->waiting_stages.emplace_back(index, line);
+    state_->waiting_stages.push_back(line);
   } else {
-    state_->file->stages.append_line(line);
+    state_->change_file([&] { state_->file->stages.append_line(line); });
   }
 }
 
 void ResultWriter::frame(const simulation::Frame& frame) {
-  before_event(frame.step);
-  state_->file->frames.append(frame);
+  before_event();
+  state_->change_file([&] { state_->file->frames.append(frame); });
 }
 
 void ResultWriter::contacts(const simulation::ContactFrame& frame) {
-  before_event(frame.step);
-  state_->file->contacts.append(frame);
+  before_event();
+  state_->change_file([&] { state_->file->contacts.append(frame); });
 }
 
 void ResultWriter::history(const simulation::HistoryRow& row) {
-  before_event(row.step);
-  state_->file->histories.append(row);
+  before_event();
+  state_->change_file([&] { state_->file->histories.append(row); });
 }
 
 void ResultWriter::step(const simulation::StepRow& row) {
-  before_event(row.step);
-  state_->file->steps.append(row);
+  before_event();
+  state_->change_file([&] { state_->file->steps.append(row); });
+}
+
+// Before the first event of a resumed run, all that the checkpoint counts stands in the file of the earlier one.
+void ResultWriter::checkpoint() {
+  if (!state_->published) return;
+  flush();
+  state_->change_file([&] { hdf5::sync(state_->file->file); });
 }
 
 void ResultWriter::stage_end(int index, const simulation::StageRecord& stage) {
   const std::string line = stage_json(index, stage, true);
   if (!state_->published) {
-    state_->waiting_stages.emplace_back(index, line);
+    state_->waiting_stages.push_back(line);
     return;
   }
-  state_->file->stages.append_line(line);
+  state_->change_file([&] { state_->file->stages.append_line(line); });
   flush();
 }
 
 void ResultWriter::end(const simulation::RunRecord& run) {
-  if (!state_->file) return;  // the run failed before it began
-  if (!state_->published) state_->publish(run.steps + 1);
-  state_->file->run.append_line(run_json(run));
-  state_->file->summary.append_line(summary_json(state_->model, run));
-  flush();
-  hdf5::check(H5Fflush(state_->file->file, H5F_SCOPE_GLOBAL), state_->path().string());
+  if (!state_->file) return;  // the run failed before it began, or the file could not be written
+  if (!state_->published) state_->publish();
+  state_->change_file([&] {
+    state_->file->run.append_line(run_json(run));
+    state_->file->summary.append(summary_json(state_->model, run));
+    state_->file->flush_whole();
+  });
   state_->file.reset();
-  write_summary(state_->directory, state_->model, run);
   const auto& names = state_->model.history_names;
   if (!names.empty()) write_histories_csv(state_->directory, names, read_histories(state_->directory));
+  write_summary(state_->directory, state_->model, run);  // last: has_ended looks for it
 }
 
 }  // namespace keyblock::results

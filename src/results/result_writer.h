@@ -11,21 +11,18 @@ namespace keyblock::results {
 /// were chosen, histories.csv.
 ///
 /// The layout is documented in docs/result-file.md. The file is written in HDF5's single-writer-multiple-reader mode
-/// and flushed at the end of every stage and every `flush_interval` seconds (more seldom in runs of more than a few
-/// minutes: every hundredth of the time that has passed): it can be read while the run goes on, and after it was killed,
+/// and flushed at every checkpoint, at the end of every stage and every `flush_interval` seconds (more seldom in runs of
+/// more than a few minutes: every hundredth of the time that has passed): it can be read while the run goes on, and after it was killed,
 /// up to the last flush (read_run; in Python h5py.File(path, swmr=True)).
 ///
-/// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps what
-/// the earlier one had reported before the first step that is now reported (by the step counts of the events, which
-/// therefore must count the whole run), and the stages that had ended; InputError where there is no earlier one.
-/// stage_begin tells by StageRecord::steps whether its stage goes on or begins.
+/// A new run leaves the result.h5 of an earlier one alone until its first event. A resumed run (`resume`) keeps of the
+/// earlier one what that had reported by its checkpoint; InputError where there is no earlier one, or less of it.
 ///
-/// Every call may throw RunError: the disk may be full.
+/// Every call may throw RunError: the disk may be full. Then nothing more is written, and what was flushed before can be read.
 class ResultWriter : public simulation::RunObserver {
  public:
   static constexpr double default_flush_interval = 2.0;  // s of wall time
-  explicit ResultWriter(std::filesystem::path directory, bool resume = false,
-                        double flush_interval = default_flush_interval);
+  explicit ResultWriter(std::filesystem::path directory, double flush_interval = default_flush_interval);
   ~ResultWriter() override;
 
   /// Is called once, when the new result.h5 stands complete under another name and is about to take the place of what is there:
@@ -33,16 +30,18 @@ class ResultWriter : public simulation::RunObserver {
   void before_publishing(std::function<void()> call);
 
   void begin(const simulation::ModelRecord& model) override;
+  void resume(const simulation::Reported& reported) override;
   void stage_begin(int index, const simulation::StageRecord& stage) override;
   void frame(const simulation::Frame& frame) override;
   void contacts(const simulation::ContactFrame& frame) override;
   void history(const simulation::HistoryRow& row) override;
   void step(const simulation::StepRow& row) override;
+  void checkpoint() override;
   void stage_end(int index, const simulation::StageRecord& stage) override;
   void end(const simulation::RunRecord& run) override;
 
  private:
-  void before_event(long step);
+  void before_event();
   void flush();
 
   struct State;

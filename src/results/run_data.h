@@ -29,6 +29,9 @@ std::size_t frame_of(const simulation::ContactFrame& snapshot, const std::vector
 /// Reads DIR/result.h5. Throws InputError when there is none, or when it is truncated or of another format.
 RunData read_run(const std::filesystem::path& directory);
 
+/// Whether the run has come to its end, so that all it leaves is in DIR but the report. Throws InputError as read_run does.
+bool has_ended(const std::filesystem::path& directory);
+
 /// Its histories alone.
 std::vector<simulation::HistoryRow> read_histories(const std::filesystem::path& directory);
 

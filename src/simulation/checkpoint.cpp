@@ -89,9 +89,16 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.settler.carried);
   archive(s.stage);
   archive(s.stage_step);
+  archive(s.stage_start);
   archive(s.initial_energy);
   archive(s.wall_time);
   archive(s.iterations);
+  archive(s.reported.frames);
+  archive(s.reported.contacts);
+  archive(s.reported.histories);
+  archive(s.reported.steps);
+  archive(s.reported.stages);
+  archive(s.reported.within_stage);
   archive(s.record.open_close);
   archive(s.record.max_overlap.depth);
   archive(s.record.max_overlap.block_a);

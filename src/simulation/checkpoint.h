@@ -19,9 +19,11 @@ struct RunState {
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   int stage = 0;
   long stage_step = 0;          ///< steps done in it
+  double stage_start = 0.0;     ///< s, simulated time at which it began
   double initial_energy = 0.0;  ///< J
   double wall_time = 0.0;       ///< s
   long iterations = 0;
+  Reported reported;
   RunRecord record;  ///< what has been summed up so far, with the stages that have ended
 };
 

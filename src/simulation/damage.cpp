@@ -7,6 +7,7 @@
 
 #include "core/index.h"
 #include "overlap/overlap.h"
+#include "simulation/build_model.h"
 
 namespace keyblock::simulation {
 
@@ -14,6 +15,17 @@ namespace {
 
 Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
   return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
+}
+
+// The block that holds a point, of those beside it where the point is on a joint; the number of blocks where there is none.
+std::size_t moving_block_at(const dynamics::Model& model, Vec2 point) {
+  const auto first = [&](bool (*holds)(const Polygon&, Vec2)) {
+    std::size_t b = 0;
+    while (b < model.blocks.size() && !(model.moves(b) && holds(model.blocks[b].reference, point))) ++b;
+    return b;
+  };
+  const std::size_t b = first(&contains);
+  return b < model.blocks.size() ? b : first(&on_or_in);
 }
 
 Box box_of(std::span<const Vec2> ring) {
@@ -160,21 +172,18 @@ double DamageGauge::diameter(const dynamics::State& state, Vec2 direction) const
   Vec2 now[2];
   for (int end = 0; end < 2; ++end) {
     const Vec2 out = end == 0 ? direction : -direction;
-    // Where a ray from the centre leaves the outline, and a little beyond: in the wall.
+    // Where a ray from the centre leaves the outline, and a little beyond: in the wall. A corner on the ray is an end of one of the
+    // two edges that meet there, never of none.
     double reach = 0.0;
     for (std::size_t k = 0; k < outline.size(); ++k) {
-      const Vec2 a = outline[k] - centre, d = outline[(k + 1) % outline.size()] - outline[k];
+      const Vec2 a = outline[k] - centre, b = outline[(k + 1) % outline.size()] - centre;
+      if ((cross(out, a) >= 0.0) == (cross(out, b) >= 0.0)) continue;
+      const Vec2 d = outline[(k + 1) % outline.size()] - outline[k];
       const double denominator = cross(out, d);
-      if (denominator == 0.0) continue;
-      const double t = cross(a, d) / denominator, s = cross(a, out) / denominator;
-      if (s >= 0.0 && s <= 1.0) reach = std::max(reach, t);
+      if (denominator != 0.0) reach = std::max(reach, cross(a, d) / denominator);
     }
     const Vec2 point = centre + 1.001 * reach * out;
-    const auto holds = [&](std::size_t b) {
-      return model_.moves(b) && contains(model_.blocks[b].reference, point);
-    };
-    std::size_t b = 0;
-    while (b < model_.blocks.size() && !holds(b)) ++b;
+    const std::size_t b = moving_block_at(model_, point);
     if (b == model_.blocks.size()) return 0.0;
     const dynamics::Block& block = model_.blocks[b];
     std::vector<double> phi(at(block.size));

@@ -204,16 +204,28 @@ struct Progress {
   double worst_residual_ratio = 0.0;  ///< settle
 };
 
+/// What a run had reported by the time of a checkpoint.
+struct Reported {
+  long frames = 0, contacts = 0, histories = 0, steps = 0;  ///< calls of these members of RunObserver
+  int stages = 0;                                           ///< that had ended
+  bool within_stage = false;                                ///< the one after them had begun
+};
+
 /// Receives a run as it goes on. Calls come from one thread, in the order of simulated time.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void begin(const ModelRecord&) {}
+  /// After begin, when the run goes on from a checkpoint: so much an earlier run reported before it. What that one reported later
+  /// comes again.
+  virtual void resume(const Reported&) {}
   virtual void stage_begin(int /*index*/, const StageRecord&) {}
   virtual void frame(const Frame&) {}
   virtual void contacts(const ContactFrame&) {}
   virtual void history(const HistoryRow&) {}
   virtual void step(const StepRow&) {}
+  /// A checkpoint is about to be written, from which a resumed run goes on: what was reported so far must outlast this one.
+  virtual void checkpoint() {}
   virtual void progress(const Progress&) {}
   virtual void stage_end(int /*index*/, const StageRecord&) {}
   virtual void end(const RunRecord&) {}

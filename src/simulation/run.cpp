@@ -25,9 +25,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr long checkpoint_steps = 2000;      // a checkpoint at least this often
-constexpr double step_row_interval = 0.02;   // s between rows of step statistics
-constexpr double overlap_interval = 1.0;     // s between measurements of the true overlap
+constexpr long checkpoint_steps = 2000;     // between places in a stage for a checkpoint
+constexpr double shortest_repeat = 0.01;    // of the time of a run so far, that a checkpoint in a stage saves
+constexpr double step_row_interval = 0.02;  // s between rows of step statistics
+constexpr double overlap_interval = 1.0;    // s between measurements of the true overlap
 constexpr std::size_t motion_points = 4000;  // of the applied motion kept for plots
 
 double seconds_since(Clock::time_point start) {
@@ -75,6 +76,7 @@ class Runner {
   void shake(StageRecord& record);
   void after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction);
   void record_frame();
+  void record_contacts();
   void check_overlap();
   void checkpoint();
   [[nodiscard]] Energy energy() const;
@@ -177,6 +179,12 @@ void Runner::excavate(const Stage& stage) {
 void Runner::record_frame() {
   const Profile::Scope scope(profile_, Phase::output);
   observer_.frame(recorder_.frame(now_.mechanics, now_.stage));
+  ++now_.reported.frames;
+}
+
+void Runner::record_contacts() {
+  observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
+  ++now_.reported.contacts;
 }
 
 void Runner::check_overlap() {
@@ -186,12 +194,20 @@ void Runner::check_overlap() {
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 
+// A place for a checkpoint is one whether it is used or not. In long runs not all are: with each, observers write out what they
+// have, which may take room (results::ResultWriter).
 void Runner::checkpoint() {
   stepper_->forget_history();
+  const double elapsed = wall_before_ + seconds_since(run_start_);
+  const bool within_stage = now_.stage_step > 0;
+  if (within_stage && elapsed - now_.wall_time < shortest_repeat * elapsed) return;
   if (options_.directory.empty()) return;
   if (settler_) now_.settler = settler_->memory();
   now_.orders = orders_.memory();
-  now_.wall_time = wall_before_ + seconds_since(run_start_);
+  now_.wall_time = elapsed;
+  now_.reported.stages = now_.stage;
+  now_.reported.within_stage = within_stage;
+  observer_.checkpoint();
   write_checkpoint(options_.directory, setup_, now_);
 }
 
@@ -218,18 +234,18 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   if (steps_left > 0) {
     if (is_static ? step % setup_.output.settle_frame_interval == 0 : due(setup_.output.frame_interval))
       record_frame();
-    if (!is_static && due(setup_.output.contact_interval)) {
-      observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
-    }
+    if (!is_static && due(setup_.output.contact_interval)) record_contacts();
     if (!is_static && due(overlap_interval)) check_overlap();
   }
   if (!setup_.histories.empty() && (is_static || due(setup_.output.history_interval))) {
     observer_.history(recorder_.history(now_.mechanics));
+    ++now_.reported.histories;
   }
   if (due(step_row_interval)) {
     observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations,
                     setup_.time_step / report.substeps, report.penetration, report.max_displacement,
                     report.closed_contacts, energy()});
+    ++now_.reported.steps;
   }
   if (step % checkpoint_steps == 0) checkpoint();
   if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
@@ -330,10 +346,9 @@ void Runner::shake(StageRecord& record) {
 void Runner::run_stage() {
   StageRecord record;
   record.stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
-  record.start_time = now_.mechanics.time;
-  if (record.stage.kind != StageKind::settle) {
-    record.start_time -= static_cast<double>(now_.stage_step) * setup_.time_step;
-  }
+  // Not to be found again from the time and the number of steps: the motion is read at times that count from here.
+  if (now_.stage_step == 0) now_.stage_start = now_.mechanics.time;
+  record.start_time = now_.stage_start;
   stage_start_ = last_progress_ = Clock::now();
   first_step_of_stage_ = now_.stage_step;
   stage_iterations_ = 0;
@@ -352,7 +367,7 @@ void Runner::run_stage() {
   record.wall_time = seconds_since(stage_start_);
   check_overlap();
   record_frame();
-  observer_.contacts(recorder_.contacts(now_.mechanics, *stepper_, now_.stage));
+  record_contacts();
   record.damage = gauge_.measure(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
@@ -370,6 +385,7 @@ void Runner::run_stage() {
 RunRecord Runner::run() {
   options_.resume ? resume() : begin();
   observer_.begin(recorder_.model());
+  if (options_.resume) observer_.resume(now_.reported);
   const auto finish = [&] {
     RunRecord& record = now_.record;
     record.steps = now_.mechanics.step;
@@ -379,7 +395,7 @@ RunRecord Runner::run() {
     record.open_close.mean_iterations =
         record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
     record.energy = energy();
-    record.interrupted = stopped();
+    record.interrupted = record.interrupted || stopped();
     record.profile = profile_;
     observer_.end(record);
   };

@@ -115,6 +115,22 @@ class Motion(Scenario):
         self.assertIn("0.01", text)
         self.assertIn("<svg", (self.folder / "a.svg").read_text())
 
+    def test_a_plot_takes_the_place_of_nothing_but_a_plot(self):
+        record = self.write("a.csv", "time,acceleration\n0,0\n0.01,1.5\n0.02,-2.5\n")
+        text = record.read_text()
+        (self.folder / "link.svg").symlink_to("a.csv")
+        for output in ("a.csv", "link.svg"):
+            for options in ((), ("--force",)):
+                error = self.keyblock("motion", "a.csv", "--plot", "-o", output, *options, expect=1).stderr
+                self.assertIn("a record that is to be read", error)
+        self.write("mine.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>")
+        self.assertIn("--force", self.keyblock("motion", "a.csv", "--plot", "-o", "mine.svg", expect=1).stderr)
+        self.assertNotIn("1.5", (self.folder / "mine.svg").read_text())
+        for options in (("--force",), ()):
+            self.keyblock("motion", "a.csv", "--plot", "-o", "mine.svg", *options)
+        self.assertIn("time, s", (self.folder / "mine.svg").read_text())
+        self.assertEqual(record.read_text(), text)
+
     def test_names_every_file_that_is_no_record(self):
         error = self.keyblock("motion", "gone.smc", "incline.toml", expect=1).stderr
         self.assertIn("gone.smc", error)

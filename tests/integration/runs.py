@@ -89,6 +89,32 @@ class Run(Scenario):
             self.keyblock("export", "out", "--format", kind)
             self.assertGreater(len(set((self.folder / "out").rglob("*")) - before), 0, kind)
 
+    def test_exports_take_the_place_of_nothing_else(self):
+        def content():
+            return {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
+
+        def export(*options, expect=0):
+            return self.keyblock("export", "out", "--format", "csv", *options, expect=expect).stderr
+
+        self.keyblock("run", "incline.toml", "-o", "out")
+        self.keyblock("run", "incline.toml", "-o", "other", "--set", "joints.friction=10")
+        (self.folder / "mine").mkdir()
+        self.write("mine/steps.csv", "mine")
+        (self.folder / "study").mkdir()
+        self.write("study/plan.json", "{}")
+        before = content()
+        for folder in ("out", "other", "study"):
+            self.assertIn("another folder", export("-o", folder, expect=1))
+            export("-o", folder, "--force", expect=1)
+        self.assertIn("steps.csv, which is of no export", export("-o", "mine", expect=1))
+        self.assertEqual(content(), before)
+        export("-o", "mine", "--force")
+        self.assertNotEqual((self.folder / "mine/steps.csv").read_text(), "mine")
+        for _ in range(2):
+            export("-o", "new")
+            export()
+        self.assertEqual((self.folder / "new/steps.csv").read_text(), (self.folder / "out/csv/steps.csv").read_text())
+
     def test_log_in_a_pipe(self):
         log = self.keyblock("run", "incline.toml", "-o", "out").stderr
         self.assertNotIn("\x1b", log)
@@ -130,10 +156,28 @@ class Folder(Scenario):
         self.assertEqual(self.summary("new")["state_hash"], self.summary("out")["state_hash"])
 
     def test_resuming_a_finished_run_changes_nothing(self):
-        before = self.summary("out")
+        def resume():
+            self.assertIn("out: this run has ended", self.keyblock("run", "incline.toml", "-o", "out", "--resume").stdout)
+
+        before = self.content()
+        resume()
+        self.assertEqual(self.content(), before)
+        (self.folder / "out/report.html").unlink()
+        resume()
+        self.assertEqual(self.content(), before)
+        (self.folder / "out/checkpoint.bin").unlink()
+        resume()
+
+    def test_what_is_missing_of_a_finished_run_is_written_again(self):
+        before = self.content()
+        (self.folder / "out/summary.json").unlink()
+        (self.folder / "out/histories.csv").unlink()
+        (self.folder / "out/report.html").unlink()
         self.keyblock("run", "incline.toml", "-o", "out", "--resume")
-        for field in ("steps", "state_hash", "stages", "open_close", "max_overlap_m"):
-            self.assertEqual(self.summary("out")[field], before[field], field)
+        self.assertEqual(set(self.content()), set(before))
+        self.assertEqual(self.content()["histories.csv"], before["histories.csv"])
+        self.assertEqual(self.summary("out")["stages"], json.loads(before["summary.json"])["stages"])
+        self.assertIn('"slide"', (self.folder / "out/report.html").read_text())
 
 
 class OtherFiles(Scenario):
@@ -194,15 +238,17 @@ class OtherFiles(Scenario):
         self.keyblock("run", "incline.toml", "-o", "out")
 
 
-class Trouble(Scenario):
-    """Disks and folders that do not take what is written."""
-
+class LittleRoom(Scenario):
     def limited(self, size, *arguments):
         """The program where no file may be larger than so many bytes."""
         return subprocess.run(
             [PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
         )  # fmt: skip
+
+
+class Trouble(LittleRoom):
+    """Disks and folders that do not take what is written."""
 
     def test_files_too_large_for_the_disk(self):
         def limit(size):
@@ -242,19 +288,15 @@ class Trouble(Scenario):
             self.assertRegex(error, "loop|incline.toml/out|nowhere|found a folder", words)
 
 
-class Interrupt(Scenario):
-    def test_two_runs_in_one_folder(self):
-        run = self.start("out", 1e5)
-        error = self.keyblock("run", "incline.toml", "-o", "out", "--force", expect=1).stderr
-        self.assertIn(f"out: found a run that process {run.pid} on ", error)
-        run.send_signal(signal.SIGINT)
-        run.communicate(timeout=30)
-        self.assertFalse((self.folder / "out/lock").exists())
+def lasting(duration):
+    return ("--set", f"stage.slide.duration={duration}")
 
-    def start(self, folder, duration):
+
+class Background(Scenario):
+    def start(self, folder, *options):
         """A run that has begun to write its results."""
         run = subprocess.Popen(
-            [PROGRAM, "run", "incline.toml", "-o", folder, "--set", f"stage.slide.duration={duration}"],
+            [PROGRAM, "run", "incline.toml", "-o", folder, *options],
             cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )  # fmt: skip
         self.addCleanup(run.stdout.close)
@@ -264,11 +306,21 @@ class Interrupt(Scenario):
             time.sleep(0.005)
         return run
 
+
+class Interrupt(Background):
+    def test_two_runs_in_one_folder(self):
+        run = self.start("out", *lasting(1e5))
+        error = self.keyblock("run", "incline.toml", "-o", "out", "--force", expect=1).stderr
+        self.assertIn(f"out: found a run that process {run.pid} on ", error)
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=30)
+        self.assertFalse((self.folder / "out/lock").exists())
+
     def interrupted(self, folder):
         """Interrupts a run in its middle; returns how long it would have lasted, in simulated seconds."""
         duration = 16.0  # the first checkpoint comes after 2000 steps, 2 s
         while duration < 1000.0:
-            run = self.start(folder, duration)
+            run = self.start(folder, *lasting(duration))
             run.send_signal(signal.SIGINT)
             _, errors = run.communicate(timeout=30)
             if run.returncode != 0:  # it had not ended by itself
@@ -288,7 +340,7 @@ class Interrupt(Scenario):
         self.assertTrue((self.folder / "out/report.html").stat().st_size > 1000)
         self.keyblock("report", "out")
 
-        length = ("--set", f"stage.slide.duration={duration}")
+        length = lasting(duration)
         self.keyblock("run", "incline.toml", "-o", "out", "--resume", *length)
         self.keyblock("run", "incline.toml", "-o", "whole", *length)
         resumed, whole = self.summary("out"), self.summary("whole")
@@ -301,7 +353,7 @@ class Interrupt(Scenario):
         self.assertEqual(*histories)
 
     def test_a_killed_run_has_a_report_and_exports_of_what_it_left(self):
-        run = self.start("out", 1e5)
+        run = self.start("out", *lasting(1e5))
         time.sleep(2.5)  # what it has is written every two seconds
         run.kill()
         run.communicate(timeout=30)
@@ -314,17 +366,86 @@ class Interrupt(Scenario):
         self.assertEqual(header["run"]["stages"][0]["planned_duration"], 1e5)
         self.assertIsNone(header["run"]["stages"][0]["damage"]["slip_max_m"])
         self.keyblock("export", "out", "--format", "geojson")
-        files = [path.name for path in (self.folder / "out/geojson").iterdir()]
+        files = [path.name for path in (self.folder / "out/geojson").glob("*.geojson")]
         self.assertEqual(files, ["stage_1_slide_unfinished.geojson"])
 
     def test_a_second_interrupt_ends_at_once(self):
-        run = self.start("out", 1e5)
+        run = self.start("out", *lasting(1e5))
         run.send_signal(signal.SIGSTOP)  # both signals arrive before the next step
         run.send_signal(signal.SIGINT)
         run.send_signal(signal.SIGTERM)
         run.send_signal(signal.SIGCONT)
         run.communicate(timeout=30)
         self.assertIn(run.returncode, (-signal.SIGINT, -signal.SIGTERM))
+
+
+class Killed(Background, LittleRoom):
+    """A run that is killed, or whose disk is full, loses nothing that its checkpoint is beyond."""
+
+    # 1000 steps a second, a checkpoint every 2000 of them.
+    OPTIONS = (*lasting(40.0), "--set", "output.frame_interval=1.0")
+
+    def tables(self, folder):
+        """All rows of the result file, and the stages but for their wall time."""
+        tables = {"histories.csv": (self.folder / folder / "histories.csv").read_bytes()}
+        for kind in ("csv", "vtk"):
+            self.keyblock("export", folder, "--format", kind)
+            for path in (self.folder / folder / kind).iterdir():
+                tables[f"{kind}/{path.name}"] = path.read_bytes()
+        stages = self.summary(folder)["stages"]
+        for stage in stages:
+            del stage["wall_time_s"]
+        return tables | {"stages": stages}
+
+    def assert_same(self, folder, whole):
+        tables, expected = self.tables(folder), self.tables(whole)
+        self.assertEqual(set(tables), set(expected))
+        for name, table in expected.items():
+            self.assertEqual(tables[name], table, name)
+        self.assertEqual(self.summary(folder)["state_hash"], self.summary(whole)["state_hash"])
+
+    def inode(self, name):
+        try:
+            return (self.folder / "out" / name).stat().st_ino
+        except FileNotFoundError:
+            return None
+
+    def kill_when_replaced(self, name, count, *options):
+        """Kills a run right after it has given a file its place so many times; returns whether the run had not ended before."""
+        run = self.start("out", *self.OPTIONS, *options)
+        for _ in range(count):
+            before = self.inode(name)
+            while self.inode(name) == before and run.poll() is None:
+                pass
+        run.kill()
+        run.communicate(timeout=30)
+        return run.returncode == -signal.SIGKILL
+
+    def test_resumes_to_the_tables_of_a_run_that_was_never_stopped(self):
+        self.keyblock("run", "incline.toml", "-o", "whole", *self.OPTIONS)
+        kills = self.kill_when_replaced("checkpoint.bin", 2)
+        for name, count in (("result.h5", 1), ("checkpoint.bin", 1), ("result.h5", 1), ("checkpoint.bin", 3), ("result.h5", 1)):
+            kills += self.kill_when_replaced(name, count, "--resume")
+        self.assertGreaterEqual(kills, 3)
+        self.keyblock("run", "incline.toml", "-o", "out", "--resume", *self.OPTIONS)
+        self.assert_same("out", "whole")
+
+    def test_what_was_written_to_a_full_disk_is_readable(self):
+        self.keyblock("run", "incline.toml", "-o", "whole", *self.OPTIONS)
+        size = (self.folder / "whole/result.h5").stat().st_size
+        rows = self.tables("whole")["csv/steps.csv"]
+        for share in (0.3, 0.5, 0.7, 0.9, 0.98):
+            folder = f"out{share}"
+            done = self.limited(int(share * size), "run", "incline.toml", "-o", folder, *self.OPTIONS)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("File too large", done.stderr)
+            self.keyblock("export", folder, "--format", "csv")
+            written = (self.folder / folder / "csv/steps.csv").read_bytes()
+            self.assertGreater(len(written), 0.5 * share * len(rows))
+            self.assertTrue(rows.startswith(written))
+            self.keyblock("report", folder)
+            self.keyblock("run", "incline.toml", "-o", folder, "--resume", *self.OPTIONS)
+            self.assert_same(folder, "whole")
 
 
 if __name__ == "__main__":

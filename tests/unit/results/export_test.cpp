@@ -10,6 +10,7 @@
 
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "results/block_shape.h"
 #include "results/result_writer.h"
 #include "sample_run.h"
@@ -136,6 +137,60 @@ TEST(Export, GeoJsonOfAStageThatDidNotEndIsNamedSo) {
                                    folder / "stage_2_first-earthquake_unfinished.geojson"));
 }
 
+// What runs to an end early, or is exported anew with fewer frames, leaves no files of the longer one beside its own.
+TEST(Export, TakesThePlaceOfAnEarlierOne) {
+  const FreshFolder folder;
+  RunData data = small_motions();
+  export_run(data, folder, ExportFormat::vtk);
+  export_run(data, folder, ExportFormat::csv);
+  write_file_atomically(folder / "scene.pvsm", "mine");
+  data.frames.resize(4);
+  data.model.history_names.clear();
+  export_run(data, folder, ExportFormat::vtk);
+  EXPECT_TRUE(std::filesystem::exists(folder / "blocks_00003.vtu"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "blocks_00004.vtu"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "histories.csv"));
+  export_run(data, folder, ExportFormat::csv);
+  EXPECT_FALSE(std::filesystem::exists(folder / "histories.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "blocks.csv"));
+  EXPECT_EQ(read_file(folder / "scene.pvsm"), "mine");
+}
+
+TEST(Export, FilesThatAreOfNoExportStayUnlessTheyMayGo) {
+  const FreshFolder folder;
+  const RunData data = small_motions();
+  write_file_atomically(folder / "steps.csv", "mine");
+  EXPECT_THROW(export_run(data, folder, ExportFormat::geojson), InputError);
+  export_run(data, folder, ExportFormat::geojson, true);
+  EXPECT_THROW(export_run(data, folder, ExportFormat::csv), InputError);
+  EXPECT_EQ(read_file(folder / "steps.csv"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder / "blocks.csv"));
+  export_run(data, folder, ExportFormat::csv, true);
+  EXPECT_NE(read_file(folder / "steps.csv"), "mine");
+  export_run(data, folder, ExportFormat::csv);
+}
+
+// A list that somebody has changed leads to no file elsewhere.
+TEST(Export, OnlyFilesOfItsFolderAreRemoved) {
+  const FreshFolder fresh;
+  const auto folder = fresh / "out";
+  export_run(small_motions(), folder, ExportFormat::csv);
+  write_file_atomically(fresh / "mine", "mine");
+  write_file_atomically(folder / "keyblock-export.json", R"({"csv": ["../mine", "..", 3], "vtk": 7})");
+  export_run(small_motions(), folder, ExportFormat::csv, true);
+  EXPECT_EQ(read_file(fresh / "mine"), "mine");
+}
+
+TEST(Export, LongNamesOfStages) {
+  const FreshFolder folder;
+  RunData data = small_motions();
+  for (auto& stage : data.run.stages) stage.stage.name = std::string(99, 'a') + " " + std::string(200, 'b');
+  const std::string part(99, 'a');
+  EXPECT_THAT(export_run(data, folder, ExportFormat::geojson),
+              testing::ElementsAre(folder / ("stage_1_" + part + ".geojson"),
+                                   folder / ("stage_2_" + part + ".geojson")));
+}
+
 TEST(Export, VtkSeriesHasTimesThatAscend) {
   const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
@@ -215,7 +270,7 @@ TEST(ResultFileDocs, ThePythonExampleRuns) {
   const std::string script = page.substr(begin, end - begin);
   const FreshFolder folder;
   SampleRun sample;
-  ResultWriter writer(folder, false, 0.0);
+  ResultWriter writer(folder, 0.0);
   sample.play(writer, 1, 26, false);
   PythonResult result = python(folder, script, folder.string());
   EXPECT_EQ(result.status, 0) << result.output;

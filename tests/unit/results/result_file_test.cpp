@@ -7,11 +7,11 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
-#include <functional>
 
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "killed_process.h"
 #include "results/record_json.h"
 #include "results/result_writer.h"
 #include "results/run_data.h"
@@ -39,20 +39,6 @@ std::string error_of(const std::filesystem::path& folder) {
   return "no error";
 }
 
-// Runs `work` in a process that is killed when it returns, as by the kernel: nothing is closed.
-void in_killed_process(const std::function<void()>& work) {
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    work();
-    ::kill(::getpid(), SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status)) << "the work failed";
-  ASSERT_EQ(WTERMSIG(status), SIGKILL);
-}
-
 TEST(ResultFile, ComesBackToTheLastBit) {
   const FreshFolder folder;
   SampleRun sample;
@@ -65,6 +51,28 @@ TEST(ResultFile, ComesBackToTheLastBit) {
   EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
   EXPECT_TRUE(std::filesystem::exists(folder / "histories.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
+}
+
+TEST(ResultFile, ARunHasEndedWhenAllIsWritten) {
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  EXPECT_TRUE(has_ended(folder));
+  write_file_atomically(folder / "summary.json", "of an earlier end");
+  EXPECT_FALSE(has_ended(folder));
+  std::filesystem::remove(folder / "summary.json");
+  EXPECT_FALSE(has_ended(folder));
+  simulation::RunRecord part = sample.run();
+  part.interrupted = true;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer, 1, 30, false);
+    writer.end(part);
+  }
+  EXPECT_FALSE(has_ended(folder));
 }
 
 TEST(ResultFile, FilesOfEarlierVersionsDoNotSayWhereTheLargestOverlapIs) {
@@ -82,7 +90,7 @@ TEST(ResultFile, HowOftenItIsFlushedDoesNotShow) {
   const FreshFolder folder;
   SampleRun sample;
   {
-    ResultWriter writer(folder, false, 0.0);  // after every event
+    ResultWriter writer(folder, 0.0);  // after every event
     sample.play(writer);
   }
   expect_equal(read_run(folder), sample.expected());
@@ -113,7 +121,7 @@ TEST(ResultFile, ManyRows) {
   const FreshFolder folder;
   SampleRun sample;
   {
-    ResultWriter writer(folder, false, never);
+    ResultWriter writer(folder, never);
     writer.begin(sample.model);
     for (long step = 1; step <= 20000; ++step) writer.history(sample.history(step));
     for (long step = 1; step <= 300; ++step) writer.contacts(sample.contacts(0, step, 100));
@@ -131,7 +139,7 @@ TEST(ResultFile, SurvivesBeingKilled) {
   SampleRun sample;
   // Flushed at the end of stage 0 (step 10) alone.
   in_killed_process([&] {
-    ResultWriter writer(folder, false, never);
+    ResultWriter writer(folder, never);
     sample.play(writer, 1, 23, false);
     ::kill(::getpid(), SIGKILL);
   });
@@ -154,7 +162,7 @@ TEST(ResultFile, KilledWithinAStageTellsWhichAndHowFar) {
   const FreshFolder folder;
   SampleRun sample;
   in_killed_process([&] {
-    ResultWriter writer(folder, false, 0.0);
+    ResultWriter writer(folder, 0.0);
     sample.play(writer, 1, 23, false);
     ::kill(::getpid(), SIGKILL);
   });
@@ -180,7 +188,7 @@ TEST(ResultFile, OfAKilledRunWhatIsNotKnownIsNoNumber) {
   SampleRun sample;
   sample.model.blocks[0].fixed = false;
   in_killed_process([&] {
-    ResultWriter writer(folder, false, 0.0);
+    ResultWriter writer(folder, 0.0);
     sample.play(writer, 1, 23, false);
     ::kill(::getpid(), SIGKILL);
   });
@@ -202,7 +210,7 @@ TEST(ResultFile, OfAKilledRunWhatIsNotKnownIsNoNumber) {
   EXPECT_EQ(data.run.dof, 22 * 23 + 23 * 24 + 24 * 25);
   EXPECT_EQ(data.run.stages[0].wall_time, sample.stage(0).wall_time);
   {
-    ResultWriter writer(folder, true);
+    ResultWriter writer(folder);
     sample.play(writer, 19, 30);
   }
   EXPECT_FALSE(read_run(folder).cut_off);
@@ -218,7 +226,7 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      ResultWriter writer(folder, false, 0.0);
+      ResultWriter writer(folder, 0.0);
       writer.begin(sample.model);
       for (long step = 1;; ++step) {
         writer.history(sample.history(step));
@@ -254,36 +262,11 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
 TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
   const FreshFolder folder;
   SampleRun sample;
-  ResultWriter writer(folder, false, 0.0);
+  ResultWriter writer(folder, 0.0);
   sample.play(writer, 1, 12, false);
   const RunData data = read_run(folder);
   EXPECT_EQ(data.frames.size(), 2U);
   EXPECT_TRUE(data.run.interrupted);
-}
-
-TEST(ResultFile, AResumedRunGoesOnWhereItsFirstStepSays) {
-  const FreshFolder folder;
-  SampleRun sample;
-  in_killed_process([&] {
-    ResultWriter writer(folder, false, 0.0);
-    sample.play(writer, 1, 27, false);
-    ::kill(::getpid(), SIGKILL);
-  });
-  {
-    ResultWriter writer(folder, true);
-    sample.play(writer, 19, 30);  // from a checkpoint at step 18
-  }
-  expect_equal(read_run(folder), sample.expected());
-}
-
-TEST(ResultFile, ResumingWithoutEarlierResultsIsRefused) {
-  const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder, true);
-    EXPECT_THROW(sample.play(writer, 19, 30), InputError);
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
 TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
@@ -322,23 +305,6 @@ TEST(ResultFile, AFileThatCannotBeCreatedLeavesNothing) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
-}
-
-TEST(ResultFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
-  const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
-  {
-    SampleRun other;
-    other.model.vertices[0].x += 1.0;
-    ResultWriter writer(folder, true);
-    EXPECT_THROW(other.play(writer), InputError);
-  }
-  expect_equal(read_run(folder), sample.expected());
-  EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
 }
 
 TEST(ResultFile, AFailedStartLeavesEarlierResultsAlone) {

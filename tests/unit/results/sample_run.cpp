@@ -310,6 +310,10 @@ simulation::RunRecord SampleRun::run() {
 
 void SampleRun::play(simulation::RunObserver& observer, long first, long last, bool finish) {
   observer.begin(model);
+  if (const long done = first - 1; done > 0) {
+    const int stages = done < 10 ? 0 : done < 30 ? 1 : 2;
+    observer.resume({done / 5, done / 10, done, done, stages, done != 10 && done < 30});
+  }
   int stage_now = -1;
   for (long step = first; step <= last; ++step) {
     const int index = step <= 10 ? 0 : 1;

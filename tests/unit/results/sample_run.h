@@ -20,7 +20,8 @@ class SampleRun {
   simulation::RunRecord run();
 
   /// Steps 1 … 10 are stage 0 and 11 … 30 stage 1, from `first` on, to `observer`; a frame every 5, contacts every 10.
-  /// Everything depends on the step alone. With `finish`, the run ends after the last step.
+  /// Everything depends on the step alone. From a later `first` on, the run is resumed from a checkpoint before it. With
+  /// `finish`, the run ends after the last step.
   void play(simulation::RunObserver& observer, long first = 1, long last = 30, bool finish = true);
   /// What `play` reports, as read back.
   RunData expected();

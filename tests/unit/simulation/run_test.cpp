@@ -114,6 +114,39 @@ TEST_P(ResumedRun, EndsInTheSameBits) {
   EXPECT_THROW(run(setup, options, nobody), InputError);
 }
 
+// Sums of many steps are rounded: where a stage began, and with it the motion, is not to be had from them.
+TEST(Run, AStageThatIsResumedWithinBeganWhenItDid) {
+  const FreshFolder folder;
+  RunSetup setup = shaken_incline(1);
+  setup.motions = {sine(0.5 * 9.81, 1.0, 6.0)};
+  setup.stages.insert(setup.stages.begin() + 1, stage("rest", StageKind::rest, 1.0));
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+  Stopper stopper(whole.steps - 100);
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  ASSERT_TRUE(run(setup, options, stopper).interrupted);
+  ASSERT_GT(read_checkpoint(folder, setup).stage_step, 0);
+  options.stop = nullptr;
+  options.resume = true;
+  const RunRecord resumed = run(setup, options, nobody);
+  EXPECT_EQ(resumed.stages[2].start_time, 1.0);
+  EXPECT_EQ(resumed.stages[2].start_time, whole.stages[2].start_time);
+  EXPECT_EQ(resumed.state_hash, whole.state_hash);
+}
+
+TEST(Run, ThatCannotGoOnHasNotReachedItsEnd) {
+  struct Failing final : RunObserver {
+    bool interrupted = false;
+    void step(const StepRow&) override { throw RunError("the disk is full"); }
+    void end(const RunRecord& record) override { interrupted = record.interrupted; }
+  };
+  Failing observer;
+  EXPECT_THROW(run(shaken_incline(1), {}, observer), RunError);
+  EXPECT_TRUE(observer.interrupted);
+}
+
 TEST(Run, OtherFilesAreOtherInput) {
   const FreshFolder folder;
   RunSetup setup = shaken_incline(1);

@@ -1,0 +1,54 @@
+#include "simulation/damage.h"
+
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace keyblock::simulation {
+namespace {
+
+// Rock around an opening, cut into quarters by joints through its centre.
+Scene quartered_rock(Vec2 centre, double radius, int chords) {
+  Scene scene(1e9, 30.0);
+  Excavation opening;
+  for (int k = 0; k < chords; ++k) {
+    const double angle = 360.0 * degree * k / chords;
+    opening.outline.push_back(centre + radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const double turn = 90.0 * degree * quarter;
+    const Vec2 x{std::round(std::cos(turn)), std::round(std::sin(turn))}, y{-x.y, x.x};
+    Ring ring{centre + radius * x, centre + 5.0 * x, centre + 5.0 * x + 5.0 * y, centre + 5.0 * y,
+              centre + radius * y};
+    for (int k = chords / 4 - 1; k > 0; --k) {
+      ring.push_back(opening.outline[static_cast<std::size_t>((quarter * chords / 4 + k) % chords)]);
+    }
+    scene.add(std::move(ring));
+  }
+  scene.setup.excavations.push_back(std::move(opening));
+  return scene;
+}
+
+// The ends of both diameters lie on joints, and the rays to them meet corners of the outline.
+TEST(Damage, ClosureWhereJointsMeetTheOpeningAtItsDiameters) {
+  const Scene scenes[] = {quartered_rock({0.0, 0.0}, 1.0, 4), quartered_rock({0.0, 0.0}, 1.0, 48),
+                          quartered_rock({0.1, -0.7}, 0.3, 48), quartered_rock({3.3, 0.4}, 1.7, 24)};
+  for (const Scene& scene : scenes) {
+    Simulator simulator(scene);
+    DamageGauge gauge(scene.setup, simulator.model);
+    gauge.start(simulator.state, {});
+    const auto move = [&](std::size_t b, Vec2 by) {
+      const dynamics::Block& block = simulator.model.blocks[b];
+      simulator.state.position[block.first] += by.x * std::sqrt(block.area);
+      simulator.state.position[block.first + 1] += by.y * std::sqrt(block.area);
+    };
+    // Upper quarters down, then right ones to the left.
+    for (const std::size_t b : {std::size_t{0}, std::size_t{1}}) move(b, {0.0, -0.001});
+    EXPECT_NEAR(gauge.measure(simulator.state).closure_vertical, 0.001, 1e-12);
+    for (const std::size_t b : {std::size_t{0}, std::size_t{3}}) move(b, {-0.002, 0.0});
+    EXPECT_NEAR(gauge.measure(simulator.state).closure_horizontal, 0.002, 2e-6);
+  }
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
