@@ -7,6 +7,7 @@
 #include "rockmass/intensity.h"
 #include "rockmass/trace_generator.h"
 #include "scenario/build.h"
+#include "scenario/excavated_blocks.h"
 #include "scenario/inputs.h"
 #include "scenario/sections.h"
 
@@ -80,9 +81,9 @@ Vec2 origin_of(const std::vector<BlockSpec>& blocks) {
 
 cutting::CutBlock explicit_block(const BlockSpec& spec, const std::vector<Ring>& outlines, Vec2 origin) {
   cutting::CutBlock block;
-  const Vec2 centre = centroid(spec.polygon);
   for (std::size_t k = 0; k < outlines.size(); ++k) {
-    if (contains(outlines[k], centre)) block.excavations.push_back(static_cast<int>(k));
+    if (overlay(spec.polygon, outlines[k]).place == Place::inside)
+      block.excavations.push_back(static_cast<int>(k));
   }
   block.polygon.outer = shifted(spec.polygon.outer, -origin);
   for (const Ring& hole : spec.polygon.holes) block.polygon.holes.push_back(shifted(hole, -origin));
