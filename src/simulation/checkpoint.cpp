@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0007;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0008;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
