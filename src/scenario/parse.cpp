@@ -62,15 +62,12 @@ void merge(std::vector<Diagnostic>& all, std::vector<Diagnostic> more) {
   }
 }
 
-// What one value of [[study.vary]], or several that vary together, would do to the scenario. Returns false when a key
-// leads nowhere, for which the other values need not be tried.
-bool try_values(const std::vector<const Value*>& keys, const std::vector<const Value*>& values,
-                const Value& document, const std::filesystem::path& file,
-                std::vector<Diagnostic>& diagnostics) {
-  Value varied = document;
+// Puts one value of [[study.vary]], or several that vary together, into the scenario. False when a key leads nowhere.
+bool vary(const std::vector<const Value*>& keys, const std::vector<const Value*>& values, Value& document,
+          std::vector<Diagnostic>& diagnostics) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
     try {
-      if (const auto failed = apply_override(make_override(keys[k]->text, *values[k]), varied)) {
+      if (const auto failed = apply_override(make_override(keys[k]->text, *values[k]), document)) {
         merge(diagnostics, {*failed});
         return false;
       }
@@ -79,7 +76,6 @@ bool try_values(const std::vector<const Value*>& keys, const std::vector<const V
       return false;
     }
   }
-  merge(diagnostics, read_document(varied, file).diagnostics);
   return true;
 }
 
@@ -97,26 +93,65 @@ std::vector<const Value*> keys_of(const Value& axis) {
   return keys;
 }
 
-// A key may vary once, and not in [study] itself.
-void check_keys(const std::vector<const Value*>& keys, std::vector<std::vector<PathSegment>>& before,
-                std::vector<Diagnostic>& diagnostics) {
-  const auto same_path = [](const auto& a, const auto& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const PathSegment& x, const PathSegment& y) { return x.key == y.key; });
-  };
-  for (const Value* key : keys) {
-    auto path = parse_key_path(key->text);
-    if (!path) continue;
-    const bool again =
-        std::any_of(before.begin(), before.end(), [&](const auto& other) { return same_path(other, *path); });
-    if (again)
-      merge(diagnostics, {{key->where, key->text, "a key that varies already", "every key once", ""}});
-    if (path->front().key == "study") {
-      merge(diagnostics, {{key->where, key->text, "a key of [study]", "a key of what is studied", ""}});
+// An axis of [[study.vary]] as it stands in the document: its keys, and rows of a value for each.
+struct Axis {
+  std::vector<const Value*> keys;
+  std::vector<std::vector<const Value*>> rows;
+};
+
+// Those axes, and of them those rows, that can be tried.
+std::vector<Axis> axes_of(const Value& document) {
+  std::vector<Axis> axes;
+  const Value* study = document.find("study");
+  const Value* list = study == nullptr ? nullptr : study->find("vary");
+  if (list == nullptr || !list->is(Value::Type::array)) return axes;
+  for (const Value& table : list->items) {
+    const Value* values = table.find("values");
+    Axis axis{keys_of(table), {}};
+    if (axis.keys.empty() || values == nullptr || !values->is(Value::Type::array)) continue;
+    const bool several = table.find("keys") != nullptr;
+    for (const Value& item : values->items) {
+      std::vector<const Value*> row;
+      if (!several) row.push_back(&item);
+      for (const Value& value : item.items) {
+        if (several) row.push_back(&value);
+      }
+      if (row.size() == axis.keys.size()) axis.rows.push_back(std::move(row));
     }
-    before.push_back(std::move(*path));
+    axes.push_back(std::move(axis));
   }
+  return axes;
 }
+
+// A value may vary once, however its key is written, and not in [study] itself; values are put in in the order of the axes.
+class VariedKeys {
+ public:
+  VariedKeys(const Value& document, std::vector<Diagnostic>& diagnostics)
+      : document_(document), diagnostics_(diagnostics) {}
+
+  void add(const Value& key) {
+    const auto path = parse_key_path(key.text);
+    if (!path) return;
+    if (path->front().key == "study")
+      merge(diagnostics_, {{key.where, key.text, "a key of [study]", "a key of what is studied", ""}});
+    std::vector<std::string> place = resolved_path(*path, document_);
+    for (const auto& [other, text] : before_) {
+      if (other == place) {
+        merge(diagnostics_, {{key.where, key.text, "a key that varies already", "every key once",
+                              text == key.text ? "" : "'" + text + "' is the same value"}});
+      } else if (other.size() > place.size() && std::equal(place.begin(), place.end(), other.begin())) {
+        merge(diagnostics_, {{key.where, key.text, "a key that holds '" + text + "', which varies already",
+                              "it before that one, whose values it replaces", ""}});
+      }
+    }
+    before_.emplace_back(std::move(place), key.text);
+  }
+
+ private:
+  const Value& document_;
+  std::vector<Diagnostic>& diagnostics_;
+  std::vector<std::pair<std::vector<std::string>, std::string>> before_;
+};
 
 void remove_study(Value& document) {
   std::erase_if(document.items, [](const Value& member) { return member.key == "study"; });
@@ -125,26 +160,15 @@ void remove_study(Value& document) {
 // Tries every value of [[study.vary]] alone.
 void check_study(const Value& document, const std::filesystem::path& file,
                  std::vector<Diagnostic>& diagnostics) {
-  const Value* study = document.find("study");
-  const Value* vary = study == nullptr ? nullptr : study->find("vary");
-  if (vary == nullptr || !vary->is(Value::Type::array)) return;
   Value without_study = document;
   remove_study(without_study);
-  std::vector<std::vector<PathSegment>> paths;
-  for (const Value& axis : vary->items) {
-    const Value* values = axis.find("values");
-    const std::vector<const Value*> keys = keys_of(axis);
-    if (keys.empty() || values == nullptr || !values->is(Value::Type::array)) continue;
-    check_keys(keys, paths, diagnostics);
-    const bool several = axis.find("keys") != nullptr;
-    for (const Value& item : values->items) {
-      std::vector<const Value*> row{&item};
-      if (several) {
-        row.clear();
-        for (const Value& value : item.items) row.push_back(&value);
-      }
-      if (row.size() != keys.size()) continue;
-      if (!try_values(keys, row, without_study, file, diagnostics)) break;
+  VariedKeys varied_keys(without_study, diagnostics);
+  for (const Axis& axis : axes_of(document)) {
+    for (const Value* key : axis.keys) varied_keys.add(*key);
+    for (const auto& row : axis.rows) {
+      Value varied = without_study;
+      if (!vary(axis.keys, row, varied, diagnostics)) break;
+      merge(diagnostics, read_document(varied, file).diagnostics);
     }
   }
 }

@@ -98,6 +98,16 @@ TEST(Override, OfAnyDepth) {
   EXPECT_THAT(mistakes(two_blocks, {"title=" + std::string(100000, '[')}), "");
 }
 
+TEST(Override, ResolvedPathsAreEqualWhereTheValuesAreTheSame) {
+  const Value document = parse_toml("a.b = 1\nlist = [{ name = \"x\" }, { name = \"y\", c.d = 1 }]", "");
+  const auto resolved = [&](const char* text) { return resolved_path(*parse_key_path(text), document); };
+  EXPECT_EQ(resolved("list.x.c"), resolved("list[0].c"));
+  EXPECT_EQ(resolved("list.'y'.c.d"), resolved("list[1].c.d"));
+  EXPECT_EQ(resolved("a.b"), resolved("'a'.\"b\""));
+  EXPECT_NE(resolved("list.x.c"), resolved("list.1.c"));
+  EXPECT_EQ(resolved("new.0.c"), (std::vector<std::string>{"new", "0", "c"}));
+}
+
 TEST(Override, LeavesTheDocumentWhenItFails) {
   Value document = parse_toml("a = { b = 1 }\nlist = [{ name = \"x\" }]", "");
   const std::string before = to_toml(document);

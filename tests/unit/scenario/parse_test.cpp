@@ -188,6 +188,41 @@ values = [[0.5, true], [1, false]]
   EXPECT_EQ(s.study->vary[0].value_text(1), "1, false");
 }
 
+TEST(Study, AValueVariesOnceHoweverItsKeyIsWritten) {
+  const auto axes = [](const std::string& one, const std::string& other) {
+    return mistakes(with("[[study.vary]]\nkey = \"" + one + "\"\nvalues = [1.0]\n[[study.vary]]\nkey = \"" +
+                         other + "\"\nvalues = [1.0]\n"));
+  };
+  EXPECT_EQ(axes("stage.quiet.duration", "stage[0].duration"),
+            "test.toml:29:7: stage[0].duration: found a key that varies already; expected every key once; "
+            "'stage.quiet.duration' is the same value");
+  EXPECT_NE(axes("stage.0.duration", "stage.quiet.duration"), "");
+  EXPECT_EQ(axes("stage.quiet.duration", "time.step"), "");
+}
+
+TEST(Study, ATableVariesBeforeWhatIsInIt) {
+  const std::string table = "[[study.vary]]\nkey = \"rock\"\nvalues = [{density=1, young=1, poisson=0}]\n";
+  const std::string value = "[[study.vary]]\nkey = \"rock.young\"\nvalues = [1, 2]\n";
+  EXPECT_EQ(mistakes(with(table + value)), "");
+  EXPECT_NE(
+      mistakes(with(value + table)).find("rock: found a key that holds 'rock.young', which varies already"),
+      std::string::npos);
+}
+
+TEST(Study, EqualValuesAreTheSame) {
+  const auto again = [](const std::string& key, const std::string& values) {
+    return mistakes(with("[[study.vary]]\n" + key + "\nvalues = " + values + "\n"))
+               .find(" again; expected") != std::string::npos;
+  };
+  EXPECT_TRUE(again("key = \"stage.quiet.duration\"", "[1, 2, 1.0]"));
+  EXPECT_TRUE(again("key = \"stage.quiet.duration\"", "[1.5, 15e-1]"));
+  EXPECT_FALSE(again("key = \"stage.quiet.duration\"", "[1, 2]"));
+  EXPECT_TRUE(again("keys = [\"stage.quiet.duration\", \"block.top.fixed\"]", "[[1, true], [1.0, true]]"));
+  EXPECT_FALSE(again("keys = [\"stage.quiet.duration\", \"block.top.fixed\"]", "[[1, true], [1.0, false]]"));
+  // Seeds are integers that numbers cannot tell apart.
+  EXPECT_FALSE(again("key = \"seed\"", "[9007199254740992, 9007199254740993]"));
+}
+
 TEST(Study, AllItsTables) {
   const Scenario s = parse(with(R"(
 [study]

@@ -89,6 +89,21 @@ d = '''
   }
 }
 
+TEST(SameValue, IsThatOfNumbersHoweverTheyAreWritten) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    return same_value(parse_toml("v = " + a, ""), parse_toml("v = " + b, ""));
+  };
+  EXPECT_TRUE(same("1", "1.0"));
+  EXPECT_TRUE(same("1e3", "1000"));
+  EXPECT_FALSE(same("1", "true"));
+  EXPECT_FALSE(same("1", "\"1\""));
+  EXPECT_FALSE(same("9007199254740992", "9007199254740993"));
+  EXPECT_TRUE(same("[1, [2.0, 3]]", "[1.0, [2, 3.0]]"));
+  EXPECT_FALSE(same("[1, 2]", "[1, 2, 3]"));
+  EXPECT_TRUE(same("{ mean = 1, std = 2 }", "{ std = 2.0, mean = 1.0 }"));
+  EXPECT_FALSE(same("{ mean = 1, std = 2 }", "{ mean = 1, gap = 2 }"));
+}
+
 // The parser recurses, and so does what reads its tables.
 TEST(Toml, OfAnyDepth) {
   const auto many = [](const std::string& piece) {
