@@ -31,7 +31,7 @@ void check_scenario(const ScenarioArguments& arguments) {
       "{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
       count(rockmass::count_traces(blocks.traces), "joint trace"), count(scenario.stages.size(), "stage"));
   if (scenario.study) {
-    // Every value of every axis is looked at here.
+    // Every combination of values is looked at here.
     const study::Plan plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
     const auto realizations = static_cast<std::size_t>(plan.realizations);
     text += fmt::format("; a study of {}{}: {}, {} of each", plan.until ? "at most " : "",

@@ -11,6 +11,7 @@
 #include "scenario/key_path.h"
 #include "scenario/override.h"
 #include "scenario/sections.h"
+#include "scenario/stage_steps.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -210,6 +211,79 @@ void sort_by_position(std::vector<Diagnostic>& diagnostics, const std::string& f
                    [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
 }
 
+// What a run refuses before it cuts any block, beside what reading finds. What the files say is looked at once for all
+// scenarios that name the same.
+class RunCheck {
+ public:
+  std::vector<Diagnostic> mistakes(const Scenario& scenario, const Value& document) {
+    std::string text;
+    for (const char* section : {"section", "motion", "trace_map"}) {
+      const Value* value = document.find(section);
+      text += (value == nullptr ? "" : to_toml(*value)) + "\n";
+    }
+    const auto [place, added] = known_.try_emplace(text);
+    Files& files = place->second;
+    if (added) files = read(scenario);
+    if (!files.mistakes.empty()) return files.mistakes;
+    return stage_mistakes(scenario, files.motions);
+  }
+
+ private:
+  struct Files {
+    std::vector<loading::GroundMotion> motions;
+    std::vector<Diagnostic> mistakes;
+  };
+
+  static Files read(const Scenario& scenario) {
+    Files files;
+    try {
+      check_inputs(scenario);
+      std::vector<std::string> warnings;
+      files.motions = read_motions(scenario, warnings);
+    } catch (const InputError& error) {
+      files.mistakes = error.diagnostics();
+    }
+    return files;
+  }
+
+  std::map<std::string, Files> known_;
+};
+
+// Which combination it is, for a mistake that may stand at a value it does not have.
+std::string combination_text(const std::vector<Axis>& axes, const std::vector<std::size_t>& places) {
+  std::string text;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    for (std::size_t k = 0; k < axes[a].keys.size(); ++k)
+      text += (text.empty() ? "with " : ", ") + axes[a].keys[k]->text + " = " +
+              to_toml(*axes[a].rows[places[a]][k]);
+  }
+  return text;
+}
+
+// Adds the mistakes of a combination that no other has, each with the first that has it.
+void add_mistakes(const std::vector<Diagnostic>& mistakes, const std::string& combination,
+                  std::vector<Diagnostic>& all) {
+  for (Diagnostic mistake : mistakes) {
+    const bool known = std::any_of(all.begin(), all.end(), [&](const Diagnostic& other) {
+      return std::tie(other.key, other.found, other.expected) ==
+                 std::tie(mistake.key, mistake.found, mistake.expected) &&
+             other.where.line == mistake.where.line && other.where.column == mistake.where.column;
+    });
+    if (known) continue;
+    if (!combination.empty()) mistake.hint += (mistake.hint.empty() ? "" : "; ") + combination;
+    all.push_back(std::move(mistake));
+  }
+}
+
+// The next combination, the last axis changing fastest; false after the last one.
+bool advance(const std::vector<Axis>& axes, std::vector<std::size_t>& places) {
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    if (++places[a] < axes[a].rows.size()) return true;
+    places[a] = 0;
+  }
+  return false;
+}
+
 void sort_keys(Value& value) {
   if (value.is(Value::Type::table)) {
     std::stable_sort(value.items.begin(), value.items.end(),
@@ -255,6 +329,33 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
     scenario.text += "# --set " + printable(override_, std::string::npos) + "\n";
   }
   return scenario;
+}
+
+void read_combinations(std::string_view text, const std::filesystem::path& file,
+                       const std::vector<std::string>& overrides,
+                       const std::function<void(const Scenario&)>& each) {
+  std::vector<Diagnostic> diagnostics;
+  const Value document = overridden(text, file, overrides, diagnostics);
+  if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
+  Value without_study = document;
+  remove_study(without_study);
+  const std::vector<Axis> axes = axes_of(document);
+  std::vector<std::size_t> places(axes.size());
+  RunCheck check;
+  do {
+    Value varied = without_study;
+    std::vector<Diagnostic> mistakes;
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      vary(axes[a].keys, axes[a].rows.at(places[a]), varied, mistakes);
+    const Reading reading = read_document(varied, file);
+    merge(mistakes, reading.diagnostics);
+    if (mistakes.empty()) mistakes = check.mistakes(reading.scenario, varied);
+    if (mistakes.empty()) each(reading.scenario);
+    add_mistakes(mistakes, combination_text(axes, places), diagnostics);
+  } while (advance(axes, places));
+  if (diagnostics.empty()) return;
+  sort_by_position(diagnostics, file.string());
+  throw InputError(std::move(diagnostics));
 }
 
 Value document_without_study(std::string_view text, const std::filesystem::path& file,

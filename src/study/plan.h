@@ -60,7 +60,7 @@ struct Plan {
 /// variant: the first part of a plan is a smaller study. A scenario without [study] is a study of one run. All
 /// combinations see the same joints, as these depend on seed and realization alone.
 ///
-/// Throws InputError with every mistake of the scenario and of its files, and for more than a million runs.
+/// Throws InputError with every mistake of the scenario, of its combinations and of their files, and for more than a million runs.
 Plan make_plan(const std::filesystem::path& scenario, const std::vector<std::string>& overrides,
                const std::string& version);
 

@@ -76,6 +76,14 @@ class Runs(Study):
         self.write("wrong.toml", GALLERY + SMALL.replace("[0.5, 1.0]", '[0.5, "strong"]'))
         self.assertIn('wrong.toml:', self.keyblock("check", "wrong.toml", expect=1).stderr)
 
+    def test_a_combination_that_cannot_be_run_is_refused_before_any_is(self):
+        self.write("short.toml", GALLERY + SMALL + '[[study.vary]]\nkey = "stage.after.duration"\nvalues = [0.2, 0.001]\n')
+        line = (self.folder / "short.toml").read_text().splitlines().index("values = [0.2, 0.001]") + 1
+        found = f"short.toml:{line}:16: stage.after.duration: found 0.001 s, 0.2 steps of 0.005 s; "
+        for words in ("check short.toml", "study run short.toml -o out", "study submit short.toml -o out"):
+            self.assertIn(found, self.keyblock(*words.split(), expect=1).stderr, words)
+        self.assertFalse(self.out.exists())
+
     def test_variants_of_the_check_for_marginal_results(self):
         self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nmarginal = {}\n')
         self.run_study("marginal.toml")

@@ -223,6 +223,41 @@ TEST(Study, EqualValuesAreTheSame) {
   EXPECT_FALSE(again("key = \"seed\"", "[9007199254740992, 9007199254740993]"));
 }
 
+std::string refused_combinations(const std::string& study) {
+  try {
+    read_combinations(with(study), "test.toml", {}, [](const Scenario&) {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Study, EveryCombinationIsRead) {
+  std::vector<std::pair<double, double>> read;
+  read_combinations(with("[[study.vary]]\nkey = \"rock.young\"\nvalues = [1, 2]\n"
+                         "[[study.vary]]\nkey = \"rock.density\"\nvalues = [3, 4]\n"),
+                    "test.toml", {"seed=2"}, [&](const Scenario& s) {
+                      read.emplace_back(*s.rock.young, *s.rock.density);
+                      EXPECT_EQ(s.seed, 2U);
+                    });
+  EXPECT_EQ(read, (std::vector<std::pair<double, double>>{{1, 3}, {1, 4}, {2, 3}, {2, 4}}));
+  EXPECT_EQ(refused_combinations("[study]\nrealizations = 2\n"), "");
+}
+
+TEST(Study, ACombinationThatARunWouldRefuse) {
+  const std::string short_stage = "[[study.vary]]\nkey = \"stage.quiet.duration\"\nvalues = [0.005, 0.2]\n";
+  EXPECT_EQ(
+      refused_combinations(short_stage),
+      "test.toml:27:11: stage.quiet.duration: found 0.005 s, 0.5 steps of 0.01 s; expected 1 to 1e+09 steps; "
+      "with stage.quiet.duration = 0.005");
+  // Each of these values is right beside those of the file.
+  const std::string steps = "[[study.vary]]\nkey = \"time.step\"\nvalues = [0.01, 0.5]\n";
+  EXPECT_EQ(
+      refused_combinations("[[study.vary]]\nkey = \"stage.quiet.duration\"\nvalues = [0.1, 2]\n" + steps),
+      "test.toml:27:11: stage.quiet.duration: found 0.1 s, 0.2 steps of 0.5 s; expected 1 to 1e+09 steps; "
+      "with stage.quiet.duration = 0.1, time.step = 0.5");
+}
+
 TEST(Study, AllItsTables) {
   const Scenario s = parse(with(R"(
 [study]
