@@ -39,6 +39,7 @@ void tell(const study::CollectReport& report, const std::string& folder) {
   list(report.damaged, "damaged");
   list(report.missing, "missing");
   if (report.enough) std::cout << "enough: " << *report.enough << " realizations\n";
+  if (!report.lacking.empty()) std::cout << "not narrow enough: " << report.lacking << "\n";
   std::cout << fmt::format("{} of {} runs done", report.done, report.asked);
   const auto count = [](const std::vector<std::string>& keys, const char* what) {
     if (!keys.empty()) std::cout << ", " << keys.size() << " " << what;

@@ -110,7 +110,9 @@ class Runs(Study):
         self.assertEqual(self.done(), before)
         self.assertIn("does not ask for it", self.study("task", "one", 2 * enough).stdout)
         self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until.replace("width = 6.0", "half_width = 0.0001") + SCALES)
-        self.assertIn("24 of 24 runs done\n", self.run_study("until.toml", "--resume").stdout)
+        said = self.run_study("until.toml", "--resume").stdout
+        self.assertIn("24 of 24 runs done\n", said)
+        self.assertRegex(said, r"not narrow enough: 2 of 2 combinations; slipped_length_m at stage\.shaken\.scale = .*half_width = 0\.0001\)")
 
 
 class GoingOn(Study):
