@@ -24,6 +24,7 @@ void check_scenario(const ScenarioArguments& arguments) {
     scenario::add_block_warnings(scenario, blocks, warnings);
   }
   print_warnings(arguments, warnings);
+  print_warnings(arguments, scenario::study_warnings(scenario));
   const auto count = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };

@@ -58,8 +58,10 @@ struct StudyArguments {
 };
 
 void run_study(const StudyArguments& arguments) {
+  std::vector<std::string> warnings;
   study::Plan plan =
-      study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION);
+      study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION, &warnings);
+  print_warnings(arguments.scenario, warnings);
   const auto lock = study::lock_study(arguments.folder);
   study::enter_plan(arguments.folder, plan, arguments.resume);
   study::StudyFiles files = study::read_study_files(arguments.folder, plan);

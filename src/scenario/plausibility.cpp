@@ -186,6 +186,16 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
   }
 }
 
+std::vector<std::string> study_warnings(const Scenario& scenario) {
+  if (!scenario.study || !scenario.joint_sets.empty()) return {};
+  const StudySpec& study = *scenario.study;
+  if (study.until)
+    return {"study.until: nothing is random without a [[joint_set]]; all realizations are the same"};
+  if (study.realizations == 1) return {};
+  return {fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
+                      study.realizations)};
+}
+
 std::vector<std::string> plausibility_warnings(const Scenario& scenario) {
   return Plausibility(scenario).warnings();
 }

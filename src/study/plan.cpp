@@ -232,7 +232,8 @@ std::vector<DamageLevel> damage_levels(const Scenario& scenario) {
           {"severe", "fallen_area_m2", 0.1 * area}};
 }
 
-Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, const std::string& version) {
+Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, const std::string& version,
+               std::vector<std::string>* warnings) {
   Plan plan;
   plan.scenario = file;
   plan.text = read_file(file);
@@ -243,6 +244,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
     throw InputError(Diagnostic{scenario.where("stage"), "stage", "nothing", "at least one [[stage]]", ""});
   }
   scenario::check_inputs(scenario);
+  if (warnings != nullptr) *warnings = scenario::study_warnings(scenario);
   plan.input = scenario_identity(plan.text, file, overrides);
   plan.title = scenario.title;
   plan.seed = scenario.seed;

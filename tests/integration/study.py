@@ -5,6 +5,7 @@ import json
 import time
 import unittest
 
+from program import INCLINE
 from study_case import GALLERY, SCALES, SMALL, Study
 
 
@@ -83,6 +84,11 @@ class Runs(Study):
         for words in ("check short.toml", "study run short.toml -o out", "study submit short.toml -o out"):
             self.assertIn(found, self.keyblock(*words.split(), expect=1).stderr, words)
         self.assertFalse(self.out.exists())
+
+    def test_realizations_of_nothing_random(self):
+        self.write("two.toml", INCLINE.replace("duration = 0.5", "duration = 0.01") + '[study]\nrealizations = 2\nkeep = "measures"\n')
+        for words in (("check", "two.toml"), ("study", "run", "two.toml", "-o", "out")):
+            self.assertIn("two.toml: warning: study.realizations = 2: nothing is random", self.keyblock(*words).stderr)
 
     def test_variants_of_the_check_for_marginal_results(self):
         self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nmarginal = {}\n')

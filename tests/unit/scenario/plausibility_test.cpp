@@ -119,5 +119,15 @@ TEST(Warnings, OfDistributionsThatAreCutOff) {
       UnorderedElementsAre(HasSubstr("joint_set.bedding.gap: cut off at zero")));
 }
 
+TEST(Warnings, OfRealizationsThatAreAllTheSame) {
+  EXPECT_THAT(study_warnings(parse(two_blocks, {"study.realizations=5"})),
+              UnorderedElementsAre(HasSubstr("study.realizations = 5: nothing is random")));
+  EXPECT_THAT(study_warnings(parse(two_blocks, {"study.until={measure=\"fallen_blocks\", width=1}"})),
+              UnorderedElementsAre(HasSubstr("study.until: nothing is random")));
+  EXPECT_THAT(study_warnings(parse(two_blocks, {"study.realizations=1"})), IsEmpty());
+  EXPECT_THAT(study_warnings(parse(jointed_domain, {"study.realizations=5"})), IsEmpty());
+  EXPECT_THAT(study_warnings(parse(two_blocks)), IsEmpty());
+}
+
 }  // namespace
 }  // namespace keyblock::scenario
