@@ -31,6 +31,7 @@ class Plausibility {
 
   std::vector<std::string> warnings() {
     check_distributions();
+    check_bonds();
     check_outlines();
     check_excavated();
     check_in_situ();
@@ -67,6 +68,23 @@ class Plausibility {
              distribution->mean);
       }
     }
+  }
+
+  // The shear bound of a joint in place is its cohesion, under tension nothing beside it.
+  void check_bonds() {
+    warn_of_bond("joints", scenario_.joints, {});
+    for (const JointSetSpec& spec : scenario_.joint_sets)
+      warn_of_bond(spec.path, spec.joints, scenario_.joints);
+    for (const TraceMapSpec& spec : scenario_.trace_maps)
+      warn_of_bond(spec.path, spec.joints, scenario_.joints);
+  }
+
+  void warn_of_bond(const std::string& path, const JointKeys& own, const JointKeys& standard) {
+    const double tension = own.tension.value_or(standard.tension.value_or(0.0));
+    const double cohesion = own.cohesion.value_or(standard.cohesion.value_or(0.0));
+    if (!own.tension && !own.cohesion) return;
+    if (tension > 0.0 && cohesion == 0.0)
+      warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
   }
 
   void check_excavated() {

@@ -119,6 +119,19 @@ TEST(Warnings, OfDistributionsThatAreCutOff) {
       UnorderedElementsAre(HasSubstr("joint_set.bedding.gap: cut off at zero")));
 }
 
+TEST(Warnings, OfTensionThatHoldsNothing) {
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6"}),
+              UnorderedElementsAre(HasSubstr("joints: tension without cohesion holds nothing")));
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6", "joints.cohesion=1e6"}), IsEmpty());
+  const auto of_set = HasSubstr("joint_set.bedding: tension without cohesion");
+  EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6"}), UnorderedElementsAre(of_set));
+  EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6", "joints.cohesion=1e6"}),
+              IsEmpty());
+  EXPECT_THAT(warnings_of(runnable_domain,
+                          {"joints.tension=1e6", "joints.cohesion=1e6", "joint_set.bedding.cohesion=0"}),
+              UnorderedElementsAre(of_set));
+}
+
 TEST(Warnings, OfRealizationsThatAreAllTheSame) {
   EXPECT_THAT(study_warnings(parse(two_blocks, {"study.realizations=5"})),
               UnorderedElementsAre(HasSubstr("study.realizations = 5: nothing is random")));
