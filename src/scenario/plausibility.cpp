@@ -33,6 +33,7 @@ class Plausibility {
     check_distributions();
     check_bonds();
     check_outlines();
+    check_automatic_order();
     check_excavated();
     check_in_situ();
     check_stages();
@@ -85,6 +86,16 @@ class Plausibility {
     if (!own.tension && !own.cohesion) return;
     if (tension > 0.0 && cohesion == 0.0)
       warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
+  }
+
+  void check_automatic_order() {
+    if (!scenario_.positions.contains("auto_order")) return;
+    const auto is_automatic = [](const auto& spec) { return spec.rock.order == automatic_order; };
+    if (scenario_.rock.order == automatic_order ||
+        std::any_of(scenario_.regions.begin(), scenario_.regions.end(), is_automatic) ||
+        std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), is_automatic))
+      return;
+    warn("auto_order: is not used, as no order is \"auto\"");
   }
 
   void check_excavated() {

@@ -87,7 +87,7 @@ class Consistency {
     if (settling == stages.end()) return;
     const std::string key = join_path(join_path("stage", settling->name), "kind");
     fail(key, key, "\"settle\" without anything to carry",
-         "gravity, a load on a block that moves, or a stress in [in_situ], by which equilibrium is measured");
+         "gravity, a load, or a stress in [in_situ], by which equilibrium is measured");
   }
 
   [[nodiscard]] bool has_weights() const {
@@ -96,13 +96,8 @@ class Consistency {
     return scenario_.gravity != Vec2{} ||
            std::any_of(scenario_.loads.begin(), scenario_.loads.end(), [&](const loading::Load& load) {
              const auto is_none = [&](double s) { return load.traction(s) == Vec2{}; };
-             return is_on_moving_block(load) && !(is_none(0.0) && is_none(0.5) && is_none(1.0));
+             return !(is_none(0.0) && is_none(0.5) && is_none(1.0));
            });
-  }
-
-  [[nodiscard]] bool is_on_moving_block(const loading::Load& load) const {
-    return std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(),
-                       [&](const BlockSpec& block) { return block.name == load.block && !block.fixed; });
   }
 
   // Outlines are cut into the domain, but not into explicit blocks: these are taken out whole or left. Shapes that were not

@@ -132,6 +132,12 @@ TEST(Warnings, OfTensionThatHoldsNothing) {
               UnorderedElementsAre(of_set));
 }
 
+TEST(Warnings, OfAnOrderThatIsNotChosen) {
+  EXPECT_THAT(warnings_of(two_blocks, {"auto_order.highest_order=4"}),
+              UnorderedElementsAre(HasSubstr("auto_order: is not used")));
+  EXPECT_THAT(warnings_of(two_blocks, {"auto_order.highest_order=4", "block.top.order=auto"}), IsEmpty());
+}
+
 TEST(Warnings, OfRealizationsThatAreAllTheSame) {
   EXPECT_THAT(study_warnings(parse(two_blocks, {"study.realizations=5"})),
               UnorderedElementsAre(HasSubstr("study.realizations = 5: nothing is random")));
