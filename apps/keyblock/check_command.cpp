@@ -28,9 +28,10 @@ void check_scenario(const ScenarioArguments& arguments) {
   const auto count = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
-  std::string text = fmt::format(
-      "{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
-      count(rockmass::count_traces(blocks.traces), "joint trace"), count(scenario.stages.size(), "stage"));
+  std::string text =
+      fmt::format("{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
+                  count(static_cast<std::size_t>(blocks.system.statistics.traces), "joint trace"),
+                  count(scenario.stages.size(), "stage"));
   if (scenario.study) {
     // Every combination of values is looked at here.
     const study::Plan plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);

@@ -38,13 +38,19 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-Value value_of_text(const std::string& text) {
+// Words need no quotes; what begins as a table, a list or a string in quotes is meant as one.
+Value value_of_text(const std::string& text, const SourcePosition& where) {
   if (text.find('\n') == std::string::npos) {
     try {
       Value document = parse_toml("value = " + text, "");
       if (document.items.size() == 1) return std::move(document.items.front());
-    } catch (const InputError&) {
-      // A word without quotes.
+    } catch (const InputError& error) {
+      if (!text.empty() && std::string_view("{[\"'").find(text.front()) != std::string_view::npos) {
+        Diagnostic diagnostic = error.diagnostics().front();
+        diagnostic.where = where;
+        diagnostic.expected = "a TOML value; a word that begins like one stands in quotes";
+        throw InputError(std::move(diagnostic));
+      }
     }
   }
   Value word;
@@ -116,7 +122,7 @@ Override parse_override(const std::string& text) {
     diagnostic.expected = "key=value";
     throw InputError(std::move(diagnostic));
   }
-  Value value = value_of_text(trimmed(text.substr(equals + 1)));
+  Value value = value_of_text(trimmed(text.substr(equals + 1)), where);
   move_to(value, where);
   return make_override(trimmed(text.substr(0, equals)), std::move(value));
 }

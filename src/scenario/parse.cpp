@@ -373,9 +373,8 @@ Scenario parse_scenario(const std::filesystem::path& file, const std::vector<std
 }
 
 SourcePosition Scenario::where(const std::string& key_path) const {
-  SourcePosition position = nearest_position(positions, key_path);
-  if (position.file.empty()) position.file = file;
-  return position;
+  const SourcePosition position = nearest_position(positions, key_path);
+  return position.file.empty() ? SourcePosition{file, 1, 1} : position;
 }
 
 }  // namespace keyblock::scenario

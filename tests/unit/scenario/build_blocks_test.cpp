@@ -124,6 +124,11 @@ TEST(BuildBlocks, WhatIsFixedIsNotExcavated) {
               HasSubstr("block.base.outer: found a fixed block, of which 8.33 % lie in excavation.bore"));
 }
 
+TEST(BuildBlocks, WhatTheCutterRefusesHasItsPlace) {
+  EXPECT_THAT(refusal(parse(runnable_domain, {"excavation.tunnel.diameter=1e-300"})),
+              HasSubstr("/test.toml:27:1: excavation.tunnel: found a ring that"));
+}
+
 TEST(BuildBlocks, TracesOfAMapThatIsFarAway) {
   const Scenario s = parse_scenario(examples / "05-trace-map.toml");
   const auto setup = build_setup(s, 0);

@@ -300,7 +300,7 @@ TEST(Positions, OfValuesAndOfTheNearestTable) {
   EXPECT_EQ(s.where("rock.young").column, 9);
   EXPECT_EQ(s.where("block.top.outer").line, 19);
   EXPECT_EQ(s.where("block.top.spin").line, 17);
-  EXPECT_EQ(s.where("nowhere").line, 0);
+  EXPECT_EQ(s.where("nowhere").line, 1);
   EXPECT_EQ(s.where("nowhere").file, s.file);
 }
 
