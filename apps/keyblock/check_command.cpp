@@ -24,14 +24,16 @@ void check_scenario(const ScenarioArguments& arguments) {
     scenario::add_block_warnings(scenario, blocks, warnings);
   }
   print_warnings(arguments, warnings);
+  print_warnings(arguments, scenario::study_warnings(scenario));
   const auto count = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
-  std::string text = fmt::format(
-      "{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
-      count(rockmass::count_traces(blocks.traces), "joint trace"), count(scenario.stages.size(), "stage"));
+  std::string text =
+      fmt::format("{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
+                  count(static_cast<std::size_t>(blocks.system.statistics.traces), "joint trace"),
+                  count(scenario.stages.size(), "stage"));
   if (scenario.study) {
-    // Every value of every axis is looked at here.
+    // Every combination of values is looked at here.
     const study::Plan plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
     const auto realizations = static_cast<std::size_t>(plan.realizations);
     text += fmt::format("; a study of {}{}: {}, {} of each", plan.until ? "at most " : "",

@@ -39,6 +39,7 @@ void tell(const study::CollectReport& report, const std::string& folder) {
   list(report.damaged, "damaged");
   list(report.missing, "missing");
   if (report.enough) std::cout << "enough: " << *report.enough << " realizations\n";
+  if (!report.lacking.empty()) std::cout << "not narrow enough: " << report.lacking << "\n";
   std::cout << fmt::format("{} of {} runs done", report.done, report.asked);
   const auto count = [](const std::vector<std::string>& keys, const char* what) {
     if (!keys.empty()) std::cout << ", " << keys.size() << " " << what;
@@ -57,8 +58,10 @@ struct StudyArguments {
 };
 
 void run_study(const StudyArguments& arguments) {
+  std::vector<std::string> warnings;
   study::Plan plan =
-      study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION);
+      study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION, &warnings);
+  print_warnings(arguments.scenario, warnings);
   const auto lock = study::lock_study(arguments.folder);
   study::enter_plan(arguments.folder, plan, arguments.resume);
   study::StudyFiles files = study::read_study_files(arguments.folder, plan);

@@ -73,8 +73,10 @@ void remove_scripts(const fs::path& folder) {
 }
 
 void submit_study(SubmitArguments& arguments) {
+  std::vector<std::string> warnings;
   study::Plan plan =
-      study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION);
+      study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION, &warnings);
+  print_warnings(arguments.scenario, warnings);
   const auto limit = study::max_array_size(output_of("scontrol show config 2>/dev/null").first);
   if (limit) arguments.slurm.most_elements = *limit;
   study::check_can_submit(fs::absolute(arguments.folder), arguments.slurm);

@@ -13,9 +13,4 @@ std::vector<int> trace_numbers(const std::vector<Trace>& pieces) {
   return numbers;
 }
 
-std::size_t count_traces(const std::vector<Trace>& pieces) {
-  const std::vector<int> numbers = trace_numbers(pieces);
-  return numbers.empty() ? 0 : static_cast<std::size_t>(numbers.back()) + 1;
-}
-
 }  // namespace keyblock::rockmass

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstddef>
 #include <vector>
 
 #include "geometry/vec2.h"
@@ -23,7 +22,5 @@ struct Trace {
 
 /// For every piece the number of its trace, counted from 0. Pieces of one trace follow each other.
 std::vector<int> trace_numbers(const std::vector<Trace>& pieces);
-/// How many traces the pieces make.
-std::size_t count_traces(const std::vector<Trace>& pieces);
 
 }  // namespace keyblock::rockmass

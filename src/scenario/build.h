@@ -14,7 +14,7 @@ struct BlockModel {
   std::vector<rockmass::Trace> traces;  ///< generated and mapped, real coordinates
   std::vector<Ring> outlines;           ///< of the excavations, counter-clockwise, real coordinates
   /// The blocks cut from the domain, then those of the scenario with edges of kind `free`; an explicit block belongs
-  /// to the excavations whose outline holds its centroid. Local coordinates. Without a domain the local origin is a
+  /// to the excavations whose outline it lies in (excavated_blocks.h). Local coordinates. Without a domain the local origin is a
   /// rounded corner of the blocks if they lie far away.
   cutting::BlockSystem system;
 };

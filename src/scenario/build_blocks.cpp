@@ -7,7 +7,9 @@
 #include "rockmass/intensity.h"
 #include "rockmass/trace_generator.h"
 #include "scenario/build.h"
+#include "scenario/excavated_blocks.h"
 #include "scenario/inputs.h"
+#include "scenario/key_path.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -52,6 +54,18 @@ std::vector<rockmass::Trace> generate(const Scenario& scenario, std::size_t k, c
   }
 }
 
+// What the cutter refuses, an outline of no size beside the domain, shows at the excavation in the file.
+InputError placed(const Scenario& scenario, const InputError& error) {
+  std::vector<Diagnostic> diagnostics = error.diagnostics();
+  for (Diagnostic& diagnostic : diagnostics) {
+    for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
+      if (diagnostic.key == join_index("excavation", k)) diagnostic.key = scenario.excavations[k].path;
+    }
+    diagnostic.where = scenario.where(diagnostic.key);
+  }
+  return InputError(std::move(diagnostics));
+}
+
 void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   const Domain& domain = *scenario.domain;
   const Box window = domain.box();
@@ -67,7 +81,11 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   input.traces = model.traces;
   input.excavations = model.outlines;
   input.tolerances = tolerances_of(scenario.cutting, window, model.traces);
-  model.system = cutting::cut(input);
+  try {
+    model.system = cutting::cut(input);
+  } catch (const InputError& error) {
+    throw placed(scenario, error);
+  }
 }
 
 Vec2 origin_of(const std::vector<BlockSpec>& blocks) {
@@ -80,9 +98,9 @@ Vec2 origin_of(const std::vector<BlockSpec>& blocks) {
 
 cutting::CutBlock explicit_block(const BlockSpec& spec, const std::vector<Ring>& outlines, Vec2 origin) {
   cutting::CutBlock block;
-  const Vec2 centre = centroid(spec.polygon);
   for (std::size_t k = 0; k < outlines.size(); ++k) {
-    if (contains(outlines[k], centre)) block.excavations.push_back(static_cast<int>(k));
+    if (overlay(spec.polygon, outlines[k]).place == Place::inside)
+      block.excavations.push_back(static_cast<int>(k));
   }
   block.polygon.outer = shifted(spec.polygon.outer, -origin);
   for (const Ring& hole : spec.polygon.holes) block.polygon.holes.push_back(shifted(hole, -origin));

@@ -8,7 +8,7 @@
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/polygon_checks.h"
-#include "simulation/step_count.h"
+#include "scenario/stage_steps.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -19,11 +19,6 @@ constexpr double most_unknowns = 2e7;
 // Overlaps of explicit blocks deeper than this share of the size of the smallest block are warned of, the deepest ones.
 constexpr double overlap_share = 1e-4;
 constexpr std::size_t most_overlaps = 5;
-
-// Steps of a stage beyond which it is refused.
-constexpr double most_steps = 1e9;
-// A duration that differs from whole steps by more than this share of a step is worth a warning.
-constexpr double whole_step_tolerance = 1e-6;
 
 using simulation::BlockProperties;
 using simulation::RunSetup;
@@ -161,31 +156,6 @@ void check_size(const Scenario& scenario, const std::vector<BlockProperties>& pr
   }
 }
 
-// A stage takes whole steps: it must have one, and should last no longer or shorter than the user thinks.
-void check_steps(const Scenario& scenario, const RunSetup& setup, std::vector<std::string>& warnings) {
-  std::vector<Diagnostic> mistakes;
-  for (const simulation::Stage& stage : setup.stages) {
-    if (stage.kind == simulation::StageKind::settle) continue;
-    const double duration =
-        stage.duration ? *stage.duration : setup.motions[static_cast<std::size_t>(stage.motion)].duration();
-    const double steps = duration / setup.time_step;
-    const double whole = simulation::step_count(duration, setup.time_step);
-    const std::string path = join_path("stage", stage.name);
-    const std::string key = stage.duration ? join_path(path, "duration") : path;
-    if (!(steps >= 1.0 - whole_step_tolerance && steps <= most_steps)) {
-      mistakes.push_back({scenario.where(key), key,
-                          fmt::format("{} s{}, {:.3g} steps of {} s", duration,
-                                      stage.duration ? "" : " of motion", steps, setup.time_step),
-                          fmt::format("1 to {:.0e} steps", most_steps), ""});
-    } else if (stage.duration && std::abs(steps - whole) > whole_step_tolerance * std::max(1.0, whole)) {
-      warnings.push_back(fmt::format(
-          "{}: {} s is no multiple of the time step {} s; the stage takes {} step{}, {:.6g} s", key, duration,
-          setup.time_step, whole, whole == 1.0 ? "" : "s", whole * setup.time_step));
-    }
-  }
-  if (!mistakes.empty()) throw InputError(std::move(mistakes));
-}
-
 // Contact takes blocks that overlap at the start as they are: nothing pushes them apart.
 void warn_of_overlaps(const Scenario& scenario, const cutting::BlockSystem& system,
                       std::vector<std::string>& warnings) {
@@ -255,7 +225,9 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.files = input_files(scenario);
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
-  check_steps(scenario, setup, notes);
+  if (auto mistakes = stage_mistakes(scenario, setup.motions); !mistakes.empty())
+    throw InputError(std::move(mistakes));
+  add_stage_warnings(scenario, notes);
   setup.damage = scenario.damage;
   setup.output = scenario.output;
   setup.automatic_order = scenario.automatic;

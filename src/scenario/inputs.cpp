@@ -69,6 +69,7 @@ class MotionReader {
     std::vector<std::pair<MotionComponent, ComponentDirection>> components;
     std::vector<Diagnostic> mistakes;
     for (const MotionComponentSpec& component : spec.components) {
+      warn_of_repetition(spec, component);
       try {
         MotionComponent read = channel(component);
         const ComponentDirection along = direction(component, read);
@@ -83,6 +84,16 @@ class MotionReader {
     options.window = spec.window;
     options.baseline = spec.baseline;
     return loading::project_motion(spec.name, components, options);
+  }
+
+  // Components are added up, whether or not they are different ones.
+  void warn_of_repetition(const MotionSpec& motion, const MotionComponentSpec& component) {
+    for (const MotionComponentSpec* before = motion.components.data(); before != &component; ++before) {
+      if (before->file != component.file || before->channel.value_or(1) != component.channel.value_or(1))
+        continue;
+      warnings_.push_back(
+          fmt::format("{}: the same record as {}; both are added up", component.path, before->path));
+    }
   }
 
   MotionComponent channel(const MotionComponentSpec& spec) {

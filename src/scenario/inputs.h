@@ -33,7 +33,11 @@ std::vector<std::string> plausibility_warnings(const Scenario& scenario);
 /// Those of them that concern joints and the outlines of excavations, for who only cuts.
 std::vector<std::string> rock_mass_warnings(const Scenario& scenario);
 
-/// All of the above, for `keyblock check`: returns the warnings, throws the mistakes of all files together.
+/// What seems wrong with [study]: realizations where nothing is random.
+std::vector<std::string> study_warnings(const Scenario& scenario);
+
+/// plausibility_warnings, and what reading the files has to say, for `keyblock check`: returns the warnings, throws the mistakes of
+/// all files together.
 std::vector<std::string> check_inputs(const Scenario& scenario);
 
 }  // namespace keyblock::scenario

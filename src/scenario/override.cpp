@@ -38,13 +38,19 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-Value value_of_text(const std::string& text) {
+// Words need no quotes; what begins as a table, a list or a string in quotes is meant as one.
+Value value_of_text(const std::string& text, const SourcePosition& where) {
   if (text.find('\n') == std::string::npos) {
     try {
       Value document = parse_toml("value = " + text, "");
       if (document.items.size() == 1) return std::move(document.items.front());
-    } catch (const InputError&) {
-      // A word without quotes.
+    } catch (const InputError& error) {
+      if (!text.empty() && std::string_view("{[\"'").find(text.front()) != std::string_view::npos) {
+        Diagnostic diagnostic = error.diagnostics().front();
+        diagnostic.where = where;
+        diagnostic.expected = "a TOML value; a word that begins like one stands in quotes";
+        throw InputError(std::move(diagnostic));
+      }
     }
   }
   Value word;
@@ -62,8 +68,8 @@ Diagnostic no_path(const SourcePosition& where, const std::string& text) {
 }
 
 // Element of a list by name or place, or null.
-Value* find_element(Value& list, const PathSegment& segment) {
-  for (Value& item : list.items) {
+const Value* find_element(const Value& list, const PathSegment& segment) {
+  for (const Value& item : list.items) {
     const std::string* name = item.name();
     if (name != nullptr && *name == segment.key) return &item;
   }
@@ -116,7 +122,7 @@ Override parse_override(const std::string& text) {
     diagnostic.expected = "key=value";
     throw InputError(std::move(diagnostic));
   }
-  Value value = value_of_text(trimmed(text.substr(equals + 1)));
+  Value value = value_of_text(trimmed(text.substr(equals + 1)), where);
   move_to(value, where);
   return make_override(trimmed(text.substr(0, equals)), std::move(value));
 }
@@ -141,10 +147,11 @@ std::optional<Diagnostic> apply_override(const Override& override_, Value& docum
   };
   for (const PathSegment& segment : override_.path) {
     if (node->is(Value::Type::array)) {
-      Value* element = find_element(*node, segment);
+      const Value* element = find_element(*node, segment);
       if (element == nullptr) return failed(no_element(*node, segment, path));
-      path = join_index(path, static_cast<std::size_t>(element - node->items.data()));
-      node = element;
+      const auto place = static_cast<std::size_t>(element - node->items.data());
+      path = join_index(path, place);
+      node = &node->items[place];
     } else if (node->is(Value::Type::table)) {
       Value* member = node->find(segment.key);
       if (member == nullptr) {
@@ -164,6 +171,22 @@ std::optional<Diagnostic> apply_override(const Override& override_, Value& docum
   }
   replace(*node, override_.value);
   return std::nullopt;
+}
+
+std::vector<std::string> resolved_path(const std::vector<PathSegment>& path, const Value& document) {
+  std::vector<std::string> resolved;
+  const Value* node = &document;
+  for (const PathSegment& segment : path) {
+    const bool in_list = node != nullptr && node->is(Value::Type::array);
+    const Value* next = node == nullptr ? nullptr
+                        : in_list       ? find_element(*node, segment)
+                                        : node->find(segment.key);
+    resolved.push_back(in_list && next != nullptr
+                           ? join_index("", static_cast<std::size_t>(next - node->items.data()))
+                           : segment.key);
+    node = next;
+  }
+  return resolved;
 }
 
 }  // namespace keyblock::scenario

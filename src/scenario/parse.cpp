@@ -11,6 +11,7 @@
 #include "scenario/key_path.h"
 #include "scenario/override.h"
 #include "scenario/sections.h"
+#include "scenario/stage_steps.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -62,15 +63,12 @@ void merge(std::vector<Diagnostic>& all, std::vector<Diagnostic> more) {
   }
 }
 
-// What one value of [[study.vary]], or several that vary together, would do to the scenario. Returns false when a key
-// leads nowhere, for which the other values need not be tried.
-bool try_values(const std::vector<const Value*>& keys, const std::vector<const Value*>& values,
-                const Value& document, const std::filesystem::path& file,
-                std::vector<Diagnostic>& diagnostics) {
-  Value varied = document;
+// Puts one value of [[study.vary]], or several that vary together, into the scenario. False when a key leads nowhere.
+bool vary(const std::vector<const Value*>& keys, const std::vector<const Value*>& values, Value& document,
+          std::vector<Diagnostic>& diagnostics) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
     try {
-      if (const auto failed = apply_override(make_override(keys[k]->text, *values[k]), varied)) {
+      if (const auto failed = apply_override(make_override(keys[k]->text, *values[k]), document)) {
         merge(diagnostics, {*failed});
         return false;
       }
@@ -79,7 +77,6 @@ bool try_values(const std::vector<const Value*>& keys, const std::vector<const V
       return false;
     }
   }
-  merge(diagnostics, read_document(varied, file).diagnostics);
   return true;
 }
 
@@ -97,26 +94,65 @@ std::vector<const Value*> keys_of(const Value& axis) {
   return keys;
 }
 
-// A key may vary once, and not in [study] itself.
-void check_keys(const std::vector<const Value*>& keys, std::vector<std::vector<PathSegment>>& before,
-                std::vector<Diagnostic>& diagnostics) {
-  const auto same_path = [](const auto& a, const auto& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const PathSegment& x, const PathSegment& y) { return x.key == y.key; });
-  };
-  for (const Value* key : keys) {
-    auto path = parse_key_path(key->text);
-    if (!path) continue;
-    const bool again =
-        std::any_of(before.begin(), before.end(), [&](const auto& other) { return same_path(other, *path); });
-    if (again)
-      merge(diagnostics, {{key->where, key->text, "a key that varies already", "every key once", ""}});
-    if (path->front().key == "study") {
-      merge(diagnostics, {{key->where, key->text, "a key of [study]", "a key of what is studied", ""}});
+// An axis of [[study.vary]] as it stands in the document: its keys, and rows of a value for each.
+struct Axis {
+  std::vector<const Value*> keys;
+  std::vector<std::vector<const Value*>> rows;
+};
+
+// Those axes, and of them those rows, that can be tried.
+std::vector<Axis> axes_of(const Value& document) {
+  std::vector<Axis> axes;
+  const Value* study = document.find("study");
+  const Value* list = study == nullptr ? nullptr : study->find("vary");
+  if (list == nullptr || !list->is(Value::Type::array)) return axes;
+  for (const Value& table : list->items) {
+    const Value* values = table.find("values");
+    Axis axis{keys_of(table), {}};
+    if (axis.keys.empty() || values == nullptr || !values->is(Value::Type::array)) continue;
+    const bool several = table.find("keys") != nullptr;
+    for (const Value& item : values->items) {
+      std::vector<const Value*> row;
+      if (!several) row.push_back(&item);
+      for (const Value& value : item.items) {
+        if (several) row.push_back(&value);
+      }
+      if (row.size() == axis.keys.size()) axis.rows.push_back(std::move(row));
     }
-    before.push_back(std::move(*path));
+    axes.push_back(std::move(axis));
   }
+  return axes;
 }
+
+// A value may vary once, however its key is written, and not in [study] itself; values are put in in the order of the axes.
+class VariedKeys {
+ public:
+  VariedKeys(const Value& document, std::vector<Diagnostic>& diagnostics)
+      : document_(document), diagnostics_(diagnostics) {}
+
+  void add(const Value& key) {
+    const auto path = parse_key_path(key.text);
+    if (!path) return;
+    if (path->front().key == "study")
+      merge(diagnostics_, {{key.where, key.text, "a key of [study]", "a key of what is studied", ""}});
+    std::vector<std::string> place = resolved_path(*path, document_);
+    for (const auto& [other, text] : before_) {
+      if (other == place) {
+        merge(diagnostics_, {{key.where, key.text, "a key that varies already", "every key once",
+                              text == key.text ? "" : "'" + text + "' is the same value"}});
+      } else if (other.size() > place.size() && std::equal(place.begin(), place.end(), other.begin())) {
+        merge(diagnostics_, {{key.where, key.text, "a key that holds '" + text + "', which varies already",
+                              "it before that one, whose values it replaces", ""}});
+      }
+    }
+    before_.emplace_back(std::move(place), key.text);
+  }
+
+ private:
+  const Value& document_;
+  std::vector<Diagnostic>& diagnostics_;
+  std::vector<std::pair<std::vector<std::string>, std::string>> before_;
+};
 
 void remove_study(Value& document) {
   std::erase_if(document.items, [](const Value& member) { return member.key == "study"; });
@@ -125,26 +161,15 @@ void remove_study(Value& document) {
 // Tries every value of [[study.vary]] alone.
 void check_study(const Value& document, const std::filesystem::path& file,
                  std::vector<Diagnostic>& diagnostics) {
-  const Value* study = document.find("study");
-  const Value* vary = study == nullptr ? nullptr : study->find("vary");
-  if (vary == nullptr || !vary->is(Value::Type::array)) return;
   Value without_study = document;
   remove_study(without_study);
-  std::vector<std::vector<PathSegment>> paths;
-  for (const Value& axis : vary->items) {
-    const Value* values = axis.find("values");
-    const std::vector<const Value*> keys = keys_of(axis);
-    if (keys.empty() || values == nullptr || !values->is(Value::Type::array)) continue;
-    check_keys(keys, paths, diagnostics);
-    const bool several = axis.find("keys") != nullptr;
-    for (const Value& item : values->items) {
-      std::vector<const Value*> row{&item};
-      if (several) {
-        row.clear();
-        for (const Value& value : item.items) row.push_back(&value);
-      }
-      if (row.size() != keys.size()) continue;
-      if (!try_values(keys, row, without_study, file, diagnostics)) break;
+  VariedKeys varied_keys(without_study, diagnostics);
+  for (const Axis& axis : axes_of(document)) {
+    for (const Value* key : axis.keys) varied_keys.add(*key);
+    for (const auto& row : axis.rows) {
+      Value varied = without_study;
+      if (!vary(axis.keys, row, varied, diagnostics)) break;
+      merge(diagnostics, read_document(varied, file).diagnostics);
     }
   }
 }
@@ -184,6 +209,79 @@ void sort_by_position(std::vector<Diagnostic>& diagnostics, const std::string& f
   };
   std::stable_sort(diagnostics.begin(), diagnostics.end(),
                    [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
+}
+
+// What a run refuses before it cuts any block, beside what reading finds. What the files say is looked at once for all
+// scenarios that name the same.
+class RunCheck {
+ public:
+  std::vector<Diagnostic> mistakes(const Scenario& scenario, const Value& document) {
+    std::string text;
+    for (const char* section : {"section", "motion", "trace_map"}) {
+      const Value* value = document.find(section);
+      text += (value == nullptr ? "" : to_toml(*value)) + "\n";
+    }
+    const auto [place, added] = known_.try_emplace(text);
+    Files& files = place->second;
+    if (added) files = read(scenario);
+    if (!files.mistakes.empty()) return files.mistakes;
+    return stage_mistakes(scenario, files.motions);
+  }
+
+ private:
+  struct Files {
+    std::vector<loading::GroundMotion> motions;
+    std::vector<Diagnostic> mistakes;
+  };
+
+  static Files read(const Scenario& scenario) {
+    Files files;
+    try {
+      check_inputs(scenario);
+      std::vector<std::string> warnings;
+      files.motions = read_motions(scenario, warnings);
+    } catch (const InputError& error) {
+      files.mistakes = error.diagnostics();
+    }
+    return files;
+  }
+
+  std::map<std::string, Files> known_;
+};
+
+// Which combination it is, for a mistake that may stand at a value it does not have.
+std::string combination_text(const std::vector<Axis>& axes, const std::vector<std::size_t>& places) {
+  std::string text;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    for (std::size_t k = 0; k < axes[a].keys.size(); ++k)
+      text += (text.empty() ? "with " : ", ") + axes[a].keys[k]->text + " = " +
+              to_toml(*axes[a].rows[places[a]][k]);
+  }
+  return text;
+}
+
+// Adds the mistakes of a combination that no other has, each with the first that has it.
+void add_mistakes(const std::vector<Diagnostic>& mistakes, const std::string& combination,
+                  std::vector<Diagnostic>& all) {
+  for (Diagnostic mistake : mistakes) {
+    const bool known = std::any_of(all.begin(), all.end(), [&](const Diagnostic& other) {
+      return std::tie(other.key, other.found, other.expected) ==
+                 std::tie(mistake.key, mistake.found, mistake.expected) &&
+             other.where.line == mistake.where.line && other.where.column == mistake.where.column;
+    });
+    if (known) continue;
+    if (!combination.empty()) mistake.hint += (mistake.hint.empty() ? "" : "; ") + combination;
+    all.push_back(std::move(mistake));
+  }
+}
+
+// The next combination, the last axis changing fastest; false after the last one.
+bool advance(const std::vector<Axis>& axes, std::vector<std::size_t>& places) {
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    if (++places[a] < axes[a].rows.size()) return true;
+    places[a] = 0;
+  }
+  return false;
 }
 
 void sort_keys(Value& value) {
@@ -233,6 +331,33 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
   return scenario;
 }
 
+void read_combinations(std::string_view text, const std::filesystem::path& file,
+                       const std::vector<std::string>& overrides,
+                       const std::function<void(const Scenario&)>& each) {
+  std::vector<Diagnostic> diagnostics;
+  const Value document = overridden(text, file, overrides, diagnostics);
+  if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
+  Value without_study = document;
+  remove_study(without_study);
+  const std::vector<Axis> axes = axes_of(document);
+  std::vector<std::size_t> places(axes.size());
+  RunCheck check;
+  do {
+    Value varied = without_study;
+    std::vector<Diagnostic> mistakes;
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      vary(axes[a].keys, axes[a].rows.at(places[a]), varied, mistakes);
+    const Reading reading = read_document(varied, file);
+    merge(mistakes, reading.diagnostics);
+    if (mistakes.empty()) mistakes = check.mistakes(reading.scenario, varied);
+    if (mistakes.empty()) each(reading.scenario);
+    add_mistakes(mistakes, combination_text(axes, places), diagnostics);
+  } while (advance(axes, places));
+  if (diagnostics.empty()) return;
+  sort_by_position(diagnostics, file.string());
+  throw InputError(std::move(diagnostics));
+}
+
 Value document_without_study(std::string_view text, const std::filesystem::path& file,
                              const std::vector<std::string>& overrides) {
   std::vector<Diagnostic> diagnostics;
@@ -248,9 +373,8 @@ Scenario parse_scenario(const std::filesystem::path& file, const std::vector<std
 }
 
 SourcePosition Scenario::where(const std::string& key_path) const {
-  SourcePosition position = nearest_position(positions, key_path);
-  if (position.file.empty()) position.file = file;
-  return position;
+  const SourcePosition position = nearest_position(positions, key_path);
+  return position.file.empty() ? SourcePosition{file, 1, 1} : position;
 }
 
 }  // namespace keyblock::scenario

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,16 @@ enum class StudyTable {
 Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
                              const std::vector<std::string>& overrides = {},
                              StudyTable study = StudyTable::check);
+
+/// Every combination of the values of [[study.vary]], the last axis changing fastest, as its run reads it: `each` is called for
+/// those that are right. Without axes that is the scenario itself. The study must have been read before.
+///
+/// Throws one InputError with all that a run would refuse before it cuts any block: mistakes of values together, in the files
+/// they name, stages of less than one step. A mistake in a value stands at its place in [study], and every mistake names the
+/// first combination that has it.
+void read_combinations(std::string_view text, const std::filesystem::path& file,
+                       const std::vector<std::string>& overrides,
+                       const std::function<void(const Scenario&)>& each);
 
 /// The document with its overrides and without [study], the keys of every table in alphabetical order: what every run of a
 /// study starts from. Throws InputError.

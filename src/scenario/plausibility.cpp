@@ -31,7 +31,9 @@ class Plausibility {
 
   std::vector<std::string> warnings() {
     check_distributions();
+    check_bonds();
     check_outlines();
+    check_automatic_order();
     check_excavated();
     check_in_situ();
     check_stages();
@@ -67,6 +69,33 @@ class Plausibility {
              distribution->mean);
       }
     }
+  }
+
+  // The shear bound of a joint in place is its cohesion, under tension nothing beside it.
+  void check_bonds() {
+    warn_of_bond("joints", scenario_.joints, {});
+    for (const JointSetSpec& spec : scenario_.joint_sets)
+      warn_of_bond(spec.path, spec.joints, scenario_.joints);
+    for (const TraceMapSpec& spec : scenario_.trace_maps)
+      warn_of_bond(spec.path, spec.joints, scenario_.joints);
+  }
+
+  void warn_of_bond(const std::string& path, const JointKeys& own, const JointKeys& standard) {
+    const double tension = own.tension.value_or(standard.tension.value_or(0.0));
+    const double cohesion = own.cohesion.value_or(standard.cohesion.value_or(0.0));
+    if (!own.tension && !own.cohesion) return;
+    if (tension > 0.0 && cohesion == 0.0)
+      warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
+  }
+
+  void check_automatic_order() {
+    if (!scenario_.positions.contains("auto_order")) return;
+    const auto is_automatic = [](const auto& spec) { return spec.rock.order == automatic_order; };
+    if (scenario_.rock.order == automatic_order ||
+        std::any_of(scenario_.regions.begin(), scenario_.regions.end(), is_automatic) ||
+        std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), is_automatic))
+      return;
+    warn("auto_order: is not used, as no order is \"auto\"");
   }
 
   void check_excavated() {
@@ -184,6 +213,16 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
         "{}: no trace meets the domain; the map reaches from [{:.6g}, {:.6g}] to [{:.6g}, {:.6g}]",
         scenario.trace_maps[k].path, map.min.x, map.min.y, map.max.x, map.max.y));
   }
+}
+
+std::vector<std::string> study_warnings(const Scenario& scenario) {
+  if (!scenario.study || !scenario.joint_sets.empty()) return {};
+  const StudySpec& study = *scenario.study;
+  if (study.until)
+    return {"study.until: nothing is random without a [[joint_set]]; all realizations are the same"};
+  if (study.realizations == 1) return {};
+  return {fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
+                      study.realizations)};
 }
 
 std::vector<std::string> plausibility_warnings(const Scenario& scenario) {

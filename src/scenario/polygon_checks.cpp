@@ -40,9 +40,9 @@ bool is_flat(const Ring& ring) {
 }  // namespace
 
 std::optional<PolygonFault> orient_and_check(Polygon& polygon) {
-  const PolygonFault crossing{false, "a polygon that crosses or touches itself"};
   // The two halves of a bow tie may have no area together. Corners on one line touch, but have no area in the first place.
-  if (!is_flat(polygon.outer) && self_intersects({polygon.outer, {}})) return crossing;
+  if (!is_flat(polygon.outer) && self_intersects({polygon.outer, {}}))
+    return PolygonFault{false, "a polygon that crosses or touches itself"};
   for (std::size_t k = 0; k < polygon.ring_count(); ++k) {
     const double length = perimeter({polygon.ring(k), {}});
     if (std::abs(signed_area(polygon.ring(k))) > flat_ratio * length * length) continue;
@@ -50,7 +50,8 @@ std::optional<PolygonFault> orient_and_check(Polygon& polygon) {
     return PolygonFault{true, fmt::format("a hole without area (holes[{}])", k - 1)};
   }
   orient(polygon);
-  if (self_intersects(polygon)) return crossing;
+  if (self_intersects(polygon))
+    return PolygonFault{true, "a hole that crosses or touches another ring or itself"};
   for (std::size_t k = 0; k < polygon.holes.size(); ++k) {
     const Vec2 p = polygon.holes[k].front();
     if (!contains(polygon.outer, p)) {

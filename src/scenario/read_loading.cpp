@@ -24,6 +24,12 @@ const BlockSpec* find_block(const Scenario& scenario, const std::string& name) {
                                                                                            : &*block;
 }
 
+// What is fixed moves as it is told, whatever acts on it.
+void check_moves(TableReader& t, const BlockSpec* block) {
+  if (block == nullptr || !block->fixed) return;
+  t.fail("block", fmt::format("the fixed block '{}'", block->name), "a block that is not fixed");
+}
+
 void check_point(TableReader& t, std::string_view key, const BlockSpec* block, Vec2 p) {
   if (block == nullptr || lies_in(block->polygon, p)) return;
   t.fail(key, fmt::format("[{}, {}], outside the block", p.x, p.y),
@@ -179,6 +185,7 @@ void read_load(TableReader& t, Load& load, const Scenario& scenario) {
   t.reference("block", load.block, "block",
               {.meaning = "The block it acts on and follows.", .required = true});
   const BlockSpec* block = find_block(scenario, load.block);
+  check_moves(t, block);
   if (t.point("point", load.from,
               of_point({.meaning = "Where the force acts.", .unit = "m", .required = true}))) {
     check_point(t, "point", block, load.from);
@@ -224,6 +231,7 @@ void read_directions(TableReader& t, Support& support) {
       support.along_y = support.along_y || y;
       valid = valid && (x || y);
     }
+    valid = valid && directions->items.size() == (support.along_x && support.along_y ? 2U : 1U);
   }
   if (!valid) t.fail("directions", describe(*directions), R"(["x"], ["y"] or ["x", "y"])");
 }
@@ -244,6 +252,7 @@ void read_support(TableReader& t, Support& support, const Scenario& scenario) {
   const bool documenting = t.documenting();
   t.reference("block", support.block, "block", {.meaning = "The block it holds.", .required = true});
   const BlockSpec* block = find_block(scenario, support.block);
+  check_moves(t, block);
   if (t.points("points", support.points,
                {.meaning = "Points that are held.",
                 .unit = "m",

@@ -149,11 +149,14 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
             .unit = "Pa",
             .at_least = 0.0,
             .fallback = defaults.zero});
-  t.number("tension", joints.tension,
-           {.meaning = "Tensile strength of a joint in place, lost likewise.",
-            .unit = "Pa",
-            .at_least = 0.0,
-            .fallback = defaults.zero});
+  t.number(
+      "tension", joints.tension,
+      {.meaning =
+           "Tensile strength of a joint in place, lost likewise. Needs cohesion, which is the shear strength "
+           "of a joint under tension: without it the least shear breaks the joint.",
+       .unit = "Pa",
+       .at_least = 0.0,
+       .fallback = defaults.zero});
   t.number("normal_stiffness", joints.normal_stiffness,
            {.meaning = "Normal stiffness of the joint.",
             .unit = "Pa/m",

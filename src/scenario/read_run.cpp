@@ -169,15 +169,21 @@ void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic)
 
 void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
   t.word("integrator", solver.integrator, integrators, {.meaning = "Rule of time integration."});
-  t.number("spectral_radius", solver.spectral_radius,
-           {.meaning = "Of the generalized-alpha rule at infinite frequency: 1 damps nothing, 0 takes stiff "
-                       "vibration out in a step.",
+  const auto rule_is = [&](dynamics::TimeIntegration rule) {
+    return t.documenting() || solver.integrator == rule;
+  };
+  t.number(
+      "spectral_radius", solver.spectral_radius,
+      only(rule_is(dynamics::TimeIntegration::generalized_alpha), "integrator = \"generalized-alpha\"",
+           {.meaning =
+                "Of the rule at infinite frequency: 1 damps nothing, 0 takes stiff vibration out in a step.",
             .at_least = 0.0,
-            .at_most = 1.0});
+            .at_most = 1.0}));
   t.number("theta", solver.theta,
-           {.meaning = "Shi's rule, M(1+θ)/Δt²: 1 is Shi's own, 0 backward Euler.",
-            .at_least = 0.0,
-            .at_most = 1.0});
+           only(rule_is(dynamics::TimeIntegration::shi), "integrator = \"shi\"",
+                {.meaning = "Shi's rule, M(1+θ)/Δt²: 1 is Shi's own, 0 backward Euler.",
+                 .at_least = 0.0,
+                 .at_most = 1.0}));
   t.number("tolerance", solver.tolerance,
            {.meaning = "Largest residual of a block over its weight for a step to count as converged.",
             .above = 0.0,
@@ -220,12 +226,14 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
                   "block, per metre.",
        .unit = "1/m",
        .above = 0.0});
-  t.number(
-      "penetration_tolerance", solver.penetration_tolerance,
-      {.meaning = "Augmented Lagrangian: largest penetration and drift, over the block size.", .above = 0.0});
+  const bool multipliers = t.documenting() || solver.contact == dynamics::ContactMethod::augmented_lagrangian;
+  constexpr std::string_view with_multipliers = "contact = \"augmented-lagrangian\"";
+  t.number("penetration_tolerance", solver.penetration_tolerance,
+           only(multipliers, with_multipliers,
+                {.meaning = "Largest penetration and drift, over the block size.", .above = 0.0}));
   t.integer("max_multiplier_updates", solver.max_multiplier_updates,
-            {.meaning = "Augmented Lagrangian: how often multipliers are updated in a step at most.",
-             .at_least = 1.0});
+            only(multipliers, with_multipliers,
+                 {.meaning = "How often multipliers are updated in a step at most.", .at_least = 1.0}));
   t.word("linear", solver.linear, linear_solvers,
          {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "
                      "conjugate gradients, "

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "rockmass/trace_generator.h"
+#include "scenario/excavated_blocks.h"
 #include "scenario/key_path.h"
 #include "scenario/sections.h"
 
@@ -22,6 +23,7 @@ class Consistency {
     if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
     check_trace_counts();
     check_weights();
+    check_excavations();
   }
 
  private:
@@ -85,7 +87,7 @@ class Consistency {
     if (settling == stages.end()) return;
     const std::string key = join_path(join_path("stage", settling->name), "kind");
     fail(key, key, "\"settle\" without anything to carry",
-         "gravity, a load on a block that moves, or a stress in [in_situ], by which equilibrium is measured");
+         "gravity, a load, or a stress in [in_situ], by which equilibrium is measured");
   }
 
   [[nodiscard]] bool has_weights() const {
@@ -94,13 +96,32 @@ class Consistency {
     return scenario_.gravity != Vec2{} ||
            std::any_of(scenario_.loads.begin(), scenario_.loads.end(), [&](const loading::Load& load) {
              const auto is_none = [&](double s) { return load.traction(s) == Vec2{}; };
-             return is_on_moving_block(load) && !(is_none(0.0) && is_none(0.5) && is_none(1.0));
+             return !(is_none(0.0) && is_none(0.5) && is_none(1.0));
            });
   }
 
-  [[nodiscard]] bool is_on_moving_block(const loading::Load& load) const {
-    return std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(),
-                       [&](const BlockSpec& block) { return block.name == load.block && !block.fixed; });
+  // Outlines are cut into the domain, but not into explicit blocks: these are taken out whole or left. Shapes that were not
+  // understood cannot be compared.
+  void check_excavations() {
+    if (!root_.context().diagnostics.empty()) return;
+    for (const ExcavationSpec& excavation : scenario_.excavations) {
+      const Ring outline = excavation_outline(excavation);
+      for (const BlockSpec& block : scenario_.blocks) {
+        const Overlay over = overlay(block.polygon, outline);
+        if (over.place == Place::outside || (over.place == Place::inside && !block.fixed)) continue;
+        const std::string key = join_path(block.path, "outer");
+        const std::string share =
+            fmt::format("of which {:.3g} % lie in {}", 100.0 * over.share, excavation.path);
+        if (block.fixed) {
+          fail(key, key, "a fixed block, " + share,
+               "an excavation beside it, as what is fixed is not taken out");
+        } else {
+          fail(key, key, "a block, " + share,
+               "all or nothing of it, as blocks are taken out whole: two [[block]] in its place, along the "
+               "outline");
+        }
+      }
+    }
   }
 
   TableReader& root_;

@@ -195,10 +195,13 @@ Ring excavation_outline(const ExcavationSpec& spec) {
 }
 
 void read_shapes(TableReader& root, Scenario& scenario) {
-  root.tables(
-      "excavation", scenario.excavations,
-      {.meaning = "An opening. Its outline is cut into the rock from the start; a stage takes the rock out."},
-      [](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec); });
+  root.tables("excavation", scenario.excavations,
+              {.meaning = "An opening. Its outline is cut into the domain from the start; a stage takes the "
+                          "rock out. Explicit "
+                          "blocks are not cut: those that lie in it are taken out whole, and one that lies "
+                          "in it in part, or is "
+                          "fixed, is a mistake."},
+              [](TableReader& t, ExcavationSpec& spec) { read_excavation(t, spec); });
   root.tables("block", scenario.blocks,
               {.meaning = "A block given by its outline, beside those cut from the domain or alone."},
               [](TableReader& t, BlockSpec& block) { read_block(t, block); });

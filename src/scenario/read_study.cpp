@@ -43,6 +43,7 @@ void read_vary(TableReader& t, VarySpec& vary) {
     return;
   }
   const bool several = t.find("keys") != nullptr;
+  std::vector<const Value*> seen;
   for (std::size_t k = 0; k < values->items.size(); ++k) {
     const Value& item = values->items[k];
     const std::string path = join_index(join_path(t.path(), "values"), k);
@@ -58,10 +59,11 @@ void read_vary(TableReader& t, VarySpec& vary) {
     } else {
       for (const Value& value : item.items) texts.push_back(to_toml(value));
     }
-    if (std::find(vary.values.begin(), vary.values.end(), texts) != vary.values.end()) {
+    if (std::any_of(seen.begin(), seen.end(), [&](const Value* other) { return same_value(*other, item); })) {
       t.fail_at(item, path, describe(item) + " again", "every value once");
       continue;
     }
+    seen.push_back(&item);
     vary.values.push_back(std::move(texts));
   }
 }

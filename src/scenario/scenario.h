@@ -153,7 +153,7 @@ struct Scenario {
   std::string text;  ///< of the file, with the overrides as comments at its end
   std::map<std::string, SourcePosition> positions;  ///< of every value, by key path
 
-  /// Position of a value, or of the nearest table around it.
+  /// Position of a value, or of the nearest table around it, which may be the file.
   [[nodiscard]] SourcePosition where(const std::string& key_path) const;
 };
 

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "core/text.h"
 #include "scenario/key_path.h"
 #include "scenario/value.h"
 
@@ -125,17 +126,34 @@ std::string character_at(std::string_view text, std::size_t at) {
   return fmt::format("the character '{}' (U+{:04X})", text.substr(at, end - at), code);
 }
 
-void refuse_hazards(std::string_view text, const std::string& file) {
-  const std::size_t at = Hazards(text).find();
-  if (at == std::string_view::npos) return;
+// Line and column of a byte, the columns counted in characters.
+SourcePosition position_at(std::string_view text, std::size_t at, const std::string& file) {
   const std::string_view before = text.substr(0, at);
   const std::size_t newline = before.rfind('\n');
   const std::string_view line = before.substr(newline == std::string_view::npos ? 0 : newline + 1);
+  return {file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
+          1 + static_cast<int>(line.size() - static_cast<std::size_t>(std::count_if(line.begin(), line.end(),
+                                                                                    continues_character)))};
+}
+
+void refuse_other_encodings(std::string_view text, const std::string& file) {
+  const std::size_t at = find_invalid_utf8(text);
+  if (at == std::string_view::npos) return;
   Diagnostic diagnostic;
-  diagnostic.where = {
-      file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
-      1 + static_cast<int>(line.size() - static_cast<std::size_t>(
-                                             std::count_if(line.begin(), line.end(), continues_character)))};
+  diagnostic.where = position_at(text, at, file);
+  diagnostic.found =
+      fmt::format("the byte 0x{:02X}, which is no UTF-8", static_cast<unsigned char>(text[at]));
+  diagnostic.expected = "text in UTF-8";
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    diagnostic.hint = "the file seems to be in UTF-16; save it as UTF-8";
+  throw InputError(std::move(diagnostic));
+}
+
+void refuse_hazards(std::string_view text, const std::string& file) {
+  const std::size_t at = Hazards(text).find();
+  if (at == std::string_view::npos) return;
+  Diagnostic diagnostic;
+  diagnostic.where = position_at(text, at, file);
   if (static_cast<unsigned char>(text[at]) < 0x80) {
     diagnostic.found = fmt::format("more than {} tables or lists in each other", deepest_path);
     diagnostic.expected = "keys and values of fewer levels";
@@ -149,6 +167,7 @@ void refuse_hazards(std::string_view text, const std::string& file) {
 }  // namespace
 
 Value parse_toml(std::string_view text, const std::string& file) {
+  refuse_other_encodings(text, file);
   refuse_hazards(text, file);
   try {
     return convert(toml::parse(text, file), file);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scenario/key_path.h"
 
 namespace keyblock::scenario {
@@ -91,6 +93,19 @@ std::string to_toml(const Value& value) {
       return "{" + text + " }";
   }
   return {};
+}
+
+bool same_value(const Value& a, const Value& b) {
+  if (a.is_number() && b.is_number())
+    return a.type == b.type && a.is(Value::Type::integer) ? a.integer == b.integer : a.number == b.number;
+  if (a.type != b.type || a.items.size() != b.items.size()) return false;
+  if (a.is(Value::Type::array))
+    return std::equal(a.items.begin(), a.items.end(), b.items.begin(), same_value);
+  if (!a.is(Value::Type::table)) return to_toml(a) == to_toml(b);
+  return std::all_of(a.items.begin(), a.items.end(), [&](const Value& item) {
+    const Value* other = b.find(item.key);
+    return other != nullptr && same_value(item, *other);
+  });
 }
 
 namespace {

@@ -40,6 +40,9 @@ std::string describe(const Value& value);
 /// The value as TOML, on one line.
 std::string to_toml(const Value& value);
 
+/// Whether they mean the same: 1 and 1.0 do, and tables with their keys in another order.
+bool same_value(const Value& a, const Value& b);
+
 /// Where two documents differ, by key path: `rock.young: 3.0e9 there, 5.0e9 here`. Elements of lists are compared by place.
 std::vector<std::string> differences(const Value& there, const Value& here);
 

@@ -165,6 +165,7 @@ struct OpenCloseStatistics {
   int max_iterations = 0;
   long retried_steps = 0;
   long unconverged_steps = 0;
+  long last_converged_step = 0;  ///< of the run, over all stages; 0: none has converged
 };
 
 /// A true overlap of two blocks.

@@ -78,6 +78,8 @@ class Runner {
   void record_frame();
   void record_contacts();
   void check_overlap();
+  void check_finite(const Energy& energy) const;
+  void check_solved(const StageRecord& record) const;
   void checkpoint();
   [[nodiscard]] Energy energy() const;
   [[nodiscard]] double total_energy() const;
@@ -127,7 +129,7 @@ Energy Runner::energy() const {
        {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.numerical, e.input}) {
     largest = std::max(largest, std::abs(term));
   }
-  e.residual_ratio = largest > 0.0 ? std::abs(residual) / largest : 0.0;
+  e.residual_ratio = residual == 0.0 ? 0.0 : std::abs(residual) / largest;  // no number where a term is none
   return e;
 }
 
@@ -194,6 +196,24 @@ void Runner::check_overlap() {
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 
+void Runner::check_finite(const Energy& energy) const {
+  if (std::isfinite(energy.residual_ratio)) return;
+  throw RunError(fmt::format(
+      "the energies after step {} of stage '{}' are no finite numbers; the results up to it are kept",
+      now_.stage_step, setup_.stages[static_cast<std::size_t>(now_.stage)].name));
+}
+
+/// Single steps that do not converge leave a result that can be judged by what is out of balance; a stage without any that
+/// does has none.
+void Runner::check_solved(const StageRecord& record) const {
+  check_finite(energy());
+  const long before = now_.mechanics.step - record.steps;
+  if (record.steps == 0 || now_.record.open_close.last_converged_step > before) return;
+  throw RunError(fmt::format(
+      "no step of stage '{}' converged, of {} from step {} of the run on; the results up to its end are kept",
+      record.stage.name, record.steps, before + 1));
+}
+
 // A place for a checkpoint is one whether it is used or not. In long runs not all are: with each, observers write out what they
 // have, which may take room (results::ResultWriter).
 void Runner::checkpoint() {
@@ -222,6 +242,7 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   statistics.max_iterations = std::max(statistics.max_iterations, report.iterations);
   statistics.retried_steps += report.substeps > 1;
   statistics.unconverged_steps += !report.converged;
+  if (report.converged) statistics.last_converged_step = now_.mechanics.step;
   for (const double x : now_.mechanics.position) {
     if (!std::isfinite(x)) {
       throw RunError(fmt::format("step {} of stage '{}' left no finite state; the results up to it are kept",
@@ -242,10 +263,12 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
     ++now_.reported.histories;
   }
   if (due(step_row_interval)) {
+    const Energy energies = energy();
     observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations,
                     setup_.time_step / report.substeps, report.penetration, report.max_displacement,
-                    report.closed_contacts, energy()});
+                    report.closed_contacts, energies});
     ++now_.reported.steps;
+    check_finite(energies);
   }
   if (step % checkpoint_steps == 0) checkpoint();
   if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
@@ -377,6 +400,7 @@ void Runner::run_stage() {
     return;
   }
   now_.record.stages.push_back(record);
+  check_solved(record);
   ++now_.stage;
   now_.stage_step = 0;
   checkpoint();

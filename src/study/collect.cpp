@@ -46,6 +46,16 @@ std::vector<std::string> planned_variants(const Plan& plan) {
   return found;
 }
 
+// In the places of the plan; null: missing.
+std::vector<const RunResult*> known_results(const StudyFiles& files) {
+  std::vector<const RunResult*> results;
+  for (const RunState& state : files.states) {
+    const bool known = state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed;
+    results.push_back(known ? &state.result : nullptr);
+  }
+  return results;
+}
+
 }  // namespace
 
 StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int realizations) {
@@ -60,13 +70,7 @@ StudyFiles read_study_files(const fs::path& directory, const Plan& plan, int rea
 }
 
 void update_enough(const Plan& plan, StudyFiles& files) {
-  if (!plan.until) return;
-  std::vector<const RunResult*> results;
-  for (const RunState& state : files.states) {
-    const bool known = state.kind == RunState::Kind::done || state.kind == RunState::Kind::failed;
-    results.push_back(known ? &state.result : nullptr);
-  }
-  files.enough = enough_realizations(plan, results);
+  if (plan.until) files.enough = enough_realizations(plan, known_results(files));
 }
 
 void forget_failures(const fs::path& directory, const Plan& plan, StudyFiles& files) {
@@ -137,6 +141,7 @@ CollectReport gather(const fs::path& directory, const Plan& plan, StudyFiles fil
         break;
     }
   }
+  if (!files.enough) report.lacking = lacking_precision(plan, known_results(files));
   write_outputs(directory, study_data(plan, std::move(files)));
   return report;
 }

@@ -39,6 +39,8 @@ struct CollectReport {
   std::vector<std::string> failed;   ///< `KEY: why`
   std::vector<std::string> damaged;  ///< the file, and what is wrong with it
   std::optional<int> enough;
+  std::string
+      lacking;  ///< of the precision that was asked for, where all runs have ended without it (until.h)
 };
 
 /// What readers need, by realization, then combination, then variant. Runs that failed are in it, with their error.

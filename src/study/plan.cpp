@@ -50,19 +50,12 @@ void add_files(const Scenario& scenario, std::map<fs::path, std::string>& files)
   }
 }
 
-// The files of the scenario, and of every value of its axes.
+// Reads every run of one realization, so that what it would refuse is refused now, and lists the files of all of them.
 std::vector<InputFile> files_of(const Plan& plan, const Scenario& base) {
   std::map<fs::path, std::string> files;
   add_files(base, files);
-  for (const scenario::VarySpec& axis : plan.axes) {
-    for (const auto& row : axis.values) {
-      std::vector<std::string> overrides = plan.overrides;
-      for (std::size_t j = 0; j < row.size(); ++j) overrides.push_back(axis.keys[j] + "=" + row[j]);
-      add_files(
-          scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out),
-          files);
-    }
-  }
+  scenario::read_combinations(plan.text, plan.scenario, plan.overrides,
+                              [&](const Scenario& scenario) { add_files(scenario, files); });
   std::vector<InputFile> list;
   for (const auto& [path, hash] : files) list.push_back({input_name(plan.scenario, path), hash});
   return list;
@@ -239,7 +232,8 @@ std::vector<DamageLevel> damage_levels(const Scenario& scenario) {
           {"severe", "fallen_area_m2", 0.1 * area}};
 }
 
-Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, const std::string& version) {
+Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, const std::string& version,
+               std::vector<std::string>* warnings) {
   Plan plan;
   plan.scenario = file;
   plan.text = read_file(file);
@@ -250,6 +244,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
     throw InputError(Diagnostic{scenario.where("stage"), "stage", "nothing", "at least one [[stage]]", ""});
   }
   scenario::check_inputs(scenario);
+  if (warnings != nullptr) *warnings = scenario::study_warnings(scenario);
   plan.input = scenario_identity(plan.text, file, overrides);
   plan.title = scenario.title;
   plan.seed = scenario.seed;
@@ -266,10 +261,10 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   plan.keep = study.keep;
   plan.grid = map_grid(scenario);
   for (const auto& spec : scenario.excavations) plan.outlines.push_back(scenario::excavation_outline(spec));
-  plan.files = files_of(plan, scenario);
   const std::vector<std::string> variants =
       plan.marginal ? variants_of(scenario, {plan.stage, plan.since}) : std::vector<std::string>{""};
   check_count(plan, scenario, variants.size());
+  plan.files = files_of(plan, scenario);
   list_runs(plan, variants);
   return plan;
 }

@@ -60,9 +60,10 @@ struct Plan {
 /// variant: the first part of a plan is a smaller study. A scenario without [study] is a study of one run. All
 /// combinations see the same joints, as these depend on seed and realization alone.
 ///
-/// Throws InputError with every mistake of the scenario and of its files, and for more than a million runs.
+/// `warnings`, if given, receives what seems wrong with the study. Throws InputError with every mistake of the scenario, of its
+/// combinations and of their files, and for more than a million runs.
 Plan make_plan(const std::filesystem::path& scenario, const std::vector<std::string>& overrides,
-               const std::string& version);
+               const std::string& version, std::vector<std::string>* warnings = nullptr);
 
 /// The name of a run and of its folder: `r0007-5d2c81a0f3`, the realization and a hash (FNV-1a, 64 bit, its first ten
 /// digits) of the overrides `key=value` in the order of their text, keys written in one way, and of the variant. It

@@ -1,5 +1,7 @@
 #include "study/until.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -23,13 +25,35 @@ struct Sums {
   }
 };
 
-bool narrow(const Sums& s, const scenario::UntilSpec& until, double quantile) {
-  if (s.count < 2) return false;
+// The confidence interval of a mean; without two values there is none.
+struct MeanInterval {
+  double mean = 0.0, half_width = 0.0;
+  bool varies = false;
+};
+
+std::optional<MeanInterval> interval_of(const Sums& s, double quantile) {
+  if (s.count < 2) return std::nullopt;
   const double n = s.count, mean = s.first + s.sum / n;
   const double variance = std::max(0.0, (s.squares - s.sum * s.sum / n) / (n - 1.0));
-  const double half = quantile * std::sqrt(variance / n);
-  return (until.half_width && variance > 0.0 && half <= *until.half_width * std::abs(mean)) ||
-         (until.width && 2.0 * half <= *until.width);
+  return MeanInterval{mean, quantile * std::sqrt(variance / n), variance > 0.0};
+}
+
+bool narrow(const std::optional<MeanInterval>& interval, const scenario::UntilSpec& until) {
+  if (!interval) return false;
+  return (until.half_width && interval->varies &&
+          interval->half_width <= *until.half_width * std::abs(interval->mean)) ||
+         (until.width && 2.0 * interval->half_width <= *until.width);
+}
+
+// How many times wider an interval is than asked for; endless where nothing varies or the mean is zero.
+double excess(const std::optional<MeanInterval>& interval, const scenario::UntilSpec& until) {
+  double least = HUGE_VAL;
+  if (!interval) return least;
+  const double half = interval->half_width;
+  if (until.half_width && interval->varies && interval->mean != 0.0)
+    least = half / (*until.half_width * std::abs(interval->mean));
+  if (until.width) least = std::min(least, 2.0 * half / *until.width);
+  return least;
 }
 
 // The measure as it is compared; nothing when the run did not come to it.
@@ -37,6 +61,34 @@ std::optional<double> measured(const Plan& plan, const RunResult& run) {
   const auto damage = damage_between(run, plan.since, plan.stage);
   if (!damage) return std::nullopt;
   return simulation::damage_value(*damage, plan.until->measure);
+}
+
+using AxisValues = std::vector<std::vector<std::string>>;
+
+std::string combination_text(const Plan& plan, const AxisValues& values) {
+  std::string text;
+  for (std::size_t a = 0; a < std::min(values.size(), plan.axes.size()); ++a) {
+    for (std::size_t j = 0; j < values[a].size(); ++j)
+      text += (text.empty() ? " at " : ", ") + plan.axes[a].keys.at(j) + " = " + values[a][j];
+  }
+  return text;
+}
+
+std::string interval_text(const std::optional<MeanInterval>& interval, const scenario::UntilSpec& until) {
+  if (!interval) return "fewer than two values";
+  if (!interval->varies) return fmt::format("all values are {:.4g}", interval->mean);
+  std::string text = fmt::format("{:.4g} ± {:.4g}", interval->mean, interval->half_width);
+  if (until.half_width && interval->mean != 0.0)
+    text +=
+        fmt::format(", a half width of {:.3g} of the mean", interval->half_width / std::abs(interval->mean));
+  return text;
+}
+
+std::string asked_text(const scenario::UntilSpec& until) {
+  std::string text;
+  if (until.half_width) text = fmt::format("half_width = {}", *until.half_width);
+  if (until.width) text += (text.empty() ? "" : " or ") + fmt::format("width = {}", *until.width);
+  return text;
 }
 
 }  // namespace
@@ -48,7 +100,7 @@ std::optional<int> enough_realizations(const Plan& plan, const std::vector<const
     if (plan.runs[k].wanted && plan.runs[k].variant.empty())
       by_realization[plan.runs[k].realization].push_back(k);
   }
-  std::map<std::vector<std::vector<std::string>>, Sums> sums;
+  std::map<AxisValues, Sums> sums;
   std::map<int, double> quantiles;  // that were needed before
   const auto quantile = [&](int count) {
     const auto [place, added] = quantiles.try_emplace(count, 0.0);
@@ -63,11 +115,40 @@ std::optional<int> enough_realizations(const Plan& plan, const std::vector<const
     }
     if (realization + 1 < plan.until->minimum) continue;
     const bool enough = std::all_of(sums.begin(), sums.end(), [&](const auto& entry) {
-      return narrow(entry.second, *plan.until, quantile(entry.second.count));
+      return narrow(interval_of(entry.second, quantile(entry.second.count)), *plan.until);
     });
     if (enough) return realization + 1;
   }
   return std::nullopt;
+}
+
+std::string lacking_precision(const Plan& plan, const std::vector<const RunResult*>& results) {
+  if (!plan.until || enough_realizations(plan, results)) return {};
+  std::map<AxisValues, Sums> sums;
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    const PlannedRun& run = plan.runs[k];
+    if (!run.wanted || !run.variant.empty()) continue;
+    if (results[k] == nullptr) return {};
+    Sums& sum = sums[run.values];
+    if (const auto value = measured(plan, *results[k])) sum.add(*value);
+  }
+  std::size_t wide = 0;
+  double largest = -1.0;
+  std::string text;
+  for (const auto& [values, sum] : sums) {
+    const double quantile = sum.count < 2 ? 0.0 : statistics::student_t(plan.confidence, sum.count - 1);
+    const auto interval = interval_of(sum, quantile);
+    if (narrow(interval, *plan.until)) continue;
+    ++wide;
+    const double now = excess(interval, *plan.until);
+    if (now <= largest) continue;
+    largest = now;
+    text = fmt::format("{}{}: {}", plan.until->measure, combination_text(plan, values),
+                       interval_text(interval, *plan.until));
+  }
+  const std::string of_all =
+      sums.size() == 1 ? "" : fmt::format("{} of {} combinations; ", wide, sums.size());
+  return fmt::format("{}{} (asked for: {})", of_all, text, asked_text(*plan.until));
 }
 
 }  // namespace keyblock::study

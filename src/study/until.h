@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "study/plan.h"
@@ -18,5 +19,10 @@ namespace keyblock::study {
 ///
 /// `results` are in the places of plan.runs; null: missing. Variants have no say.
 std::optional<int> enough_realizations(const Plan& plan, const std::vector<const RunResult*>& results);
+
+/// What a study that has come to its end lacks of the precision that [study.until] asks for: how many combinations are not known
+/// well enough, and the interval of the one that is farthest from it. Empty when realizations are enough, while results are
+/// missing, and without a rule.
+std::string lacking_precision(const Plan& plan, const std::vector<const RunResult*>& results);
 
 }  // namespace keyblock::study

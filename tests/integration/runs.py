@@ -74,6 +74,12 @@ class Run(Scenario):
         self.assertNotEqual(a["state_hash"], b["state_hash"])
         self.assertEqual((a["dof"], b["dof"]), (6, 12))
 
+    def test_a_run_whose_numbers_are_none_fails_and_keeps_what_it_has(self):
+        error = self.keyblock("run", "incline.toml", "-o", "stiff", "--set", "rock.young=1e308", expect=2).stderr
+        self.assertRegex(error, r"the energies after step \d+ of stage 'slide' are no finite numbers; the results up to it are kept\n$")
+        self.assertTrue(self.summary("stiff")["steps"] > 0)
+        self.assertTrue((self.folder / "stiff/report.html").exists())
+
     def test_report_can_be_written_again(self):
         self.keyblock("run", "incline.toml", "-o", "out")
         report = self.folder / "out/report.html"

@@ -5,6 +5,7 @@ import json
 import time
 import unittest
 
+from program import INCLINE
 from study_case import GALLERY, SCALES, SMALL, Study
 
 
@@ -76,6 +77,19 @@ class Runs(Study):
         self.write("wrong.toml", GALLERY + SMALL.replace("[0.5, 1.0]", '[0.5, "strong"]'))
         self.assertIn('wrong.toml:', self.keyblock("check", "wrong.toml", expect=1).stderr)
 
+    def test_a_combination_that_cannot_be_run_is_refused_before_any_is(self):
+        self.write("short.toml", GALLERY + SMALL + '[[study.vary]]\nkey = "stage.after.duration"\nvalues = [0.2, 0.001]\n')
+        line = (self.folder / "short.toml").read_text().splitlines().index("values = [0.2, 0.001]") + 1
+        found = f"short.toml:{line}:16: stage.after.duration: found 0.001 s, 0.2 steps of 0.005 s; "
+        for words in ("check short.toml", "study run short.toml -o out", "study submit short.toml -o out"):
+            self.assertIn(found, self.keyblock(*words.split(), expect=1).stderr, words)
+        self.assertFalse(self.out.exists())
+
+    def test_realizations_of_nothing_random(self):
+        self.write("two.toml", INCLINE.replace("duration = 0.5", "duration = 0.01") + '[study]\nrealizations = 2\nkeep = "measures"\n')
+        for words in (("check", "two.toml"), ("study", "run", "two.toml", "-o", "out")):
+            self.assertIn("two.toml: warning: study.realizations = 2: nothing is random", self.keyblock(*words).stderr)
+
     def test_variants_of_the_check_for_marginal_results(self):
         self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nmarginal = {}\n')
         self.run_study("marginal.toml")
@@ -102,7 +116,9 @@ class Runs(Study):
         self.assertEqual(self.done(), before)
         self.assertIn("does not ask for it", self.study("task", "one", 2 * enough).stdout)
         self.write("until.toml", GALLERY + '[study]\nkeep = "measures"\n' + until.replace("width = 6.0", "half_width = 0.0001") + SCALES)
-        self.assertIn("24 of 24 runs done\n", self.run_study("until.toml", "--resume").stdout)
+        said = self.run_study("until.toml", "--resume").stdout
+        self.assertIn("24 of 24 runs done\n", said)
+        self.assertRegex(said, r"not narrow enough: 2 of 2 combinations; slipped_length_m at stage\.shaken\.scale = .*half_width = 0\.0001\)")
 
 
 class GoingOn(Study):

@@ -60,6 +60,12 @@ class Interruptions(Study):
         self.assertEqual({key: self.done()[key] for key in before}, before)
         self.assertEqual(list(self.out.rglob("*.tmp")), [])
 
+    def test_a_run_whose_numbers_are_none_has_failed(self):
+        self.write("stiff.toml", GALLERY + '[study]\nkeep = "measures"\n[[study.vary]]\nkey = "rock.young"\nvalues = [5e9, 1e308]\n')
+        said = self.run_study("stiff.toml", expect=2).stdout
+        self.assertRegex(said, rf"failed: {self.keys()[1]}: the energies after step \d+ of stage 'in situ' are no finite numbers")
+        self.assertIn("1 of 2 runs done, 1 failed\n", said)
+
     def test_interrupted(self):
         parent = self.start()
         self.task(1)

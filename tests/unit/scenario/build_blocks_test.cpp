@@ -65,6 +65,70 @@ TEST(BuildBlocks, ExplicitBlocksComeLastWithFreeEdges) {
   EXPECT_EQ(build_setup(s, 0).properties.back().name, "plug");
 }
 
+const std::string lined_opening = R"([rock]
+density = 2600.0
+young = 1e9
+poisson = 0.2
+[joints]
+friction = 30.0
+[[block]]
+name = "base"
+outer = [[-6, -3], [6, -3], [6, -2], [-6, -2]]
+fixed = true
+[[block]]
+name = "pipe"
+outer = [[-2, -2], [2, -2], [2, 2], [-2, 2]]
+holes = [[[-1, -1], [1, -1], [1, 1], [-1, 1]]]
+[[block]]
+name = "fill"
+outer = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+[[excavation]]
+name = "bore"
+shape = "polygon"
+outer = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+)";
+
+TEST(BuildBlocks, AnExplicitBlockIsExcavatedWhereItLiesInTheOutline) {
+  const auto excavated = [](const std::vector<std::string>& overrides = {}) {
+    std::string names;
+    const Scenario s = parse(lined_opening, overrides);
+    const auto blocks = build_blocks(s, 0).system.blocks;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      names += blocks[b].excavations.empty() ? "" : s.blocks[b].name;
+    return names;
+  };
+  EXPECT_EQ(excavated(), "fill");  // the pipe has its centroid in its hole
+  // Coordinates with a few digits.
+  EXPECT_EQ(excavated({"excavation.bore.outer=[[-1.0001, -1], [1, -1], [1, 1.0001], [-1, 1]]"}), "fill");
+  EXPECT_EQ(excavated({"excavation.bore.outer=[[-0.9999, -1], [1, -1], [1, 0.9999], [-1, 1]]"}), "fill");
+  EXPECT_EQ(excavated({"block.fill.outer=[[-0.5, 0], [0, -0.5], [0.5, 0], [0, 0.5]]"}), "fill");
+  EXPECT_EQ(excavated({"excavation.bore.outer=[[2, -2], [4, -2], [4, 2], [2, 2]]"}), "");
+}
+
+TEST(BuildBlocks, AnOutlineThroughAnExplicitBlockIsAMistake) {
+  EXPECT_THAT(
+      mistakes(lined_opening, {"excavation.bore.outer=[[-1, -1], [1, -1], [1, 2], [-1, 2]]"}),
+      HasSubstr("test.toml:13:9: block.pipe.outer: found a block, of which 16.7 % lie in excavation.bore; "
+                "expected all or nothing of it"));
+  // However small a part of a large block it is.
+  EXPECT_THAT(mistakes(lined_opening, {"block.pipe.outer=[[-200, -2], [200, -2], [200, 200], [-200, 200]]",
+                                       "excavation.bore.outer=[[-1, -1], [1, -1], [1, 2], [-1, 2]]"}),
+              HasSubstr("found a block, of which 0.00248 % lie in excavation.bore"));
+}
+
+TEST(BuildBlocks, WhatIsFixedIsNotExcavated) {
+  EXPECT_THAT(
+      mistakes(lined_opening, {"block.fill.fixed=true"}),
+      HasSubstr("block.fill.outer: found a fixed block, of which 100 % lie in excavation.bore; expected"));
+  EXPECT_THAT(mistakes(lined_opening, {"excavation.bore.outer=[[5, -4], [7, -4], [7, 4], [5, 4]]"}),
+              HasSubstr("block.base.outer: found a fixed block, of which 8.33 % lie in excavation.bore"));
+}
+
+TEST(BuildBlocks, WhatTheCutterRefusesHasItsPlace) {
+  EXPECT_THAT(refusal(parse(runnable_domain, {"excavation.tunnel.diameter=1e-300"})),
+              HasSubstr("/test.toml:27:1: excavation.tunnel: found a ring that"));
+}
+
 TEST(BuildBlocks, TracesOfAMapThatIsFarAway) {
   const Scenario s = parse_scenario(examples / "05-trace-map.toml");
   const auto setup = build_setup(s, 0);

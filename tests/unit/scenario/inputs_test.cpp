@@ -52,6 +52,21 @@ TEST(Motions, OtherDirectionsThanTheFileSaysAreWarnedOf) {
               HasSubstr("motion.shafter-1989.components[0].azimuth is 300°; the file says 360°"));
 }
 
+TEST(Motions, TheSameRecordTwiceIsWarnedOf) {
+  const auto warned = [](const std::string& more) {
+    std::vector<std::string> warnings;
+    const std::string file = "file = '" + (examples / "motions/0111a.smc").string() + "'";
+    const std::string components = "components = [{ " + file + " }, { " + file + more + " }]\n";
+    read_motions(parse(two_blocks + "[section]\nazimuth = 90.0\n[[motion]]\nname = \"m\"\n" + components),
+                 warnings);
+    return warnings;
+  };
+  const auto same =
+      HasSubstr("motion.m.components[1]: the same record as motion.m.components[0]; both are added up");
+  EXPECT_THAT(warned(""), testing::ElementsAre(same));
+  EXPECT_THAT(warned(", channel = 1"), testing::ElementsAre(same));
+}
+
 TEST(Motions, OfSeveralComponentsOneMustBeChosen) {
   const std::string text = two_blocks + R"(
 [section]

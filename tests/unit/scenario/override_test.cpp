@@ -91,11 +91,31 @@ TEST(Override, MustBeUtf8) {
   EXPECT_EQ(mistakes(two_blocks, {"title=Grün"}), "");
 }
 
+TEST(Override, WhatBeginsAsATableIsNoWord) {
+  EXPECT_THAT(mistakes(jointed_domain, {"joint_set.bedding.spacing={mean=1,std=.1,distribution=\"normal\"}"}),
+              testing::HasSubstr(": found text that is not TOML"));
+  EXPECT_THAT(mistakes(two_blocks, {"gravity=[0, -9.81"}), testing::HasSubstr("text that is not TOML"));
+  EXPECT_THAT(mistakes(two_blocks, {"title=\"half"}), testing::HasSubstr("text that is not TOML"));
+  EXPECT_THAT(mistakes(two_blocks, {"title=[draft]"}), testing::HasSubstr("stands in quotes"));
+  EXPECT_EQ(mistakes(two_blocks, {"title='[draft]'"}), "");
+}
+
 TEST(Override, OfAnyDepth) {
   std::string deep = "a";
   for (int k = 0; k < 100000; ++k) deep += ".a";
   EXPECT_THAT(mistakes(two_blocks, {deep + "=1"}), testing::HasSubstr("of at most 32 keys"));
-  EXPECT_THAT(mistakes(two_blocks, {"title=" + std::string(100000, '[')}), "");
+  EXPECT_THAT(mistakes(two_blocks, {"title=" + std::string(100000, '[')}),
+              testing::HasSubstr("more than 32 tables"));
+}
+
+TEST(Override, ResolvedPathsAreEqualWhereTheValuesAreTheSame) {
+  const Value document = parse_toml("a.b = 1\nlist = [{ name = \"x\" }, { name = \"y\", c.d = 1 }]", "");
+  const auto resolved = [&](const char* text) { return resolved_path(*parse_key_path(text), document); };
+  EXPECT_EQ(resolved("list.x.c"), resolved("list[0].c"));
+  EXPECT_EQ(resolved("list.'y'.c.d"), resolved("list[1].c.d"));
+  EXPECT_EQ(resolved("a.b"), resolved("'a'.\"b\""));
+  EXPECT_NE(resolved("list.x.c"), resolved("list.1.c"));
+  EXPECT_EQ(resolved("new.0.c"), (std::vector<std::string>{"new", "0", "c"}));
 }
 
 TEST(Override, LeavesTheDocumentWhenItFails) {

@@ -188,6 +188,76 @@ values = [[0.5, true], [1, false]]
   EXPECT_EQ(s.study->vary[0].value_text(1), "1, false");
 }
 
+TEST(Study, AValueVariesOnceHoweverItsKeyIsWritten) {
+  const auto axes = [](const std::string& one, const std::string& other) {
+    return mistakes(with("[[study.vary]]\nkey = \"" + one + "\"\nvalues = [1.0]\n[[study.vary]]\nkey = \"" +
+                         other + "\"\nvalues = [1.0]\n"));
+  };
+  EXPECT_EQ(axes("stage.quiet.duration", "stage[0].duration"),
+            "test.toml:29:7: stage[0].duration: found a key that varies already; expected every key once; "
+            "'stage.quiet.duration' is the same value");
+  EXPECT_NE(axes("stage.0.duration", "stage.quiet.duration"), "");
+  EXPECT_EQ(axes("stage.quiet.duration", "time.step"), "");
+}
+
+TEST(Study, ATableVariesBeforeWhatIsInIt) {
+  const std::string table = "[[study.vary]]\nkey = \"rock\"\nvalues = [{density=1, young=1, poisson=0}]\n";
+  const std::string value = "[[study.vary]]\nkey = \"rock.young\"\nvalues = [1, 2]\n";
+  EXPECT_EQ(mistakes(with(table + value)), "");
+  EXPECT_NE(
+      mistakes(with(value + table)).find("rock: found a key that holds 'rock.young', which varies already"),
+      std::string::npos);
+}
+
+TEST(Study, EqualValuesAreTheSame) {
+  const auto again = [](const std::string& key, const std::string& values) {
+    return mistakes(with("[[study.vary]]\n" + key + "\nvalues = " + values + "\n"))
+               .find(" again; expected") != std::string::npos;
+  };
+  EXPECT_TRUE(again("key = \"stage.quiet.duration\"", "[1, 2, 1.0]"));
+  EXPECT_TRUE(again("key = \"stage.quiet.duration\"", "[1.5, 15e-1]"));
+  EXPECT_FALSE(again("key = \"stage.quiet.duration\"", "[1, 2]"));
+  EXPECT_TRUE(again("keys = [\"stage.quiet.duration\", \"block.top.fixed\"]", "[[1, true], [1.0, true]]"));
+  EXPECT_FALSE(again("keys = [\"stage.quiet.duration\", \"block.top.fixed\"]", "[[1, true], [1.0, false]]"));
+  // Seeds are integers that numbers cannot tell apart.
+  EXPECT_FALSE(again("key = \"seed\"", "[9007199254740992, 9007199254740993]"));
+}
+
+std::string refused_combinations(const std::string& study) {
+  try {
+    read_combinations(with(study), "test.toml", {}, [](const Scenario&) {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Study, EveryCombinationIsRead) {
+  std::vector<std::pair<double, double>> read;
+  read_combinations(with("[[study.vary]]\nkey = \"rock.young\"\nvalues = [1, 2]\n"
+                         "[[study.vary]]\nkey = \"rock.density\"\nvalues = [3, 4]\n"),
+                    "test.toml", {"seed=2"}, [&](const Scenario& s) {
+                      read.emplace_back(*s.rock.young, *s.rock.density);
+                      EXPECT_EQ(s.seed, 2U);
+                    });
+  EXPECT_EQ(read, (std::vector<std::pair<double, double>>{{1, 3}, {1, 4}, {2, 3}, {2, 4}}));
+  EXPECT_EQ(refused_combinations("[study]\nrealizations = 2\n"), "");
+}
+
+TEST(Study, ACombinationThatARunWouldRefuse) {
+  const std::string short_stage = "[[study.vary]]\nkey = \"stage.quiet.duration\"\nvalues = [0.005, 0.2]\n";
+  EXPECT_EQ(
+      refused_combinations(short_stage),
+      "test.toml:27:11: stage.quiet.duration: found 0.005 s, 0.5 steps of 0.01 s; expected 1 to 1e+09 steps; "
+      "with stage.quiet.duration = 0.005");
+  // Each of these values is right beside those of the file.
+  const std::string steps = "[[study.vary]]\nkey = \"time.step\"\nvalues = [0.01, 0.5]\n";
+  EXPECT_EQ(
+      refused_combinations("[[study.vary]]\nkey = \"stage.quiet.duration\"\nvalues = [0.1, 2]\n" + steps),
+      "test.toml:27:11: stage.quiet.duration: found 0.1 s, 0.2 steps of 0.5 s; expected 1 to 1e+09 steps; "
+      "with stage.quiet.duration = 0.1, time.step = 0.5");
+}
+
 TEST(Study, AllItsTables) {
   const Scenario s = parse(with(R"(
 [study]
@@ -230,7 +300,7 @@ TEST(Positions, OfValuesAndOfTheNearestTable) {
   EXPECT_EQ(s.where("rock.young").column, 9);
   EXPECT_EQ(s.where("block.top.outer").line, 19);
   EXPECT_EQ(s.where("block.top.spin").line, 17);
-  EXPECT_EQ(s.where("nowhere").line, 0);
+  EXPECT_EQ(s.where("nowhere").line, 1);
   EXPECT_EQ(s.where("nowhere").file, s.file);
 }
 

@@ -119,5 +119,34 @@ TEST(Warnings, OfDistributionsThatAreCutOff) {
       UnorderedElementsAre(HasSubstr("joint_set.bedding.gap: cut off at zero")));
 }
 
+TEST(Warnings, OfTensionThatHoldsNothing) {
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6"}),
+              UnorderedElementsAre(HasSubstr("joints: tension without cohesion holds nothing")));
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6", "joints.cohesion=1e6"}), IsEmpty());
+  const auto of_set = HasSubstr("joint_set.bedding: tension without cohesion");
+  EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6"}), UnorderedElementsAre(of_set));
+  EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6", "joints.cohesion=1e6"}),
+              IsEmpty());
+  EXPECT_THAT(warnings_of(runnable_domain,
+                          {"joints.tension=1e6", "joints.cohesion=1e6", "joint_set.bedding.cohesion=0"}),
+              UnorderedElementsAre(of_set));
+}
+
+TEST(Warnings, OfAnOrderThatIsNotChosen) {
+  EXPECT_THAT(warnings_of(two_blocks, {"auto_order.highest_order=4"}),
+              UnorderedElementsAre(HasSubstr("auto_order: is not used")));
+  EXPECT_THAT(warnings_of(two_blocks, {"auto_order.highest_order=4", "block.top.order=auto"}), IsEmpty());
+}
+
+TEST(Warnings, OfRealizationsThatAreAllTheSame) {
+  EXPECT_THAT(study_warnings(parse(two_blocks, {"study.realizations=5"})),
+              UnorderedElementsAre(HasSubstr("study.realizations = 5: nothing is random")));
+  EXPECT_THAT(study_warnings(parse(two_blocks, {"study.until={measure=\"fallen_blocks\", width=1}"})),
+              UnorderedElementsAre(HasSubstr("study.until: nothing is random")));
+  EXPECT_THAT(study_warnings(parse(two_blocks, {"study.realizations=1"})), IsEmpty());
+  EXPECT_THAT(study_warnings(parse(jointed_domain, {"study.realizations=5"})), IsEmpty());
+  EXPECT_THAT(study_warnings(parse(two_blocks)), IsEmpty());
+}
+
 }  // namespace
 }  // namespace keyblock::scenario

@@ -89,6 +89,38 @@ d = '''
   }
 }
 
+TEST(Toml, OtherEncodingsAreNamed) {
+  const auto refused = [](std::string_view other) -> std::string {
+    try {
+      parse_toml(other, "f");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(refused(std::string_view("\xFF\xFE[\0r\0", 6)),
+            "f:1:1: found the byte 0xFF, which is no UTF-8; expected text in UTF-8; the file seems to be in "
+            "UTF-16; save "
+            "it as UTF-8");
+  EXPECT_EQ(refused("a = 1\nb = 2 # gesch\xE4tzt\n"),
+            "f:2:14: found the byte 0xE4, which is no UTF-8; expected text in UTF-8");
+}
+
+TEST(SameValue, IsThatOfNumbersHoweverTheyAreWritten) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    return same_value(parse_toml("v = " + a, ""), parse_toml("v = " + b, ""));
+  };
+  EXPECT_TRUE(same("1", "1.0"));
+  EXPECT_TRUE(same("1e3", "1000"));
+  EXPECT_FALSE(same("1", "true"));
+  EXPECT_FALSE(same("1", "\"1\""));
+  EXPECT_FALSE(same("9007199254740992", "9007199254740993"));
+  EXPECT_TRUE(same("[1, [2.0, 3]]", "[1.0, [2, 3.0]]"));
+  EXPECT_FALSE(same("[1, 2]", "[1, 2, 3]"));
+  EXPECT_TRUE(same("{ mean = 1, std = 2 }", "{ std = 2.0, mean = 1.0 }"));
+  EXPECT_FALSE(same("{ mean = 1, std = 2 }", "{ mean = 1, gap = 2 }"));
+}
+
 // The parser recurses, and so does what reads its tables.
 TEST(Toml, OfAnyDepth) {
   const auto many = [](const std::string& piece) {

@@ -58,6 +58,21 @@ struct LastHistory final : RunObserver {
   }
 };
 
+struct LastRecord final : RunObserver {
+  RunRecord record;
+  void end(const RunRecord& run) override { record = run; }
+};
+
+/// Why a run cannot go on.
+std::string failure_of(const RunSetup& setup, RunObserver& observer) {
+  try {
+    run(setup, {}, observer);
+  } catch (const RunError& error) {
+    return error.what();
+  }
+  return {};
+}
+
 double slid(int shakings) {
   LastHistory observer;
   const RunRecord record = run(shaken_incline(shakings), {}, observer);
@@ -425,16 +440,64 @@ TEST(Run, ClosedContactsAreThoseAtTheEndOfAStepThatWasHalved) {
   EXPECT_EQ(halved.closed_contacts, 2);
 }
 
-TEST(Settling, StepsThatDoNotConvergeAreNoEquilibrium) {
-  Scene scene(1e300, 30.0);
+/// A block on another, for 20 steps of settling.
+RunSetup pressed_block(double young) {
+  Scene scene(young, 30.0);
   scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
   scene.rectangle({0.0, 1.0}, 1.0, 1.0);
+  scene.setup.time_step = 0.002;
+  scene.setup.stages.push_back(stage("settle", StageKind::settle));
+  scene.setup.stages.back().max_steps = 20;
+  return scene.setup;
+}
+
+TEST(Settling, StepsThatDoNotConvergeAreNoEquilibrium) {
+  LastRecord last;
+  EXPECT_NE(failure_of(pressed_block(1e300), last), "");
+  EXPECT_TRUE(last.record.stages.empty() || !last.record.stages[0].equilibrium_reached);
+}
+
+// A block on the ground turns by half a radian in the only step of its stage, which is not cut into shorter ones.
+TEST(Run, EndsWithAStageOfWhichNoStepConverges) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 5.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5);
   RunSetup setup = scene.setup;
   setup.time_step = 0.002;
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  setup.stages.back().max_steps = 20;
+  setup.properties[1].spin = 250.0;
+  setup.solver.max_halvings = 0;
+  setup.stages.push_back(stage("turn", StageKind::rest, 0.002));
+  LastRecord last;
+  EXPECT_EQ(failure_of(setup, last),
+            "no step of stage 'turn' converged, of 1 from step 1 of the run on; the results up to its end "
+            "are kept");
+  EXPECT_EQ(last.record.stages.size(), 1U);
+  setup.solver.max_halvings = 8;
+  EXPECT_EQ(failure_of(setup, last), "");
+}
+
+// Flight takes one iteration a step, the impact more.
+TEST(Run, GoesOnWhereSingleStepsDoNotConverge) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.05}, 1.0, 0.5, 5.0);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages.push_back(stage("fall", StageKind::rest, 0.3));
+  setup.solver.max_iterations = 1;
+  setup.solver.max_halvings = 0;
   RunObserver nobody;
-  EXPECT_FALSE(run(setup, {}, nobody).stages[0].equilibrium_reached);
+  const RunRecord record = run(setup, {}, nobody);
+  EXPECT_GT(record.open_close.unconverged_steps, 0);
+  EXPECT_LT(record.open_close.unconverged_steps, record.steps);
+}
+
+TEST(Run, EndsWhereEnergiesAreNoNumbers) {
+  LastRecord last;
+  EXPECT_EQ(
+      failure_of(pressed_block(1e300), last),
+      "the energies after step 10 of stage 'settle' are no finite numbers; the results up to it are kept");
+  EXPECT_EQ(last.record.steps, 10);
 }
 
 // A block that falls when the stage begins: what it has gained by then is taken out, and accounted for.

@@ -26,6 +26,11 @@ struct Sample {
     return enough_realizations(plan, results);
   }
   std::optional<int> enough() const { return enough(runs.size()); }
+  std::string lacking(std::size_t known) const {
+    std::vector<const RunResult*> results;
+    for (std::size_t k = 0; k < runs.size(); ++k) results.push_back(k < known ? &runs[k] : nullptr);
+    return lacking_precision(plan, results);
+  }
 };
 
 Sample sample() {
@@ -124,6 +129,30 @@ TEST(EnoughRealizations, FailedRunsAndVariantsHaveNoSay) {
   EXPECT_EQ(s.enough(), 3);
   s.plan.until.reset();
   EXPECT_FALSE(s.enough());
+}
+
+// Two values x ± d: a half width of d √2 √(1/2) t = d t, t the quantile of one degree of freedom.
+TEST(LackingPrecision, IsThatOfTheWidestInterval) {
+  Sample s = sample();
+  s.plan.axes = {{{"rock.order"}, {{"1"}, {"2"}, {"3"}}}};
+  s.plan.until->half_width = 0.1;
+  s.plan.until->maximum = 2;
+  for (int k = 0; k < 2; ++k) {
+    s.add(k, "1", 5.0);
+    s.add(k, "2", 5.0 + (k == 0 ? 1.0 : -1.0));
+    s.add(k, "3", 4.0 + (k == 0 ? 0.5 : -0.5));
+  }
+  EXPECT_EQ(
+      s.lacking(6),
+      "2 of 3 combinations; fallen_area_m2 at rock.order = 2: 5 ± 12.71, a half width of 2.54 of the mean "
+      "(asked for: half_width = 0.1 or width = 1)");
+  EXPECT_EQ(s.lacking(5), "");  // it has not come to its end
+  s.plan.until->width = 100.0;
+  EXPECT_EQ(s.lacking(6), "");
+  s.plan.until->width.reset();
+  EXPECT_EQ(s.lacking(6),
+            "3 of 3 combinations; fallen_area_m2 at rock.order = 1: all values are 5 (asked for: half_width "
+            "= 0.1)");
 }
 
 }  // namespace
