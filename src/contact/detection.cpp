@@ -304,17 +304,22 @@ bool Detection::lies_outside(const Surface& surface, const Rival& rival,
          outside([&](int v) { return surface.position[at(v)] + motion_.ahead[at(v)]; });
 }
 
-double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates) const {
-  const double depth = tolerances_.corner_depth;
-  if (rival.gap <= -depth) return 0.0;
-  if (motion_.ahead.empty()) return HUGE_VAL;
+double Detection::gap_ahead(const Surface& surface, const Rival& rival,
+                            const CandidateList& candidates) const {
+  if (motion_.ahead.empty()) return rival.gap;
   const Candidate& c = candidates.pairs[at(rival.candidate)];
   const Corner& edge = corners_[at(c.edge)];
   const Vec2 r =
       motion_.ahead[at(c.vertex)] -
       lerp(motion_.ahead[at(c.edge)], motion_.ahead[at(surface.next[at(c.edge)])], rival.along / edge.length);
-  const double approach = -dot(edge.normal(), r);
-  return rival.gap - approach < -depth ? (rival.gap + depth) / approach : HUGE_VAL;
+  return rival.gap + dot(edge.normal(), r);
+}
+
+double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates) const {
+  const double depth = tolerances_.corner_depth;
+  if (rival.gap <= -depth) return 0.0;
+  const double ahead = gap_ahead(surface, rival, candidates);
+  return ahead < -depth ? (rival.gap + depth) / (rival.gap - ahead) : HUGE_VAL;
 }
 
 /// Of two corners of which each has passed a line of the other, the one is in the other when it has passed the last: a corner that slides
@@ -343,8 +348,15 @@ Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<
         passes_another || (when[i] > 0.0 && when[i] < HUGE_VAL &&
                            turned(line(*rivals[i], candidates), line(*rivals[last], candidates)));
   }
-  const bool is_tie = rivals[farthest]->gap - second < tolerances_.corner_tie;
-  return is_tie && !passes_another ? nullptr : rivals[last];
+  if (rivals[farthest]->gap - second < tolerances_.corner_tie) return passes_another ? rivals[last] : nullptr;
+  // One that comes to lie just inside of all lines gets out the shortest way from there: a corner that slides along a face is no deeper
+  // behind the side of the next block than behind that face, though that side is farther away now.
+  std::array<double, 4> ends{};
+  for (std::size_t i = 0; i < rivals.size(); ++i) ends[i] = gap_ahead(surface, *rivals[i], candidates);
+  const auto nearest = static_cast<std::size_t>(
+      std::max_element(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(rivals.size())) -
+      ends.begin());
+  return ends[nearest] < 0.0 ? rivals[nearest] : rivals[last];
 }
 
 Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* const> rivals,

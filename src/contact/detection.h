@@ -156,6 +156,9 @@ class Detection {
   // Whether both edges of the vertex lie outside the line, now or as the corners go.
   [[nodiscard]] bool lies_outside(const Surface& surface, const Rival& rival,
                                   const CandidateList& candidates) const;
+  // m, as the corners go.
+  [[nodiscard]] double gap_ahead(const Surface& surface, const Rival& rival,
+                                 const CandidateList& candidates) const;
   // When, as a share of the step, the vertex will be deeper than Tolerances::corner_depth; 0: it is; HUGE_VAL: not in this step.
   [[nodiscard]] double passing(const Surface& surface, const Rival& rival,
                                const CandidateList& candidates) const;
