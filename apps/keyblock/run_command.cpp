@@ -126,7 +126,8 @@ void add_run(CLI::App& app) {
       command->add_flag("--force", arguments->force, "Replace results of other input in DIR");
   command
       ->add_flag("--resume", arguments->resume,
-                 "Go on where an interrupted run stopped; the end is the same, bit for bit")
+                 "Go on where an interrupted run stopped, to the same end, bit for bit; one that has ended "
+                 "stays as it is")
       ->excludes(force);
   command->add_flag("--profile", arguments->profile, "Say at the end what the time was spent on");
   command
