@@ -25,15 +25,6 @@ loading::GroundMotion sine(double amplitude, double frequency, double cycles) {
   return {"sine", time, acceleration};
 }
 
-Stage stage(const char* name, StageKind kind, double duration = 0.0) {
-  Stage s;
-  s.name = name;
-  s.kind = kind;
-  if (kind == StageKind::shake) s.motion = 0;
-  if (kind == StageKind::rest) s.duration = duration;
-  return s;
-}
-
 /// A block on an incline of 20°, φ 30°, settled and then shaken n times by the same motion.
 RunSetup shaken_incline(int shakings) {
   const double alpha = 20.0 * std::numbers::pi / 180.0;
@@ -48,15 +39,6 @@ RunSetup shaken_incline(int shakings) {
   setup.histories.push_back({"block", "b1", {0.3, 0.4}});
   return setup;
 }
-
-struct LastHistory final : RunObserver {
-  HistoryRow last;
-  int rows = 0;
-  void history(const HistoryRow& row) override {
-    last = row;
-    ++rows;
-  }
-};
 
 struct LastRecord final : RunObserver {
   RunRecord record;
@@ -316,116 +298,6 @@ TEST(Run, GoldenStateHash) {
   EXPECT_LT(record.max_overlap.depth, 1e-3);
 }
 
-// A loose block in the roof of an opening: it keeps moving while the rest comes to equilibrium, is named, and falls
-// when time runs.
-TEST(Settle, NamesTheBlockThatMovesAndLetsItFall) {
-  Scene scene(1e9, 30.0);
-  scene.rectangle({0.0, 0.0}, 3.0, 0.5, 0.0, true);
-  scene.rectangle({0.0, 0.5}, 1.0, 1.0);
-  scene.rectangle({2.0, 0.5}, 1.0, 1.0);
-  scene.rectangle({1.2, 1.0}, 0.6, 0.4);
-  RunSetup setup = scene.setup;
-  setup.time_step = 0.002;
-  setup.stages = {stage("settle", StageKind::settle), stage("fall", StageKind::rest, 1.0)};
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
-  ASSERT_EQ(record.stages[0].moving.size(), 1u);
-  EXPECT_EQ(record.stages[0].moving[0].block, 3);
-  EXPECT_NEAR(record.stages[0].moving[0].carried, 0.0, 0.01);
-  EXPECT_TRUE(record.stages[0].equilibrium_reached);
-  EXPECT_LE(record.stages[0].worst_residual_ratio, 0.01);
-  EXPECT_LT(record.max_overlap.depth, 1e-3);
-}
-
-// A slender cantilever bends by a tenth of its length: it is not in equilibrium until it has.
-TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
-  Scene scene(1e5, 0.0, 1.0);
-  scene.rectangle({0.0, -0.1}, 8.0, 0.2, 0.0, false, 4);
-  RunSetup setup = scene.setup;
-  setup.gravity = {0.0, 0.0};
-  setup.time_step = 1.0;
-  loading::Support support;
-  support.block = "b0";
-  support.is_edge = true;
-  support.points = {{0.0, -0.1}, {0.0, 0.1}};
-  support.stiffness = 1e8;
-  setup.supports.push_back(support);
-  loading::Load load;
-  load.block = "b0";
-  load.from = {8.0, 0.0};
-  load.value = {0.0, -0.3};
-  setup.loads.push_back(load);
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  setup.stages.back().tolerance = 1e-8;
-  setup.histories.push_back({"tip", "b0", {8.0, 0.0}});
-  LastHistory observer;
-  const RunRecord record = run(setup, {}, observer);
-  EXPECT_TRUE(record.stages[0].equilibrium_reached);
-  EXPECT_TRUE(record.stages[0].moving.empty());
-  EXPECT_LT(record.stages[0].worst_residual_ratio, 1e-8);
-  EXPECT_NEAR(observer.last.points[0].uy, -0.3 * 512.0 / (3.0 * 1e5 * 0.2 * 0.2 * 0.2 / 12.0), 0.02);
-}
-
-// Without gravity, a block that only its neighbour loads is in balance when the neighbour is.
-TEST(Settling, EndsWithoutGravity) {
-  Scene scene(1e9, 30.0);
-  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
-  scene.rectangle({0.0, 2.0}, 1.0, 1.0);
-  RunSetup setup = scene.setup;
-  setup.gravity = {0.0, 0.0};
-  setup.time_step = 0.01;
-  loading::Load load;
-  load.block = "b2";
-  load.is_line = true;
-  load.from = {1.0, 3.0};
-  load.to = {0.0, 3.0};
-  load.value = load.value_end = {0.0, -1e4};
-  setup.loads.push_back(load);
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
-  EXPECT_TRUE(record.stages[0].equilibrium_reached);
-  EXPECT_LT(record.stages[0].steps, 200);
-}
-
-// Pressed between two plates by the stress that it was cut in.
-TEST(Settling, IsMeasuredByInSituStressWithoutGravity) {
-  Scene scene(1e9, 30.0);
-  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
-  scene.rectangle({0.0, 2.0}, 1.0, 1.0, 0.0, true);
-  RunSetup setup = scene.setup;
-  setup.gravity = {0.0, 0.0};
-  setup.time_step = 0.002;
-  setup.in_situ = InSituStress{};
-  setup.in_situ->sxx = -1e6;
-  setup.in_situ->syy = -2e6;
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
-  EXPECT_TRUE(record.stages[0].equilibrium_reached);
-  EXPECT_LT(record.stages[0].worst_residual_ratio, 0.01);
-}
-
-// The outline of an opening that is not there yet, in rock that is pulled along it: what is fused does not slide.
-TEST(Settling, FusedRockMayBePulled) {
-  Scene scene(1e9, 30.0);
-  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 1.0}, 1.0, 1.0);
-  RunSetup setup = scene.setup;
-  for (cutting::CutBlock& block : setup.system.blocks) {
-    for (cutting::EdgeLabel& label : block.labels[0]) label.kind = cutting::EdgeKind::excavation;
-  }
-  setup.time_step = 0.002;
-  setup.in_situ = InSituStress{};
-  setup.in_situ->syy = 1e4;
-  setup.in_situ->sxy = 1e3;
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  RunObserver nobody;
-  EXPECT_TRUE(run(setup, {}, nobody).stages[0].equilibrium_reached);
-}
-
 TEST(Run, ClosedContactsAreThoseAtTheEndOfAStepThatWasHalved) {
   Scene scene(1e9, 30.0);
   scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
@@ -451,7 +323,7 @@ RunSetup pressed_block(double young) {
   return scene.setup;
 }
 
-TEST(Settling, StepsThatDoNotConvergeAreNoEquilibrium) {
+TEST(Run, StepsThatDoNotConvergeAreNoEquilibrium) {
   LastRecord last;
   EXPECT_NE(failure_of(pressed_block(1e300), last), "");
   EXPECT_TRUE(last.record.stages.empty() || !last.record.stages[0].equilibrium_reached);
@@ -498,22 +370,6 @@ TEST(Run, EndsWhereEnergiesAreNoNumbers) {
       failure_of(pressed_block(1e300), last),
       "the energies after step 10 of stage 'settle' are no finite numbers; the results up to it are kept");
   EXPECT_EQ(last.record.steps, 10);
-}
-
-// A block that falls when the stage begins: what it has gained by then is taken out, and accounted for.
-TEST(Settling, TakesOutTheEnergyOfMotion) {
-  Scene scene(1e9, 30.0);
-  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 1.5}, 1.0, 1.0);
-  scene.setup.properties[1].velocity = {0.1, 0.0};
-  RunSetup setup = scene.setup;
-  setup.time_step = 0.002;
-  setup.stages = {stage("fall", StageKind::rest, 0.2), stage("settle", StageKind::settle)};
-  setup.stages.back().max_steps = 5;
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
-  EXPECT_LT(record.energy.residual_ratio, 1e-9);
-  EXPECT_LT(record.energy.kinetic, 1e-9);
 }
 
 }  // namespace

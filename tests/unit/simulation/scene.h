@@ -48,6 +48,15 @@ struct Scene {
   double young_, density_;
 };
 
+inline Stage stage(const char* name, StageKind kind, double duration = 0.0) {
+  Stage s;
+  s.name = name;
+  s.kind = kind;
+  if (kind == StageKind::shake) s.motion = 0;
+  if (kind == StageKind::rest) s.duration = duration;
+  return s;
+}
+
 /// Has the bounds of friction found to the last digits in every step, so that any way to them ends at the same.
 inline void settle_bounds(dynamics::SolverOptions& options) {
   options.bound_tolerance = options.bound_accuracy = 1e-10;
@@ -61,6 +70,15 @@ struct Stopper final : RunObserver {
 
   std::atomic<bool> stop = false;
   long after;
+};
+
+struct LastHistory final : RunObserver {
+  HistoryRow last;
+  int rows = 0;
+  void history(const HistoryRow& row) override {
+    last = row;
+    ++rows;
+  }
 };
 
 /// A scene set in motion.
