@@ -172,7 +172,7 @@ time = [[0.0, 0.0], [100.0, 100.0]]
         )
     text = '''title = "Direct shear of a joint"
 case  = 21
-about = """A block on a joint of 1 m under a pressure of 50 kPa and its weight is pushed along it by a force that grows by 1 kN/m per second, until it leaves: at c A + N tan φ. The joint is much softer than the rock (0.4 GPa/m in shear), so that shear is even along it; a stiffer one fails from the ends inwards. Cohesion belongs to the joint once, whether it is one contact edge or divided among two blocks below."""
+about = """A block on a joint of 1 m under a pressure of 50 kPa and its weight is pushed along it by a force that grows by 1 kN/m per second, until it leaves: at c A + N tan φ, also where it is pulled off the joint by 40 kPa and N is negative. The joint is much softer than the rock (0.4 GPa/m in shear), so that shear is even along it; a stiffer one fails from the ends inwards. Cohesion belongs to the joint once, whether it is one contact edge or divided among two blocks below."""
 '''
     for name, kind in (("", "one base"), ("_divided", "divided base")):
         text += f'''
@@ -180,12 +180,12 @@ about = """A block on a joint of 1 m under a pressure of 50 kPa and its weight i
 name = "{kind}"
 scenario = "scenarios/direct_shear{name}.toml"
 [run.points]
-keys = ["joints.cohesion", "joints.friction"]
-labels = ["c 60 kPa, φ 30°", "c 0, φ 30°", "c 60 kPa, φ 0°"]
-values = [[60.0e3, 30.0], [0.0, 30.0], [60.0e3, 0.0]]
+keys = ["joints.cohesion", "joints.friction", "joints.tension", "load.0.traction"]
+labels = ["c 60 kPa, φ 30°", "c 0, φ 30°", "c 60 kPa, φ 0°", "c 60 kPa, φ 30°, pulled"]
+values = [[60.0e3, 30.0, 0.0, [0.0, -50.0e3]], [0.0, 30.0, 0.0, [0.0, -50.0e3]], [60.0e3, 0.0, 0.0, [0.0, -50.0e3]], [60.0e3, 30.0, 80.0e3, [0.0, 40.0e3]]]
 '''
         text += quantity("peak of the shear force", "1e3*crossing('block.vx', 5e-4)", "N/m",
-                         expected="set('joints.cohesion')*1 + (50e3 + 2600*0.25*9.81)*tan(rad(set('joints.friction')))", tolerance=1e-3)
+                         expected="set('joints.cohesion')*1 + (2600*0.25*9.81 - set('load.0.traction.1'))*tan(rad(set('joints.friction')))", tolerance=1e-3)
     case("direct_shear", text)
 
 

@@ -11,7 +11,7 @@ namespace keyblock::contact {
 /// displacements x = depth − n·r and u = shear + t·r at the end of the step, x₀ and u₀ at its start, and c = dashpot/Δt:
 ///
 ///     N = max(k_n x + c_n (x − max(x₀, 0)), 0)          T = clamp(k_s u + c_s (u − u₀), ±bound)
-///     force on block a: N n − T t, on block b the opposite;  bound = μ N_frozen + c L
+///     force on block a: N n − T t, on block b the opposite;  bound = max(μ N_frozen + c L, 0)
 ///
 /// Spring and dashpot together are a spring of stiffness k + c about a shifted origin, so everything else sees one spring.
 ///
@@ -123,6 +123,15 @@ class BasicSpring {
   Number normal_{}, shear_{};
   Number depth_{}, origin_{};
 };
+
+/// N, μ N + c L: the largest shear force (Coulomb 1776). A bond in tension, N < 0, has less than its cohesion, at the least none.
+///
+/// Number: double, or Lanes for as many contacts at once.
+template <typename Number>
+Number shear_strength(Number friction, Number normal, Number cohesion) {
+  const Number zero{}, strength = friction * normal + cohesion;
+  return where(strength > zero, strength, zero);
+}
 
 using Spring = BasicSpring<double>;
 using SpringLanes = BasicSpring<Lanes>;

@@ -263,7 +263,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
         const Lanes zero{}, y = at_c(springs_->y), mu = at_c(springs_->friction);
         const Lanes normal = where(y > at_c(springs_->floor), at_c(springs_->kn) * y, zero);
         // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const Lanes wanted = mu * largest(normal, zero) + at_c(springs_->cohesion),
+        const Lanes wanted = contact::shear_strength(mu, normal, at_c(springs_->cohesion)),
                     elastic = at_c(springs_->ks) * at_c(springs_->w), bound_now = at_c(springs_->bound),
                     change = largest(least(elastic, wanted), -wanted) -
                              largest(least(elastic, bound_now), -bound_now);
@@ -274,7 +274,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
   const auto bound = [&](std::size_t c) {
-    return springs_->friction[c] * std::max(0.0, springs_->force(c).normal) + springs_->cohesion[c];
+    return contact::shear_strength(springs_->friction[c], springs_->force(c).normal, springs_->cohesion[c]);
   };
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).

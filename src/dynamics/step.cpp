@@ -102,7 +102,9 @@ void Stepper::start(State& state) {
     const block::Stress s = block::in_situ_at(model_.in_situ, where);
     const Vec2 traction{s.xx * c.normal.x + s.xy * c.normal.y, s.xy * c.normal.x + s.yy * c.normal.y};
     const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
-    const double bound = law.fused ? HUGE_VAL : law.friction_coefficient * normal + law.cohesion * c.length;
+    const double bound =
+        law.fused ? HUGE_VAL
+                  : contact::shear_strength(law.friction_coefficient, normal, law.cohesion * c.length);
     const double shear = std::clamp(dot(traction, c.tangent()) * c.length, -bound, bound);
     memory.normal_force = memory.bounding_force = normal;
     memory.offset = -c.gap - normal / c.normal_stiffness;

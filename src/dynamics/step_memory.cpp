@@ -56,10 +56,12 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
               .closed = where(closed, broadcast(1.0), zero)};
   accounts.leave_out_beyond(count);
   const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
-  memory.normal_force = memory.bounding_force = pressure;
+  memory.normal_force = pressure;
+  memory.bounding_force = normal;
   if (!drive.is_static && model_.solver.contact == ContactMethod::penalty) {
-    const Lanes ahead = pressure + where(closed & ~locked & (bound > zero), change, zero);
-    memory.bounding_force = where(ahead > zero, ahead, zero);
+    const Lanes ahead = pressure + change;
+    memory.bounding_force =
+        where(closed & ~locked & (bound > zero), where(ahead > zero, ahead, zero), normal);
   }
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;

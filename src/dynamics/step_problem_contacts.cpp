@@ -84,7 +84,8 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   const auto bonded = lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
   const auto tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
-  const Lanes bound = where(fused, broadcast(HUGE_VAL), law.friction * memory.bounding_force + law.cohesion);
+  const Lanes bound = where(fused, broadcast(HUGE_VAL),
+                            contact::shear_strength(law.friction, memory.bounding_force, law.cohesion));
   const contact::SpringLanes spring(contact::SpringLanes::Constants{
       law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
       damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "rockmass/distribution.h"
 #include "rockmass/intensity.h"
@@ -71,7 +72,7 @@ class Plausibility {
     }
   }
 
-  // The shear bound of a joint in place is its cohesion, under tension nothing beside it.
+  // Where the line of Coulomb ends, at tension c / tan φ, a joint in place has no shear strength left.
   void check_bonds() {
     warn_of_bond("joints", scenario_.joints, {});
     for (const JointSetSpec& spec : scenario_.joint_sets)
@@ -83,9 +84,18 @@ class Plausibility {
   void warn_of_bond(const std::string& path, const JointKeys& own, const JointKeys& standard) {
     const double tension = own.tension.value_or(standard.tension.value_or(0.0));
     const double cohesion = own.cohesion.value_or(standard.cohesion.value_or(0.0));
-    if (!own.tension && !own.cohesion) return;
-    if (tension > 0.0 && cohesion == 0.0)
+    if (!own.tension && !own.cohesion && !own.friction) return;
+    if (tension > 0.0 && cohesion == 0.0) {
       warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
+      return;
+    }
+    const double friction = own.friction.value_or(standard.friction.value_or(0.0));
+    const double apex = cohesion / std::tan(friction * std::numbers::pi / 180.0);
+    if (tension > apex)
+      warn(
+          "{}: the least shear breaks a joint pulled by cohesion / tan(friction), {:.4g}, before its tension "
+          "of {:.4g} is reached",
+          path, apex, tension);
   }
 
   void check_automatic_order() {

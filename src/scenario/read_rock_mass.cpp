@@ -152,8 +152,8 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
   t.number(
       "tension", joints.tension,
       {.meaning =
-           "Tensile strength of a joint in place, lost likewise. Needs cohesion, which is the shear strength "
-           "of a joint under tension: without it the least shear breaks the joint.",
+           "Tensile strength of a joint in place, lost likewise. A joint that is pulled holds less shear, "
+           "cohesion − tension · tan(friction): without cohesion the least shear breaks it.",
        .unit = "Pa",
        .at_least = 0.0,
        .fallback = defaults.zero});

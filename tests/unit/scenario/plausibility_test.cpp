@@ -122,7 +122,11 @@ TEST(Warnings, OfDistributionsThatAreCutOff) {
 TEST(Warnings, OfTensionThatHoldsNothing) {
   EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6"}),
               UnorderedElementsAre(HasSubstr("joints: tension without cohesion holds nothing")));
-  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6", "joints.cohesion=1e6"}), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6", "joints.cohesion=1e6", "joints.friction=44"}),
+              IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.tension=1e6", "joints.cohesion=1e6", "joints.friction=46"}),
+              UnorderedElementsAre(
+                  HasSubstr("pulled by cohesion / tan(friction), 9.657e+05, before its tension of 1e+06")));
   const auto of_set = HasSubstr("joint_set.bedding: tension without cohesion");
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6"}), UnorderedElementsAre(of_set));
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6", "joints.cohesion=1e6"}),
