@@ -100,13 +100,24 @@ std::optional<double> DamageGauge::opening_width() const {
   return box_of(setup_.excavations.front().outline).size().x;
 }
 
+void DamageGauge::open(std::span<const int> excavations) {
+  for (const int e : excavations) open_[at(e)] = 1;
+}
+
+template <typename Function>
+void DamageGauge::for_each_opening(const Function& f) const {
+  for (std::size_t e = 0; e < open_.size(); ++e) {
+    if (open_[e] != 0) f(setup_.excavations[e].outline);
+  }
+}
+
 double DamageGauge::area_inside_openings(const Polygon& block) const {
   double sum = 0.0;
-  for (const Excavation& excavation : setup_.excavations) {
-    if (!box_of(excavation.outline).overlaps(bounds(block))) continue;
-    const Polygon pair[] = {block, {excavation.outline, {}}};
+  for_each_opening([&](const Ring& outline) {
+    if (!box_of(outline).overlaps(bounds(block))) return;
+    const Polygon pair[] = {block, {outline, {}}};
     for (const overlap::Overlap& piece : overlap::all_overlaps(pair, 0.0)) sum += piece.area;
-  }
+  });
   return sum;
 }
 
@@ -142,8 +153,7 @@ Damage DamageGauge::measure(const dynamics::State& state) const {
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
     if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(deformed_polygon(model_, b));
   }
-  for (const Excavation& excavation : setup_.excavations)
-    openings += std::abs(signed_area(excavation.outline));
+  for_each_opening([&](const Ring& outline) { openings += std::abs(signed_area(outline)); });
   if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
 
   double length = 0.0, slip_length = 0.0;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,8 +22,11 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block);
 /// it lies now, opening that across it. Pieces beside a fallen block no longer count; those along the frame never do.
 class DamageGauge {
  public:
-  DamageGauge(const RunSetup& setup, const dynamics::Model& model) : setup_(setup), model_(model) {}
+  DamageGauge(const RunSetup& setup, const dynamics::Model& model)
+      : setup_(setup), model_(model), open_(setup.excavations.size()) {}
 
+  /// The outlines of these excavations, by index, count as openings from now on.
+  void open(std::span<const int> excavations);
   [[nodiscard]] bool started() const { return !start_.empty(); }
   /// Takes the present state as the reference. Blocks of the excavations are gone by now.
   void start(const dynamics::State& state, std::span<const contact::Contact> contacts);
@@ -51,6 +55,9 @@ class DamageGauge {
     double slip, opening;
   };
   [[nodiscard]] Offset offset(const JointPiece& piece) const;
+  /// f(outline) of every opening.
+  template <typename Function>
+  void for_each_opening(const Function& f) const;
   [[nodiscard]] double area_inside_openings(const Polygon& block) const;
   /// Distance between two material points, those where the walls stand at the ends of a diameter of the first opening;
   /// 0 where no block does.
@@ -58,6 +65,7 @@ class DamageGauge {
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
+  std::vector<std::uint8_t> open_;  ///< per excavation
   std::vector<Vec2> start_;
   std::vector<JointPiece> pieces_;  ///< ascending by vertex, then edge
   double height_ = 0.0, width_ = 0.0;

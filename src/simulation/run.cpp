@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/step.h"
@@ -152,6 +153,7 @@ void Runner::resume() {
   model_.surface.present = now_.present;
   orders_changed();
   gauge_.restore(now_.damage);
+  for (int s = 0; s < now_.stage; ++s) gauge_.open(setup_.stages[at(s)].excavate);
   wall_before_ = now_.wall_time;
 }
 
@@ -377,6 +379,7 @@ void Runner::run_stage() {
   stage_iterations_ = 0;
   record.steps = now_.stage_step;
   plan_motion(record);
+  gauge_.open(record.stage.excavate);
   if (now_.stage_step == 0) {
     excavate(record.stage);
     observer_.stage_begin(now_.stage, record);

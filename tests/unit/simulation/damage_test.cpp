@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/index.h"
 #include "scene.h"
 
 namespace keyblock::simulation {
@@ -48,6 +49,34 @@ TEST(Damage, ClosureWhereJointsMeetTheOpeningAtItsDiameters) {
     for (const std::size_t b : {std::size_t{0}, std::size_t{3}}) move(b, {-0.002, 0.0});
     EXPECT_NEAR(gauge.measure(simulator.state).closure_horizontal, 0.002, 2e-6);
   }
+}
+
+// A heading and the bench below it; the rock that fills the bench settles before it is opened.
+TEST(Damage, OnlyOpeningsAreFilled) {
+  Scene scene(1e9, 30.0);
+  const auto box = [](double bottom, double top) {
+    return Ring{{0.0, bottom}, {2.0, bottom}, {2.0, top}, {0.0, top}};
+  };
+  scene.setup.excavations = {{"heading", box(1.0, 2.0)}, {"bench", box(0.0, 1.0)}};
+  scene.add(box(0.0, 0.8));
+  scene.add(box(2.0, 3.0));
+  Simulator simulator(scene);
+  DamageGauge gauge(scene.setup, simulator.model);
+  const auto sink = [&](std::size_t b, double by) {
+    const dynamics::Block& block = simulator.model.blocks[b];
+    contact::Surface& surface = simulator.model.surface;
+    simulator.state.position[block.first + 1] -= by * std::sqrt(block.area);
+    for (int v = surface.block_begin[b]; v < surface.block_begin[b + 1]; ++v) surface.position[at(v)].y -= by;
+  };
+  const std::vector<int> heading{0}, bench{1};
+  gauge.open(heading);
+  gauge.start(simulator.state, {});
+  sink(0, 0.02);
+  EXPECT_EQ(gauge.measure(simulator.state).opening_filled_ratio, 0.0);
+  sink(1, 0.05);
+  EXPECT_NEAR(gauge.measure(simulator.state).opening_filled_ratio, 0.05 / 1.0, 1e-12);
+  gauge.open(bench);
+  EXPECT_NEAR(gauge.measure(simulator.state).opening_filled_ratio, (0.05 + 0.78) / 2.0, 1e-12);
 }
 
 }  // namespace
