@@ -8,6 +8,7 @@
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario_arguments.h"
+#include "simulation/build_model.h"
 #include "study/plan.h"
 
 namespace keyblock::app {
@@ -19,7 +20,7 @@ void check_scenario(const ScenarioArguments& arguments) {
   const scenario::BlockModel blocks = scenario::build_blocks(scenario, arguments.realization);
   if (!scenario.stages.empty()) {  // a scenario without stages can still be cut
     warnings.clear();
-    scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
+    simulation::build_model(scenario::build_setup(scenario, arguments.realization, blocks, &warnings));
   } else {
     scenario::add_block_warnings(scenario, blocks, warnings);
   }

@@ -9,6 +9,23 @@
 
 namespace keyblock {
 
+namespace {
+
+double distance_to_boundary(const Polygon& polygon, Vec2 p) {
+  double nearest = HUGE_VAL;
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    const Ring& ring = polygon.ring(r);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], ab = ring[(k + 1) % ring.size()] - a;
+      const double s = std::clamp(dot(p - a, ab) / squared_norm(ab), 0.0, 1.0);
+      nearest = std::min(nearest, norm(p - a - s * ab));
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
 double signed_area(std::span<const Vec2> ring) {
   double twice = 0.0;
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -69,6 +86,15 @@ bool contains(const Polygon& polygon, Vec2 p) {
   bool inside = contains(polygon.outer, p);
   for (const Ring& hole : polygon.holes) inside = inside != contains(hole, p);
   return inside;
+}
+
+bool lies_on_boundary(const Polygon& polygon, Vec2 p) {
+  constexpr double tolerance = 1e-6;  // of the perimeter
+  return distance_to_boundary(polygon, p) <= tolerance * perimeter(polygon);
+}
+
+bool lies_in(const Polygon& polygon, Vec2 p) {
+  return contains(polygon, p) || lies_on_boundary(polygon, p);
 }
 
 void orient(Polygon& polygon) {

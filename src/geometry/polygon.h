@@ -31,6 +31,10 @@ Box bounds(const Polygon& polygon);
 /// Whether p lies inside (even-odd over all rings). Points exactly on the boundary may go either way.
 bool contains(const Polygon& polygon, Vec2 p);
 bool contains(std::span<const Vec2> ring, Vec2 p);
+/// Whether p lies on the boundary, to 1e-6 of the perimeter: coordinates are typed with a few digits.
+bool lies_on_boundary(const Polygon& polygon, Vec2 p);
+/// Whether p lies inside or on the boundary.
+bool lies_in(const Polygon& polygon, Vec2 p);
 /// Reverses rings where needed so that the invariant of Polygon holds.
 void orient(Polygon& polygon);
 /// Whether two edges of the polygon cross or touch apart from neighbours at their common vertex; all pairs,

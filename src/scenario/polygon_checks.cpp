@@ -9,21 +9,6 @@ namespace {
 
 // Areas under this share of the squared perimeter are no areas.
 constexpr double flat_ratio = 1e-10;
-// How far a point may lie off a boundary, over the perimeter.
-constexpr double point_tolerance = 1e-6;
-
-double distance_to_boundary(const Polygon& polygon, Vec2 p) {
-  double nearest = HUGE_VAL;
-  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
-    const Ring& ring = polygon.ring(r);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], ab = ring[(k + 1) % ring.size()] - a;
-      const double s = std::clamp(dot(p - a, ab) / squared_norm(ab), 0.0, 1.0);
-      nearest = std::min(nearest, norm(p - a - s * ab));
-    }
-  }
-  return nearest;
-}
 
 // Whether all vertices lie on one line.
 bool is_flat(const Ring& ring) {
@@ -63,14 +48,6 @@ std::optional<PolygonFault> orient_and_check(Polygon& polygon) {
     }
   }
   return std::nullopt;
-}
-
-bool lies_on_boundary(const Polygon& polygon, Vec2 p) {
-  return distance_to_boundary(polygon, p) <= point_tolerance * perimeter(polygon);
-}
-
-bool lies_in(const Polygon& polygon, Vec2 p) {
-  return contains(polygon, p) || lies_on_boundary(polygon, p);
 }
 
 }  // namespace keyblock::scenario

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "core/error.h"
 #include "core/index.h"
@@ -42,9 +43,23 @@ Polygon frame_polygon(const Box& domain) {
           {{a, {a.x, b.y}, b, {b.x, a.y}}}};
 }
 
+/// Polynomials over a block. Throws InputError where it is so thin, for its order, that they cannot be told from each other.
+block::Basis make_basis(const Polygon& polygon, const BlockProperties& properties, int order) {
+  try {
+    return block::Basis(polygon, order);
+  } catch (const std::invalid_argument&) {
+    const Box box = bounds(polygon);
+    const Vec2 middle = lerp(box.min, box.max, 0.5);
+    const std::string name = properties.name.empty() ? "a block" : fmt::format("block '{}'", properties.name);
+    refuse(fmt::format("{} about ({:.6g}, {:.6g})", name, middle.x, middle.y),
+           fmt::format("an area of {:.3g} within a perimeter of {:.3g}", area(polygon), perimeter(polygon)),
+           fmt::format("a block wide enough for polynomials of order {}", order));
+  }
+}
+
 Block make_block(const Polygon& polygon, const BlockProperties& properties, int order, int edge_order,
                  const std::optional<InSituStress>& in_situ) {
-  const block::Basis basis(polygon, order);
+  const block::Basis basis = make_basis(polygon, properties, order);
   Block block{.fixed = properties.fixed,
               .area = area(polygon),
               .material = properties.material,
@@ -136,7 +151,7 @@ std::size_t block_named(const RunSetup& setup, const std::string& name, const st
 }
 
 void require_on_block(const Polygon& polygon, Vec2 p, const std::string& key, const std::string& block) {
-  if (!on_or_in(polygon, p)) {
+  if (!lies_in(polygon, p)) {
     refuse(key, fmt::format("the point ({}, {})", p.x, p.y), fmt::format("a point of block '{}'", block));
   }
 }
@@ -257,20 +272,6 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
   return 0;
 }
 
-bool on_or_in(const Polygon& polygon, Vec2 p) {
-  if (contains(polygon, p)) return true;
-  const double tolerance = 1e-6 * std::sqrt(area(polygon));
-  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
-    const Ring& ring = polygon.ring(r);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], d = ring[(k + 1) % ring.size()] - a;
-      const double s = std::clamp(dot(p - a, d) / squared_norm(d), 0.0, 1.0);
-      if (norm(p - a - s * d) <= tolerance) return true;
-    }
-  }
-  return false;
-}
-
 int edge_pieces(double edge_length, double block_area, int order) {
   // Of the edge, the share of its first vertex is 1 / (n (n + 1)).
   constexpr double least = 0.05, rounding = 1e-6;
@@ -311,7 +312,9 @@ Model build_model(const RunSetup& setup) {
   if (setup.frame) {
     BlockProperties properties;
     properties.fixed = true;
-    properties.material = setup.properties.empty() ? Material{} : setup.properties.front().material;
+    // No softer than any block that it touches: joints along it are as stiff as the rock has them (contact::Detection).
+    for (const BlockProperties& block : setup.properties)
+      properties.material.young = std::max(properties.material.young, block.material.young);
     model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, 1, 1, {}));
     add_to_surface(model, model.blocks.back(), {std::vector<int>(4, 1), std::vector<int>(4, 1)});
   }

@@ -22,9 +22,6 @@ void change_orders(const RunSetup& setup, dynamics::Model& model, dynamics::Stat
 /// Reference position, with the velocities of the setup.
 dynamics::State initial_state(const RunSetup& setup, const dynamics::Model& model);
 
-/// Whether a point lies in a polygon or on its boundary, up to 10⁻⁶ of its size.
-bool on_or_in(const Polygon& polygon, Vec2 p);
-
 /// Number of pieces into which contact divides an edge of a block, so that its curvature is followed.
 int edge_pieces(double edge_length, double block_area, int order);
 

@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0008;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0009;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -77,6 +77,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
+  archive(s.damage.open);
   archive(s.damage.start);
   archive(s.damage.pieces);
   archive(s.damage.height);

@@ -17,15 +17,16 @@ Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
   return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
 }
 
-// The block that holds a point, of those beside it where the point is on a joint; the number of blocks where there is none.
-std::size_t moving_block_at(const dynamics::Model& model, Vec2 point) {
+// The block that holds a point, one of those beside it where the point is on a joint; −1 where there is none.
+int moving_block_at(const dynamics::Model& model, Vec2 point) {
   const auto first = [&](bool (*holds)(const Polygon&, Vec2)) {
-    std::size_t b = 0;
-    while (b < model.blocks.size() && !(model.moves(b) && holds(model.blocks[b].reference, point))) ++b;
-    return b;
+    for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+      if (model.moves(b) && holds(model.blocks[b].reference, point)) return static_cast<int>(b);
+    }
+    return -1;
   };
-  const std::size_t b = first(&contains);
-  return b < model.blocks.size() ? b : first(&on_or_in);
+  const int inside = first(&contains);
+  return inside >= 0 ? inside : first(&lies_in);
 }
 
 Box box_of(std::span<const Vec2> ring) {
@@ -57,26 +58,20 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block) {
 }
 
 void DamageGauge::start(const dynamics::State& state, std::span<const contact::Contact> contacts) {
-  start_.clear();
-  pieces_.clear();
-  for (const dynamics::Block& block : model_.blocks) start_.push_back(centroid_now(block, state));
+  reference_.start.clear();
+  std::vector<JointPiece>& pieces = reference_.pieces;
+  pieces.clear();
+  for (const dynamics::Block& block : model_.blocks) reference_.start.push_back(centroid_now(block, state));
   const auto is_frame = [&](int b) { return at(b) >= setup_.properties.size(); };
   for (const contact::Contact& c : contacts) {
     if (c.length <= 0.0 || is_frame(c.block_a) || is_frame(c.block_b)) continue;
-    pieces_.push_back({c.vertex, c.edge, c.position, c.length});
+    pieces.push_back({c.vertex, c.edge, c.position, c.length});
   }
-  std::sort(pieces_.begin(), pieces_.end(), [](const JointPiece& x, const JointPiece& y) {
+  std::sort(pieces.begin(), pieces.end(), [](const JointPiece& x, const JointPiece& y) {
     return std::tie(x.vertex, x.edge) < std::tie(y.vertex, y.edge);
   });
-  height_ = diameter(state, {0.0, 1.0});
-  width_ = diameter(state, {1.0, 0.0});
-}
-
-void DamageGauge::restore(Reference reference) {
-  start_ = std::move(reference.start);
-  pieces_ = std::move(reference.pieces);
-  height_ = reference.height;
-  width_ = reference.width;
+  reference_.height = diameter(state, {0.0, 1.0});
+  reference_.width = diameter(state, {1.0, 0.0});
 }
 
 DamageGauge::Offset DamageGauge::offset(const JointPiece& piece) const {
@@ -88,11 +83,12 @@ DamageGauge::Offset DamageGauge::offset(const JointPiece& piece) const {
 }
 
 double DamageGauge::slip(int vertex, int edge) const {
-  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), std::pair{vertex, edge},
+  const std::vector<JointPiece>& pieces = reference_.pieces;
+  const auto piece = std::lower_bound(pieces.begin(), pieces.end(), std::pair{vertex, edge},
                                       [](const JointPiece& p, const auto& key) {
                                         return std::pair{p.vertex, p.edge} < key;
                                       });
-  return piece != pieces_.end() && piece->vertex == vertex && piece->edge == edge ? offset(*piece).slip : 0.0;
+  return piece != pieces.end() && piece->vertex == vertex && piece->edge == edge ? offset(*piece).slip : 0.0;
 }
 
 std::optional<double> DamageGauge::opening_width() const {
@@ -100,14 +96,16 @@ std::optional<double> DamageGauge::opening_width() const {
   return box_of(setup_.excavations.front().outline).size().x;
 }
 
-void DamageGauge::open(std::span<const int> excavations) {
-  for (const int e : excavations) open_[at(e)] = 1;
+void DamageGauge::open(std::span<const int> excavations, const dynamics::State& state) {
+  for (const int e : excavations) reference_.open[at(e)] = 1;
+  for (Diameter* d : {&reference_.height, &reference_.width})
+    d->closure = closure(*d, state);  // 0 before the start
 }
 
 template <typename Function>
 void DamageGauge::for_each_opening(const Function& f) const {
-  for (std::size_t e = 0; e < open_.size(); ++e) {
-    if (open_[e] != 0) f(setup_.excavations[e].outline);
+  for (std::size_t e = 0; e < setup_.excavations.size(); ++e) {
+    if (reference_.open[e] != 0) f(setup_.excavations[e].outline);
   }
 }
 
@@ -129,7 +127,7 @@ std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const
     if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
     if (!started() || !model_.moves(b)) continue;
     const dynamics::Block& block = model_.blocks[b];
-    const Vec2 moved = centroid_now(block, state) - start_[b];
+    const Vec2 moved = centroid_now(block, state) - reference_.start[b];
     if (norm(moved) <= setup_.damage.loosened_distance) continue;
     status[b] = BlockStatus::loosened;
     if (fall <= 0.0 || norm(moved) <= fall) continue;
@@ -157,7 +155,7 @@ Damage DamageGauge::measure(const dynamics::State& state) const {
   if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
 
   double length = 0.0, slip_length = 0.0;
-  for (const JointPiece& piece : pieces_) {
+  for (const JointPiece& piece : reference_.pieces) {
     const std::size_t a = at(model_.surface.block[at(piece.vertex)]),
                       b = at(model_.surface.block[at(piece.edge)]);
     if (status_now[a] >= BlockStatus::fallen || status_now[b] >= BlockStatus::fallen) continue;
@@ -170,16 +168,16 @@ Damage DamageGauge::measure(const dynamics::State& state) const {
     if (now.opening > setup_.damage.opening) damage.opened_length += piece.length;
   }
   damage.slip_mean = length > 0.0 ? slip_length / length : 0.0;
-  damage.closure_vertical = height_ - diameter(state, {0.0, 1.0});
-  damage.closure_horizontal = width_ - diameter(state, {1.0, 0.0});
+  damage.closure_vertical = closure(reference_.height, state);
+  damage.closure_horizontal = closure(reference_.width, state);
   return damage;
 }
 
-double DamageGauge::diameter(const dynamics::State& state, Vec2 direction) const {
-  if (setup_.excavations.empty()) return 0.0;
+DamageGauge::Diameter DamageGauge::diameter(const dynamics::State& state, Vec2 direction) const {
+  Diameter d;
+  if (setup_.excavations.empty()) return d;
   const Ring& outline = setup_.excavations.front().outline;
   const Vec2 centre = centroid({outline, {}});
-  Vec2 now[2];
   for (int end = 0; end < 2; ++end) {
     const Vec2 out = end == 0 ? direction : -direction;
     // Where a ray from the centre leaves the outline, and a little beyond: in the wall. A corner on the ray is an end of one of the
@@ -188,20 +186,35 @@ double DamageGauge::diameter(const dynamics::State& state, Vec2 direction) const
     for (std::size_t k = 0; k < outline.size(); ++k) {
       const Vec2 a = outline[k] - centre, b = outline[(k + 1) % outline.size()] - centre;
       if ((cross(out, a) >= 0.0) == (cross(out, b) >= 0.0)) continue;
-      const Vec2 d = outline[(k + 1) % outline.size()] - outline[k];
-      const double denominator = cross(out, d);
-      if (denominator != 0.0) reach = std::max(reach, cross(a, d) / denominator);
+      const Vec2 along = b - a;
+      const double denominator = cross(out, along);
+      if (denominator != 0.0) reach = std::max(reach, cross(a, along) / denominator);
     }
-    const Vec2 point = centre + 1.001 * reach * out;
-    const std::size_t b = moving_block_at(model_, point);
-    if (b == model_.blocks.size()) return 0.0;
+    d.ends[end] = centre + 1.001 * reach * out;
+    d.blocks[end] = moving_block_at(model_, d.ends[end]);
+  }
+  d.length = length(d, state).value_or(0.0);
+  return d;
+}
+
+std::optional<double> DamageGauge::length(const Diameter& d, const dynamics::State& state) const {
+  Vec2 now[2];
+  for (int end = 0; end < 2; ++end) {
+    if (d.blocks[end] < 0) return std::nullopt;
+    const std::size_t b = at(d.blocks[end]);
+    if (!model_.moves(b)) return std::nullopt;
     const dynamics::Block& block = model_.blocks[b];
     std::vector<double> phi(at(block.size));
-    block.basis.evaluate(point, phi.data());
+    block.basis.evaluate(d.ends[end], phi.data());
     for (std::size_t k = 0; k < phi.size(); ++k)
       now[end] += phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
   }
   return norm(now[0] - now[1]);
+}
+
+double DamageGauge::closure(const Diameter& d, const dynamics::State& state) const {
+  const std::optional<double> now = length(d, state);
+  return now ? d.length - *now : d.closure;
 }
 
 }  // namespace keyblock::simulation

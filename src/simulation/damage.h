@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/detection.h"
@@ -22,12 +23,14 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block);
 /// it lies now, opening that across it. Pieces beside a fallen block no longer count; those along the frame never do.
 class DamageGauge {
  public:
-  DamageGauge(const RunSetup& setup, const dynamics::Model& model)
-      : setup_(setup), model_(model), open_(setup.excavations.size()) {}
+  DamageGauge(const RunSetup& setup, const dynamics::Model& model) : setup_(setup), model_(model) {
+    reference_.open.resize(setup.excavations.size());
+  }
 
-  /// The outlines of these excavations, by index, count as openings from now on.
-  void open(std::span<const int> excavations);
-  [[nodiscard]] bool started() const { return !start_.empty(); }
+  /// Excavations, by index, that are about to be opened: their outlines count as openings from now on, and closure stays as it is
+  /// where the rock of a wall is excavated.
+  void open(std::span<const int> excavations, const dynamics::State& state);
+  [[nodiscard]] bool started() const { return !reference_.start.empty(); }
   /// Takes the present state as the reference. Blocks of the excavations are gone by now.
   void start(const dynamics::State& state, std::span<const contact::Contact> contacts);
 
@@ -42,13 +45,21 @@ class DamageGauge {
     double along = 0.0;   ///< of the point on the edge, 0 … 1
     double length = 0.0;  ///< m
   };
-  struct Reference {
-    std::vector<Vec2> start;  ///< centroids, per block
-    std::vector<JointPiece> pieces;
-    double height = 0.0, width = 0.0;  ///< m, diameters of the opening
+  /// Two material points in the walls of the first excavation, where a line through its centroid leaves it.
+  struct Diameter {
+    Vec2 ends[2];              ///< reference positions
+    int blocks[2] = {-1, -1};  ///< that hold them; −1: none does
+    double length = 0.0;       ///< m, at the start
+    double closure = 0.0;      ///< m, before the last excavation
   };
-  [[nodiscard]] Reference reference() const { return {start_, pieces_, height_, width_}; }
-  void restore(Reference reference);
+  struct Reference {
+    std::vector<std::uint8_t> open;  ///< per excavation
+    std::vector<Vec2> start;         ///< centroids, per block
+    std::vector<JointPiece> pieces;  ///< ascending by vertex, then edge
+    Diameter height, width;
+  };
+  [[nodiscard]] const Reference& reference() const { return reference_; }
+  void restore(Reference reference) { reference_ = std::move(reference); }
 
  private:
   struct Offset {
@@ -59,16 +70,14 @@ class DamageGauge {
   template <typename Function>
   void for_each_opening(const Function& f) const;
   [[nodiscard]] double area_inside_openings(const Polygon& block) const;
-  /// Distance between two material points, those where the walls stand at the ends of a diameter of the first opening;
-  /// 0 where no block does.
-  [[nodiscard]] double diameter(const dynamics::State& state, Vec2 direction) const;
+  [[nodiscard]] Diameter diameter(const dynamics::State& state, Vec2 direction) const;
+  /// Distance of the ends of a diameter now; nothing where one of them is in no block.
+  [[nodiscard]] std::optional<double> length(const Diameter& d, const dynamics::State& state) const;
+  [[nodiscard]] double closure(const Diameter& d, const dynamics::State& state) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
-  std::vector<std::uint8_t> open_;  ///< per excavation
-  std::vector<Vec2> start_;
-  std::vector<JointPiece> pieces_;  ///< ascending by vertex, then edge
-  double height_ = 0.0, width_ = 0.0;
+  Reference reference_;
 };
 
 }  // namespace keyblock::simulation

@@ -30,7 +30,7 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
   for (const History& history : setup.histories) {
     std::size_t found = model.blocks.size();
     for (std::size_t b = 0; b < setup.properties.size() && found == model.blocks.size(); ++b) {
-      const bool meant = history.block.empty() ? on_or_in(model.blocks[b].reference, history.point)
+      const bool meant = history.block.empty() ? lies_in(model.blocks[b].reference, history.point)
                                                : setup.properties[b].name == history.block;
       if (meant) found = b;
     }

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/index.h"
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/step.h"
@@ -153,7 +152,6 @@ void Runner::resume() {
   model_.surface.present = now_.present;
   orders_changed();
   gauge_.restore(now_.damage);
-  for (int s = 0; s < now_.stage; ++s) gauge_.open(setup_.stages[at(s)].excavate);
   wall_before_ = now_.wall_time;
 }
 
@@ -166,6 +164,7 @@ void Runner::orders_changed() {
 void Runner::excavate(const Stage& stage) {
   if (stage.excavate.empty()) return;
   const double before = total_energy();
+  gauge_.open(stage.excavate, now_.mechanics);
   for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
     const auto& inside = setup_.system.blocks[b].excavations;
     const bool removed = std::any_of(inside.begin(), inside.end(), [&](int e) {
@@ -272,7 +271,8 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
     ++now_.reported.steps;
     check_finite(energies);
   }
-  if (step % checkpoint_steps == 0) checkpoint();
+  // The end of a stage has a checkpoint of its own: from one within it, a run that is resumed would have no step left to take.
+  if (steps_left > 0 && step % checkpoint_steps == 0) checkpoint();
   if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
   last_progress_ = Clock::now();
   const Stage& stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
@@ -379,7 +379,6 @@ void Runner::run_stage() {
   stage_iterations_ = 0;
   record.steps = now_.stage_step;
   plan_motion(record);
-  gauge_.open(record.stage.excavate);
   if (now_.stage_step == 0) {
     excavate(record.stage);
     observer_.stage_begin(now_.stage, record);

@@ -69,14 +69,39 @@ TEST(Damage, OnlyOpeningsAreFilled) {
     for (int v = surface.block_begin[b]; v < surface.block_begin[b + 1]; ++v) surface.position[at(v)].y -= by;
   };
   const std::vector<int> heading{0}, bench{1};
-  gauge.open(heading);
+  gauge.open(heading, simulator.state);
   gauge.start(simulator.state, {});
   sink(0, 0.02);
   EXPECT_EQ(gauge.measure(simulator.state).opening_filled_ratio, 0.0);
   sink(1, 0.05);
   EXPECT_NEAR(gauge.measure(simulator.state).opening_filled_ratio, 0.05 / 1.0, 1e-12);
-  gauge.open(bench);
+  gauge.open(bench, simulator.state);
   EXPECT_NEAR(gauge.measure(simulator.state).opening_filled_ratio, (0.05 + 0.78) / 2.0, 1e-12);
+}
+
+// Rock above and below a heading; what is below is excavated next.
+TEST(Damage, ClosureStaysWhereAWallIsExcavated) {
+  Scene scene(1e9, 30.0);
+  scene.setup.excavations = {{"heading", {{0.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {0.0, 2.0}}}, {"bench", {}}};
+  scene.rectangle({0.0, 0.0}, 2.0, 1.0);
+  scene.rectangle({0.0, 2.0}, 2.0, 1.0);
+  Simulator simulator(scene);
+  DamageGauge gauge(scene.setup, simulator.model);
+  const auto sink_crown = [&](double by) {
+    const dynamics::Block& crown = simulator.model.blocks[1];
+    simulator.state.position[crown.first + 1] -= by * std::sqrt(crown.area);
+  };
+  const std::vector<int> heading{0}, bench{1};
+  gauge.open(heading, simulator.state);
+  gauge.start(simulator.state, {});
+  EXPECT_EQ(gauge.measure(simulator.state).closure_vertical, 0.0);
+  sink_crown(0.003);
+  EXPECT_NEAR(gauge.measure(simulator.state).closure_vertical, 0.003, 1e-12);
+  gauge.open(bench, simulator.state);
+  simulator.model.surface.present[0] = 0;
+  sink_crown(0.1);
+  EXPECT_NEAR(gauge.measure(simulator.state).closure_vertical, 0.003, 1e-12);
+  EXPECT_EQ(gauge.measure(simulator.state).closure_horizontal, 0.0);  // no walls at the sides
 }
 
 }  // namespace

@@ -133,6 +133,23 @@ TEST(Run, AStageThatIsResumedWithinBeganWhenItDid) {
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
 }
 
+// The end of a stage has a checkpoint of its own. From one after its last step, no step would be left to find contacts by.
+TEST(Run, NoCheckpointWithinAStageAfterItsLastStep) {
+  const FreshFolder folder;
+  RunSetup setup = shaken_incline(0);
+  setup.stages.push_back(stage("rest", StageKind::rest, 2000 * setup.time_step));
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+  Stopper stopper(whole.steps);
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  ASSERT_EQ(run(setup, options, stopper).steps, whole.steps);
+  const RunState kept = read_checkpoint(folder, setup);
+  EXPECT_EQ(kept.stage, 1);
+  EXPECT_EQ(kept.stage_step, 0);
+}
+
 TEST(Run, ThatCannotGoOnHasNotReachedItsEnd) {
   struct Failing final : RunObserver {
     bool interrupted = false;
