@@ -154,7 +154,7 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
     }
     const auto same = std::span(meeting).first(size);
     const Outcome outcome = compete(surface, same, candidates);
-    if (margin > 0.0) margin = std::min(margin, outcome_margin(same, outcome, candidates));
+    if (margin > 0.0) margin = std::min(margin, outcome_margin(surface, same, outcome, candidates));
     for (Rival* r : same) {
       r->corners = 0;
       if (r != outcome.winner) r->candidate = -1;
@@ -359,15 +359,32 @@ Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<
   return ends[nearest] < 0.0 ? rivals[nearest] : rivals[last];
 }
 
-Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* const> rivals,
+bool Detection::faces(const Rival& rival, const CandidateList& candidates) const {
+  const Corner& vertex = corners_[at(candidates.pairs[at(rival.candidate)].vertex)];
+  const Vec2 tangent = line(rival, candidates).tangent;
+  const auto runs_against = [&](Vec2 u) {
+    return dot(u, tangent) < 0.0 && std::abs(cross(u, tangent)) <= Tolerances::sine_facing;
+  };
+  return runs_against(vertex.tangent) || runs_against(vertex.before);
+}
+
+Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* const> all,
                                       const CandidateList& candidates) const {
+  // Both faces of a sharp tip are one line to the corner beside it, and only one of them has that corner's block on its other side.
+  std::array<Rival*, 4> facing{};
+  std::size_t count = 0;
+  bool parallel = true;
+  for (Rival* f : all) {
+    parallel = parallel && !turned(line(*f, candidates), line(*all[0], candidates));
+    if (faces(*f, candidates)) facing[count++] = f;
+  }
+  const bool some_face = parallel && count > 0 && count < all.size();
+  const std::span<Rival* const> rivals = some_face ? std::span<Rival* const>(facing).first(count) : all;
   const auto line = [&](const Rival& f) -> const Corner& { return this->line(f, candidates); };
   const auto over = [&](const Rival& f) { return inside(f.along, line(f).length); };
   const auto force = [&](const Rival& f) { return candidates.memory[at(f.memory)].normal_force; };
-  bool parallel = true;
   Rival* holder = nullptr;  // the one that was in contact; the strongest, should there be several
   for (Rival* f : rivals) {
-    parallel = parallel && !turned(line(*f), line(*rivals[0]));
     if (f->memory >= 0 && (holder == nullptr || force(*f) > force(*holder))) holder = f;
   }
   Rival* winner = nullptr;
@@ -389,7 +406,7 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
   // tangents of the two lines run against each other, and normal and tangent turn together.
   const bool hands_over = winner != nullptr && holder != nullptr && parallel && winner != holder;
   if (hands_over) winner->memory = holder->memory;
-  return {winner, parallel, hands_over};
+  return {winner, parallel, hands_over, some_face};
 }
 
 }  // namespace keyblock::contact

@@ -148,7 +148,10 @@ class Detection {
     Rival* winner = nullptr;   ///< null: none
     bool parallel = true;      ///< all their lines
     bool handed_over = false;  ///< the winner goes on with the memory of another
+    bool some_face = false;    ///< others were left out that no edge of their vertex faces
   };
+  /// Whether an edge of the vertex and the edge face each other: they run against each other, each with its block on the left.
+  [[nodiscard]] bool faces(const Rival& rival, const CandidateList& candidates) const;
   [[nodiscard]] Outcome compete(const Surface& surface, std::span<Rival* const> rivals,
                                 const CandidateList& candidates) const;
   [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
@@ -171,8 +174,9 @@ class Detection {
                                     double reach) const;
   [[nodiscard]] double depth_margin(const Surface& surface, const Candidate& candidate, const Rival& rival,
                                     double gap_rate) const;
-  [[nodiscard]] double outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
-                                      const CandidateList& candidates) const;
+  [[nodiscard]] double facing_margin(const Surface& surface, const Candidate& candidate) const;
+  [[nodiscard]] double outcome_margin(const Surface& surface, std::span<Rival* const> rivals,
+                                      const Outcome& outcome, const CandidateList& candidates) const;
   /// Up to as many candidates as there are lanes, and what their two blocks together may do (Motion).
   struct Group {
     std::size_t size = 0;

@@ -87,21 +87,27 @@ double Detection::depth_margin(const Surface& surface, const Candidate& candidat
                farther = to_nearest_other_edge(surface, candidate) + rival.gap;
   double margin = std::min({too_deep / gap_rate, std::abs(farther) / (1.0 + gap_rate),
                             std::abs(rival.along - 0.5 * length) / rate(length, length)});
-  const int vertex = candidate.vertex;
-  const std::array<double, 2> sizes{corners_[at(vertex)].length,
-                                    corners_[at(surface.previous[at(vertex)])].length};
+  return std::min(margin, facing_margin(surface, candidate));
+}
+
+/// Before an edge of the vertex comes to face the edge, or does so no more.
+double Detection::facing_margin(const Surface& surface, const Candidate& candidate) const {
+  const Corner& edge = corners_[at(candidate.edge)];
+  const std::size_t vertex = at(candidate.vertex);
+  const std::array<double, 2> sizes{corners_[vertex].length, corners_[at(surface.previous[vertex])].length};
+  double margin = HUGE_VAL;
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    const double sine = std::abs(cross(sides(candidate)[k], line_inwards(rival, candidate)));
-    margin = std::min(margin, turn_margin(sine, Tolerances::sine_facing) * std::min(length, sizes[k]));
+    const double sine = std::abs(cross(sides(candidate)[k], edge.tangent));
+    margin = std::min(margin, turn_margin(sine, Tolerances::sine_facing) * std::min(edge.length, sizes[k]));
   }
   return margin;
 }
 
 /// The rules of compete(), with the winner as the one that was in contact. They hold where the corners are now and, as long as both
 /// are within the margin, where they will be.
-double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& outcome,
-                                 const CandidateList& candidates) const {
-  if (outcome.handed_over) return 0.0;
+double Detection::outcome_margin(const Surface& surface, std::span<Rival* const> rivals,
+                                 const Outcome& outcome, const CandidateList& candidates) const {
+  if (outcome.handed_over || outcome.some_face) return 0.0;
   const auto line = [&](const Rival* r) -> const Corner& { return this->line(*r, candidates); };
   // Near an end of their lines, all of them.
   const auto over_rate = [&](const Rival* r) {
@@ -131,6 +137,8 @@ double Detection::outcome_margin(std::span<Rival* const> rivals, const Outcome& 
   }
   const Rival* winner = outcome.winner;
   if (outcome.parallel) {
+    for (const Rival* r : rivals)
+      margin = std::min(margin, facing_margin(surface, candidates.pairs[at(r->candidate)]));
     if (winner != nullptr)
       return std::min(margin, (inside(winner->along, line(winner).length) - leave()) / over_rate(winner));
     for (const Rival* r : rivals)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -144,6 +145,33 @@ TEST(Detection, ASharpTipFacesWithOneEdge) {
     add_block(surface, rectangle(-1, -1, 3, 0));
     add_block(surface, {{{0, 0}, {2, 0}, {2, 2 * std::tan(degrees * std::numbers::pi / 180.0)}}, {}});
     EXPECT_NEAR(total_length(find(surface), 0, 1), 2.0, 1e-12) << degrees;
+  }
+}
+
+// The whole of either face of a sharp wedge lies on its seat, whatever the order in which blocks and vertices are given: at its tip, where
+// both faces are one line to the corners of the seat, rounding may not choose between them.
+TEST(Detection, ASharpWedgeLiesOnBothSidesOfItsSeat) {
+  for (const double degrees : {0.5, 1.0, 1.5, 1.9, 2.5, 3.9}) {
+    const double x = std::tan(0.5 * degrees * std::numbers::pi / 180.0);
+    const Ring rings[] = {{{0, 0}, {x, 1}, {-x, 1}},
+                          {{0, 0}, {-x, 1}, {-1, 1}, {-1, -1}, {0, -1}},
+                          {{0, 0}, {0, -1}, {1, -1}, {1, 1}, {x, 1}}};
+    std::array<int, 3> order{0, 1, 2};
+    do {
+      for (int start = 0; start < 3; ++start) {
+        Surface surface;
+        std::array<int, 3> place{};
+        for (int k = 0; k < 3; ++k) {
+          Ring ring = rings[order[at(k)]];
+          std::rotate(ring.begin(), ring.begin() + start, ring.end());
+          add_block(surface, {ring, {}});
+          place[at(order[at(k)])] = k;
+        }
+        const auto contacts = find(surface);
+        for (const int side : {1, 2})
+          EXPECT_NEAR(total_length(contacts, place[0], place[at(side)]), std::hypot(1.0, x), 1e-6) << degrees;
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
   }
 }
 
