@@ -20,10 +20,11 @@ inline Vec2 tangent_of(Vec2 normal) {
 
 /// A contact of this step: vertex V of block a against edge AB of block b, linear in the displacements of both.
 ///
-///     gap  g = n · (V − A),     g(D) = gap + n · r,     r = D_a(V) − D_b(P),   P = (1 − s) A + s B
+///     gap  g = n · (V − P),     g(D) = gap + n · r,     r = D_a(V) − D_b(P),   P = (1 − s) A + s B
 ///     slip u(D) = shear + t · r
 ///
-/// n is the outward unit normal of the edge, t its direction (A to B).
+/// n is the outward unit normal of the edge, t its direction (A to B). Where AB is a piece of a divided edge, P is on the curve through
+/// all vertices of that (edge_curve.h).
 struct Contact {
   int candidate = 0;  ///< of the list
   int block_a = 0, block_b = 0;
@@ -223,6 +224,7 @@ class Detection {
                                  std::span<const Found> found) const;
   [[nodiscard]] double length_beyond(const Surface& surface, const Candidate& candidate,
                                      double position) const;
+  [[nodiscard]] static double sag(const Surface& surface, const Contact& contact);
   void give_law(const Surface& surface, Contact& contact) const;
 
   Tolerances tolerances_;

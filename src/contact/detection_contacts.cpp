@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact/detection.h"
+#include "contact/edge_curve.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
@@ -112,6 +113,16 @@ double Detection::length_beyond(const Surface& surface, const Candidate& candida
          of_edge(vertex.before, -corners_[before].length, 1.0 - share_of(before), share_of(beyond));
 }
 
+/// m, by which the curve of a divided edge lies behind its chord where a contact is.
+double Detection::sag(const Surface& surface, const Contact& contact) {
+  const Vec2 from = surface.position[at(contact.edge)],
+             to = surface.position[at(surface.next[at(contact.edge)])];
+  Vec2 ahead = lerp(from, to, contact.position);
+  for_curve_vertices(surface, contact.edge, contact.position,
+                     [&](std::size_t v, double share) { ahead -= share * surface.position[v]; });
+  return dot(contact.normal, ahead);
+}
+
 void Detection::give_law(const Surface& surface, Contact& contact) const {
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
   const double per_length = law.normal_stiffness > 0.0
@@ -142,6 +153,7 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
       contact.normal = corners_[at(candidate.edge)].normal();
       contact.position = geometry.position[i];
       contact.gap = geometry.gap[i];
+      if (is_curved(surface, contact.edge)) contact.gap += sag(surface, contact);
       contact.length = geometry.length[i];
       if (f.at_end) contact.length += length_beyond(surface, candidate, contact.position);
       Memory& memory = contact.memory;

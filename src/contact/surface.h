@@ -6,6 +6,14 @@
 
 namespace keyblock::contact {
 
+/// A straight edge of a block of order > 1, of as many pieces as contact divides it into.
+struct DividedEdge {
+  int first = 0;   ///< its first piece, by the vertex where that begins; the others follow
+  int pieces = 1;  ///< m
+  const double* points =
+      nullptr;  ///< m + 1, ascending from 0 to 1: where it is divided in the reference position
+};
+
 /// The outlines of all blocks as contact sees them: vertices joined by straight edges. Edge k runs from vertex k to
 /// next[k], the block on its left. Blocks of order > 1 have vertices along their edges, which may curve.
 struct Surface {
@@ -19,7 +27,8 @@ struct Surface {
   std::vector<int> joint;  ///< per edge: index of its joint law
   /// Per edge: share that its start has of the length of joint along it, its end having the rest; empty: a half of each.
   std::vector<double> start_share;
-  std::vector<Vec2> position;  ///< per vertex, now
+  std::vector<DividedEdge> divided;  ///< per edge: what it is a piece of; empty: no edge is divided
+  std::vector<Vec2> position;        ///< per vertex, now
   /// Basis functions at the vertices: φ(vertex) starts at phi[phi_begin[vertex]] and has the N of its block.
   std::vector<std::size_t> phi_begin;
   std::vector<double> phi;

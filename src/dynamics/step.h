@@ -121,7 +121,7 @@ class Stepper {
   enum class Turns { are_known, are_others, are_too_far };
   Turns look_at_turns(const State& state, bool is_static);
   [[nodiscard]] Vec2 at_end(const State& state, std::size_t vertex) const;
-  [[nodiscard]] double gap_at_end(const State& state, const StepProblem::Row& row) const;
+  [[nodiscard]] double gap_at_end(const State& state, const contact::Contact& c) const;
   bool moved_too_far();
   void choose_rules(const State& state, const Drive& drive);
   /// Of `count` coefficients from `first` on.

@@ -200,22 +200,26 @@ void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>
 }
 
 void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) const {
-  u.resize(surface_->position.size());
+  u.resize(points());
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       for_vertex_values(*surface_, b, bodies_[b].size, &d[bodies_[b].first],
                         [&](std::size_t v, Vec2 x) { u[v] = x; });
+      for_points_on_curves(b, [&](std::uint32_t point) {
+        u[point] = field_at(phi_of(point), bodies_[b].size, &d[bodies_[b].first]);
+      });
     }
   });
 }
 
-/// Adds what the forces at the vertices of a block do to its coefficients.
+/// Adds what the forces at the points of a block do to its coefficients.
 void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
                                     std::span<double> out) const {
   with_known_size(bodies_[b].size, [&](auto size) {
     const auto add = [&](double* sums) {
       for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
         add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], sums);
+      for_points_on_curves(b, [&](std::uint32_t point) { add_at(phi_of(point), size, forces[point], sums); });
     };
     double* coefficients = &out[bodies_[b].first];
     if constexpr (std::is_same_v<decltype(size), int>) {

@@ -53,13 +53,15 @@ class StepProblem {
  public:
   /// In place of a pair of blocks in the solver's pattern: one is fixed; the pattern does not have it.
   static constexpr int of_fixed = -1, without_room = -2;
-  /// r_c = u(V) − (1 − s) u(A) − s u(B) + moved, u: displacement of vertices, zero on fixed blocks. A cache line: every evaluation
-  /// of the contacts reads it, and little else.
+  /// r_c = u(V) − (1 − s) u(A) − s u(B) + moved, u: displacement of points of the blocks, zero on fixed ones: of the vertices of the
+  /// surface, which come first, and of the points P of contacts on curved edges, which follow. A cache line: every evaluation of the
+  /// contacts reads it, and little else.
   struct alignas(64) Row {
-    std::uint32_t vertex, from, to;  ///< V of block a; A and B, the ends of the edge of block b
-    int unknown_a, unknown_b;        ///< −1: fixed
-    int pair = of_fixed;             ///< of the solver's pattern, or of_fixed, or without_room
-    double position;                 ///< s
+    /// V of block a; A and B, the ends of the edge of block b, or P in the place of both.
+    std::uint32_t vertex, from, to;
+    int unknown_a, unknown_b;  ///< −1: fixed
+    int pair = of_fixed;       ///< of the solver's pattern, or of_fixed, or without_room
+    double position;           ///< s
     Vec2 normal;
     Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b; Drive::turned along n
 
@@ -100,7 +102,7 @@ class StepProblem {
   [[nodiscard]] double inertia_between(const contact::Contact& c) const;
   /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
-  /// u of increment D, m, at every vertex of the surface.
+  /// u of increment D, m, at every point: the vertices of the surface, then the points on curved edges.
   void displace(std::span<const double> d, std::vector<Vec2>& u) const;
   /// r of a contact for increment D, but for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
@@ -200,10 +202,16 @@ class StepProblem {
     double mass;  ///< kg/m; 0: fixed
   };
 
-  /// What the contacts do to every vertex.
+  /// Where a contact is on a curved edge.
+  struct PointOnCurve {
+    int edge;
+    std::size_t phi;  ///< first of its basis functions in phi_on_curves_
+  };
+
+  /// What the contacts do to every point.
   template <typename ForceOf>
   void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices) const {
-    at_vertices.resize(surface_->position.size());
+    at_vertices.resize(points());
     team_->for_range(at_vertices.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) at_vertices[v] = {};
     });
@@ -224,12 +232,28 @@ class StepProblem {
   void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
   void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
   void gradient_with(std::span<const double> d, std::span<const Vec2> forces, std::span<double> g) const;
-  [[nodiscard]] const Body& body_of(std::uint32_t vertex) const {
-    return bodies_[at(surface_->block[vertex])];
+  [[nodiscard]] std::size_t points() const { return surface_->position.size() + on_curves_.size(); }
+  [[nodiscard]] bool is_on_curve(std::uint32_t point) const { return point >= surface_->position.size(); }
+  [[nodiscard]] const PointOnCurve& on_curve(std::uint32_t point) const {
+    return on_curves_[point - surface_->position.size()];
   }
-  [[nodiscard]] const double* phi_of(std::uint32_t vertex) const {
-    return &surface_->phi[surface_->phi_begin[vertex]];
+  [[nodiscard]] const Body& body_of(std::uint32_t point) const {
+    return bodies_[at(surface_->block[is_on_curve(point) ? at(on_curve(point).edge) : point])];
   }
+  [[nodiscard]] const double* phi_of(std::uint32_t point) const {
+    return is_on_curve(point) ? &phi_on_curves_[on_curve(point).phi]
+                              : &surface_->phi[surface_->phi_begin[point]];
+  }
+  /// Calls of_point(point) for those of a block.
+  template <typename OfPoint>
+  void for_points_on_curves(std::size_t block, const OfPoint& of_point) const {
+    if (first_on_curve_.empty()) return;
+    for (std::size_t k = first_on_curve_[block]; k < first_on_curve_[block + 1]; ++k)
+      of_point(static_cast<std::uint32_t>(surface_->position.size() + k));
+  }
+  void find_points_on_curves(std::span<const contact::Contact> contacts);
+  /// φ of the block of a curved edge at one of its points.
+  void evaluate_on_curve(int edge, double position, double* phi) const;
   template <typename Do>
   void with_phi(const Row& row, double position, const Do& what) const;
   /// Some of the unknown blocks, those of a thread. What contacts add to a block is added by its owner, in the order of the contacts,
@@ -284,7 +308,11 @@ class StepProblem {
   ThreadTeam* team_ = nullptr;
   std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
-  SpringArray springs_;  ///< of every row
+  SpringArray springs_;                  ///< of every row
+  std::vector<PointOnCurve> on_curves_;  ///< block by block
+  std::vector<std::size_t>
+      first_on_curve_;  ///< of each block, and where the last one ends; empty: no edge is divided
+  std::vector<double> phi_on_curves_;
   bool is_static_ = false, may_break_ = false, lacks_room_ = false;
   // Of several threads alone.
   static constexpr std::size_t rows_of_piece = 256;

@@ -121,9 +121,14 @@ void StepProblem::add_springs(std::span<const double> normal, std::span<const do
 /// Calls what(φ) with the basis functions of block b at a point of its edge.
 template <typename Do>
 void StepProblem::with_phi(const Row& row, double position, const Do& what) const {
+  if (is_on_curve(row.from) && position == row.position) return what(phi_of(row.from));
   const double *from = phi_of(row.from), *to = phi_of(row.to);
   const auto fill = [&](auto size, double* phi) {
-    for (int k = 0; k < size; ++k) phi[k] = (1.0 - position) * from[k] + position * to[k];
+    if (is_on_curve(row.from)) {
+      evaluate_on_curve(on_curve(row.from).edge, position, phi);
+    } else {
+      for (int k = 0; k < size; ++k) phi[k] = (1.0 - position) * from[k] + position * to[k];
+    }
     what(phi);
   };
   with_known_size(body_of(row.from).size, [&](auto size) {

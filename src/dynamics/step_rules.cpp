@@ -35,10 +35,10 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   // A point of an edge, and a little beyond its ends, is not much faster than its vertices.
   const auto may_be_fast = [&](std::size_t k) {
     const StepProblem::Row& row = problem_.rows()[k];
-    const std::vector<int>& block = model_.surface.block;
     const double beyond = std::max({0.0, -row.position, row.position - 1.0});
     return !prescribed_.empty() ||
-           speed_[at(block[row.vertex])] + (1.0 + 2.0 * beyond) * speed_[at(block[row.from])] > 0.999 * least;
+           speed_[at(contacts_[k].block_a)] + (1.0 + 2.0 * beyond) * speed_[at(contacts_[k].block_b)] >
+               0.999 * least;
   };
   std::vector<std::size_t> fast;
   find_all(team_, contacts_.size(), contacts_worth_threads, may_be_fast, fast);

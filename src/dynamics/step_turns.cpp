@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "contact/edge_curve.h"
 #include "core/index.h"
 #include "core/lanes.h"
 #include "dynamics/step.h"
@@ -34,9 +35,16 @@ Vec2 Stepper::at_end(const State& state, std::size_t vertex) const {
   return centroid + moved + Vec2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
 }
 
-double Stepper::gap_at_end(const State& state, const StepProblem::Row& row) const {
-  const Vec2 from = at_end(state, row.from), along = at_end(state, row.to) - from;
-  return cross(at_end(state, row.vertex) - from, along) / norm(along);
+double Stepper::gap_at_end(const State& state, const contact::Contact& c) const {
+  const contact::Surface& surface = model_.surface;
+  const Vec2 from = at_end(state, at(c.edge)), along = at_end(state, at(surface.next[at(c.edge)])) - from;
+  Vec2 apart = at_end(state, at(c.vertex)) - from;
+  if (contact::is_curved(surface, c.edge)) {
+    apart += from;
+    contact::for_curve_vertices(surface, c.edge, c.position,
+                                [&](std::size_t v, double share) { apart -= share * at_end(state, v); });
+  }
+  return cross(apart, along) / norm(along);
 }
 
 namespace {
@@ -90,7 +98,8 @@ Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
                                   spin_[b] * spin_[b] * model_.blocks[b].radius) +
                            std::abs(spin_[b] * dot(row.tangent(), r));
     if (at_most <= most_missed && known == 0.0) continue;
-    const double gap = gap_at_end(state, row), linear = contacts_[c].gap + dot(row.normal, r) - known;
+    const double gap = gap_at_end(state, contacts_[c]),
+                 linear = contacts_[c].gap + dot(row.normal, r) - known;
     turned_now_[c] = gap - linear;
     if (std::abs(turned_now_[c] - known) <= most_missed || (force <= 0.0 && gap >= 0.0)) continue;
     if (spin > most_turned) return Turns::are_too_far;

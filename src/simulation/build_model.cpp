@@ -76,8 +76,8 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties, int 
 
 /// Where an edge of so many pieces is divided, as a share of it: at the points of Gauss and Lobatto's rule, whose weights are what forces on
 /// the vertices have to be for a traction along the edge to do the same work on a block of that order.
-double start_of_piece(int piece, int pieces) {
-  return gauss_lobatto(pieces + 1).points[at(piece)];
+const std::vector<double>& division(int pieces) {
+  return gauss_lobatto(pieces + 1).points;
 }
 
 /// Surface::start_share of the pieces: such that each vertex comes to its weight.
@@ -103,7 +103,7 @@ void evaluate_basis(contact::Surface& surface, const Block& block, int vertex) {
       for (int piece = 0; piece < pieces; ++piece, ++vertex) {
         surface.phi_begin[at(vertex)] = surface.phi.size();
         surface.phi.resize(surface.phi.size() + at(block.size));
-        block.basis.evaluate(lerp(here, after, start_of_piece(piece, pieces)),
+        block.basis.evaluate(lerp(here, after, division(pieces)[at(piece)]),
                              surface.phi.data() + surface.phi_begin[at(vertex)]);
       }
     }
@@ -122,10 +122,12 @@ void add_to_surface(Model& model, const Block& block, const std::vector<std::vec
       const int pieces = edge_pieces(norm(after - here), block.area, block.edge_order);
       const std::vector<double> shares = start_shares(pieces);
       surface.start_share.insert(surface.start_share.end(), shares.begin(), shares.end());
+      surface.divided.insert(surface.divided.end(), at(pieces),
+                             {surface.vertices(), pieces, division(pieces).data()});
       for (int piece = 0; piece < pieces; ++piece) {
         surface.block.push_back(number);
         surface.joint.push_back(joints[r][k]);
-        surface.position.push_back(lerp(here, after, start_of_piece(piece, pieces)));
+        surface.position.push_back(lerp(here, after, division(pieces)[at(piece)]));
         surface.reflex.push_back(piece == 0 && cross(here - before, after - here) < 0.0);
       }
     }
@@ -318,8 +320,10 @@ Model build_model(const RunSetup& setup) {
     model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, 1, 1, {}));
     add_to_surface(model, model.blocks.back(), {std::vector<int>(4, 1), std::vector<int>(4, 1)});
   }
-  std::vector<double>& shares = model.surface.start_share;
-  if (std::ranges::all_of(shares, [](double share) { return share == 0.5; })) shares.clear();
+  if (std::ranges::all_of(model.surface.divided, [](const auto& edge) { return edge.pieces == 1; })) {
+    model.surface.divided.clear();
+    model.surface.start_share.clear();
+  }
   number_coefficients(model);
   add_loads(setup, model);
   add_supports(setup, model);

@@ -9,6 +9,7 @@
 
 #include "block/eigenvalue_floor.h"
 #include "dynamics/earlier_look.h"
+#include "dynamics/vertex_field.h"
 #include "scene.h"
 
 namespace keyblock::dynamics {
@@ -127,6 +128,49 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   std::vector<double> residual(x.size());
   solver->solve(x, residual, [](std::span<const double>) { return 0.0; });
   for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], direction[k], 1e-4) << k;
+}
+
+// Between its vertices an edge is a curve, and a contact there presses on the block and not on a chord: gap and displacement are those of
+// the polynomial at the point.
+TEST_P(StepProblemOrder, ContactsLieOnCurvedEdges) {
+  if (GetParam() > 3) return;  // edges of fewer pieces than the order follow it nearly
+  simulation::Simulator s(small_wall(30.0, GetParam()));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const double size = 1e-5;
+  std::vector<double> d(s.model.coefficients, 0.0);
+  for (std::size_t k = 0; k < s.model.unknowns; ++k) {
+    s.state.position[k] += size * uniform(random);
+    d[k] = uniform(random);
+  }
+  s.stepper.resume(s.state);  // places the blocks
+  StepProblem problem;
+  const NextStep next(s);
+  const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
+  problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+  const auto field = [&](int b, Vec2 reference, const std::vector<double>& coefficients) {
+    const Block& block = s.model.blocks[at(b)];
+    std::vector<double> phi(at(block.size));
+    block.basis.evaluate(reference, phi.data());
+    return field_at(phi.data(), block.size, &coefficients[block.first]);
+  };
+  const contact::Surface reference = simulation::Simulator(small_wall(30.0, GetParam())).model.surface;
+  int between = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const contact::Contact& contact = contacts[c];
+    const Vec2 vertex = reference.position[at(contact.vertex)],
+               point = lerp(reference.position[at(contact.edge)],
+                            reference.position[at(reference.next[at(contact.edge)])], contact.position);
+    const Vec2 apart =
+        field(contact.block_a, vertex, s.state.position) - field(contact.block_b, point, s.state.position);
+    EXPECT_NEAR(contact.gap, dot(contact.normal, apart), 0.02 * size) << c;
+    const Vec2 moved = s.model.blocks[at(contact.block_a)].fixed ? Vec2{} : field(contact.block_a, vertex, d);
+    const Vec2 r =
+        moved - (s.model.blocks[at(contact.block_b)].fixed ? Vec2{} : field(contact.block_b, point, d));
+    EXPECT_NEAR(norm(problem.relative(problem.rows()[c], d) - r), 0.0, 1e-3) << c;
+    between += contact.position > 0.1 && contact.position < 0.9 && !s.model.blocks[at(contact.block_b)].fixed;
+  }
+  EXPECT_GT(between, 0);
 }
 
 // Eigenvalues of pressed blocks of order 2 are raised eight blocks at once, between blocks of other orders and blocks at rest.
