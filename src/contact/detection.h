@@ -224,7 +224,7 @@ class Detection {
                                  std::span<const Found> found) const;
   [[nodiscard]] double length_beyond(const Surface& surface, const Candidate& candidate,
                                      double position) const;
-  [[nodiscard]] static double sag(const Surface& surface, const Contact& contact);
+  static void bend(const Surface& surface, Contact& contact);
   void give_law(const Surface& surface, Contact& contact) const;
 
   Tolerances tolerances_;

@@ -113,14 +113,18 @@ double Detection::length_beyond(const Surface& surface, const Candidate& candida
          of_edge(vertex.before, -corners_[before].length, 1.0 - share_of(before), share_of(beyond));
 }
 
-/// m, by which the curve of a divided edge lies behind its chord where a contact is.
-double Detection::sag(const Surface& surface, const Contact& contact) {
+/// Brings a contact from the chord of a piece of a divided edge to its curve: to the point that the vertex is opposite to.
+void Detection::bend(const Surface& surface, Contact& contact) {
   const Vec2 from = surface.position[at(contact.edge)],
              to = surface.position[at(surface.next[at(contact.edge)])];
-  Vec2 ahead = lerp(from, to, contact.position);
-  for_curve_vertices(surface, contact.edge, contact.position,
-                     [&](std::size_t v, double share) { ahead -= share * surface.position[v]; });
-  return dot(contact.normal, ahead);
+  const auto from_curve = [&](double position) {
+    Vec2 apart = surface.position[at(contact.vertex)];
+    for_curve_vertices(surface, contact.edge, position,
+                       [&](std::size_t v, double share) { apart -= share * surface.position[v]; });
+    return apart;
+  };
+  contact.position += dot(contact.tangent(), from_curve(contact.position)) / norm(to - from);
+  contact.gap = dot(contact.normal, from_curve(contact.position));
 }
 
 void Detection::give_law(const Surface& surface, Contact& contact) const {
@@ -153,7 +157,7 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
       contact.normal = corners_[at(candidate.edge)].normal();
       contact.position = geometry.position[i];
       contact.gap = geometry.gap[i];
-      if (is_curved(surface, contact.edge)) contact.gap += sag(surface, contact);
+      if (is_curved(surface, contact.edge)) bend(surface, contact);
       contact.length = geometry.length[i];
       if (f.at_end) contact.length += length_beyond(surface, candidate, contact.position);
       Memory& memory = contact.memory;

@@ -101,7 +101,7 @@ class SpringArray {
             std::clamp(ks[c] * displacement, -bound[c], bound[c])};
   }
   [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
-  /// N per thickness, of the contact that presses most; 0: none does.
+  /// N per thickness, of the contact that presses or pulls most; 0: none does.
   [[nodiscard]] double largest_normal_force(ThreadTeam& team) const {
     constexpr std::size_t width = lane_count;
     return largest_of(
@@ -109,7 +109,7 @@ class SpringArray {
           const std::size_t c = group * width;
           const Lanes zero{}, penetration = load(&y[c]),
                               force = where(penetration > load(&floor[c]), load(&kn[c]) * penetration, zero);
-          return largest(where(first_lanes(size_ - c), force, zero));
+          return largest(where(first_lanes(size_ - c), largest(force, -force), zero));
         });
   }
   /// On the straight line that goes on from a piece.

@@ -121,7 +121,14 @@ class Stepper {
   enum class Turns { are_known, are_others, are_too_far };
   Turns look_at_turns(const State& state, bool is_static);
   [[nodiscard]] Vec2 at_end(const State& state, std::size_t vertex) const;
-  [[nodiscard]] double gap_at_end(const State& state, const contact::Contact& c) const;
+  template <typename Position>
+  [[nodiscard]] Vec2 apart(const contact::Contact& c, const Position& position) const;
+  struct BondMissed {
+    double across = HUGE_VAL, along = HUGE_VAL;  ///< m
+  };
+  [[nodiscard]] BondMissed bond_missed(std::size_t c) const;
+  [[nodiscard]] double least_bond_missed() const;  ///< m, of all bonds
+  void keep_turned_shear(State& state);
   bool moved_too_far();
   void choose_rules(const State& state, const Drive& drive);
   /// Of `count` coefficients from `first` on.
@@ -138,7 +145,7 @@ class Stepper {
     contact::SpringLanes::Balance balance;
     Lanes stored_before{};  ///< J per thickness, at the start
     Lanes input{};          ///< J per thickness, by what fixed blocks are moved
-    Lanes turned{};         ///< J per thickness, of the normal force over Drive::turned: no block gets it
+    Lanes turned{};         ///< J per thickness, of the forces over Drive::turned: no block gets it
     Lanes penetration{};    ///< m
     Lanes closed{};         ///< at the end: 1, else 0
     void add(const ContactAccounts& other);
@@ -183,12 +190,13 @@ class Stepper {
   std::vector<double> speed_;     ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;      ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;  ///< per block, of the last attempt
-  std::vector<double> turned_,
+  std::vector<Vec2> turned_,
       turned_now_;  ///< m, per contact: Drive::turned, empty: of none; and as the last attempt shows it
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
   double impact_speed_;                  ///< m/s
-  double turn_work_ = HUGE_VAL;  ///< J per thickness, that a contact may do over what turning makes it miss
+  /// J per thickness, that a contact may do over what turning makes it miss; HUGE_VAL: without gravity there is no such measure.
+  double turn_work_ = HUGE_VAL;
   std::vector<Force> forces_;
   std::vector<ContactAccounts> accounts_;  ///< scratch
   /// J per thickness.

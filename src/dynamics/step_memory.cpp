@@ -30,12 +30,15 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
   const LawLanes law = laws_of(contacts);
   MemoryLanes memory = memories_of(contacts);
-  Lanes moved_normal{}, moved_shear{}, turned{};
+  Lanes moved_normal{}, moved_shear{}, turned_normal{}, turned_shear{};
   if (drive.moves_contacts()) {
     moved_normal = moved_along(rows, false);
     moved_shear = moved_along(rows, true);
   }
-  if (!drive.turned.empty()) turned = load_first(&drive.turned[first], static_cast<int>(count));
+  for (std::size_t i = 0; i < count && !drive.turned.empty(); ++i) {
+    turned_normal[i] = drive.turned[first + i].x;
+    turned_shear[i] = drive.turned[first + i].y;
+  }
   const Lanes bound = at_first(springs.bound), y = at_first(springs.y), w = at_first(springs.w);
   const contact::SpringLanes s(
       contact::SpringLanes::Constants{.normal_stiffness = law.normal_stiffness,
@@ -50,8 +53,8 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
   const auto closed = s.closed(y), locked = s.locked(w);
   accounts = {.balance = s.balance(y, w),
               .stored_before = memory.stored,
-              .input = -(normal * (moved_normal - turned) - shear * moved_shear),
-              .turned = normal * turned,
+              .input = -(normal * (moved_normal - turned_normal) - shear * (moved_shear - turned_shear)),
+              .turned = normal * turned_normal - shear * turned_shear,
               .penetration = s.penetration(y),
               .closed = where(closed, broadcast(1.0), zero)};
   accounts.leave_out_beyond(count);

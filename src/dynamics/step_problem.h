@@ -30,8 +30,9 @@ struct Drive {
   std::span<const Integrator> rule;  ///< of each block
   /// m, of each block: what a fixed block is moved by in the step; empty when none is.
   std::span<const Vec2> prescribed;
-  /// m, of each contact: by how much its gap at the end of the step is larger than linear in D, as its blocks turn; empty: by nothing.
-  std::span<const double> turned;
+  /// m, of each contact: by how much more than linear in D its vertex is from the point of the edge at the end of the step, as its blocks
+  /// turn, across the edge (x) and, of a bond, along it (y); empty: by nothing.
+  std::span<const Vec2> turned;
 
   /// Whether there is a known part of the relative displacement of contacts.
   [[nodiscard]] bool moves_contacts() const { return !prescribed.empty() || !turned.empty(); }
@@ -63,7 +64,7 @@ class StepProblem {
     int pair = of_fixed;       ///< of the solver's pattern, or of_fixed, or without_room
     double position;           ///< s
     Vec2 normal;
-    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b; Drive::turned along n
+    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b; Drive::turned
 
     [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
     /// ∂ψ/∂r where the springs push with `force`.

@@ -26,7 +26,8 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
       for (std::size_t k = first; k < last; ++k) {
         build_row(drive, contacts[k], rows_[k]);
         rows_[k].pair = pairs[at(contacts[k].candidate)];
-        if (!drive.turned.empty()) rows_[k].moved += drive.turned[k] * rows_[k].normal;
+        if (!drive.turned.empty())
+          rows_[k].moved += drive.turned[k].x * rows_[k].normal + drive.turned[k].y * rows_[k].tangent();
         any = any || (contacts[k].memory.bonded && !contacts[k].fused);
         without = without || rows_[k].pair == without_room;
         if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};

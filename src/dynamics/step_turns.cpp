@@ -35,16 +35,21 @@ Vec2 Stepper::at_end(const State& state, std::size_t vertex) const {
   return centroid + moved + Vec2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
 }
 
-double Stepper::gap_at_end(const State& state, const contact::Contact& c) const {
+/// m, with position(v) of every vertex: how far the vertex of a contact is from the material point of the edge that it touches at the
+/// start of the step, across the edge (x: the gap) and along it (y).
+template <typename Position>
+Vec2 Stepper::apart(const contact::Contact& c, const Position& position) const {
   const contact::Surface& surface = model_.surface;
-  const Vec2 from = at_end(state, at(c.edge)), along = at_end(state, at(surface.next[at(c.edge)])) - from;
-  Vec2 apart = at_end(state, at(c.vertex)) - from;
+  const Vec2 from = position(at(c.edge)), to = position(at(surface.next[at(c.edge)])),
+             tangent = normalized(to - from);
+  Vec2 point = lerp(from, to, c.position);
   if (contact::is_curved(surface, c.edge)) {
-    apart += from;
+    point = {};
     contact::for_curve_vertices(surface, c.edge, c.position,
-                                [&](std::size_t v, double share) { apart -= share * at_end(state, v); });
+                                [&](std::size_t v, double share) { point += share * position(v); });
   }
-  return cross(apart, along) / norm(along);
+  const Vec2 r = position(at(c.vertex)) - point;
+  return {cross(r, tangent), dot(r, tangent)};
 }
 
 namespace {
@@ -69,43 +74,89 @@ double largest_squared_norm(ThreadTeam& team, std::span<const Vec2> vectors) {
 /// The step is linear in the displacement, and misses the gap at its end: vertices of a turning block leave the straight way by ½ w² r,
 /// and the line of a turning edge moves away from a vertex that slides along it. That matters where a contact presses, and where it
 /// would come to press by that alone: by the way, and by the work that the normal force does over it, which nobody would account for.
+/// It matters where a bond pulls, and what is missed along its edge, too: by the share of the bond's strength that it would seem to be.
 /// What is missed goes into turned_now_, with which the step may be taken again; where blocks turn so far that forces have other
 /// directions at its end, the step is too long.
 Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
   constexpr double most_turned = 0.1;  // rad
+  constexpr double kinetic_share =
+      1e-6;  // of the kinetic energy, where there is no weight to measure work by
+  const double least_missed = 2e-5 * tolerances_.turn;
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   const double moved = std::sqrt(largest_squared_norm(team_, open_close_.relative()));
+  const SpringArray& springs = problem_.springs();
+  const double work = turn_work_ == HUGE_VAL ? kinetic_share * kinetic_energy(state) : turn_work_;
   const auto tolerated = [&](double force) {
-    return is_static ? tolerances_.turn : std::min(tolerances_.turn, turn_work_ / force);
+    return is_static || force == 0.0 ? tolerances_.turn
+                                     : std::clamp(work / force, least_missed, tolerances_.turn);
   };
-  const double least_tolerated = tolerated(problem_.springs().largest_normal_force(team_));
-  const auto may_miss = [&](double spin) {
-    return spin * (spin * largest_radius_ + moved) > least_tolerated;
-  };
-  if (turned_.empty() && !may_miss(turn)) return Turns::are_known;  // as in most steps
-  turned_now_.assign(contacts_.size(), 0.0);
+  const double missed_at_most = turn * (turn * largest_radius_ + moved);
+  const bool has_bonds = problem_.may_break() && !is_static;
+  if (turned_.empty() && (!has_bonds || missed_at_most <= least_bond_missed()) &&
+      missed_at_most <= tolerated(springs.largest_normal_force(team_)))
+    return Turns::are_known;  // as in most steps
+  turned_now_.assign(contacts_.size(), {});
   bool are_known = true;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t a = at(contacts_[c].block_a), b = at(contacts_[c].block_b);
-    const double known = turned_.empty() ? 0.0 : turned_[c],
-                 spin = std::max(std::abs(spin_[a]), std::abs(spin_[b]));
-    if (known == 0.0 && !may_miss(spin)) continue;
     const StepProblem::Row& row = problem_.rows()[c];
-    const Vec2 r = open_close_.relative()[c];
-    const double force = problem_.springs().force(c).normal, most_missed = tolerated(force);
+    const Vec2 known = turned_.empty() ? Vec2{} : turned_[c], r = open_close_.relative()[c];
+    const double spin = std::max(std::abs(spin_[a]), std::abs(spin_[b])),
+                 force = std::abs(springs.force(c).normal);
+    const BondMissed bond = has_bonds ? bond_missed(c) : BondMissed{};
+    const double most_missed = std::min(tolerated(force), bond.across);
     const double at_most = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
                                   spin_[b] * spin_[b] * model_.blocks[b].radius) +
-                           std::abs(spin_[b] * dot(row.tangent(), r));
-    if (at_most <= most_missed && known == 0.0) continue;
-    const double gap = gap_at_end(state, contacts_[c]),
-                 linear = contacts_[c].gap + dot(row.normal, r) - known;
-    turned_now_[c] = gap - linear;
-    if (std::abs(turned_now_[c] - known) <= most_missed || (force <= 0.0 && gap >= 0.0)) continue;
+                           std::abs(spin_[b] * (has_bonds ? norm(r) : dot(row.tangent(), r)));
+    if (known == Vec2{} && at_most <= std::min(most_missed, bond.along)) continue;
+    const Vec2 end = apart(contacts_[c], [&](std::size_t v) { return at_end(state, v); });
+    turned_now_[c].x = end.x - (contacts_[c].gap + dot(row.normal, r) - known.x);
+    if (bond.along < HUGE_VAL) turned_now_[c].y = end.y - (dot(row.tangent(), r) - known.y);
+    const Vec2 change = turned_now_[c] - known;
+    const bool stays_open = force == 0.0 && end.x >= 0.0;
+    if ((std::abs(change.x) <= most_missed || stays_open) && std::abs(change.y) <= bond.along) continue;
     if (spin > most_turned) return Turns::are_too_far;
     are_known = false;
   }
   return are_known ? Turns::are_known : Turns::are_others;
+}
+
+/// m, what a contact may miss so that it seems no more than a hundredth of its strength, if it is a bond.
+Stepper::BondMissed Stepper::bond_missed(std::size_t c) const {
+  constexpr double share = 0.01;
+  const contact::Contact& contact = contacts_[c];
+  BondMissed missed;
+  if (!contact.memory.bonded || contact.fused) return missed;
+  if (contact.tension > 0.0) missed.across = share * contact.tension / contact.normal_stiffness;
+  if (contact.cohesion > 0.0) missed.along = share * contact.cohesion / contact.shear_stiffness;
+  return missed;
+}
+
+double Stepper::least_bond_missed() const {
+  double least = HUGE_VAL;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const BondMissed missed = bond_missed(c);
+    least = std::min({least, missed.across, missed.along});
+  }
+  return least;
+}
+
+/// Bonds that hold while their blocks turn: what the step missed along the edge is shear as any other, once the blocks are where they come
+/// to be. Else they would creep, always the same way, and tear what is bonded around them.
+void Stepper::keep_turned_shear(State& state) {
+  if (!problem_.may_break()) return;
+  const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  team_.for_range(contacts_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const contact::Contact& contact = contacts_[c];
+      contact::Memory& memory = state.contacts.memory[c];
+      if (!memory.bonded || contact.fused) continue;
+      const Vec2 now = apart(contact, [&](std::size_t v) { return model_.surface.position[v]; });
+      const double missed = now.y - dot(problem_.rows()[c].tangent(), open_close_.relative()[c]);
+      (has_multipliers ? memory.drift : memory.shear) += missed;
+    }
+  });
 }
 
 /// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
