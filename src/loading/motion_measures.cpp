@@ -29,16 +29,29 @@ std::string direction(const MotionComponent& component) {
   return component.azimuth ? fmt::format("azimuth {}°", *component.azimuth) : "direction not stated";
 }
 
-// Largest |v| of a stretch of h seconds on which acceleration goes straight from a to b, v at its start. In its middle
-// |v| is largest where v·a changes from positive to negative.
+// Largest |v| of a stretch of h seconds on which acceleration goes straight from a to b, v at its start. Within it |v| is largest where
+// v·a, a cubic in time, goes through zero: between the places where that turns round.
 double peak_velocity(Vec2 v, Vec2 a, Vec2 b, double h) {
-  const auto velocity = [&](double s) { return v + h * s * (a + 0.5 * s * (b - a)); };
-  double peak = std::max(norm(v), norm(velocity(1.0)));
-  if (dot(v, a) >= 0.0 && dot(velocity(1.0), b) <= 0.0) {
-    double low = 0.0, high = 1.0;
-    for (int k = 0; k < 50; ++k) {
+  const Vec2 d = b - a;
+  const auto velocity = [&](double s) { return v + h * s * (a + 0.5 * s * d); };
+  const auto growth = [&](double s) { return dot(velocity(s), a + s * d); };
+  // Its slope over s: p s² + q s + r.
+  const double p = 1.5 * h * dot(d, d), q = 3.0 * h * dot(a, d), r = h * dot(a, a) + dot(v, d),
+               root = q * q - 4.0 * p * r;
+  std::vector<double> ends{0.0, 1.0};
+  if (p > 0.0 && root > 0.0) {
+    for (const double sign : {-1.0, 1.0})
+      ends.push_back(std::clamp((-q + sign * std::sqrt(root)) / (2.0 * p), 0.0, 1.0));
+  }
+  std::sort(ends.begin(), ends.end());
+  double peak = norm(v);
+  for (std::size_t k = 1; k < ends.size(); ++k) {
+    double low = ends[k - 1], high = ends[k];
+    peak = std::max(peak, norm(velocity(high)));
+    if (growth(low) <= 0.0 || growth(high) >= 0.0) continue;
+    for (int n = 0; n < 50; ++n) {
       const double s = 0.5 * (low + high);
-      (dot(velocity(s), a + s * (b - a)) > 0.0 ? low : high) = s;
+      (growth(s) > 0.0 ? low : high) = s;
     }
     peak = std::max(peak, norm(velocity(low)));
   }

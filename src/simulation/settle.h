@@ -11,8 +11,8 @@ namespace keyblock::simulation {
 /// Each static step solves for equilibrium with an inertia (1+θ)M/Δt² that only keeps the step small. A block's balance is
 /// its force out of equilibrium over its weight. The pseudo time step grows while the solution comes quickly. A block that
 /// would move more than a small distance in a step gets more inertia, alone: loose blocks creep while the rock around
-/// them comes to rest. A block that has crept further than `travel_limit` out of balance is called moving; the system is
-/// in equilibrium when every block that is not moving has been within the tolerance for some steps. A block on supports
+/// them comes to rest. A block that has crept further than `travel_limit` out of balance, and come no nearer to it by a tenth, is called
+/// moving: what bends or closes until it carries its load comes nearer as it goes. The system is in equilibrium when every block that is not moving has been within the tolerance for some steps. A block on supports
 /// cannot fall: it is never called moving, however far its load bends it.
 class Settler {
  public:
@@ -33,8 +33,10 @@ class Settler {
     int quiet_steps = 0;
     double first_ratio = 0.0;
     std::vector<double> inertia_scale;  ///< per block, ≥ 1
-    std::vector<double> travel;         ///< m, per block, since it was last in balance
-    std::vector<double> carried;        ///< per block, share of the weight that contacts carry
+    std::vector<double>
+        travel;  ///< m, per block, since it was last in balance, or came nearer to it by a tenth
+    std::vector<double> ratio_before;  ///< per block, balance when its travel began
+    std::vector<double> carried;       ///< per block, share of the weight that contacts carry
   };
   [[nodiscard]] Memory& memory() { return memory_; }
 

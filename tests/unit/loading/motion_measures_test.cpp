@@ -91,6 +91,14 @@ TEST(ShakingMeasures, VelocityPeaksBetweenSamples) {
   EXPECT_NEAR(measure(motion, 1.0, 0.25).peak_velocity, 5.0 * 0.1875, 1e-12);
 }
 
+// Velocity and acceleration change from against each other to with each other and back within one stretch between samples.
+TEST(ShakingMeasures, VelocityPeaksWithinAStretchThatItTurnsRoundIn) {
+  const GroundMotion motion("m", {0.0, 0.1, 0.101, 0.601}, {{1.0, 0.0}, {1.0, 0.0}, {-4.0, 0.0}, {4.0, 0.0}});
+  // From 0.0985 m/s down at 4 m/s² that turns to nothing in a quarter of a second.
+  EXPECT_NEAR(measure(motion, 1.0, 0.601).peak_velocity, 0.4015, 1e-9);
+  EXPECT_NEAR(measure(motion, -2.0, 0.601).peak_velocity, 0.803, 1e-9);
+}
+
 TEST(MotionDescription, NamesWhatAnEngineerAsks) {
   MotionComponent c = sine_record(3.0, 2.0, 10, 100);
   c.azimuth = 270.0;

@@ -27,6 +27,25 @@ TEST(Settling, NamesTheBlockThatMovesAndLetsItFall) {
   EXPECT_LT(record.max_overlap.depth, 1e-3);
 }
 
+// Ten blocks on soft joints close them by more than the way after which a loose block is called moving.
+TEST(Settling, WhatClosesUnderItsLoadIsNotMoving) {
+  constexpr double stiffness = 3e7, weight = 2600.0 * g;
+  Scene scene(1e13, 30.0);
+  scene.setup.joints.standard.normal_stiffness = stiffness;
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  for (int k = 0; k < 10; ++k) scene.rectangle({0.0, 1.0 * k}, 1.0, 1.0);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages = {stage("settle", StageKind::settle)};
+  setup.stages[0].tolerance = 1e-3;
+  setup.histories.push_back({"top", "b10", {0.5, 9.5}});
+  LastHistory observer;
+  const RunRecord record = run(setup, {}, observer);
+  EXPECT_TRUE(record.stages[0].equilibrium_reached);
+  EXPECT_TRUE(record.stages[0].moving.empty());
+  EXPECT_NEAR(observer.last.points[0].uy, -55.0 * weight / stiffness, 2e-3 * 55.0 * weight / stiffness);
+}
+
 // A slender cantilever bends by a tenth of its length: it is not in equilibrium until it has.
 TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
   Scene scene(1e5, 0.0, 1.0);
