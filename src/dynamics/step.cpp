@@ -301,7 +301,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   });
   move_prescribed(state, drive);
   place(state);
-  keep_turned_shear(state);
+  account_for_turns(state, drive);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     if (!std::isfinite(state.moved[b])) {

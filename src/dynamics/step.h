@@ -128,7 +128,9 @@ class Stepper {
   };
   [[nodiscard]] BondMissed bond_missed(std::size_t c) const;
   [[nodiscard]] double least_bond_missed() const;  ///< m, of all bonds
-  void keep_turned_shear(State& state);
+  double keep_turned_shear(State& state);
+  [[nodiscard]] double support_energy(const State& state, double time) const;
+  void account_for_turns(State& state, const Drive& drive);
   bool moved_too_far();
   void choose_rules(const State& state, const Drive& drive);
   /// Of `count` coefficients from `first` on.
@@ -192,6 +194,7 @@ class Stepper {
   std::vector<Integrator> rule_;  ///< per block, of the last attempt
   std::vector<Vec2> turned_,
       turned_now_;  ///< m, per contact: Drive::turned, empty: of none; and as the last attempt shows it
+  std::vector<double> turned_energy_;    ///< J per thickness, per contact, scratch
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
   double impact_speed_;                  ///< m/s

@@ -7,18 +7,36 @@
 
 namespace keyblock::dynamics {
 
-void Stepper::sum_stored_energy(State& state) const {
-  state.contact_energy = state.support_energy = 0.0;
-  for (const contact::Memory& memory : state.contacts.memory) state.contact_energy += memory.stored;
+double Stepper::support_energy(const State& state, double time) const {
+  double sum = 0.0;
   for (const GroundSpring& spring : model_.springs) {
     if (!model_.moves(at(spring.block))) continue;
     const std::size_t first = model_.blocks[at(spring.block)].first + at(spring.axis);
     double coordinate = 0.0;
     for (std::size_t k = 0; k < spring.phi.size(); ++k)
       coordinate += spring.phi[k] * state.position[first + 2 * k];
-    const double stretch = coordinate - spring.target(state.time);
-    state.support_energy += 0.5 * spring.stiffness * stretch * stretch;
+    const double stretch = coordinate - spring.target(time);
+    sum += 0.5 * spring.stiffness * stretch * stretch;
   }
+  return sum;
+}
+
+void Stepper::sum_stored_energy(State& state) const {
+  state.contact_energy = 0.0;
+  for (const contact::Memory& memory : state.contacts.memory) state.contact_energy += memory.stored;
+  state.support_energy = support_energy(state, state.time);
+}
+
+/// What turning did to springs that the step was linear in, once blocks are where they come to be.
+void Stepper::account_for_turns(State& state, const Drive& drive) {
+  double gained = keep_turned_shear(state);
+  state.contact_energy += gained;
+  if (!model_.springs.empty()) {
+    const double now = support_energy(state, drive.end_time);
+    gained += now - state.support_energy;
+    state.support_energy = now;
+  }
+  state.ledger.numerical -= gained;
 }
 
 void Stepper::account(State& state, const Drive& drive) {
@@ -132,8 +150,8 @@ double Stepper::gravity_energy(const State& state) const {
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
     const Block& block = model_.blocks[b];
-    sum -= block.body_force() *
-           dot(model_.gravity, {state.position[block.first], state.position[block.first + 1]});
+    const Vec2 now{state.position[block.first], state.position[block.first + 1]};
+    sum -= block.body_force() * dot(model_.gravity, now - std::sqrt(block.area) * centroid(block.reference));
   }
   return sum;
 }

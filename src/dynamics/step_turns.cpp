@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "contact/edge_curve.h"
 #include "core/index.h"
@@ -143,10 +144,11 @@ double Stepper::least_bond_missed() const {
 }
 
 /// Bonds that hold while their blocks turn: what the step missed along the edge is shear as any other, once the blocks are where they come
-/// to be. Else they would creep, always the same way, and tear what is bonded around them.
-void Stepper::keep_turned_shear(State& state) {
-  if (!problem_.may_break()) return;
+/// to be. Else they would creep, always the same way, and tear what is bonded around them. J per thickness that springs gained by it.
+double Stepper::keep_turned_shear(State& state) {
+  if (!problem_.may_break()) return 0.0;
   const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  turned_energy_.assign(contacts_.size(), 0.0);
   team_.for_range(contacts_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const contact::Contact& contact = contacts_[c];
@@ -154,9 +156,16 @@ void Stepper::keep_turned_shear(State& state) {
       if (!memory.bonded || contact.fused) continue;
       const Vec2 now = apart(contact, [&](std::size_t v) { return model_.surface.position[v]; });
       const double missed = now.y - dot(problem_.rows()[c].tangent(), open_close_.relative()[c]);
-      (has_multipliers ? memory.drift : memory.shear) += missed;
+      if (has_multipliers) {
+        memory.drift += missed;
+        continue;
+      }
+      turned_energy_[c] = contact.shear_stiffness * missed * (memory.shear + 0.5 * missed);
+      memory.shear += missed;
+      memory.stored += turned_energy_[c];
     }
   });
+  return std::accumulate(turned_energy_.begin(), turned_energy_.end(), 0.0);
 }
 
 /// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
