@@ -32,7 +32,6 @@ struct StepReport {
   double penetration = 0.0;       ///< m, largest depth of a contact
   double max_displacement = 0.0;  ///< m, of a vertex
   int closed_contacts = 0;        ///< at the end
-  double contact_energy = 0.0;    ///< J, stored in contact and support springs at the end
 };
 
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
@@ -76,7 +75,6 @@ class Stepper {
     double falling = 0.0;
   };
   [[nodiscard]] std::span<const Balance> balance() const { return balance_; }
-  [[nodiscard]] const contact::Surface& surface() const { return model_.surface; }
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return contacts_; }
   /// Normal and shear force of contact k at the end of the last step, N per thickness.
   struct Force {

@@ -137,7 +137,6 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
     report.penetration = std::max(report.penetration, total.penetration[i]);
   report.closed_contacts = static_cast<int>(sum(total.closed));
   state.contacts.may_have_bonds = any_bond;
-  report.contact_energy = contact_energy(state);
 }
 
 }  // namespace keyblock::dynamics
