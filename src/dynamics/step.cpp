@@ -213,7 +213,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   int turns = 0;  // times the step was taken again because blocks turn
   earlier_look_.forget();
   turned_.clear();
-  for (int look = 1; look <= looks;) {
+  for (int look = 1;;) {
     if (!same_contacts && detect(state, drive.is_static)) earlier_look_.forget();
     drive.turned = turned_;
     build_problem(state, drive);
@@ -247,14 +247,14 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     // Bonds that broke are for the next look to find again.
     same_contacts = !moved && !(impact && result.bond_broken);
     if (moved || impact) {
+      // The last look is taken as it is, with the turns that its contacts know of: accept() reads them.
+      if (++look > looks) return true;
       turned_.clear();
-      ++look;
     } else {
       if (drive.is_static || ++turns > most_turns) return false;
       turned_.swap(turned_now_);
     }
   }
-  return true;
 }
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
