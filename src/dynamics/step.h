@@ -81,6 +81,8 @@ class Stepper {
     double normal = 0.0, shear = 0.0;
   };
   [[nodiscard]] std::span<const Force> forces() const { return forces_; }
+  /// m, of contact k at the same time, as the law of its joint has it: negative where it is pressed.
+  [[nodiscard]] double gap(std::size_t k) const;
 
   [[nodiscard]] double kinetic_energy(const State& state) const;
   [[nodiscard]] double strain_energy(const State& state) const;
