@@ -322,6 +322,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   const bool converged = attempt(state, drive, report);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
+    report.halvings = std::max(report.halvings, halvings);
     accept(state, drive, report);
     return;
   }
@@ -334,6 +335,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
 StepReport Stepper::advance(State& state, double dt, const GroundAcceleration* ground) {
   StepReport report;
   substep(state, state.time, state.time + dt, ground, 0, report);
+  report.shortest = std::ldexp(dt, -report.halvings);
   state.time += dt;
   ++state.step;
   return report;
@@ -354,8 +356,10 @@ StepReport Stepper::relax(State& state, double dt, std::span<const double> inert
       break;
     }
     report.substeps += 1;
+    report.halvings += 1;
     drive.step *= 0.5;
   }
+  report.shortest = drive.step;
   accept(state, drive, report);
   ++state.step;
   return report;

@@ -26,8 +26,10 @@ class GroundAcceleration {
 
 /// How a step went; data, not log lines.
 struct StepReport {
-  int iterations = 0;  ///< linear solves, over all substeps
-  int substeps = 1;    ///< > 1: the step did not settle and was repeated in smaller ones
+  int iterations = 0;     ///< linear solves, over all substeps
+  int substeps = 1;       ///< > 1: the step did not settle and was repeated in smaller ones
+  int halvings = 0;       ///< of the shortest that it was taken in, which need not be equally long
+  double shortest = 0.0;  ///< s, length of that one; of a static step, its pseudo time step
   bool converged = true;
   double penetration = 0.0;       ///< m, largest depth of a contact
   double max_displacement = 0.0;  ///< m, of a vertex

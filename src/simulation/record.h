@@ -116,7 +116,7 @@ struct StepRow {
   long step = 0;  ///< of the run, over all stages
   int stage = 0;
   int iterations = 0;             ///< open-close iterations of the step
-  double step_size = 0.0;         ///< s
+  double step_size = 0.0;         ///< s; smallest part of one that was cut; static: pseudo time step
   double penetration = 0.0;       ///< m, largest depth seen by the contact code
   double max_displacement = 0.0;  ///< m, largest of a step
   int closed_contacts = 0;
