@@ -146,7 +146,7 @@ void Stepper::remove_absent(State& state) {
   state.pattern.clear();
 }
 
-/// Bound on how far each block moves and turns in the step: twice what its velocity and the body force make of it.
+/// Bound on how far each block moves and turns in the step: twice what its velocity makes of it, four times what the body force does.
 void Stepper::predict_reach(const State& state, const Drive& drive) {
   const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
   for_blocks([&](std::size_t b) {
