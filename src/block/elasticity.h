@@ -26,8 +26,8 @@ Stress in_situ_at(const std::optional<InSituStress>& in_situ, Vec2 point);
 ///     f_k  = ∂U/∂a_k = ∫ F S ∇φ_k dA                                         (N vectors)
 ///     K    = ∂²U/∂a² = ∫ Bᵀ C B dA + ∫ (∇φ_k · S ∇φ_l) I dA                    (2N × 2N)
 ///
-/// Invariant under rotation. Integrals are exact: the rule has degree 4(n − 1), one more with a stress
-/// gradient. Per unit thickness. Coefficients are ordered a_0x, a_0y, a_1x, … as everywhere.
+/// Invariant under rotation. Integrals are exact: the rule has degree 4(n − 1), which a linear S₀ exceeds at n = 1 alone, where it
+/// asks for degree 1. Per unit thickness. Coefficients are ordered a_0x, a_0y, a_1x, … as everywhere.
 class Elasticity {
  public:
   Elasticity(const Polygon& region, const Basis& basis, const Material& material,

@@ -20,7 +20,7 @@ class Pose {
 
   [[nodiscard]] double area(const double* a) const;
   [[nodiscard]] double mean_spin(const double* increment, const double* a) const;
-  /// Formulation, equation (5). With c the centroid and r = x − c, the increment is D = D_c + w × r + D_def,
+  /// docs/theory.md, section "Pose update". With c the centroid and r = x − c, the increment is D = D_c + w × r + D_def,
   /// and
   ///     x ← c + D_c + R(w)(r + D_def),      relative part of v ← R(w) v.
   /// w: its mean spin. a, v: coefficients of position and velocity (2N values each), changed in place.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -100,6 +101,9 @@ namespace {
 constexpr std::size_t few = 32;
 
 /// Cells of equal size over all boxes; finds the boxes that overlap a given one.
+///
+/// A few blocks that are far from all others do not make it large: where there would be many more cells than blocks, it repeats itself,
+/// and cells that lie far apart share their members.
 class Grid {
  public:
   explicit Grid(std::span<const Box> boxes, std::span<const std::uint8_t> present)
@@ -116,13 +120,20 @@ class Grid {
     if (count == 0) return;
     cell_ = std::max(mean / static_cast<double>(count), 1e-300);
     origin_ = all.min;
-    columns_ = std::clamp(static_cast<int>(all.size().x / cell_) + 1, 1, 4096);
-    rows_ = std::clamp(static_cast<int>(all.size().y / cell_) + 1, 1, 4096);
-    members_.resize(at(columns_) * at(rows_));
+    const auto cells = [&](double length) {
+      return static_cast<int>(std::min(length / cell_ + 1.0, most_cells));
+    };
+    columns_ = period_x_ = cells(all.size().x);
+    rows_ = period_y_ = cells(all.size().y);
+    while (at(period_x_) * at(period_y_) > cells_per_block * count) {
+      int& longer = period_x_ > period_y_ ? period_x_ : period_y_;
+      longer = (longer + 1) / 2;
+    }
+    members_.resize(at(period_x_) * at(period_y_));
     for (std::size_t b = 0; b < boxes.size(); ++b) {
       if (!present[b]) continue;
       const Range r = range(boxes[b]);
-      if ((r.x1 - r.x0 + 1) * (r.y1 - r.y0 + 1) > huge) {
+      if (r.is_huge()) {
         huge_.push_back(static_cast<int>(b));
         continue;
       }
@@ -140,7 +151,7 @@ class Grid {
     const auto add = [&](int other) {
       if (other != b && boxes_[at(other)].overlaps(box)) found.push_back(other);
     };
-    if ((r.x1 - r.x0 + 1) * (r.y1 - r.y0 + 1) > huge) {
+    if (r.is_huge()) {
       for (std::size_t other = 0; other < boxes_.size(); ++other) {
         if (present_[other]) add(static_cast<int>(other));
       }
@@ -157,24 +168,32 @@ class Grid {
   }
 
  private:
-  static constexpr int huge = 256;  ///< cells beyond which a box is kept apart
+  static constexpr double most_cells = 1e9;  ///< on a side
+  static constexpr std::size_t cells_per_block = 4;
   struct Range {
     int x0, x1, y0, y1;
+    /// Whether a box is over so many cells that it is kept apart.
+    [[nodiscard]] bool is_huge() const {
+      return (x1 - x0 + std::int64_t{1}) * (y1 - y0 + std::int64_t{1}) > 256;
+    }
   };
   [[nodiscard]] Range range(const Box& box) const {
     const auto index = [&](double t, double from, int count) {
-      return std::clamp(static_cast<int>(std::floor((t - from) / cell_)), 0, count - 1);
+      return static_cast<int>(std::clamp(std::floor((t - from) / cell_), 0.0, count - 1.0));
     };
     return {index(box.min.x, origin_.x, columns_), index(box.max.x, origin_.x, columns_),
             index(box.min.y, origin_.y, rows_), index(box.max.y, origin_.y, rows_)};
   }
-  [[nodiscard]] std::size_t cell(int x, int y) const { return at(y * columns_ + x); }
+  [[nodiscard]] std::size_t cell(int x, int y) const {
+    return at(y % period_y_) * at(period_x_) + at(x % period_x_);
+  }
 
   std::span<const Box> boxes_;
   std::span<const std::uint8_t> present_;
   double cell_ = 1.0;
   Vec2 origin_;
   int columns_ = 0, rows_ = 0;
+  int period_x_ = 1, period_y_ = 1;  ///< cells after which the grid repeats itself
   std::vector<std::vector<int>> members_;
   std::vector<int> huge_;
 };

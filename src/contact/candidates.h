@@ -96,7 +96,7 @@ struct CandidateList {
   };
 };
 
-/// Clearance of a candidate with vertices at `position`: 0 where it is, or may at once be, a contact. Detection::passes says
+/// Clearance of a candidate with vertices at `position`: 0 where it is, or may at once be, a contact. Detection::pass says
 /// what a contact is; with m_a and m_b the motion of the blocks, reach of the step included, a line of length L that runs from A turns
 /// by less than 2.2 m_b / L, so that distances of V from it change by less than (3 + 2.2 |V − A| / L) (m_a + m_b). The turn that
 /// detection allows the edges for in the step is at most 2 reach / L, and covered by the same bound.

@@ -89,9 +89,6 @@ class Detection {
   void find(const Surface& surface, const Motion& motion, CandidateList& candidates, ThreadTeam& team,
             std::vector<Contact>& contacts);
 
-  [[nodiscard]] std::vector<JointLaw>& laws() { return laws_; }
-  [[nodiscard]] const std::vector<JointLaw>& laws() const { return laws_; }
-
  private:
   /// A vertex, and the edge that begins there: eight numbers, to be read at once.
   struct Corner {

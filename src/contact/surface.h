@@ -42,7 +42,7 @@ struct JointLaw {
   double friction_coefficient = 0.0;
   double cohesion = 0.0;          ///< Pa, of contacts in place until they slip or open
   double tension = 0.0;           ///< Pa, likewise
-  double normal_stiffness = 0.0;  ///< Pa/m; 0: 20 E per metre of the softer of the two blocks
+  double normal_stiffness = 0.0;  ///< Pa/m; 0: [solver] penalty × E, of the softer of the two blocks
   double stiffness_ratio = 0.4;   ///< shear over normal
   bool fused = false;             ///< an outline of an excavation not yet opened: rock on both sides is one
 

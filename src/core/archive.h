@@ -84,7 +84,6 @@ class ArchiveReader {
     values.resize(size);
     for (T& value : values) (*this)(value);
   }
-  [[nodiscard]] bool at_end() const { return data_.empty(); }
 
  private:
   std::size_t read_size() {

@@ -5,9 +5,11 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
-#include <utility>
 #include <vector>
+
+#include "core/error.h"
 
 namespace keyblock {
 
@@ -65,25 +67,36 @@ struct ThreadTeam::Shared {
       done.notify_one();
     }
   }
+
+  void dismiss() {
+    {
+      std::lock_guard lock(mutex);
+      quit = true;
+    }
+    wake.notify_all();
+    for (std::thread& worker : workers) worker.join();
+    workers.clear();
+  }
 };
 
 ThreadTeam::ThreadTeam(int threads) : size_(std::max(1, threads)) {
   if (size_ == 1) return;
   shared_ = std::make_unique<Shared>();
   shared_->errors.resize(static_cast<std::size_t>(size_));
-  for (int rank = 1; rank < size_; ++rank) {
-    shared_->workers.emplace_back([this, rank] { shared_->work(rank, size_); });
+  try {
+    for (int rank = 1; rank < size_; ++rank) {
+      shared_->workers.emplace_back([this, rank] { shared_->work(rank, size_); });
+    }
+  } catch (const std::exception& e) {  // the system has no more threads, or no memory for one
+    const std::size_t started = shared_->workers.size() + 1;
+    shared_->dismiss();  // a thread that is not joined ends the program
+    throw RunError("of the " + std::to_string(size_) + " threads asked for, only " + std::to_string(started) +
+                   " could be started: " + e.what());
   }
 }
 
 ThreadTeam::~ThreadTeam() {
-  if (!shared_) return;
-  {
-    std::lock_guard lock(shared_->mutex);
-    shared_->quit = true;
-  }
-  shared_->wake.notify_all();
-  for (std::thread& worker : shared_->workers) worker.join();
+  if (shared_) shared_->dismiss();
 }
 
 void ThreadTeam::for_range(std::size_t n, std::size_t grain,
@@ -106,9 +119,13 @@ void ThreadTeam::for_range(std::size_t n, std::size_t grain,
     std::unique_lock lock(shared_->mutex);
     shared_->done.wait(lock, is_done);
   }
+  // All are taken off: one that stayed would be thrown by the next loop.
+  std::exception_ptr first;
   for (std::exception_ptr& error : shared_->errors) {
-    if (error) std::rethrow_exception(std::exchange(error, nullptr));
+    if (!first) first = error;
+    error = nullptr;
   }
+  if (first) std::rethrow_exception(first);
 }
 
 }  // namespace keyblock

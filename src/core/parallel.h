@@ -12,6 +12,7 @@ namespace keyblock {
 /// the same bits.
 class ThreadTeam {
  public:
+  /// Throws RunError where the system does not give that many threads.
   explicit ThreadTeam(int threads);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
@@ -20,7 +21,7 @@ class ThreadTeam {
   [[nodiscard]] int size() const { return size_; }
 
   /// Calls body(begin, end) on disjoint pieces of [0, n); serial when n < grain or the team has one thread.
-  /// The first exception thrown by a piece is thrown again here.
+  /// Where pieces throw, the exception of the first of them in [0, n) is thrown again here, the others are dropped.
   void for_range(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
  private:

@@ -171,7 +171,7 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
 bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                             double enough, std::span<double> d, OpenCloseResult& result) {
   ++result.iterations;
-  if (!factor(problem, solver, result)) return false;
+  if (!factor(problem, solver)) return false;
   team_->for_range(direction_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
   });
@@ -210,7 +210,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   const auto settled = [&] { return out_of_balance(problem) < options.tolerance; };
   // Springs are built at D = 0.
   bool from_zero = !warm && corrects && std::ranges::all_of(d, [](double v) { return v == 0.0; });
-  if (!warm && corrects && !kept_ && !factor(problem, solver, result)) return false;
+  if (!warm && corrects && !kept_ && !factor(problem, solver)) return false;
   if (!warm && !from_zero) {
     place(problem, d);
     find_gradient(problem, d);
@@ -224,7 +224,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
           settled())
         return true;
       if (kept_) {
-        if (!factor(problem, solver, result)) return false;
+        if (!factor(problem, solver)) return false;
         ++tries;
         continue;
       }
@@ -407,7 +407,6 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     enough = options.tolerance;
   }
   if (!knows_relative_) place(problem, d);
-  result.residual_ratio = out_of_balance(problem);
   result.finite = std::isfinite(sum_of<double>(team, gradient_.size(), coefficients_worth_threads,
                                                [&](std::size_t k) { return gradient_[k]; }));
   judge_factor(result);

@@ -22,13 +22,11 @@ struct OpenCloseResult {
   bool finite = true;          ///< what is out of balance is a number
   bool bond_broken = false;    ///< some contact lost its cohesion and tension on the way
   int iterations = 0;          ///< linear solves
-  int factorizations = 0;
-  std::size_t bends = 0;        ///< contacts that changed piece on the way, as often as they did
-  int refinements = 0;          ///< corrections of what the factor of an earlier step gets wrong
-  int multiplier_updates = 0;   ///< of an augmented Lagrangian
-  int bound_updates = 0;        ///< times the Coulomb bounds were taken anew
-  bool given_up = false;        ///< at the first of them
-  double residual_ratio = 0.0;  ///< at the end
+  std::size_t bends = 0;       ///< contacts that changed piece on the way, as often as they did
+  int refinements = 0;         ///< corrections of what the factor of an earlier step gets wrong
+  int multiplier_updates = 0;  ///< of an augmented Lagrangian
+  int bound_updates = 0;       ///< times the Coulomb bounds were taken anew
+  bool given_up = false;       ///< at the first of them
 };
 
 /// Open-close iteration: a Newton method with an exact line search on the convex, piecewise quadratic Π(D) of a step.
@@ -82,7 +80,7 @@ class OpenClose {
   void judge_factor(const OpenCloseResult& result);
   void assemble(const StepProblem& problem, linalg::BlockSolver& solver);
   bool change_matrix(const StepProblem& problem, linalg::BlockSolver& solver);
-  bool factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result);
+  bool factor(const StepProblem& problem, linalg::BlockSolver& solver);
   bool solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                     const OpenCloseResult& result);
   [[nodiscard]] static bool solves_near(const StepProblem& problem, const linalg::BlockSolver& solver);

@@ -69,7 +69,7 @@ bool OpenClose::change_matrix(const StepProblem& problem, linalg::BlockSolver& s
 }
 
 /// Within a step only what changed is assembled and factored anew.
-bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, OpenCloseResult& result) {
+bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver) {
   {
     const Profile::Scope scope(*profile_, Phase::assembly);
     if (!assembled_) {
@@ -79,7 +79,6 @@ bool OpenClose::factor(const StepProblem& problem, linalg::BlockSolver& solver, 
     }
   }
   forget_corrections();
-  ++result.factorizations;
   const Profile::Scope scope(*profile_, Phase::factorization);
   return solver.factor();
 }

@@ -29,7 +29,8 @@ struct SolverOptions {
   double restitution = 0.5;
   /// Largest residual of a block over its weight for a step to count as converged.
   double tolerance = 1e-4;
-  int max_iterations = 60;  ///< open-close iterations before the step is retried with half of Δt
+  /// Open-close iterations of a minimization, of which a step has several, before the step is retried with half of Δt.
+  int max_iterations = 60;
   int max_halvings = 6;
   /// Coulomb bounds are those of the last step unless new ones would change the shear forces by more than
   /// `bound_tolerance` of the bounds (L2 over all contacts): a first contact, an impact. They are then taken anew until

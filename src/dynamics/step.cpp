@@ -146,7 +146,7 @@ void Stepper::remove_absent(State& state) {
   state.pattern.clear();
 }
 
-/// Bound on how far each block moves and turns in the step: twice what its velocity and the body force make of it.
+/// Bound on how far each block moves and turns in the step: twice what its velocity makes of it, four times what the body force does.
 void Stepper::predict_reach(const State& state, const Drive& drive) {
   const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
   for_blocks([&](std::size_t b) {
@@ -213,7 +213,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   int turns = 0;  // times the step was taken again because blocks turn
   earlier_look_.forget();
   turned_.clear();
-  for (int look = 1; look <= looks;) {
+  for (int look = 1;;) {
     if (!same_contacts && detect(state, drive.is_static)) earlier_look_.forget();
     drive.turned = turned_;
     build_problem(state, drive);
@@ -247,14 +247,14 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     // Bonds that broke are for the next look to find again.
     same_contacts = !moved && !(impact && result.bond_broken);
     if (moved || impact) {
+      // The last look is taken as it is, with the turns that its contacts know of: accept() reads them.
+      if (++look > looks) return true;
       turned_.clear();
-      ++look;
     } else {
       if (drive.is_static || ++turns > most_turns) return false;
       turned_.swap(turned_now_);
     }
   }
-  return true;
 }
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
@@ -322,6 +322,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   const bool converged = attempt(state, drive, report);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
+    report.halvings = std::max(report.halvings, halvings);
     accept(state, drive, report);
     return;
   }
@@ -334,6 +335,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
 StepReport Stepper::advance(State& state, double dt, const GroundAcceleration* ground) {
   StepReport report;
   substep(state, state.time, state.time + dt, ground, 0, report);
+  report.shortest = std::ldexp(dt, -report.halvings);
   state.time += dt;
   ++state.step;
   return report;
@@ -354,8 +356,10 @@ StepReport Stepper::relax(State& state, double dt, std::span<const double> inert
       break;
     }
     report.substeps += 1;
+    report.halvings += 1;
     drive.step *= 0.5;
   }
+  report.shortest = drive.step;
   accept(state, drive, report);
   ++state.step;
   return report;

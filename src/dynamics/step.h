@@ -26,13 +26,14 @@ class GroundAcceleration {
 
 /// How a step went; data, not log lines.
 struct StepReport {
-  int iterations = 0;  ///< linear solves, over all substeps
-  int substeps = 1;    ///< > 1: the step did not settle and was repeated in smaller ones
+  int iterations = 0;     ///< linear solves, over all substeps
+  int substeps = 1;       ///< > 1: the step did not settle and was repeated in smaller ones
+  int halvings = 0;       ///< of the shortest that it was taken in, which need not be equally long
+  double shortest = 0.0;  ///< s, length of that one; of a static step, its pseudo time step
   bool converged = true;
   double penetration = 0.0;       ///< m, largest depth of a contact
   double max_displacement = 0.0;  ///< m, of a vertex
   int closed_contacts = 0;        ///< at the end
-  double contact_energy = 0.0;    ///< J, stored in contact and support springs at the end
 };
 
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
@@ -76,13 +77,14 @@ class Stepper {
     double falling = 0.0;
   };
   [[nodiscard]] std::span<const Balance> balance() const { return balance_; }
-  [[nodiscard]] const contact::Surface& surface() const { return model_.surface; }
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return contacts_; }
   /// Normal and shear force of contact k at the end of the last step, N per thickness.
   struct Force {
     double normal = 0.0, shear = 0.0;
   };
   [[nodiscard]] std::span<const Force> forces() const { return forces_; }
+  /// m, of contact k at the same time, as the law of its joint has it: negative where it is pressed.
+  [[nodiscard]] double gap(std::size_t k) const;
 
   [[nodiscard]] double kinetic_energy(const State& state) const;
   [[nodiscard]] double strain_energy(const State& state) const;

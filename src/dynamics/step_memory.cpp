@@ -102,6 +102,15 @@ void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccoun
   memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
 }
 
+double Stepper::gap(std::size_t k) const {
+  const contact::Contact& c = contacts_[k];
+  const StepProblem::Row& row = problem_.rows()[k];
+  const SpringArray& springs = problem_.springs();
+  // n·r; what multipliers have added is in both y₀ and y.
+  const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
+  return c.gap + c.memory.offset + normal;
+}
+
 /// Contact memory for the next step, and where the energy of contacts went.
 void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   forces_.resize(contacts_.size());
@@ -137,7 +146,6 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
     report.penetration = std::max(report.penetration, total.penetration[i]);
   report.closed_contacts = static_cast<int>(sum(total.closed));
   state.contacts.may_have_bonds = any_bond;
-  report.contact_energy = contact_energy(state);
 }
 
 }  // namespace keyblock::dynamics

@@ -44,7 +44,7 @@ struct Drive {
   }
 };
 
-/// The minimization that a step is (formulation, equation 3), with the Coulomb bounds frozen:
+/// The minimization that a step is (docs/theory.md, section "One step"), with the Coulomb bounds frozen:
 ///
 ///     Π(D) = ½ Dᵀ H D − bᵀ D + Σ_contacts ψ_c(r_c(D)),      H = c/Δt² M + K_t + K_support  (block diagonal)
 ///     b = f_ext − f_int + f_support + M (c v/Δt + c_a a + c_F F)

@@ -19,7 +19,7 @@ void Stepper::measure_spin(const State& state) {
   });
 }
 
-/// Where a vertex comes to be with the increment at hand: the pose update of its block (formulation, equation 5).
+/// Where a vertex comes to be with the increment at hand: the pose update of its block (docs/theory.md, section "Pose update").
 Vec2 Stepper::at_end(const State& state, std::size_t vertex) const {
   const std::size_t b = at(model_.surface.block[vertex]);
   const Vec2 start = model_.surface.position[vertex];

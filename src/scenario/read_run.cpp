@@ -150,7 +150,10 @@ void read_output(TableReader& t, simulation::OutputOptions& output) {
             .unit = "s",
             .above = 0.0});
   t.number("history_interval", output.history_interval,
-           {.meaning = "Between rows of histories; 0: every step.", .unit = "s", .at_least = 0.0});
+           {.meaning = "Between rows of histories of dynamic stages; 0: every step. Static stages have a row "
+                       "of every step.",
+            .unit = "s",
+            .at_least = 0.0});
 }
 
 void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic) {
@@ -202,9 +205,10 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
                   "time step does not resolve.",
        .at_least = 0.0,
        .at_most = 1.0});
-  t.integer(
-      "max_iterations", solver.max_iterations,
-      {.meaning = "Open-close iterations before a step is retried with half its size.", .at_least = 1.0});
+  t.integer("max_iterations", solver.max_iterations,
+            {.meaning = "Open-close iterations of a minimization, of which a step has several, before the "
+                        "step is retried with half its size.",
+             .at_least = 1.0});
   t.integer("max_halvings", solver.max_halvings,
             {.meaning = "How often a step is halved at most.", .at_least = 0.0});
   t.number("bound_tolerance", solver.bound_tolerance,

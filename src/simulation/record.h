@@ -71,7 +71,7 @@ struct ContactRecord {
   Vec2 position;              ///< m
   Vec2 normal;                ///< unit, out of block_b
   double length = 0.0;        ///< m of joint that belongs to it
-  double gap = 0.0;           ///< m, as the joint law has it: negative where the contact is pressed
+  double gap = 0.0;           ///< m, as the joint law has it then: negative where the contact is pressed
   double slip = 0.0;          ///< m, relative shear displacement since the excavation, signed
   double normal_force = 0.0;  ///< N per metre thickness, compression positive
   double shear_force = 0.0;
@@ -116,7 +116,7 @@ struct StepRow {
   long step = 0;  ///< of the run, over all stages
   int stage = 0;
   int iterations = 0;             ///< open-close iterations of the step
-  double step_size = 0.0;         ///< s
+  double step_size = 0.0;         ///< s; smallest part of one that was cut; static: pseudo time step
   double penetration = 0.0;       ///< m, largest depth seen by the contact code
   double max_displacement = 0.0;  ///< m, largest of a step
   int closed_contacts = 0;

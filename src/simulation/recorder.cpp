@@ -12,6 +12,11 @@
 
 namespace keyblock::simulation {
 
+// The state of a contact is recorded as the contact code has it.
+static_assert(static_cast<int>(ContactState::open) == static_cast<int>(contact::State::open));
+static_assert(static_cast<int>(ContactState::sliding) == static_cast<int>(contact::State::sliding));
+static_assert(static_cast<int>(ContactState::locked) == static_cast<int>(contact::State::locked));
+
 Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
     : setup_(setup), model_(model), gauge_(gauge), threads_(threads), start_(model.surface.position) {
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
@@ -135,7 +140,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
     row.position = surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
-    row.gap = c.gap + c.memory.offset;
+    row.gap = stepper.gap(k);
     row.slip = gauge_.slip(c.vertex, c.edge);
     row.normal_force = stepper.forces()[k].normal;
     row.shear_force = stepper.forces()[k].shear;

@@ -265,9 +265,8 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   }
   if (due(step_row_interval)) {
     const Energy energies = energy();
-    observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations,
-                    setup_.time_step / report.substeps, report.penetration, report.max_displacement,
-                    report.closed_contacts, energies});
+    observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations, report.shortest,
+                    report.penetration, report.max_displacement, report.closed_contacts, energies});
     ++now_.reported.steps;
     check_finite(energies);
   }

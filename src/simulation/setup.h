@@ -66,7 +66,7 @@ struct OutputOptions {
   double frame_interval = 0.1;      ///< s between frames of dynamic stages
   int settle_frame_interval = 100;  ///< steps between frames of static stages
   double contact_interval = 1.0;    ///< s between contact snapshots (always at the ends of stages)
-  double history_interval = 0.0;    ///< s between history rows; 0: every step
+  double history_interval = 0.0;    ///< s between history rows of dynamic stages; 0: every step
 };
 
 /// A file that belongs to the input of a run.

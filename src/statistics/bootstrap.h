@@ -21,7 +21,6 @@ inline constexpr std::uint64_t bootstrap_key = 1979;
 class Resamples {
  public:
   explicit Resamples(std::size_t n, std::size_t count = usual_resamples);
-  [[nodiscard]] std::size_t sample_size() const { return n_; }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::span<const std::uint32_t> ranks(std::size_t resample) const {
     return std::span(ranks_).subspan(resample * n_, n_);

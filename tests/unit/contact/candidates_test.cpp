@@ -1,6 +1,7 @@
 #include "contact/candidates.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <random>
@@ -86,6 +87,44 @@ TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
   EXPECT_GT(list.pairs.size(), before.pairs.size());
   EXPECT_EQ(list.memory.size(), before.memory.size());
   expect_kept();
+}
+
+/// bytes, the most that this process has had.
+long most_memory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return 1024 * usage.ru_maxrss;
+}
+
+// Stones that have rolled far away: cells over all the way between would be many more than there are blocks.
+TEST(Candidates, OfBlocksFarAwayTakeNoMore) {
+  const Surface near = wall(8, 6);
+  ThreadTeam alone(1);
+  CandidateList expected;
+  const std::vector<double> reach(static_cast<std::size_t>(near.blocks()) + 2, 1e-3);
+  Candidates(Tolerances(0.7))
+      .update(near, std::span(reach).first(near.block_begin.size() - 1), expected, alone);
+  const auto of_wall = [&](const Candidate& c) {
+    return c.block_a < near.blocks() && c.block_b < near.blocks();
+  };
+  const auto same = [](const Candidate& a, const Candidate& b) {
+    return a.vertex == b.vertex && a.edge == b.edge;
+  };
+  for (const Vec2 far : {Vec2{1e4, 1e4}, {-1e4, 1e4}, {1e4, 0.0}, {1e12, -1e4}}) {
+    Surface surface = near;
+    add_block(surface, rectangle(far.x, far.y, far.x + 1.0, far.y + 0.5));
+    add_block(surface, rectangle(far.x + 1.0, far.y, far.x + 2.0, far.y + 0.5));
+    const long before = most_memory();
+    CandidateList list;
+    Candidates(Tolerances(0.7)).update(surface, reach, list, alone);
+    EXPECT_LT(most_memory() - before, 50'000'000) << far.x << ", " << far.y;
+    const auto end = std::stable_partition(list.pairs.begin(), list.pairs.end(), of_wall);
+    EXPECT_TRUE(std::equal(list.pairs.begin(), end, expected.pairs.begin(), expected.pairs.end(), same));
+    EXPECT_GE(list.pairs.end() - end, 4);  // of the two with each other
+    const auto have = keys(list);
+    for (const Candidate& c : all_pairs_within(surface, Tolerances(0.7).activation + 2e-3))
+      EXPECT_TRUE(have.contains({c.vertex, c.edge})) << c.vertex << ' ' << c.edge;
+  }
 }
 
 TEST(Candidates, IgnoreAbsentAndPairsOfFixedBlocks) {

@@ -1,16 +1,24 @@
 #include "core/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "core/error.h"
 
 namespace keyblock {
 namespace {
@@ -94,6 +102,18 @@ TEST_P(Team, ReportsOneErrorWhenAllPiecesThrow) {
   EXPECT_THROW(team.for_range(100, 1, body), std::domain_error);
 }
 
+TEST_P(Team, ThrowsTheFirstOfSeveralErrorsAndForgetsTheOthers) {
+  ThreadTeam team(GetParam());
+  const auto body = [](std::size_t begin, std::size_t) { throw std::domain_error(std::to_string(begin)); };
+  try {
+    team.for_range(100, 1, body);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const std::domain_error& e) {
+    EXPECT_STREQ(e.what(), "0");
+  }
+  EXPECT_NO_THROW(team.for_range(100, 1, [](std::size_t, std::size_t) {}));
+}
+
 TEST_P(Team, ShortLoopsStayInTheCallingThread) {
   ThreadTeam team(GetParam());
   std::mutex mutex;
@@ -113,6 +133,27 @@ TEST(ThreadTeam, HasAtLeastOneThread) {
   EXPECT_EQ(ThreadTeam(0).size(), 1);
   EXPECT_EQ(ThreadTeam(-3).size(), 1);
   EXPECT_EQ(ThreadTeam(4).size(), 4);
+}
+
+/// Makes a team of many threads with address space for a few of them.
+[[noreturn]] void make_team_without_room() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t room = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{128} << 20);
+  const rlimit limit{room, room};
+  ::setrlimit(RLIMIT_AS, &limit);
+  try {
+    const ThreadTeam team(1024);
+  } catch (const RunError& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    std::_Exit(0);
+  }
+  std::_Exit(1);
+}
+
+TEST(ThreadTeam, SaysWhenTheSystemHasNoMoreThreads) {
+  EXPECT_EXIT(make_team_without_room(), ::testing::ExitedWithCode(0),
+              "of the 1024 threads asked for, only [0-9]+ could be started: ");
 }
 
 }  // namespace

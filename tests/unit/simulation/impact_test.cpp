@@ -157,6 +157,28 @@ TEST(Turn, ABodyOfBondedBlocksStaysWhole) {
   for (const dynamics::Stepper::Force& force : s.stepper.forces()) EXPECT_LT(std::abs(force.normal), 2e4);
 }
 
+// The same pole in steps of 0.06 s, which are cut where it turns by too much. One in which it does so only in its second half is cut there
+// alone.
+TEST(Turn, CutsOnlyThePartsOfAStepThatAreTooLong) {
+  Scene scene(3e9, 80.0);
+  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 0.1, 1.0);
+  scene.setup.properties[1].velocity = {-0.5, 0.05};
+  scene.setup.properties[1].spin = 1.0;  // rad/s, about the corner at the origin
+  Simulator s(scene);
+  const double dt = 0.06;
+  int cut_in_three = 0;
+  for (int step = 0; step < 13; ++step) {
+    const dynamics::StepReport report = s.stepper.advance(s.state, dt, nullptr);
+    // Parts of dt/2, of dt/2 and twice dt/4, or more of them.
+    if (report.substeps <= 3) {
+      EXPECT_EQ(report.shortest, report.substeps == 3 ? dt / 4.0 : dt / report.substeps);
+    }
+    cut_in_three += report.substeps == 3;
+  }
+  EXPECT_GE(cut_in_three, 1);
+}
+
 /// m, true overlap of the stone, block 2, with its bed, block 1.
 double overlap_with_bed(const Simulator& s) {
   const std::vector<Polygon> two{deformed_polygon(s.model, 1), deformed_polygon(s.model, 2)};

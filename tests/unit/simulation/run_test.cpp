@@ -70,6 +70,32 @@ TEST(Run, RepeatedShakingGivesRepeatedSlip) {
   EXPECT_NEAR(slid(5) / (5.0 * once), 1.0, 5e-3);
 }
 
+struct AllSteps final : RunObserver {
+  std::vector<StepRow> rows;
+  void step(const StepRow& row) override { rows.push_back(row); }
+};
+
+// Pseudo time steps begin at the time step and grow by a quarter after every step that converges at once, to fifty time steps.
+TEST(Run, StaticStepsAreWrittenWithTheirPseudoTimeStep) {
+  RunSetup setup = shaken_incline(1);
+  setup.time_step = 0.02;  // s: a row of every step
+  AllSteps observer;
+  const RunRecord record = run(setup, {}, observer);
+  double longest = 0.0;
+  ASSERT_GE(std::ssize(observer.rows), record.stages[0].steps);
+  EXPECT_EQ(observer.rows[0].step_size, setup.time_step);
+  for (const StepRow& row : observer.rows) {
+    if (row.stage == 0) {
+      longest = std::max(longest, row.step_size);
+    } else {
+      EXPECT_LE(row.step_size, setup.time_step);
+    }
+  }
+  EXPECT_GT(longest, 2.0 * setup.time_step);
+  EXPECT_LE(longest, 50.0 * setup.time_step);
+  EXPECT_EQ(observer.rows.back().step_size, setup.time_step);
+}
+
 void expect_equal_energies(const Energy& one, const Energy& other) {
   for (const auto term :
        {&Energy::kinetic, &Energy::strain, &Energy::gravity, &Energy::contact, &Energy::friction,

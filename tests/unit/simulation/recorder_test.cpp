@@ -1,0 +1,72 @@
+#include "simulation/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "scene.h"
+
+namespace keyblock::simulation {
+namespace {
+
+struct AllContacts final : RunObserver {
+  std::vector<ContactFrame> frames;
+  void contacts(const ContactFrame& frame) override { frames.push_back(frame); }
+};
+
+/// Contacts of a block that falls on a floor at y = 0, after every step.
+std::vector<ContactFrame> contacts_of_a_fall(dynamics::ContactMethod method) {
+  Scene scene(3e9, 30.0);
+  scene.setup.solver.contact = method;
+  scene.setup.solver.contact_damping = 0.0;  // forces are those of the springs alone
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.01}, 0.1, 0.1);
+  scene.setup.time_step = scene.setup.output.contact_interval = 0.002;
+  scene.setup.stages.push_back(stage("fall", StageKind::rest, 0.1));
+  AllContacts observer;
+  run(scene.setup, {}, observer);
+  return observer.frames;
+}
+
+// In the step of an impact a contact begins open, and ends pressed: all that is recorded of it is of the end.
+TEST(Recorder, GapOfAContactIsThatOfItsForce) {
+  const auto frames = contacts_of_a_fall(dynamics::ContactMethod::penalty);
+  bool struck = false;
+  int pressed = 0;
+  for (const ContactFrame& frame : frames) {
+    for (const ContactRecord& c : frame.contacts) {
+      EXPECT_NEAR(c.gap, c.position.y, 1e-9) << frame.time;
+      if (c.normal_force > 0.0) {
+        if (!struck) {
+          EXPECT_EQ(c.state, ContactState::locked);
+        }
+        EXPECT_LT(c.gap, 0.0) << frame.time;
+        EXPECT_NEAR(-c.gap * 20.0 * 3e9 * c.length / c.normal_force, 1.0, 1e-6) << frame.time;
+        ++pressed;
+      } else {
+        EXPECT_EQ(c.state, ContactState::open) << frame.time;
+        EXPECT_GE(c.gap, 0.0) << frame.time;
+      }
+    }
+    struck = pressed > 0;
+  }
+  EXPECT_GT(pressed, 4);
+}
+
+TEST(Recorder, GapOfAContactThatMultipliersPressIsNone) {
+  const auto frames = contacts_of_a_fall(dynamics::ContactMethod::augmented_lagrangian);
+  int pressed = 0;
+  for (const ContactFrame& frame : frames) {
+    for (const ContactRecord& c : frame.contacts) {
+      EXPECT_NEAR(c.gap, c.position.y, 1e-9) << frame.time;
+      if (c.normal_force <= 0.0) continue;
+      EXPECT_NEAR(c.gap, 0.0, 1e-9) << frame.time;
+      ++pressed;
+    }
+  }
+  EXPECT_GT(pressed, 4);
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
