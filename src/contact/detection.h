@@ -216,13 +216,16 @@ class Detection {
   /// What is computed of as many contacts as there are lanes at once.
   struct Geometry {
     Lanes gap, position, length;  ///< as of Contact
+    /// m, of joint that gives the contact its stiffness at the least: Tolerances::least_length, but no more than belongs to the vertex
+    /// where the edges that face each other share all that they have.
+    Lanes least_length;
   };
   [[nodiscard]] Geometry measure(const Surface& surface, const CandidateList& candidates,
                                  std::span<const Found> found) const;
   [[nodiscard]] double length_beyond(const Surface& surface, const Candidate& candidate,
                                      double position) const;
   static void bend(const Surface& surface, Contact& contact);
-  void give_law(const Surface& surface, Contact& contact) const;
+  void give_law(const Surface& surface, Contact& contact, double least_length) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;

@@ -77,15 +77,19 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
   const SharedLength<Lanes> shared{along, length, tolerances_.end_zone};
   // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
-  const auto of_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes share_of_other,
-                           Lanes share_of_this) {
+  Lanes shared_length{}, whole_length{};
+  const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, Lanes share_of_other,
+                            Lanes share_of_this) {
     const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty;
     const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
-    return where(turned, Lanes{}, shared(along + ahead * length_of_other, share_of_other, share_of_this));
+    shared_length +=
+        where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, share_of_other, share_of_this));
+    whole_length += where(turned, Lanes{}, least(share_of_other * length_of_other, share_of_this * length));
   };
-  return {gap, along / length,
-          of_edge(vertex[2], vertex[3], vertex[6], share_of_next, 1.0 - share_of_edge) +
-              of_edge(vertex[4], vertex[5], -length_before, 1.0 - share_of_before, share_of_edge)};
+  add_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), share_of_next, 1.0 - share_of_edge);
+  add_edge(vertex[4], vertex[5], length_before, broadcast(-1.0), 1.0 - share_of_before, share_of_edge);
+  const Lanes most = broadcast(tolerances_.least_length);
+  return {gap, along / length, shared_length, where(whole_length > 0.0, least(whole_length, most), most)};
 }
 
 /// m, what the contact of two corners has of the edge on the other side of the corner, where face goes on in face: edges of blocks of
@@ -127,12 +131,12 @@ void Detection::bend(const Surface& surface, Contact& contact) {
   contact.gap = dot(contact.normal, from_curve(contact.position));
 }
 
-void Detection::give_law(const Surface& surface, Contact& contact) const {
+void Detection::give_law(const Surface& surface, Contact& contact, double least_length) const {
   const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
   const double per_length = law.normal_stiffness > 0.0
                                 ? law.normal_stiffness
                                 : std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
-  contact.normal_stiffness = per_length * std::max(contact.length, tolerances_.least_length);
+  contact.normal_stiffness = per_length * std::max(contact.length, least_length);
   contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
   contact.friction_coefficient = law.friction_coefficient;
   contact.cohesion = contact.memory.bonded ? law.cohesion * contact.length : 0.0;
@@ -168,7 +172,7 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
         memory = candidates.memory[at(f.memory)];
         if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -contact.gap));
       }
-      give_law(surface, contact);
+      give_law(surface, contact, geometry.least_length[i]);
       keep_energy(memory, contact.gap, contact.normal_stiffness);
       contact.depth = -contact.gap - memory.offset + memory.multiplier;
     }

@@ -29,7 +29,8 @@ struct Tolerances {
   /// How far candidates are collected beyond the activation distance (1 cm), each block on its own. Larger: fewer
   /// rebuilds, more candidates.
   double margin;
-  /// Least length of joint that gives a contact its stiffness (3 cm): a corner on an edge has no length of its own.
+  /// Least length of joint that gives a contact its stiffness (3 cm): a corner on an edge has no length of its own. Edges that face each
+  /// other may have less.
   double least_length;
   /// Two corners tip to tip: while the gaps to their two entrance lines differ by less than `corner_tie` (0.5 mm), and the corners
   /// are not deeper than `corner_depth` (0.1 mm) behind one nor go there in the step, there is no telling which side they pass, and

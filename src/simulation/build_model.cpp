@@ -276,7 +276,7 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
 
 int edge_pieces(double edge_length, double block_area, int order) {
   // Of the edge, the share of its first vertex is 1 / (n (n + 1)).
-  constexpr double least = 0.05, rounding = 1e-6;
+  constexpr double least = 0.01, rounding = 1e-6;
   const double most = (1.0 + rounding) * edge_length / (least * std::sqrt(block_area));
   int pieces = 1;
   while (pieces < order && (pieces + 1) * (pieces + 2) <= most) ++pieces;
