@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "overlap/width.h"
 
@@ -61,6 +62,79 @@ bool is_simple(const Ring& ring) {
   return true;
 }
 
+// What GEOS does for polygons, in a context of its own.
+class Geos {
+ public:
+  [[nodiscard]] GEOSContextHandle_t context() const { return context_.get(); }
+  [[nodiscard]] Geometry own(GEOSGeometry* geometry) const {
+    return {geometry, GeometryDeleter{context_.get()}};
+  }
+  // Null when GEOS refuses the polygon.
+  [[nodiscard]] Geometry polygon(const Polygon& polygon) const;
+  [[nodiscard]] Polygon read(const GEOSGeometry* polygon) const;
+  // what(polygon) of every polygon of a geometry that is not empty.
+  template <typename What>
+  void for_polygons(const GEOSGeometry* geometry, const What& what) const {
+    const int type = GEOSGeomTypeId_r(context(), geometry);
+    if (type == GEOS_POLYGON && GEOSisEmpty_r(context(), geometry) == 0) {
+      what(geometry);
+    } else if (type == GEOS_MULTIPOLYGON || type == GEOS_GEOMETRYCOLLECTION) {
+      const int count = GEOSGetNumGeometries_r(context(), geometry);
+      for (int k = 0; k < count; ++k) for_polygons(GEOSGetGeometryN_r(context(), geometry, k), what);
+    }
+  }
+
+ private:
+  [[nodiscard]] GEOSGeometry* ring(const Ring& ring) const;
+  [[nodiscard]] Ring read_ring(const GEOSGeometry* ring) const;
+
+  Context context_{GEOS_init_r(), GEOS_finish_r};
+};
+
+GEOSGeometry* Geos::ring(const Ring& ring) const {
+  std::vector<double> xy;
+  for (std::size_t k = 0; k <= ring.size(); ++k) {
+    xy.push_back(ring[k % ring.size()].x);
+    xy.push_back(ring[k % ring.size()].y);
+  }
+  GEOSCoordSequence* sequence =
+      GEOSCoordSeq_copyFromBuffer_r(context(), xy.data(), static_cast<unsigned>(ring.size() + 1), 0, 0);
+  return sequence == nullptr ? nullptr : GEOSGeom_createLinearRing_r(context(), sequence);
+}
+
+Geometry Geos::polygon(const Polygon& polygon) const {
+  GEOSGeometry* outer = ring(polygon.outer);
+  if (outer == nullptr) return own(nullptr);
+  std::vector<GEOSGeometry*> holes;
+  for (const Ring& hole : polygon.holes) {
+    if (GEOSGeometry* made = ring(hole)) holes.push_back(made);
+  }
+  Geometry made =
+      own(GEOSGeom_createPolygon_r(context(), outer, holes.data(), static_cast<unsigned>(holes.size())));
+  if (made && GEOSisValid_r(context(), made.get()) != 1) made = own(GEOSMakeValid_r(context(), made.get()));
+  return made;
+}
+
+Ring Geos::read_ring(const GEOSGeometry* ring) const {
+  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(context(), ring);
+  unsigned size = 0;
+  GEOSCoordSeq_getSize_r(context(), sequence, &size);
+  Ring points(size);
+  for (unsigned k = 0; k < size; ++k)
+    GEOSCoordSeq_getXY_r(context(), sequence, k, &points[k].x, &points[k].y);
+  if (!points.empty()) points.pop_back();
+  return points;
+}
+
+Polygon Geos::read(const GEOSGeometry* polygon) const {
+  Polygon piece{read_ring(GEOSGetExteriorRing_r(context(), polygon)), {}};
+  const int holes = GEOSGetNumInteriorRings_r(context(), polygon);
+  for (int k = 0; k < holes; ++k)
+    piece.holes.push_back(read_ring(GEOSGetInteriorRingN_r(context(), polygon, k)));
+  orient(piece);
+  return piece;
+}
+
 struct Pair {
   double bound = 0.0;  // of the depth, from above
   int a = 0, b = 0;
@@ -69,10 +143,7 @@ struct Pair {
 class Finder {
  public:
   explicit Finder(std::span<const Polygon> blocks)
-      : blocks_(blocks),
-        context_(GEOS_init_r(), GEOS_finish_r),
-        geometries_(blocks.size()),
-        parts_(blocks.size()) {
+      : blocks_(blocks), geometries_(blocks.size()), parts_(blocks.size()) {
     for (const Polygon& block : blocks) {
       boxes_.push_back(bounds(block));
       hulls_.push_back(convex_hull(block.outer));
@@ -89,22 +160,15 @@ class Finder {
 
  private:
   [[nodiscard]] double unit() const { return std::numeric_limits<double>::epsilon() * largest_; }
-  [[nodiscard]] Geometry own(GEOSGeometry* geometry) const {
-    return {geometry, GeometryDeleter{context_.get()}};
-  }
   [[nodiscard]] double upper_bound(std::size_t a, std::size_t b, double least);
   const std::vector<Ring>& parts(std::size_t block);
-  [[nodiscard]] GEOSGeometry* geos_ring(const Ring& ring) const;
   const GEOSGeometry* geometry(int block);
-  Ring read_ring(const GEOSGeometry* ring) const;
-  void add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur, double least,
-                   std::vector<Overlap>& found) const;
   [[nodiscard]] double inscribed_width(const GEOSGeometry* polygon, double least) const;
   [[nodiscard]] Overlap region(const GEOSGeometry* polygon, const Pair& pair, double blur,
                                double least) const;
 
   std::span<const Polygon> blocks_;
-  Context context_;
+  Geos geos_;
   std::vector<std::optional<Geometry>> geometries_;
   std::vector<Box> boxes_;
   std::vector<Ring> hulls_;
@@ -170,73 +234,33 @@ std::vector<Pair> Finder::candidates(double least) {
   return pairs;
 }
 
-GEOSGeometry* Finder::geos_ring(const Ring& ring) const {
-  std::vector<double> xy;
-  for (std::size_t k = 0; k <= ring.size(); ++k) {
-    xy.push_back(ring[k % ring.size()].x);
-    xy.push_back(ring[k % ring.size()].y);
-  }
-  GEOSCoordSequence* sequence =
-      GEOSCoordSeq_copyFromBuffer_r(context_.get(), xy.data(), static_cast<unsigned>(ring.size() + 1), 0, 0);
-  return sequence == nullptr ? nullptr : GEOSGeom_createLinearRing_r(context_.get(), sequence);
-}
-
 // Null when GEOS refuses the block.
 const GEOSGeometry* Finder::geometry(int block) {
   std::optional<Geometry>& known = geometries_[static_cast<std::size_t>(block)];
-  if (known) return known->get();
-  known = own(nullptr);
-  const Polygon& polygon = blocks_[static_cast<std::size_t>(block)];
-  GEOSGeometry* outer = geos_ring(polygon.outer);
-  if (outer == nullptr) return nullptr;
-  std::vector<GEOSGeometry*> holes;
-  for (const Ring& hole : polygon.holes) {
-    if (GEOSGeometry* ring = geos_ring(hole)) holes.push_back(ring);
-  }
-  Geometry made =
-      own(GEOSGeom_createPolygon_r(context_.get(), outer, holes.data(), static_cast<unsigned>(holes.size())));
-  if (made && GEOSisValid_r(context_.get(), made.get()) != 1)
-    made = own(GEOSMakeValid_r(context_.get(), made.get()));
-  known = std::move(made);
+  if (!known) known = geos_.polygon(blocks_[static_cast<std::size_t>(block)]);
   return known->get();
-}
-
-Ring Finder::read_ring(const GEOSGeometry* ring) const {
-  const GEOSCoordSequence* sequence = GEOSGeom_getCoordSeq_r(context_.get(), ring);
-  unsigned size = 0;
-  GEOSCoordSeq_getSize_r(context_.get(), sequence, &size);
-  Ring points(size);
-  for (unsigned k = 0; k < size; ++k)
-    GEOSCoordSeq_getXY_r(context_.get(), sequence, k, &points[k].x, &points[k].y);
-  if (!points.empty()) points.pop_back();
-  return points;
 }
 
 /// Diameter of the largest disc in a region that cannot be cut into convex parts (a ring of a few ulps around an island),
 /// from above: to within 4e-5 of its extent, or `least` where it is not more.
 double Finder::inscribed_width(const GEOSGeometry* polygon, double least) const {
   constexpr int quadrant_segments = 8;
-  const Geometry eroded = own(GEOSBuffer_r(context_.get(), polygon, -0.5 * least, quadrant_segments));
-  if (eroded && GEOSisEmpty_r(context_.get(), eroded.get()) == 1) return least;
+  const Geometry eroded = geos_.own(GEOSBuffer_r(geos_.context(), polygon, -0.5 * least, quadrant_segments));
+  if (eroded && GEOSisEmpty_r(geos_.context(), eroded.get()) == 1) return least;
   double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
-  GEOSGeom_getXMin_r(context_.get(), polygon, &x0);
-  GEOSGeom_getYMin_r(context_.get(), polygon, &y0);
-  GEOSGeom_getXMax_r(context_.get(), polygon, &x1);
-  GEOSGeom_getYMax_r(context_.get(), polygon, &y1);
+  GEOSGeom_getXMin_r(geos_.context(), polygon, &x0);
+  GEOSGeom_getYMin_r(geos_.context(), polygon, &y0);
+  GEOSGeom_getXMax_r(geos_.context(), polygon, &x1);
+  GEOSGeom_getYMax_r(geos_.context(), polygon, &y1);
   const double tolerance = 1e-5 * std::hypot(x1 - x0, y1 - y0);
-  const Geometry radius = own(GEOSMaximumInscribedCircle_r(context_.get(), polygon, tolerance));
+  const Geometry radius = geos_.own(GEOSMaximumInscribedCircle_r(geos_.context(), polygon, tolerance));
   double length = 0.0;
-  if (!radius || GEOSLength_r(context_.get(), radius.get(), &length) != 1) return HUGE_VAL;
+  if (!radius || GEOSLength_r(geos_.context(), radius.get(), &length) != 1) return HUGE_VAL;
   return 2.0 * (length + tolerance);
 }
 
 Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blur, double least) const {
-  Polygon piece{read_ring(GEOSGetExteriorRing_r(context_.get(), polygon)), {}};
-  const int holes = GEOSGetNumInteriorRings_r(context_.get(), polygon);
-  for (int k = 0; k < holes; ++k) {
-    piece.holes.push_back(read_ring(GEOSGetInteriorRingN_r(context_.get(), polygon, k)));
-  }
-  orient(piece);
+  const Polygon piece = geos_.read(polygon);
   const Ring hull = convex_hull(piece.outer);
   Overlap found{convex_width(hull), pair.a, pair.b, centroid(piece), area(piece)};
   std::vector<Ring> parts;
@@ -265,34 +289,23 @@ Overlap Finder::region(const GEOSGeometry* polygon, const Pair& pair, double blu
   return found;
 }
 
-void Finder::add_regions(const GEOSGeometry* geometry, const Pair& pair, double blur, double least,
-                         std::vector<Overlap>& found) const {
-  const int type = GEOSGeomTypeId_r(context_.get(), geometry);
-  if (type == GEOS_POLYGON && GEOSisEmpty_r(context_.get(), geometry) == 0) {
-    found.push_back(region(geometry, pair, blur, least));
-  } else if (type == GEOS_MULTIPOLYGON || type == GEOS_GEOMETRYCOLLECTION) {
-    const int count = GEOSGetNumGeometries_r(context_.get(), geometry);
-    for (int k = 0; k < count; ++k) {
-      add_regions(GEOSGetGeometryN_r(context_.get(), geometry, k), pair, blur, least, found);
-    }
-  }
-}
-
 std::vector<Overlap> Finder::regions(const Pair& pair, double least) {
   const GEOSGeometry* a = geometry(pair.a);
   const GEOSGeometry* b = geometry(pair.b);
   double blur = 0.0;
-  Geometry shared = own(nullptr);
+  Geometry shared = geos_.own(nullptr);
   if (a != nullptr && b != nullptr) {
-    shared = own(GEOSIntersection_r(context_.get(), a, b));
+    shared = geos_.own(GEOSIntersection_r(geos_.context(), a, b));
     if (!shared) {
       blur = grid_ulps * unit();
-      shared = own(GEOSIntersectionPrec_r(context_.get(), a, b, blur));
+      shared = geos_.own(GEOSIntersectionPrec_r(geos_.context(), a, b, blur));
     }
   }
   std::vector<Overlap> found;
   if (shared) {
-    add_regions(shared.get(), pair, blur, least, found);
+    geos_.for_polygons(shared.get(), [&](const GEOSGeometry* polygon) {
+      found.push_back(region(polygon, pair, blur, least));
+    });
     if (!found.empty() || blur == 0.0) return found;
   }
   Box both = boxes_[static_cast<std::size_t>(pair.a)];
@@ -332,6 +345,20 @@ std::vector<Overlap> all_overlaps(std::span<const Polygon> blocks, double least_
   std::stable_sort(all.begin(), all.end(),
                    [](const Overlap& a, const Overlap& b) { return a.depth > b.depth; });
   return all;
+}
+
+std::vector<Polygon> union_of(std::span<const Polygon> polygons) {
+  const Geos geos;
+  Geometry all = geos.own(nullptr);
+  for (const Polygon& polygon : polygons) {
+    Geometry one = geos.polygon(polygon);
+    all = all && one ? geos.own(GEOSUnion_r(geos.context(), all.get(), one.get())) : std::move(one);
+    if (!all) throw std::invalid_argument("union_of: GEOS has no union of these polygons");
+  }
+  std::vector<Polygon> parts;
+  if (all)
+    geos.for_polygons(all.get(), [&](const GEOSGeometry* polygon) { parts.push_back(geos.read(polygon)); });
+  return parts;
 }
 
 }  // namespace keyblock::overlap

@@ -35,4 +35,7 @@ Overlap largest_overlap(std::span<const Polygon> blocks, double least_depth = 0.
 /// All overlaps deeper than `least_depth` (m, ≥ 0), deepest first.
 std::vector<Overlap> all_overlaps(std::span<const Polygon> blocks, double least_depth);
 
+/// Polygons that do not overlap and cover together what those given cover. Throws std::invalid_argument where GEOS has none.
+std::vector<Polygon> union_of(std::span<const Polygon> polygons);
+
 }  // namespace keyblock::overlap

@@ -100,22 +100,29 @@ void DamageGauge::open(std::span<const int> excavations, const dynamics::State& 
   for (const int e : excavations) reference_.open[at(e)] = 1;
   for (Diameter* d : {&reference_.height, &reference_.width})
     d->closure = closure(*d, state);  // 0 before the start
+  unite_openings();
 }
 
-template <typename Function>
-void DamageGauge::for_each_opening(const Function& f) const {
+void DamageGauge::restore(Reference reference) {
+  reference_ = std::move(reference);
+  unite_openings();
+}
+
+void DamageGauge::unite_openings() {
+  std::vector<Polygon> outlines;
   for (std::size_t e = 0; e < setup_.excavations.size(); ++e) {
-    if (reference_.open[e] != 0) f(setup_.excavations[e].outline);
+    if (reference_.open[e] != 0) outlines.push_back({setup_.excavations[e].outline, {}});
   }
+  openings_ = overlap::union_of(outlines);
 }
 
 double DamageGauge::area_inside_openings(const Polygon& block) const {
   double sum = 0.0;
-  for_each_opening([&](const Ring& outline) {
-    if (!box_of(outline).overlaps(bounds(block))) return;
-    const Polygon pair[] = {block, {outline, {}}};
+  for (const Polygon& opening : openings_) {
+    if (!bounds(opening).overlaps(bounds(block))) continue;
+    const Polygon pair[] = {block, opening};
     for (const overlap::Overlap& piece : overlap::all_overlaps(pair, 0.0)) sum += piece.area;
-  });
+  }
   return sum;
 }
 
@@ -151,7 +158,7 @@ Damage DamageGauge::measure(const dynamics::State& state) const {
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
     if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(deformed_polygon(model_, b));
   }
-  for_each_opening([&](const Ring& outline) { openings += std::abs(signed_area(outline)); });
+  for (const Polygon& opening : openings_) openings += area(opening);
   if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
 
   double length = 0.0, slip_length = 0.0;

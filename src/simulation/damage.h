@@ -59,16 +59,14 @@ class DamageGauge {
     Diameter height, width;
   };
   [[nodiscard]] const Reference& reference() const { return reference_; }
-  void restore(Reference reference) { reference_ = std::move(reference); }
+  void restore(Reference reference);
 
  private:
   struct Offset {
     double slip, opening;
   };
   [[nodiscard]] Offset offset(const JointPiece& piece) const;
-  /// f(outline) of every opening.
-  template <typename Function>
-  void for_each_opening(const Function& f) const;
+  void unite_openings();
   [[nodiscard]] double area_inside_openings(const Polygon& block) const;
   [[nodiscard]] Diameter diameter(const dynamics::State& state, Vec2 direction) const;
   /// Distance of the ends of a diameter now; nothing where one of them is in no block.
@@ -78,6 +76,7 @@ class DamageGauge {
   const RunSetup& setup_;
   const dynamics::Model& model_;
   Reference reference_;
+  std::vector<Polygon> openings_;  ///< what the outlines of open excavations cover together
 };
 
 }  // namespace keyblock::simulation

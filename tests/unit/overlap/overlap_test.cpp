@@ -327,5 +327,23 @@ TEST(Overlap, NineHundredBlocksAreFast) {
 #endif
 }
 
+TEST(Union, CoversWhatOverlapsOnce) {
+  const auto box = [](double x, double y, double w, double h) {
+    return Polygon{{{x, y}, {x + w, y}, {x + w, y + h}, {x, y + h}}, {}};
+  };
+  EXPECT_TRUE(union_of({}).empty());
+  const Polygon one[] = {box(0, 0, 3, 2)};
+  EXPECT_DOUBLE_EQ(area(union_of(one).front()), 6.0);
+  // Twice the same, one that overlaps, one apart; four that leave a hole between them.
+  const Polygon several[] = {box(0, 0, 3, 2), box(0, 0, 3, 2), box(2, 1, 2, 2), box(10, 0, 1, 1)};
+  const auto parts = union_of(several);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_NEAR(area(parts[0]) + area(parts[1]), 6.0 + 3.0 + 1.0, 1e-12);
+  const Polygon frame[] = {box(0, 0, 3, 1), box(0, 2, 3, 1), box(0, 0, 1, 3), box(2, 0, 1, 3)};
+  ASSERT_EQ(union_of(frame).size(), 1u);
+  EXPECT_EQ(union_of(frame)[0].holes.size(), 1u);
+  EXPECT_NEAR(area(union_of(frame)[0]), 8.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace keyblock::overlap

@@ -57,7 +57,8 @@ TEST(Damage, OnlyOpeningsAreFilled) {
   const auto box = [](double bottom, double top) {
     return Ring{{0.0, bottom}, {2.0, bottom}, {2.0, top}, {0.0, top}};
   };
-  scene.setup.excavations = {{"heading", box(1.0, 2.0)}, {"bench", box(0.0, 1.0)}};
+  // The outline of the bench reaches into the heading: what both cover counts once.
+  scene.setup.excavations = {{"heading", box(1.0, 2.0)}, {"bench", box(0.0, 1.5)}};
   scene.add(box(0.0, 0.8));
   scene.add(box(2.0, 3.0));
   Simulator simulator(scene);
@@ -82,7 +83,8 @@ TEST(Damage, OnlyOpeningsAreFilled) {
 // Rock above and below a heading; what is below is excavated next.
 TEST(Damage, ClosureStaysWhereAWallIsExcavated) {
   Scene scene(1e9, 30.0);
-  scene.setup.excavations = {{"heading", {{0.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {0.0, 2.0}}}, {"bench", {}}};
+  scene.setup.excavations = {{"heading", {{0.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {0.0, 2.0}}},
+                             {"bench", {{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}}};
   scene.rectangle({0.0, 0.0}, 2.0, 1.0);
   scene.rectangle({0.0, 2.0}, 2.0, 1.0);
   Simulator simulator(scene);
