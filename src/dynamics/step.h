@@ -50,8 +50,10 @@ class Stepper {
   void start(State& state);
   /// Brings everything derived to a state read from a checkpoint.
   void resume(State& state);
-  /// Sums the energy stored in springs anew, after something else than a step has changed the state.
+  /// Sums the energy stored in springs anew, after something else than a step has changed which there are.
   void sum_stored_energy(State& state) const;
+  /// Finds it anew, after something else than a step has changed where blocks are.
+  void measure_stored_energy(State& state);
   /// Makes the next step look at all blocks and factor its matrix anew, as it does after a restart: with that at every
   /// checkpoint, a run that is resumed gives the same bits as one that is not.
   void forget_history() {

@@ -1,4 +1,5 @@
 // Where the energy of a step goes.
+#include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
@@ -25,6 +26,26 @@ void Stepper::sum_stored_energy(State& state) const {
   state.contact_energy = 0.0;
   for (const contact::Memory& memory : state.contacts.memory) state.contact_energy += memory.stored;
   state.support_energy = support_energy(state, state.time);
+}
+
+void Stepper::measure_stored_energy(State& state) {
+  std::fill(reach_.begin(), reach_.end(), 0.0);
+  std::fill(turn_.begin(), turn_.end(), 0.0);
+  candidates_.update(model_.surface, reach_, state.contacts, team_);
+  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
+                  contacts_);
+  for (contact::Contact& c : contacts_) {
+    if (model_.solver.contact == ContactMethod::augmented_lagrangian) break;  // multipliers store nothing
+    const bool pulls = c.fused || (c.memory.bonded && c.tension > 0.0);
+    c.memory.stored = contact::Spring({.normal_stiffness = c.normal_stiffness,
+                                       .shear_stiffness = c.shear_stiffness,
+                                       .depth = c.depth,
+                                       .shear = c.memory.shear,
+                                       .tensile = pulls})
+                          .stored_at_start();
+  }
+  contact::keep_memory(contacts_, state.contacts, team_);
+  sum_stored_energy(state);
 }
 
 /// What turning did to springs that the step was linear in, once blocks are where they come to be.

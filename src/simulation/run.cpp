@@ -301,7 +301,7 @@ void Runner::settle(StageRecord& record) {
     const double before = total_energy();
     if (!orders_.active() || !(orders_.*change)(model_, now_.mechanics)) return false;
     orders_changed();
-    stepper_->sum_stored_energy(now_.mechanics);
+    stepper_->measure_stored_energy(now_.mechanics);
     now_.mechanics.ledger.numerical += before - total_energy();
     return true;
   };

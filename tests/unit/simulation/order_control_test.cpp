@@ -100,6 +100,31 @@ TEST(OrderControl, StateKeepsItsShapeWhenOrdersChange) {
   EXPECT_EQ(state.position.size(), 42U + 6U + 12U);
 }
 
+// A block that is given a lower order loses what its vertices had bent by: springs begin from where they are then.
+TEST(OrderControl, EnergyOfSpringsIsThatOfWhereBlocksAreNow) {
+  Scene scene(1e8, 30.0);
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 0.0, false, 2);
+  Simulator s(scene);
+  s.run(0.2, 0.002);
+  const dynamics::Block& block = s.model.blocks[1];
+  s.state.position[block.first + 2 * 3 + 1] += 1e-5;
+  change_orders(scene.setup, s.model, s.state, std::vector<int>{1, 1});
+  dynamics::Stepper stepper(s.model, s.team, s.profile);
+  stepper.resume(s.state);
+  stepper.measure_stored_energy(s.state);
+  const auto balance = [&] {
+    const dynamics::EnergyLedger& ledger = s.state.ledger;
+    return stepper.kinetic_energy(s.state) + stepper.strain_energy(s.state) +
+           stepper.gravity_energy(s.state) + dynamics::Stepper::contact_energy(s.state) + ledger.friction +
+           ledger.damping + ledger.numerical - ledger.input;
+  };
+  const double before = balance(), stored = s.state.contact_energy;
+  EXPECT_GT(stored, 0.0);
+  for (int k = 0; k < 10; ++k) stepper.advance(s.state, 0.002, nullptr);
+  EXPECT_NEAR(balance(), before, 1e-6 * stored);
+}
+
 TEST(OrderControl, ResumedRunEndsInTheSameBits) {
   const FreshFolder folder;
   Tip nobody, stopper;
