@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "core/index.h"
@@ -98,12 +99,14 @@ void Basis::orthonormalize_linear(const std::vector<WeightedPoint>& rule) {
       for (std::size_t j = 0; j <= i; ++j) gram[i][j] += weighted * phi[j];
     }
   }
+  constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < gram.size(); ++i) {
+    const double whole = gram[i][i];
     for (std::size_t j = 0; j <= i; ++j) {
       double sum = gram[i][j];
       for (std::size_t k = 0; k < j; ++k) sum -= gram[i][k] * gram[j][k];
       // The sum of those before it but for rounding.
-      if (i == j && !(sum > 0.0)) throw std::invalid_argument("Basis: a region without width");
+      if (i == j && !(sum > rounding * whole)) throw std::invalid_argument("Basis: a region without width");
       gram[i][j] = i == j ? std::sqrt(sum) : sum / gram[j][j];
     }
   }
