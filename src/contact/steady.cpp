@@ -85,8 +85,8 @@ double Detection::depth_margin(const Surface& surface, const Candidate& candidat
   // The vertex and the other edges move by no more than the blocks do.
   const double length = corners_[at(candidate.edge)].length,
                farther = to_nearest_other_edge(surface, candidate) + rival.gap;
-  double margin = std::min({too_deep / gap_rate, std::abs(farther) / (1.0 + gap_rate),
-                            std::abs(rival.along - 0.5 * length) / rate(length, length)});
+  const double margin = std::min({too_deep / gap_rate, std::abs(farther) / (1.0 + gap_rate),
+                                  std::abs(rival.along - 0.5 * length) / rate(length, length)});
   return std::min(margin, facing_margin(surface, candidate));
 }
 
