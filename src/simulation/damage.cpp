@@ -130,6 +130,7 @@ std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const
   std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
   const std::optional<double> width = opening_width();
   const double fall = setup_.damage.fall_distance.value_or(0.05 * width.value_or(0.0));
+  const Vec2 down = model_.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model_.gravity);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
     if (!started() || !model_.moves(b)) continue;
@@ -138,7 +139,7 @@ std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const
     if (norm(moved) <= setup_.damage.loosened_distance) continue;
     status[b] = BlockStatus::loosened;
     if (fall <= 0.0 || norm(moved) <= fall) continue;
-    if (-moved.y > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area)
+    if (dot(moved, down) > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area)
       status[b] = BlockStatus::fallen;
   }
   return status;

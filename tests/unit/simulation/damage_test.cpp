@@ -106,5 +106,27 @@ TEST(Damage, ClosureStaysWhereAWallIsExcavated) {
   EXPECT_EQ(gauge.measure(simulator.state).closure_horizontal, 0.0);  // no walls at the sides
 }
 
+// Down is where gravity pulls, as on a slope that is given by a gravity that leans.
+TEST(Damage, BlocksFallAlongGravity) {
+  for (const Vec2 gravity : {Vec2{0.0, -g}, Vec2{g, 0.0}, Vec2{-g, g}, Vec2{}}) {
+    Scene scene(1e9, 30.0);
+    scene.setup.gravity = gravity;
+    scene.setup.damage.fall_distance = 0.1;
+    scene.rectangle({0.0, 0.0}, 1.0, 1.0);
+    Simulator simulator(scene);
+    DamageGauge gauge(scene.setup, simulator.model);
+    gauge.start(simulator.state, {});
+    const Vec2 down = gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(gravity);
+    const auto move = [&](Vec2 by) {
+      simulator.state.position[simulator.model.blocks[0].first] += by.x;
+      simulator.state.position[simulator.model.blocks[0].first + 1] += by.y;
+    };
+    move(0.5 * Vec2{-down.y, down.x});
+    EXPECT_EQ(gauge.status(simulator.state)[0], BlockStatus::loosened);
+    move(0.11 * down);
+    EXPECT_EQ(gauge.status(simulator.state)[0], BlockStatus::fallen);
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
