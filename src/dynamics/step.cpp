@@ -84,11 +84,7 @@ void Stepper::start(State& state) {
   }
   place(state);
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
-  std::fill(reach_.begin(), reach_.end(), 0.0);
-  std::fill(turn_.begin(), turn_.end(), 0.0);
-  candidates_.update(model_.surface, reach_, state.contacts, team_);
-  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
-                  contacts_);
+  detect_at_rest(state);
   for (contact::Contact& c : contacts_) {
     contact::Memory& memory = c.memory;
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= 0.0) continue;
@@ -177,6 +173,15 @@ void Stepper::predict_reach(const State& state, const Drive& drive) {
     for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
       ahead_[v] = moved;
   }
+}
+
+/// Contacts of blocks that stay where they are.
+void Stepper::detect_at_rest(State& state) {
+  std::fill(reach_.begin(), reach_.end(), 0.0);
+  std::fill(turn_.begin(), turn_.end(), 0.0);
+  candidates_.update(model_.surface, reach_, state.contacts, team_);
+  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
+                  contacts_);
 }
 
 /// Whether the candidates are others.

@@ -111,6 +111,7 @@ class Stepper {
   void move_prescribed(State& state, const Drive& drive);
   void build_problem(State& state, const Drive& drive);
   void predict_reach(const State& state, const Drive& drive);
+  void detect_at_rest(State& state);
   bool detect(State& state, bool is_static);
   void find_pairs(const State& state);
   void make_room(State& state);

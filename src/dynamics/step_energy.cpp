@@ -1,5 +1,4 @@
 // Where the energy of a step goes.
-#include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
@@ -29,11 +28,7 @@ void Stepper::sum_stored_energy(State& state) const {
 }
 
 void Stepper::measure_stored_energy(State& state) {
-  std::fill(reach_.begin(), reach_.end(), 0.0);
-  std::fill(turn_.begin(), turn_.end(), 0.0);
-  candidates_.update(model_.surface, reach_, state.contacts, team_);
-  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
-                  contacts_);
+  detect_at_rest(state);
   for (contact::Contact& c : contacts_) {
     if (model_.solver.contact == ContactMethod::augmented_lagrangian) break;  // multipliers store nothing
     const bool pulls = c.fused || (c.memory.bonded && c.tension > 0.0);
