@@ -87,7 +87,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.settler.first_ratio);
   archive(s.settler.inertia_scale);
   archive(s.settler.travel);
-  archive(s.settler.ratio_before);
+  archive(s.settler.nearest);
   archive(s.settler.carried);
   archive(s.stage);
   archive(s.stage_step);

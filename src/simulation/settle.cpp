@@ -12,7 +12,7 @@ constexpr double held_creep_share =
     1e-2;  // the same of a block on supports, which bends as far as its load demands
 constexpr double travel_share = 0.02;  // of the block size: creep beyond which a block is called moving
 constexpr double nearer =
-    0.9;  // of its balance when the travel began: a block that comes to that is on its way to equilibrium
+    0.9;  // of the best balance of a block so far: one that comes to that is on its way to equilibrium
 constexpr int steps_to_hold = 5;     // equilibrium has to last this many steps
 constexpr int quick_iterations = 8;  // a step that takes no more lets the pseudo time step grow
 }  // namespace
@@ -31,7 +31,7 @@ Settler::Settler(const dynamics::Model& model, double time_step, double toleranc
   memory_.time_step = time_step;
   memory_.inertia_scale.assign(model.blocks.size(), 1.0);
   memory_.travel.assign(model.blocks.size(), 0.0);
-  memory_.ratio_before.assign(model.blocks.size(), HUGE_VAL);
+  memory_.nearest.assign(model.blocks.size(), HUGE_VAL);
   memory_.carried.assign(model.blocks.size(), 1.0);
 }
 
@@ -44,10 +44,13 @@ bool Settler::step(dynamics::Stepper& stepper, dynamics::State& state, dynamics:
     const double moved = state.moved[b];
     double& scale = memory_.inertia_scale[b];
     scale = std::max(1.0, scale * std::clamp(moved / creep_limit_[b], 0.5, 1e6));
-    double& before = memory_.ratio_before[b];
-    const bool comes_nearer = balance.ratio <= nearer * before;
-    if (comes_nearer || memory_.travel[b] == 0.0) before = balance.ratio;
-    memory_.travel[b] = balance.ratio <= tolerance_ || comes_nearer ? 0.0 : memory_.travel[b] + moved;
+    const bool balances = balance.ratio <= tolerance_;
+    if (balances || balance.ratio <= nearer * memory_.nearest[b]) {
+      memory_.nearest[b] = balances ? HUGE_VAL : balance.ratio;
+      memory_.travel[b] = 0.0;
+    } else {
+      memory_.travel[b] += moved;
+    }
     memory_.carried[b] = 1.0 - balance.falling;
     if (memory_.travel[b] <= travel_limit_[b]) worst_ratio_ = std::max(worst_ratio_, balance.ratio);
   }

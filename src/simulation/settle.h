@@ -33,10 +33,9 @@ class Settler {
     int quiet_steps = 0;
     double first_ratio = 0.0;
     std::vector<double> inertia_scale;  ///< per block, ≥ 1
-    std::vector<double>
-        travel;  ///< m, per block, since it was last in balance, or came nearer to it by a tenth
-    std::vector<double> ratio_before;  ///< per block, balance when its travel began
-    std::vector<double> carried;       ///< per block, share of the weight that contacts carry
+    std::vector<double> travel;   ///< m, per block, since it was in balance, or came nearer to it by a tenth
+    std::vector<double> nearest;  ///< per block, best balance since it was in balance
+    std::vector<double> carried;  ///< per block, share of the weight that contacts carry
   };
   [[nodiscard]] Memory& memory() { return memory_; }
 
