@@ -301,9 +301,10 @@ Model build_model(const RunSetup& setup) {
     const cutting::CutBlock& cut = setup.system.blocks[b];
     const BlockProperties& properties = setup.properties[b];
     const int order = properties.fixed ? 1 : properties.order;
-    model.blocks.push_back(
-        make_block(cut.polygon, properties, order,
-                   properties.automatic_order ? setup.automatic_order.highest_order : order, setup.in_situ));
+    const bool automatic = properties.automatic_order && !properties.fixed;
+    model.blocks.push_back(make_block(cut.polygon, properties, order,
+                                      automatic ? setup.automatic_order.highest_order : order,
+                                      setup.in_situ));
     std::vector<std::vector<int>> joints;
     for (const auto& ring : cut.labels) {
       joints.emplace_back();
