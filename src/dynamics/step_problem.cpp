@@ -213,8 +213,7 @@ void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) cons
 }
 
 /// Adds what the forces at the points of a block do to its coefficients.
-void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
-                                    std::span<double> out) const {
+void StepProblem::add_point_forces(std::size_t b, std::span<const Vec2> forces, std::span<double> out) const {
   with_known_size(bodies_[b].size, [&](auto size) {
     const auto add = [&](double* sums) {
       for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
@@ -233,9 +232,9 @@ void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
   });
 }
 
-void StepProblem::add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const {
+void StepProblem::add_point_forces(std::span<const Vec2> forces, std::span<double> out) const {
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) add_vertex_forces(b, forces, out);
+    for (std::size_t b = begin; b < end; ++b) add_point_forces(b, forces, out);
   });
 }
 
@@ -267,7 +266,7 @@ void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2>
     for (std::size_t i = begin; i < end; ++i) {
       multiply(i, d, g);
       for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k) g[k] -= b_[k];
-      add_vertex_forces(i, forces, g);
+      add_point_forces(i, forces, g);
     }
   });
 }

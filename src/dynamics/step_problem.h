@@ -155,19 +155,19 @@ class StepProblem {
     add(row.to, -row.position * force);
   }
 
-  /// The same for all contacts, with force_of(c). at_vertices: scratch.
+  /// The same for all contacts, with force_of(c). at_points: scratch.
   template <typename ForceOf>
-  void add_contact_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices,
+  void add_contact_forces(const ForceOf& force_of, std::vector<Vec2>& at_points,
                           std::span<double> out) const {
-    gather_forces(force_of, at_vertices);
-    add_vertex_forces(at_vertices, out);
+    gather_forces(force_of, at_points);
+    add_point_forces(at_points, out);
   }
-  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time while a cache has it. at_vertices: scratch.
+  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time while a cache has it. at_points: scratch.
   template <typename ForceOf>
-  void gradient(std::span<const double> d, const ForceOf& force_of, std::vector<Vec2>& at_vertices,
+  void gradient(std::span<const double> d, const ForceOf& force_of, std::vector<Vec2>& at_points,
                 std::span<double> g) const {
-    gather_forces(force_of, at_vertices);
-    gradient_with(d, at_vertices, g);
+    gather_forces(force_of, at_points);
+    gradient_with(d, at_points, g);
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
@@ -211,10 +211,10 @@ class StepProblem {
 
   /// What the contacts do to every point.
   template <typename ForceOf>
-  void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices) const {
-    at_vertices.resize(points());
-    team_->for_range(at_vertices.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) at_vertices[v] = {};
+  void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_points) const {
+    at_points.resize(points());
+    team_->for_range(at_points.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) at_points[v] = {};
     });
     for_owned_rows([&](std::size_t c, Owner owner) {
       const Row& row = rows_[c];
@@ -222,7 +222,7 @@ class StepProblem {
       if (force == Vec2{}) return;
       const Pair pair = pair_of(force);
       const auto add = [&](std::uint32_t v, Pair p) {
-        store_pair(at_vertices[v], load_pair(at_vertices[v]) + p);
+        store_pair(at_points[v], load_pair(at_points[v]) + p);
       };
       if (owner.has(row.unknown_a)) add(row.vertex, pair);
       if (!owner.has(row.unknown_b)) return;
@@ -230,8 +230,8 @@ class StepProblem {
       add(row.to, -row.position * pair);
     });
   }
-  void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
-  void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
+  void add_point_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
+  void add_point_forces(std::span<const Vec2> forces, std::span<double> out) const;
   void gradient_with(std::span<const double> d, std::span<const Vec2> forces, std::span<double> g) const;
   [[nodiscard]] std::size_t points() const { return surface_->position.size() + on_curves_.size(); }
   [[nodiscard]] bool is_on_curve(std::uint32_t point) const { return point >= surface_->position.size(); }

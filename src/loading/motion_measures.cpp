@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -38,12 +39,11 @@ double peak_velocity(Vec2 v, Vec2 a, Vec2 b, double h) {
   // Its slope over s: p s² + q s + r.
   const double p = 1.5 * h * dot(d, d), q = 3.0 * h * dot(a, d), r = h * dot(a, a) + dot(v, d),
                root = q * q - 4.0 * p * r;
-  std::vector<double> ends{0.0, 1.0};
+  std::array<double, 4> ends{0.0, 0.0, 1.0, 1.0};
   if (p > 0.0 && root > 0.0) {
-    for (const double sign : {-1.0, 1.0})
-      ends.push_back(std::clamp((-q + sign * std::sqrt(root)) / (2.0 * p), 0.0, 1.0));
+    ends[1] = std::clamp((-q - std::sqrt(root)) / (2.0 * p), 0.0, 1.0);
+    ends[2] = std::clamp((-q + std::sqrt(root)) / (2.0 * p), 0.0, 1.0);
   }
-  std::sort(ends.begin(), ends.end());
   double peak = norm(v);
   for (std::size_t k = 1; k < ends.size(); ++k) {
     double low = ends[k - 1], high = ends[k];

@@ -84,9 +84,11 @@ class Plausibility {
   void warn_of_bond(const std::string& path, const JointKeys& own, const JointKeys& standard) {
     const double tension = own.tension.value_or(standard.tension.value_or(0.0));
     const double cohesion = own.cohesion.value_or(standard.cohesion.value_or(0.0));
-    if (!own.tension && !own.cohesion && !own.friction) return;
+    const bool own_bond = own.tension || own.cohesion;
+    if (!own_bond && !own.friction) return;
     if (tension > 0.0 && cohesion == 0.0) {
-      warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
+      if (own_bond)
+        warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
       return;
     }
     const double friction = own.friction.value_or(standard.friction.value_or(0.0));

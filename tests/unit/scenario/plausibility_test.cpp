@@ -131,6 +131,9 @@ TEST(Warnings, OfTensionThatHoldsNothing) {
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6"}), UnorderedElementsAre(of_set));
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6", "joints.cohesion=1e6"}),
               IsEmpty());
+  // A set of another friction says nothing anew of what it has from [joints].
+  EXPECT_THAT(warnings_of(runnable_domain, {"joints.tension=1e6", "joint_set.bedding.friction=20"}),
+              UnorderedElementsAre(HasSubstr("joints: tension without cohesion")));
   EXPECT_THAT(warnings_of(runnable_domain,
                           {"joints.tension=1e6", "joints.cohesion=1e6", "joint_set.bedding.cohesion=0"}),
               UnorderedElementsAre(of_set));
