@@ -75,6 +75,13 @@ TEST(Settling, ABlockOnSupportsIsNeverCalledMoving) {
   EXPECT_NEAR(observer.last.points[0].uy, -0.3 * 512.0 / (3.0 * 1e5 * 0.2 * 0.2 * 0.2 / 12.0), 0.02);
 }
 
+/// How a stage of settling ends.
+StageRecord settle(RunSetup setup) {
+  setup.stages = {stage("settle", StageKind::settle)};
+  RunObserver nobody;
+  return run(setup, {}, nobody).stages[0];
+}
+
 // Without gravity, a block that only its neighbour loads is in balance when the neighbour is.
 TEST(Settling, EndsWithoutGravity) {
   Scene scene(1e9, 30.0);
@@ -91,11 +98,9 @@ TEST(Settling, EndsWithoutGravity) {
   load.to = {0.0, 3.0};
   load.value = load.value_end = {0.0, -1e4};
   setup.loads.push_back(load);
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
-  EXPECT_TRUE(record.stages[0].equilibrium_reached);
-  EXPECT_LT(record.stages[0].steps, 200);
+  const StageRecord settled = settle(setup);
+  EXPECT_TRUE(settled.equilibrium_reached);
+  EXPECT_LT(settled.steps, 200);
 }
 
 // Pressed between two plates by the stress that it was cut in.
@@ -107,14 +112,10 @@ TEST(Settling, IsMeasuredByInSituStressWithoutGravity) {
   RunSetup setup = scene.setup;
   setup.gravity = {0.0, 0.0};
   setup.time_step = 0.002;
-  setup.in_situ = InSituStress{};
-  setup.in_situ->sxx = -1e6;
-  setup.in_situ->syy = -2e6;
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  RunObserver nobody;
-  const RunRecord record = run(setup, {}, nobody);
-  EXPECT_TRUE(record.stages[0].equilibrium_reached);
-  EXPECT_LT(record.stages[0].worst_residual_ratio, 0.01);
+  setup.in_situ = InSituStress{.sxx = -1e6, .syy = -2e6};
+  const StageRecord settled = settle(setup);
+  EXPECT_TRUE(settled.equilibrium_reached);
+  EXPECT_LT(settled.worst_residual_ratio, 0.01);
 }
 
 // The outline of an opening that is not there yet, in rock that is pulled along it: what is fused does not slide.
@@ -127,12 +128,8 @@ TEST(Settling, FusedRockMayBePulled) {
     for (cutting::EdgeLabel& label : block.labels[0]) label.kind = cutting::EdgeKind::excavation;
   }
   setup.time_step = 0.002;
-  setup.in_situ = InSituStress{};
-  setup.in_situ->syy = 1e4;
-  setup.in_situ->sxy = 1e3;
-  setup.stages.push_back(stage("settle", StageKind::settle));
-  RunObserver nobody;
-  EXPECT_TRUE(run(setup, {}, nobody).stages[0].equilibrium_reached);
+  setup.in_situ = InSituStress{.syy = 1e4, .sxy = 1e3};
+  EXPECT_TRUE(settle(setup).equilibrium_reached);
 }
 
 // A block that falls when the stage begins: what it has gained by then is taken out, and accounted for.
