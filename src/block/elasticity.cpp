@@ -143,29 +143,11 @@ double Elasticity::energy(const double* a) const {
   });
 }
 
-void Elasticity::add_force(const double* a, double* force) const {
-  with_points([&](auto size, auto points, const auto* gradients) {
-    for (std::size_t q = 0; q < points.size(); ++q) {
-      const auto* g = gradients + q * at(size);
-      const auto f = deformation(size, a, g);
-      const auto s = second_piola(f, points[q].initial);
-      // P = F S
-      const auto w = points[q].weight;
-      const auto pxx = w * (f.xx * s.xx + f.xy * s.xy), pxy = w * (f.xx * s.xy + f.xy * s.yy);
-      const auto pyx = w * (f.yx * s.xx + f.yy * s.xy), pyy = w * (f.yx * s.xy + f.yy * s.yy);
-      for (int k = 1; k < size; ++k) {
-        force[2 * k] += add_up(pxx * g[k].x + pxy * g[k].y);
-        force[2 * k + 1] += add_up(pyx * g[k].x + pyy * g[k].y);
-      }
-    }
-  });
-}
-
-/// The geometric part to `geometric`, (N − 1)², lower triangle, and the rest to the tangent.
+/// The geometric part of the tangent to `geometric`, (N − 1)², lower triangle, and the rest to the tangent.
 template <typename Number, typename Size>
-void Elasticity::add_tangent_at(Size size, std::span<const Point<Number>> points,
-                                const Gradient<Number>* gradients, const double* a, double viscous,
-                                double* geometric, double* tangent, int stride) const {
+void Elasticity::add_at(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
+                        const double* a, double viscous, double* force, double* geometric, double* tangent,
+                        int stride) const {
   struct Columns {
     Number x[3], y[3];  // of three rows
   };
@@ -191,7 +173,12 @@ void Elasticity::add_tangent_at(Size size, std::span<const Point<Number>> points
     const SymmetricTensor<Number> s = second_piola(f, points[q].initial);
     const Number w = points[q].weight;
     stressed[q] = {{w * s.xx, w * s.yy, w * s.xy}, (1.0 + viscous) * w};
+    // P = F S
+    const Number pxx = w * (f.xx * s.xx + f.xy * s.xy), pxy = w * (f.xx * s.xy + f.xy * s.yy);
+    const Number pyx = w * (f.yx * s.xx + f.yy * s.xy), pyy = w * (f.yx * s.xy + f.yy * s.yy);
     for (int k = 1; k < size; ++k) {
+      force[2 * k] += add_up(pxx * g[k].x + pxy * g[k].y);
+      force[2 * k + 1] += add_up(pyx * g[k].x + pyy * g[k].y);
       b[at(k) * count + q] = {{f.xx * g[k].x, f.xy * g[k].y, f.xx * g[k].y + f.xy * g[k].x},
                               {f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x}};
     }
@@ -234,10 +221,10 @@ void Elasticity::add_tangent_at(Size size, std::span<const Point<Number>> points
   }
 }
 
-void Elasticity::add_material_tangent(const double* a, double viscous, double* tangent, int stride,
-                                      double* geometric) const {
+void Elasticity::add_force_and_material_tangent(const double* a, double viscous, double* force,
+                                                double* tangent, int stride, double* geometric) const {
   with_points([&](auto size, auto points, const auto* gradients) {
-    add_tangent_at(size, points, gradients, a, viscous, geometric, tangent, stride);
+    add_at(size, points, gradients, a, viscous, force, geometric, tangent, stride);
   });
 }
 

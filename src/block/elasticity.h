@@ -35,13 +35,11 @@ class Elasticity {
 
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] double energy(const double* a) const;
-  /// force[2k + c] += f_k.
-  void add_force(const double* a, double* force) const;
-  /// The first integral of K, times 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt. tangent: 2N × 2N with leading
-  /// dimension `stride`, lower triangle added to (symmetric). geometric: room for the (N − 1)² numbers ∫ ∇φ_k · S ∇φ_l dA of the
-  /// second, k and l from 1 on; their lower triangle, by columns.
-  void add_material_tangent(const double* a, double viscous, double* tangent, int stride,
-                            double* geometric) const;
+  /// force[2k + c] += f_k, and the first integral of K, times 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt.
+  /// tangent: 2N × 2N with leading dimension `stride`, lower triangle added to (symmetric). geometric: room for the (N − 1)² numbers
+  /// ∫ ∇φ_k · S ∇φ_l dA of the second, k and l from 1 on; their lower triangle, by columns.
+  void add_force_and_material_tangent(const double* a, double viscous, double* force, double* tangent,
+                                      int stride, double* geometric) const;
   /// The second integral, given these numbers.
   void add_geometric_tangent(const double* geometric, double* tangent, int stride) const;
   /// ∫ δE : C : δE dA with δE the linear part of the strain that increment d adds at a: dᵀ (material part of K) d. J.
@@ -81,8 +79,9 @@ class Elasticity {
   [[nodiscard]] SymmetricTensor<Number> second_piola(const Deformation<Number>& f,
                                                      const SymmetricTensor<Number>& initial) const;
   template <typename Number, typename Size>
-  void add_tangent_at(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
-                      const double* a, double viscous, double* geometric, double* tangent, int stride) const;
+  void add_at(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
+              const double* a, double viscous, double* force, double* geometric, double* tangent,
+              int stride) const;
 
   int size_;
   double c11_, c12_, c33_;  ///< plane elasticity matrix; c22 = c11

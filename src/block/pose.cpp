@@ -1,9 +1,11 @@
 #include "block/pose.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
 #include "core/known_size.h"
+#include "core/lanes.h"
 
 namespace keyblock::block {
 
@@ -30,43 +32,73 @@ void rotation(double w, double& cosine, double& sine) {
   sine *= correction;
 }
 
+namespace {
+
+/// To whole lanes.
+int padded(int n) {
+  return (n + lane_count - 1) / lane_count * lane_count;
+}
+
+/// x and y of a block's coefficients from `first` on, as many as there are lanes; zero beyond its `size`.
+struct Coefficients {
+  Lanes x, y;
+  Coefficients(const double* a, int first, int size) {
+    const int left = 2 * (size - first);
+    const Lanes low = load_first(a + 2 * first, std::min(left, lane_count)),
+                high = left > lane_count
+                           ? load_first(a + 2 * first + lane_count, std::min(left - lane_count, lane_count))
+                           : Lanes{};
+    x = even_lanes(low, high);
+    y = odd_lanes(low, high);
+  }
+};
+
+}  // namespace
+
 Pose::Pose(const Polygon& region, const Basis& basis) : size_(basis.size()) {
+  const std::size_t n = at(size_ - 1), stride = at(padded(size_ - 1));
   std::vector<Vec2> g(at(size_));
-  w_.assign(at((size_ - 1) * (size_ - 2) / 2), 0.0);
+  w_.assign(n * stride, 0.0);
   const int degree = 2 * (basis.order() - 1);
   for (const WeightedPoint& point : polygon_rule(region, degree)) {
     basis.gradients(point.point, g.data());
-    double* w = w_.data();
-    for (std::size_t k = 1; k < g.size(); ++k) {
-      for (std::size_t l = k + 1; l < g.size(); ++l) *w++ += point.weight * cross(g[k], g[l]);
+    for (std::size_t l = 0; l < n; ++l) {
+      for (std::size_t k = 0; k < n; ++k) w_[l * stride + k] += point.weight * cross(g[k + 1], g[l + 1]);
     }
   }
-  w12_ = w_[0];
+  w12_ = w_[stride];
+  if (size_ == 3) w_ = {};
 }
 
-template <typename Of>
-double Pose::sum_of_pairs(const Of& of) const {
-  if (size_ == 3) return w12_ * of(1, 2);
-  double sum = 0.0;
+Pose::Sums Pose::sums(const double* d, const double* a) const {
+  if (size_ == 3)
+    return {w12_ * (a[2] * a[5] - a[4] * a[3]),
+            w12_ * (d[2] * a[4] + d[3] * a[5] - d[4] * a[2] - d[5] * a[3])};
+  Sums sums;
   with_known_size(size_, [&](auto size) {
-    const double* w = w_.data();
-    for (int k = 1; k < size; ++k) {
-      for (int l = k + 1; l < size; ++l) sum += *w++ * of(k, l);
+    const int n = size - 1, stride = padded(n);
+    for (int first = 0; first < n; first += lane_count) {
+      Lanes x{}, y{};  // W a
+      for (int l = 0; l < n; ++l) {
+        const Lanes column = load(&w_[at(l * stride + first)]);
+        x += column * broadcast(a[2 * l + 2]);
+        y += column * broadcast(a[2 * l + 3]);
+      }
+      const Coefficients of_a(a, first + 1, size), of_d(d, first + 1, size);
+      sums.area += 0.5 * sum(of_a.x * y - of_a.y * x);
+      sums.curl += sum(of_d.x * x + of_d.y * y);
     }
   });
-  return sum;
+  return sums;
 }
 
 double Pose::area(const double* a) const {
-  return sum_of_pairs([&](int k, int l) { return a[2 * k] * a[2 * l + 1] - a[2 * l] * a[2 * k + 1]; });
+  return sums(a, a).area;
 }
 
 double Pose::mean_spin(const double* increment, const double* a) const {
-  const double curl = sum_of_pairs([&](int k, int l) {
-    return increment[2 * k] * a[2 * l] + increment[2 * k + 1] * a[2 * l + 1] - increment[2 * l] * a[2 * k] -
-           increment[2 * l + 1] * a[2 * k + 1];
-  });
-  return 0.5 * curl / area(a);
+  const Sums of = sums(increment, a);
+  return 0.5 * of.curl / of.area;
 }
 
 void Pose::update(double w, const double* increment, double* a, double* v) const {

@@ -29,13 +29,15 @@ class Pose {
   void rotate(double w, double* u) const;
 
  private:
-  /// Σ W_kl of(k, l) over k < l.
-  template <typename Of>
-  [[nodiscard]] double sum_of_pairs(const Of& of) const;
+  struct Sums {
+    double area = 0.0;  ///< a_xᵀ W a_y
+    double curl = 0.0;  ///< D_xᵀ W a_x + D_yᵀ W a_y
+  };
+  [[nodiscard]] Sums sums(const double* increment, const double* a) const;
 
   int size_;
   double w12_ = 0.0;       ///< W_12: at order 1 all there is, and at hand
-  std::vector<double> w_;  ///< W_kl, 0 < k < l, row by row
+  std::vector<double> w_;  ///< of other orders all of W, k and l from 1 on: columns, padded to whole lanes
 };
 
 }  // namespace keyblock::block

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <type_traits>
 
 #include "contact/surface.h"
 #include "core/index.h"
@@ -14,17 +15,20 @@ namespace keyblock::contact {
 template <typename OfVertex>
 void for_curve_vertices(const Surface& surface, int edge, double position, const OfVertex& of_vertex) {
   const DividedEdge& whole = surface.divided[at(edge)];
-  const double* points = whole.points;
+  const double *points = whole.division->points.data(), *scales = whole.division->scales.data();
   const double from = points[edge - whole.first], to = points[edge - whole.first + 1],
                here = from + position * (to - from);
-  for (int j = 0; j <= whole.pieces; ++j) {
-    double share = 1.0;
-    for (int i = 0; i <= whole.pieces; ++i) {
-      if (i != j) share *= (here - points[i]) / (points[j] - points[i]);
+  const auto for_pieces = [&](auto pieces) {
+    for (int j = 0; j <= pieces; ++j) {
+      double share = scales[j];
+      for (int i = 0; i <= pieces; ++i) {
+        if (i != j) share *= here - points[i];
+      }
+      of_vertex(at(j < pieces ? whole.first + j : surface.next[at(whole.first + pieces - 1)]), share);
     }
-    const int last = whole.first + whole.pieces - 1;
-    of_vertex(at(j < whole.pieces ? whole.first + j : surface.next[at(last)]), share);
-  }
+  };
+  if (whole.pieces == 2) return for_pieces(std::integral_constant<int, 2>{});  // of order 2: unrolled
+  for_pieces(whole.pieces);
 }
 
 /// Whether an edge is one of several pieces, and so on a curve.

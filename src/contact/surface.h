@@ -6,12 +6,18 @@
 
 namespace keyblock::contact {
 
+/// Where edges of m pieces are divided, in the reference position: m + 1 points from 0 to 1, ascending.
+struct EdgeDivision {
+  std::vector<double> points;
+  std::vector<double> scales;  ///< of Lagrange's polynomials through them: 1 / Π (p_j − p_i)
+  explicit EdgeDivision(std::vector<double> ascending);
+};
+
 /// A straight edge of a block of order > 1, of as many pieces as contact divides it into.
 struct DividedEdge {
   int first = 0;   ///< its first piece, by the vertex where that begins; the others follow
   int pieces = 1;  ///< m
-  const double* points =
-      nullptr;  ///< m + 1, ascending from 0 to 1: where it is divided in the reference position
+  const EdgeDivision* division = nullptr;
 };
 
 /// The outlines of all blocks as contact sees them: vertices joined by straight edges. Edge k runs from vertex k to

@@ -35,6 +35,9 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     bodies_.clear();
     body_force_.clear();
     largest_size_ = 0;
+    most_vertices_ = 0;
+    for (const contact::DividedEdge& edge : surface.divided)
+      most_vertices_ = std::max(most_vertices_, at(edge.pieces) + 1);
     std::size_t used = 0;
     for (const Block& block : model.blocks) {
       largest_size_ = std::max(largest_size_, block.size);
@@ -85,24 +88,26 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   std::fill(h, h + stride * n, 0.0);
   inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                 (drive.is_static ? drive.inertia_scale[i] : 1.0);
-  block.elasticity.add_force(a, b);
-  for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
-  if (!drive.is_static && !state.acceleration.empty()) {
-    const double c_a = drive.rule[i].acceleration() * block.material.density,
-                 c_f = drive.rule[i].force() * block.material.density;
-    for (std::size_t k = 0; k < at(n); ++k)
-      b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
-  }
-  b[0] += block.body_force() * acceleration.x;
-  b[1] += block.body_force() * acceleration.y;
   const double frequency =
       std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
   viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
+  const auto linearize = [&](double* geometric) {
+    block.elasticity.add_force_and_material_tangent(a, viscous_[i], b, h, stride, geometric);
+    for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+    if (!drive.is_static && !state.acceleration.empty()) {
+      const double c_a = drive.rule[i].acceleration() * block.material.density,
+                   c_f = drive.rule[i].force() * block.material.density;
+      for (std::size_t k = 0; k < at(n); ++k)
+        b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
+    }
+    b[0] += block.body_force() * acceleration.x;
+    b[1] += block.body_force() * acceleration.y;
+  };
   const int m = size - 1;
   const double floor = geometric_floor * inertia_[i];
   if constexpr (std::is_same_v<Size, std::integral_constant<int, 6>>) {
     block::MatrixOfOrder2& geometric = pressed.geometric[pressed.count];
-    block.elasticity.add_material_tangent(a, viscous_[i], h, stride, geometric.data());
+    linearize(geometric.data());
     if (!block::may_lie_below(geometric.data(), m, floor)) return finish_block(size, i, geometric.data());
     pressed.block[pressed.count] = i;
     pressed.floor[pressed.count] = floor;
@@ -111,7 +116,7 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
     std::array<double, 4> of_order_1;
     std::vector<double> many(m > 2 ? at(m * m) : 0);
     double* geometric = m > 2 ? many.data() : of_order_1.data();
-    block.elasticity.add_material_tangent(a, viscous_[i], h, stride, geometric);
+    linearize(geometric);
     if (m == 2 || block::may_lie_below(geometric, m, floor)) block::raise_eigenvalues(geometric, m, floor);
     finish_block(size, i, geometric);
   }
@@ -189,8 +194,10 @@ void StepProblem::add_supports(const State& state, const Drive& drive) {
 
 void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
                              std::vector<double>& b) const {
-  const auto add = [&](std::uint32_t v, Vec2 at_vertex, std::vector<double>& part) {
-    add_at(phi_of(v), body_of(v).size, at_vertex, part.data());
+  const auto add = [&](std::uint32_t point, Vec2 at_point, std::vector<double>& part) {
+    for_vertices_of(point, [&](std::size_t v, double share) {
+      add_at(phi_of(v), body_of(point).size, share * at_point, part.data());
+    });
   };
   a.assign(2 * at(body_of(row.vertex).size), 0.0);
   b.assign(2 * at(body_of(row.from).size), 0.0);
@@ -200,25 +207,32 @@ void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>
 }
 
 void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) const {
-  u.resize(points());
+  const std::size_t vertices = surface_->position.size();
+  u.resize(vertices + (most_vertices_ > 0 ? rows_.size() : 0));
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       for_vertex_values(*surface_, b, bodies_[b].size, &d[bodies_[b].first],
                         [&](std::size_t v, Vec2 x) { u[v] = x; });
-      for_points_on_curves(b, [&](std::uint32_t point) {
-        u[point] = field_at(phi_of(point), bodies_[b].size, &d[bodies_[b].first]);
-      });
+    }
+  });
+  if (most_vertices_ == 0) return;
+  team_->for_range(rows_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (!is_on_curve(rows_[c].from)) continue;
+      Pair sum{};
+      for_vertices_of_curve(c, [&](std::size_t v, double share) { sum += share * load_pair(u[v]); });
+      u[vertices + c] = vec2_of(sum);
     }
   });
 }
 
-/// Adds what the forces at the points of a block do to its coefficients.
-void StepProblem::add_point_forces(std::size_t b, std::span<const Vec2> forces, std::span<double> out) const {
+/// Adds what the forces at the vertices of a block do to its coefficients.
+void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
+                                    std::span<double> out) const {
   with_known_size(bodies_[b].size, [&](auto size) {
     const auto add = [&](double* sums) {
       for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
         add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], sums);
-      for_points_on_curves(b, [&](std::uint32_t point) { add_at(phi_of(point), size, forces[point], sums); });
     };
     double* coefficients = &out[bodies_[b].first];
     if constexpr (std::is_same_v<decltype(size), int>) {
@@ -232,9 +246,9 @@ void StepProblem::add_point_forces(std::size_t b, std::span<const Vec2> forces, 
   });
 }
 
-void StepProblem::add_point_forces(std::span<const Vec2> forces, std::span<double> out) const {
+void StepProblem::add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const {
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) add_point_forces(b, forces, out);
+    for (std::size_t b = begin; b < end; ++b) add_vertex_forces(b, forces, out);
   });
 }
 
@@ -266,7 +280,7 @@ void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2>
     for (std::size_t i = begin; i < end; ++i) {
       multiply(i, d, g);
       for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k) g[k] -= b_[k];
-      add_point_forces(i, forces, g);
+      add_vertex_forces(i, forces, g);
     }
   });
 }

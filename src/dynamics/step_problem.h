@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/detection.h"
+#include "contact/edge_curve.h"
 #include "contact/law.h"
 #include "core/parallel.h"
 #include "dynamics/integrator.h"
@@ -103,13 +104,17 @@ class StepProblem {
   [[nodiscard]] double inertia_between(const contact::Contact& c) const;
   /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
-  /// u of increment D, m, at every point: the vertices of the surface, then the points on curved edges.
+  /// u of increment D, m, at every point: the vertices of the surface, then, where edges are divided, one of each contact.
   void displace(std::span<const double> d, std::vector<Vec2>& u) const;
   /// r of a contact for increment D, but for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
-    const auto displacement = [&](std::uint32_t v) {
-      const Body& body = body_of(v);
-      return field_at(phi_of(v), body.size, &d[body.first]);
+    const auto displacement = [&](std::uint32_t point) {
+      const Body& body = body_of(point);
+      Vec2 u;
+      for_vertices_of(point, [&](std::size_t v, double share) {
+        u += share * field_at(phi_of(v), body.size, &d[body.first]);
+      });
+      return u;
     };
     return displacement(row.vertex) - lerp(displacement(row.from), displacement(row.to), row.position);
   }
@@ -146,28 +151,30 @@ class StepProblem {
   void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.
   void add_contact_force(const Row& row, Vec2 force, std::span<double> out) const {
-    const auto add = [&](std::uint32_t v, Vec2 at_vertex) {
-      const Body& body = body_of(v);
-      add_at(phi_of(v), body.size, at_vertex, &out[body.first]);
+    const auto add = [&](std::uint32_t point, Vec2 at_point) {
+      const Body& body = body_of(point);
+      for_vertices_of(point, [&](std::size_t v, double share) {
+        add_at(phi_of(v), body.size, share * at_point, &out[body.first]);
+      });
     };
     add(row.vertex, force);
     add(row.from, -(1.0 - row.position) * force);
     add(row.to, -row.position * force);
   }
 
-  /// The same for all contacts, with force_of(c). at_points: scratch.
+  /// The same for all contacts, with force_of(c). at_vertices: scratch.
   template <typename ForceOf>
-  void add_contact_forces(const ForceOf& force_of, std::vector<Vec2>& at_points,
+  void add_contact_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices,
                           std::span<double> out) const {
-    gather_forces(force_of, at_points);
-    add_point_forces(at_points, out);
+    gather_forces(force_of, at_vertices);
+    add_vertex_forces(at_vertices, out);
   }
-  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time while a cache has it. at_points: scratch.
+  /// g = H D − b + Σ (∂r_c/∂D)ᵀ force_of(c), a block at a time while a cache has it. at_vertices: scratch.
   template <typename ForceOf>
-  void gradient(std::span<const double> d, const ForceOf& force_of, std::vector<Vec2>& at_points,
+  void gradient(std::span<const double> d, const ForceOf& force_of, std::vector<Vec2>& at_vertices,
                 std::span<double> g) const {
-    gather_forces(force_of, at_points);
-    gradient_with(d, at_points, g);
+    gather_forces(force_of, at_vertices);
+    gradient_with(d, at_vertices, g);
   }
 
   [[nodiscard]] std::span<const double> right() const { return b_; }
@@ -206,55 +213,66 @@ class StepProblem {
   /// Where a contact is on a curved edge.
   struct PointOnCurve {
     int edge;
-    std::size_t phi;  ///< first of its basis functions in phi_on_curves_
+    int first, pieces, end;  ///< vertices of the whole edge: first … first + pieces − 1, end
   };
 
-  /// What the contacts do to every point.
+  /// What the contacts do to every vertex.
   template <typename ForceOf>
-  void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_points) const {
-    at_points.resize(points());
-    team_->for_range(at_points.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) at_points[v] = {};
+  void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_vertices) const {
+    at_vertices.resize(surface_->position.size());
+    team_->for_range(at_vertices.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) at_vertices[v] = {};
     });
     for_owned_rows([&](std::size_t c, Owner owner) {
       const Row& row = rows_[c];
       const Vec2 force = force_of(c);
       if (force == Vec2{}) return;
       const Pair pair = pair_of(force);
-      const auto add = [&](std::uint32_t v, Pair p) {
-        store_pair(at_points[v], load_pair(at_points[v]) + p);
+      const auto add = [&](std::size_t v, Pair p) {
+        store_pair(at_vertices[v], load_pair(at_vertices[v]) + p);
       };
       if (owner.has(row.unknown_a)) add(row.vertex, pair);
       if (!owner.has(row.unknown_b)) return;
-      add(row.from, -(1.0 - row.position) * pair);
-      add(row.to, -row.position * pair);
+      if (is_on_curve(row.from)) {
+        for_vertices_of_curve(c, [&](std::size_t v, double share) { add(v, -share * pair); });
+      } else {
+        add(row.from, -(1.0 - row.position) * pair);
+        add(row.to, -row.position * pair);
+      }
     });
   }
-  void add_point_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
-  void add_point_forces(std::span<const Vec2> forces, std::span<double> out) const;
+  void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
+  void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
   void gradient_with(std::span<const double> d, std::span<const Vec2> forces, std::span<double> g) const;
-  [[nodiscard]] std::size_t points() const { return surface_->position.size() + on_curves_.size(); }
   [[nodiscard]] bool is_on_curve(std::uint32_t point) const { return point >= surface_->position.size(); }
-  [[nodiscard]] const PointOnCurve& on_curve(std::uint32_t point) const {
-    return on_curves_[point - surface_->position.size()];
+  [[nodiscard]] std::size_t contact_on_curve(std::uint32_t point) const {
+    return point - surface_->position.size();
   }
   [[nodiscard]] const Body& body_of(std::uint32_t point) const {
-    return bodies_[at(surface_->block[is_on_curve(point) ? at(on_curve(point).edge) : point])];
+    return bodies_[at(
+        surface_->block[is_on_curve(point) ? at(on_curves_[contact_on_curve(point)].edge) : point])];
   }
-  [[nodiscard]] const double* phi_of(std::uint32_t point) const {
-    return is_on_curve(point) ? &phi_on_curves_[on_curve(point).phi]
-                              : &surface_->phi[surface_->phi_begin[point]];
+  [[nodiscard]] const double* phi_of(std::size_t vertex) const {
+    return &surface_->phi[surface_->phi_begin[vertex]];
   }
-  /// Calls of_point(point) for those of a block.
-  template <typename OfPoint>
-  void for_points_on_curves(std::size_t block, const OfPoint& of_point) const {
-    if (first_on_curve_.empty()) return;
-    for (std::size_t k = first_on_curve_[block]; k < first_on_curve_[block + 1]; ++k)
-      of_point(static_cast<std::uint32_t>(surface_->position.size() + k));
+  /// Calls of_vertex(v, share) for the vertices that a point hangs on: itself, or all of its edge.
+  template <typename OfVertex>
+  void for_vertices_of(std::uint32_t point, const OfVertex& of_vertex) const {
+    if (!is_on_curve(point)) return of_vertex(at(point), 1.0);
+    for_vertices_of_curve(contact_on_curve(point), of_vertex);
   }
-  void find_points_on_curves(std::span<const contact::Contact> contacts);
-  /// φ of the block of a curved edge at one of its points.
-  void evaluate_on_curve(int edge, double position, double* phi) const;
+  /// Of the point of contact c.
+  template <typename OfVertex>
+  void for_vertices_of_curve(std::size_t c, const OfVertex& of_vertex) const {
+    const PointOnCurve& point = on_curves_[c];
+    const double* shares = &shares_on_curves_[c * most_vertices_];
+    const auto for_pieces = [&](auto pieces) {
+      for (int j = 0; j < pieces; ++j) of_vertex(at(point.first + j), shares[j]);
+      of_vertex(at(point.end), shares[pieces]);
+    };
+    if (point.pieces == 2) return for_pieces(std::integral_constant<int, 2>{});
+    for_pieces(point.pieces);
+  }
   template <typename Do>
   void with_phi(const Row& row, double position, const Do& what) const;
   /// Some of the unknown blocks, those of a thread. What contacts add to a block is added by its owner, in the order of the contacts,
@@ -299,7 +317,7 @@ class StepProblem {
   void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs);
-  void build_row(const Drive& drive, const contact::Contact& c, Row& row) const;
+  void build_row(const Drive& drive, const contact::Contact& contact, std::size_t c);
   void find_owners();
   [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
@@ -309,11 +327,10 @@ class StepProblem {
   ThreadTeam* team_ = nullptr;
   std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
-  SpringArray springs_;                  ///< of every row
-  std::vector<PointOnCurve> on_curves_;  ///< block by block
-  std::vector<std::size_t>
-      first_on_curve_;  ///< of each block, and where the last one ends; empty: no edge is divided
-  std::vector<double> phi_on_curves_;
+  SpringArray springs_;                   ///< of every row
+  std::vector<PointOnCurve> on_curves_;   ///< of every row, where there are any
+  std::vector<double> shares_on_curves_;  ///< of their vertices, most_vertices_ of every row
+  std::size_t most_vertices_ = 0;         ///< of a divided edge; 0: no edge is divided
   bool is_static_ = false, may_break_ = false, lacks_room_ = false;
   // Of several threads alone.
   static constexpr std::size_t rows_of_piece = 256;

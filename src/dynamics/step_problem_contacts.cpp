@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 
-#include "contact/edge_curve.h"
 #include "core/index.h"
 #include "core/known_size.h"
 #include "dynamics/contact_lanes.h"
@@ -15,7 +13,10 @@ namespace keyblock::dynamics {
 void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contact> contacts,
                              std::span<const int> pairs) {
   rows_.resize(contacts.size());
-  find_points_on_curves(contacts);
+  if (most_vertices_ > 0) {
+    on_curves_.resize(contacts.size());
+    shares_on_curves_.resize(contacts.size() * most_vertices_);
+  }
   springs_.resize(contacts.size());
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
   std::atomic<bool> may_break = false, lacks_room = false;
@@ -24,7 +25,7 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
     for (std::size_t first = begin; first < end; first += lane_count) {
       const std::size_t last = std::min(first + lane_count, end);
       for (std::size_t k = first; k < last; ++k) {
-        build_row(drive, contacts[k], rows_[k]);
+        build_row(drive, contacts[k], k);
         rows_[k].pair = pairs[at(contacts[k].candidate)];
         if (!drive.turned.empty())
           rows_[k].moved += drive.turned[k].x * rows_[k].normal + drive.turned[k].y * rows_[k].tangent();
@@ -66,58 +67,26 @@ void StepProblem::set_pairs(std::span<const contact::Contact> contacts, std::spa
   lacks_room_ = false;
 }
 
-/// Block by block, in the order of the contacts. Fixed blocks have straight edges.
-void StepProblem::find_points_on_curves(std::span<const contact::Contact> contacts) {
-  on_curves_.clear();
-  phi_on_curves_.clear();
-  first_on_curve_.clear();
-  if (surface_->divided.empty()) return;
-  first_on_curve_.assign(bodies_.size() + 2, 0);  // one ahead, until all have their place
-  for (const contact::Contact& c : contacts)
-    first_on_curve_[at(c.block_b) + 2] += contact::is_curved(*surface_, c.edge) ? 1 : 0;
-  std::partial_sum(first_on_curve_.begin(), first_on_curve_.end(), first_on_curve_.begin());
-  on_curves_.resize(first_on_curve_.back());
-  std::size_t used = 0;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const contact::Contact& c = contacts[k];
-    if (!contact::is_curved(*surface_, c.edge)) continue;
-    const std::size_t place = first_on_curve_[at(c.block_b) + 1]++;
-    on_curves_[place] = {c.edge, used};
-    used += at(bodies_[at(c.block_b)].size);
-    rows_[k].from = rows_[k].to = static_cast<std::uint32_t>(surface_->position.size() + place);
+void StepProblem::build_row(const Drive& drive, const contact::Contact& contact, std::size_t c) {
+  Row& row = rows_[c];
+  row.vertex = static_cast<std::uint32_t>(contact.vertex);
+  if (most_vertices_ > 0 && contact::is_curved(*surface_, contact.edge)) {
+    const contact::DividedEdge& whole = surface_->divided[at(contact.edge)];
+    on_curves_[c] = {contact.edge, whole.first, whole.pieces,
+                     surface_->next[at(whole.first + whole.pieces - 1)]};
+    double* share = &shares_on_curves_[c * most_vertices_];
+    contact::for_curve_vertices(*surface_, contact.edge, contact.position,
+                                [&](std::size_t, double of_vertex) { *share++ = of_vertex; });
+    row.from = row.to = static_cast<std::uint32_t>(surface_->position.size() + c);
+  } else {
+    row.from = static_cast<std::uint32_t>(contact.edge);
+    row.to = static_cast<std::uint32_t>(surface_->next[at(contact.edge)]);
   }
-  first_on_curve_.pop_back();
-  phi_on_curves_.resize(used);
-  team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const contact::Contact& c = contacts[k];
-      if (contact::is_curved(*surface_, c.edge))
-        evaluate_on_curve(c.edge, c.position, &phi_on_curves_[on_curve(rows_[k].from).phi]);
-    }
-  });
-}
-
-void StepProblem::evaluate_on_curve(int edge, double position, double* phi) const {
-  with_known_size(bodies_[at(surface_->block[at(edge)])].size, [&](auto size) {
-    std::fill_n(phi, int{size}, 0.0);
-    contact::for_curve_vertices(*surface_, edge, position, [&](std::size_t v, double share) {
-      const double* of_vertex = &surface_->phi[surface_->phi_begin[v]];
-      for (int k = 0; k < size; ++k) phi[k] += share * of_vertex[k];
-    });
-  });
-}
-
-void StepProblem::build_row(const Drive& drive, const contact::Contact& c, Row& row) const {
-  row.vertex = static_cast<std::uint32_t>(c.vertex);
-  if (!contact::is_curved(*surface_, c.edge)) {  // else it has its point
-    row.from = static_cast<std::uint32_t>(c.edge);
-    row.to = static_cast<std::uint32_t>(surface_->next[at(c.edge)]);
-  }
-  row.position = c.position;
-  row.unknown_a = bodies_[at(c.block_a)].unknown;
-  row.unknown_b = bodies_[at(c.block_b)].unknown;
-  row.normal = c.normal;
-  row.moved = drive.prescribed_between(c);
+  row.position = contact.position;
+  row.unknown_a = bodies_[at(contact.block_a)].unknown;
+  row.unknown_b = bodies_[at(contact.block_b)].unknown;
+  row.normal = contact.normal;
+  row.moved = drive.prescribed_between(contact);
 }
 
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.

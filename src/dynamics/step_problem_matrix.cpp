@@ -121,12 +121,23 @@ void StepProblem::add_springs(std::span<const double> normal, std::span<const do
 /// Calls what(φ) with the basis functions of block b at a point of its edge.
 template <typename Do>
 void StepProblem::with_phi(const Row& row, double position, const Do& what) const {
-  if (is_on_curve(row.from) && position == row.position) return what(phi_of(row.from));
-  const double *from = phi_of(row.from), *to = phi_of(row.to);
   const auto fill = [&](auto size, double* phi) {
     if (is_on_curve(row.from)) {
-      evaluate_on_curve(on_curve(row.from).edge, position, phi);
+      const std::size_t c = contact_on_curve(row.from);
+      const auto for_vertices = [&](const auto& add) {
+        if (position == row.position) {
+          for_vertices_of_curve(c, add);
+        } else {
+          contact::for_curve_vertices(*surface_, on_curves_[c].edge, position, add);
+        }
+      };
+      std::fill_n(phi, int{size}, 0.0);
+      for_vertices([&](std::size_t v, double share) {
+        const double* of_vertex = phi_of(v);
+        for (int k = 0; k < size; ++k) phi[k] += share * of_vertex[k];
+      });
     } else {
+      const double *from = phi_of(row.from), *to = phi_of(row.to);
       for (int k = 0; k < size; ++k) phi[k] = (1.0 - position) * from[k] + position * to[k];
     }
     what(phi);

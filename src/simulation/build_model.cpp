@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
@@ -76,8 +78,11 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties, int 
 
 /// Where an edge of so many pieces is divided, as a share of it: at the points of Gauss and Lobatto's rule, whose weights are what forces on
 /// the vertices have to be for a traction along the edge to do the same work on a block of that order.
-const std::vector<double>& division(int pieces) {
-  return gauss_lobatto(pieces + 1).points;
+const contact::EdgeDivision& division(int pieces) {
+  static std::map<int, contact::EdgeDivision> divisions;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  return divisions.try_emplace(pieces, gauss_lobatto(pieces + 1).points).first->second;
 }
 
 /// Surface::start_share of the pieces: such that each vertex comes to its weight.
@@ -103,7 +108,7 @@ void evaluate_basis(contact::Surface& surface, const Block& block, int vertex) {
       for (int piece = 0; piece < pieces; ++piece, ++vertex) {
         surface.phi_begin[at(vertex)] = surface.phi.size();
         surface.phi.resize(surface.phi.size() + at(block.size));
-        block.basis.evaluate(lerp(here, after, division(pieces)[at(piece)]),
+        block.basis.evaluate(lerp(here, after, division(pieces).points[at(piece)]),
                              surface.phi.data() + surface.phi_begin[at(vertex)]);
       }
     }
@@ -123,11 +128,11 @@ void add_to_surface(Model& model, const Block& block, const std::vector<std::vec
       const std::vector<double> shares = start_shares(pieces);
       surface.start_share.insert(surface.start_share.end(), shares.begin(), shares.end());
       surface.divided.insert(surface.divided.end(), at(pieces),
-                             {surface.vertices(), pieces, division(pieces).data()});
+                             {surface.vertices(), pieces, &division(pieces)});
       for (int piece = 0; piece < pieces; ++piece) {
         surface.block.push_back(number);
         surface.joint.push_back(joints[r][k]);
-        surface.position.push_back(lerp(here, after, division(pieces)[at(piece)]));
+        surface.position.push_back(lerp(here, after, division(pieces).points[at(piece)]));
         surface.reflex.push_back(piece == 0 && cross(here - before, after - here) < 0.0);
       }
     }

@@ -141,9 +141,17 @@ void add_tangent(const Elasticity& elasticity, const double* a, double viscous, 
                  int stride) {
   const int m = elasticity.size() - 1;
   std::vector<double> geometric(static_cast<std::size_t>(m * m));
-  elasticity.add_material_tangent(a, viscous, tangent, stride, geometric.data());
+  std::vector<double> force(static_cast<std::size_t>(2 * elasticity.size()));
+  elasticity.add_force_and_material_tangent(a, viscous, force.data(), tangent, stride, geometric.data());
   if (may_lie_below(geometric.data(), m, floor)) raise_eigenvalues(geometric.data(), m, floor);
   elasticity.add_geometric_tangent(geometric.data(), tangent, stride);
+}
+
+std::vector<double> force_of(const Elasticity& elasticity, const std::vector<double>& a) {
+  std::vector<double> force(a.size(), 0.0), tangent(a.size() * a.size()), geometric(tangent.size());
+  elasticity.add_force_and_material_tangent(a.data(), 0.0, force.data(), tangent.data(),
+                                            static_cast<int>(a.size()), geometric.data());
+  return force;
 }
 
 class ElasticityOrder : public ::testing::TestWithParam<int> {};
@@ -153,19 +161,18 @@ TEST_P(ElasticityOrder, ForceAndTangentAreDerivatives) {
   const Elasticity elasticity(l_shape, basis, rock, stress);
   const std::vector<double> a = disturbed(basis, 0.02, 1);
   const int n = 2 * basis.size();
-  std::vector<double> force(a.size(), 0.0), tangent(a.size() * a.size(), 0.0);
-  elasticity.add_force(a.data(), force.data());
+  const std::vector<double> force = force_of(elasticity, a);
+  std::vector<double> tangent(a.size() * a.size(), 0.0);
   add_tangent(elasticity, a.data(), 0.0, 1e30, tangent.data(), n);
   double force_scale = 0.0, tangent_scale = 0.0;
   for (const double f : force) force_scale = std::max(force_scale, std::abs(f));
   for (const double k : tangent) tangent_scale = std::max(tangent_scale, std::abs(k));
   const double h = 1e-5;
   for (int j = 0; j < n; ++j) {
-    std::vector<double> up = a, down = a, force_up(a.size(), 0.0), force_down(a.size(), 0.0);
+    std::vector<double> up = a, down = a;
     up[static_cast<std::size_t>(j)] += h;
     down[static_cast<std::size_t>(j)] -= h;
-    elasticity.add_force(up.data(), force_up.data());
-    elasticity.add_force(down.data(), force_down.data());
+    const std::vector<double> force_up = force_of(elasticity, up), force_down = force_of(elasticity, down);
     const double slope = (elasticity.energy(up.data()) - elasticity.energy(down.data())) / (2 * h);
     EXPECT_NEAR(slope / force_scale, force[static_cast<std::size_t>(j)] / force_scale, 1e-6);
     for (int i = j; i < n; ++i) {
@@ -313,9 +320,10 @@ TEST(Elasticity, StiffnessOfAThinPlankDoesNotDependOnHowItLies) {
         for (const Vec2 x : basis.identity()) a.insert(a.end(), {x.x, x.y});
         const Eigen::Index n = 2 * basis.size();
         Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(n, n);
-        std::vector<double> geometric(static_cast<std::size_t>(n * n));
+        std::vector<double> geometric(static_cast<std::size_t>(n * n)), force(a.size());
         Elasticity(plank, basis, rock, std::nullopt)
-            .add_material_tangent(a.data(), 0.0, tangent.data(), static_cast<int>(n), geometric.data());
+            .add_force_and_material_tangent(a.data(), 0.0, force.data(), tangent.data(), static_cast<int>(n),
+                                            geometric.data());
         const Eigen::MatrixXd whole = tangent.selfadjointView<Eigen::Lower>();
         return std::pair{whole.trace(), whole.norm()};
       };

@@ -336,7 +336,7 @@ TEST(Run, GoldenStateHash) {
   two.threads = 2;
   const RunRecord record = run(shaken_wall(), {}, nobody);
   EXPECT_EQ(record.open_close.unconverged_steps, 0);
-  EXPECT_EQ(record.state_hash, "9c8ebb755998946f");
+  EXPECT_EQ(record.state_hash, "7c116789c33e828e");
   EXPECT_EQ(run(shaken_wall(), two, nobody).state_hash, record.state_hash);
   EXPECT_LT(record.max_overlap.depth, 1e-3);
 }

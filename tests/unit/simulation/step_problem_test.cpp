@@ -194,9 +194,9 @@ TEST(StepProblem, EveryPressedBlockHasItsOwnTangent) {
     const Block& block = s.model.blocks[i];
     const int n = 2 * block.size, m = block.size - 1;
     const double floor = 0.05 * problem.inertia(i);
-    std::vector<double> tangent(at(n * n), 0.0), geometric(at(m * m));
-    block.elasticity.add_material_tangent(&s.state.position[block.first], 0.0, tangent.data(), n,
-                                          geometric.data());
+    std::vector<double> force(at(n)), tangent(at(n * n), 0.0), geometric(at(m * m));
+    block.elasticity.add_force_and_material_tangent(&s.state.position[block.first], 0.0, force.data(),
+                                                    tangent.data(), n, geometric.data());
     if (block::may_lie_below(geometric.data(), m, floor)) {
       block::raise_eigenvalues(geometric.data(), m, floor);
       raised += block.size == 6;
