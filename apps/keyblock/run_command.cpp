@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/folder.h"
+#include "core/parallel.h"
 #include "interrupt.h"
 #include "outcome.h"
 #include "progress.h"
@@ -55,6 +56,10 @@ std::vector<std::filesystem::path> inputs_of(const scenario::Scenario& scenario)
 simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const RunArguments& arguments,
                                      ResultFolder& guard) {
   const std::filesystem::path folder = arguments.folder;
+  if (arguments.threads > processors()) {
+    std::cerr << "warning: --threads " << arguments.threads << ": there are " << processors()
+              << " processors, and more threads take longer\n";
+  }
   if (arguments.resume && !guard.resumes()) {
     std::cerr << arguments.folder << ": nothing to go on from; starting at the beginning\n";
   }

@@ -16,10 +16,9 @@ namespace keyblock {
 namespace {
 
 /// Waits for a while for what is about to happen: the loops of a step follow each other within microseconds, and to wake a
-/// thread takes longer than many of them. False when it did not.
+/// thread takes longer than many of them. False when it did not. looks: 0, not at all.
 template <typename Condition>
-bool happens_soon(const Condition& condition) {
-  constexpr int looks = 2'000;  // some 50 µs
+bool happens_soon(int looks, const Condition& condition) {
   for (int k = 0; k < looks; ++k) {
     if (condition()) return true;
 #if defined(__x86_64__)
@@ -41,6 +40,7 @@ struct ThreadTeam::Shared {
   std::atomic<int> running = 0;
   std::atomic<bool> quit = false;
   std::vector<std::exception_ptr> errors;
+  int looks = 0;  // before a thread sleeps
 
   void piece(int rank, int size) {
     const auto at = [&](int r) { return n * static_cast<std::size_t>(r) / static_cast<std::size_t>(size); };
@@ -55,7 +55,7 @@ struct ThreadTeam::Shared {
     unsigned long seen = 0;
     const auto is_called = [&] { return quit || generation != seen; };
     for (;;) {
-      if (!happens_soon(is_called)) {
+      if (!happens_soon(looks, is_called)) {
         std::unique_lock lock(mutex);
         wake.wait(lock, is_called);
       }
@@ -79,10 +79,16 @@ struct ThreadTeam::Shared {
   }
 };
 
+int processors() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 ThreadTeam::ThreadTeam(int threads) : size_(std::max(1, threads)) {
   if (size_ == 1) return;
   shared_ = std::make_unique<Shared>();
   shared_->errors.resize(static_cast<std::size_t>(size_));
+  // Some 50 µs; where threads share a processor, one that waits awake keeps it from those that are waited for.
+  if (size_ <= processors()) shared_->looks = 2'000;
   try {
     for (int rank = 1; rank < size_; ++rank) {
       shared_->workers.emplace_back([this, rank] { shared_->work(rank, size_); });
@@ -115,7 +121,7 @@ void ThreadTeam::for_range(std::size_t n, std::size_t grain,
   shared_->wake.notify_all();
   shared_->piece(0, size_);
   const auto is_done = [&] { return shared_->running == 0; };
-  if (!happens_soon(is_done)) {
+  if (!happens_soon(shared_->looks, is_done)) {
     std::unique_lock lock(shared_->mutex);
     shared_->done.wait(lock, is_done);
   }

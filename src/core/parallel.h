@@ -7,6 +7,9 @@
 
 namespace keyblock {
 
+/// That this process may use, at least one.
+int processors();
+
 /// A fixed team of threads for loops whose iterations are independent. Range [0, n) is cut into one
 /// contiguous piece per thread; as no result depends on which thread computed it, any number of threads gives
 /// the same bits.

@@ -67,6 +67,11 @@ class Run(Scenario):
         self.assertEqual(len(hashes), 1)
         self.assertNotIn("", hashes)
 
+    def test_more_threads_than_processors(self):
+        self.assertIn("warning: --threads 1000", self.keyblock("run", "incline.toml", "-o", "many", "--threads", 1000).stderr)
+        self.assertNotIn("--threads", self.keyblock("run", "incline.toml", "-o", "one").stderr)
+        self.assertEqual(self.summary("many")["state_hash"], self.summary("one")["state_hash"])
+
     def test_an_override_changes_the_result(self):
         self.keyblock("run", "incline.toml", "-o", "a")
         self.keyblock("run", "incline.toml", "-o", "b", "--set", "joints.friction=10", "--set", "rock.order=2")
