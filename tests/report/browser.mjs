@@ -104,6 +104,19 @@ export const settle = (page) =>
     () =>
       new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))),
   );
+/** Moves the time slider of a run's report. */
+export async function slideTo(page, frame) {
+  await page.$eval(
+    "#time-slider",
+    (slider, value) => {
+      slider.value = String(value);
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    },
+    frame,
+  );
+  await settle(page);
+}
+
 export const text = (page, selector) =>
   page.evaluate((s) => document.querySelector(s)?.innerText ?? "", selector);
 export const sidewaysOverflow = (page) =>

@@ -8,6 +8,7 @@ import {
   openers,
   run,
   settle,
+  slideTo,
   sidewaysOverflow,
   text,
 } from "./browser.mjs";
@@ -19,18 +20,6 @@ const pixels = (page, selector = canvas) =>
 const label = (page) => page.textContent("#time-label");
 const marker = (page, plot = ".aside .now-line") =>
   page.evaluate((s) => document.querySelector(s).style.transform, plot);
-
-async function slideTo(page, frame) {
-  await page.$eval(
-    "#time-slider",
-    (slider, value) => {
-      slider.value = String(value);
-      slider.dispatchEvent(new Event("input", { bubbles: true }));
-    },
-    frame,
-  );
-  await settle(page);
-}
 
 const tests = {
   async "shows the run in the order an engineer reads it"() {

@@ -1,19 +1,11 @@
 // stopped_browser_test.mjs SAMPLES NODE_MODULES: reports of runs that did not reach their end, in headless Chromium.
 import assert from "node:assert/strict";
-import { close, openers, run, settle, text } from "./browser.mjs";
+import { close, openers, run, slideTo, text } from "./browser.mjs";
 
 const { open, shoot } = await openers();
 
 async function labelAt(page, frame) {
-  await page.$eval(
-    "#time-slider",
-    (slider, value) => {
-      slider.value = String(value);
-      slider.dispatchEvent(new Event("input", { bubbles: true }));
-    },
-    frame,
-  );
-  await settle(page);
+  await slideTo(page, frame);
   return page.textContent("#time-label");
 }
 
