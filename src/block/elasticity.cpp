@@ -212,10 +212,10 @@ void Elasticity::add_at(Size size, std::span<const Point<Number>> points, const 
         yy += times(row.y, column.y);
         g += at_k.x * (s.xx * at_l.x + s.xy * at_l.y) + at_k.y * (s.xy * at_l.x + s.yy * at_l.y);
       }
-      column_x[2 * k] += add_up(xx);
-      column_x[2 * k + 1] += add_up(yx);
-      column_y[2 * k + 1] += add_up(yy);
-      if (k > l) column_y[2 * k] += add_up(xy);
+      column_x[2 * k] = add_up(xx);
+      column_x[2 * k + 1] = add_up(yx);
+      column_y[2 * k + 1] = add_up(yy);
+      if (k > l) column_y[2 * k] = add_up(xy);
       geometric[(l - 1) * (size - 1) + k - 1] = add_up(g);
     }
   }

@@ -36,8 +36,9 @@ class Elasticity {
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] double energy(const double* a) const;
   /// force[2k + c] += f_k, and the first integral of K, times 1 + viscous: Kelvin-Voigt damping β ∂E/∂t over a step adds β/Δt.
-  /// tangent: 2N × 2N with leading dimension `stride`, lower triangle added to (symmetric). geometric: room for the (N − 1)² numbers
-  /// ∫ ∇φ_k · S ∇φ_l dA of the second, k and l from 1 on; their lower triangle, by columns.
+  /// tangent: 2N × 2N with leading dimension `stride`; of the lower triangle (symmetric) the columns that are not zero, from the third on,
+  /// are written. geometric: room for the (N − 1)² numbers ∫ ∇φ_k · S ∇φ_l dA of the second, k and l from 1 on; their lower triangle, by
+  /// columns.
   void add_force_and_material_tangent(const double* a, double viscous, double* force, double* tangent,
                                       int stride, double* geometric) const;
   /// The second integral, given these numbers.

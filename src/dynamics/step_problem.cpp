@@ -85,7 +85,7 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   const double* a = &state.position[block.first];
   const double* v = &state.velocity[block.first];
   double* h = &h_[h_first_[i]];
-  std::fill(h, h + stride * n, 0.0);
+  std::fill(h, h + 2 * stride, 0.0);  // translation; the rest is written below
   inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                 (drive.is_static ? drive.inertia_scale[i] : 1.0);
   const double frequency =
