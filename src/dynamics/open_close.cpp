@@ -14,6 +14,7 @@ constexpr double forcing = 0.003;  // of what is out of balance, what its linear
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;  // of the way to a new bound
+constexpr int most_bond_updates = 20;
 // Of the inertia behind a contact, in a step of multipliers: enough for eight contacts that push a rigid block, and the least.
 constexpr double first_multiplier_share = 0.25, least_multiplier_share = 1e-3;
 
@@ -334,7 +335,27 @@ bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contac
   return true;
 }
 
-bool OpenClose::break_bonds(StepProblem& problem, std::span<contact::Contact> contacts) {
+/// Bonds whose shear force passes what they bear now, or what the step began with, where these differ, get what they bear now. Whether
+/// there are any: a bound of before the load came would have them break that hold.
+bool OpenClose::renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts) {
+  constexpr double settled = 1e-3;
+  if (!problem.may_break()) return false;
+  bool any = false;
+  for (std::size_t c = 0; c < springs_->size(); ++c) {
+    if (!contacts[c].memory.bonded || contacts[c].fused) continue;
+    const Force before = springs_->force(c);
+    const double strength =
+                     contact::shear_strength(springs_->friction[c], before.normal, springs_->cohesion[c]),
+                 bound = springs_->bound[c], elastic = std::abs(springs_->ks[c] * springs_->w[c]);
+    if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled * bound) continue;
+    springs_->bound[c] = strength;
+    take_force(problem, c, before);
+    any = true;
+  }
+  return any;
+}
+
+bool OpenClose::break_bonds(const StepProblem& problem, std::span<contact::Contact> contacts) {
   if (!problem.may_break()) return false;
   bool any = false;
   for (std::size_t c = 0; c < springs_->size(); ++c) {
@@ -377,6 +398,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   stalls_ = 0;
   multiplier_share_ = first_multiplier_share;
   bool warm = false;
+  int bond_updates = 0;
   double enough = options.tolerance;
   for (;;) {
     result.converged = minimize(problem, solver, options, warm, enough, d, result);
@@ -385,6 +407,10 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
       break;
     }
     warm = true;
+    if (bond_updates < most_bond_updates && renew_bonds(problem, contacts)) {
+      ++bond_updates;
+      continue;
+    }
     if (break_bonds(problem, contacts)) {
       result.bond_broken = true;
       continue;

@@ -135,7 +135,8 @@ class OpenClose {
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
   bool update_bounds(StepProblem& problem, double tolerance);
   bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
-  bool break_bonds(StepProblem& problem, std::span<contact::Contact> contacts);
+  bool renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts);
+  bool break_bonds(const StepProblem& problem, std::span<contact::Contact> contacts);
 
   ThreadTeam* team_ = nullptr;
   Profile* profile_ = nullptr;

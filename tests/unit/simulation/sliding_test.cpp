@@ -43,6 +43,40 @@ TEST(FreeFall, IsExactForAnyStep) {
   }
 }
 
+// Its weight and the friction that this gives come with the first steps, and are not to break the bond before they are all there.
+TEST(Bond, HoldsOnAnInclineWhatCoulombSaysForAnyStep) {
+  for (const double dt : {0.01, 0.002, 0.0005}) {
+    for (const auto& [cohesion, holds] : {std::pair{2.5e3, false}, {3.5e3, true}}) {
+      Scene scene(1e9, 30.0, 2000.0);
+      scene.rectangle({-10.0, -10.0}, 20.0, -1.0, 45.0, true);
+      scene.rectangle({0.0, 0.0}, 4.0, 0.5, 45.0);
+      scene.setup.joints.standard.cohesion = cohesion;
+      scene.setup.time_step = dt;
+      scene.setup.stages = {stage("settle", StageKind::settle), stage("rest", StageKind::rest, 0.1)};
+      scene.setup.histories.push_back({"block", "b1", {1.0, 1.5}});
+      LastHistory observer;
+      run(scene.setup, {}, observer);
+      EXPECT_EQ(norm({observer.last.points[0].ux, observer.last.points[0].uy}) < 1e-4, holds)
+          << dt << ' ' << cohesion;
+    }
+  }
+}
+
+// What was the border of a domain is rock to blocks that stand on it.
+TEST(Sliding, OuterEdgesOfCutRockHaveTheLawOfJoints) {
+  for (const bool cut : {false, true}) {
+    Scene scene = incline(20.0, 30.0);
+    if (cut) {
+      for (cutting::EdgeLabel& label : scene.setup.system.blocks[0].labels[0])
+        label.kind = cutting::EdgeKind::domain;
+    }
+    Simulator s(scene);
+    const Vec2 from = s.centroid(1);
+    s.run(0.2, 0.002);
+    EXPECT_LT(slid(s, from, 20.0), 1e-4) << cut;
+  }
+}
+
 class Incline : public ::testing::TestWithParam<double> {};
 
 TEST_P(Incline, SlidesAsCoulombSays) {
