@@ -222,10 +222,15 @@ class Detection {
   };
   [[nodiscard]] Geometry measure(const Surface& surface, const CandidateList& candidates,
                                  std::span<const Found> found) const;
-  [[nodiscard]] double length_beyond(const Surface& surface, const Candidate& candidate,
-                                     double position) const;
+  /// Of the edge beyond a corner.
+  struct Beyond {
+    double length = 0.0;  ///< m, that belongs to the contact at the corner
+    int joint = 0;        ///< Surface::joint
+  };
+  [[nodiscard]] Beyond beyond_end(const Surface& surface, const Candidate& candidate, double position) const;
   static void bend(const Surface& surface, Contact& contact);
-  void give_law(const Surface& surface, Contact& contact, double least_length) const;
+  static JointLaw law_over_corner(JointLaw law, const JointLaw& beyond, double share, double penalty);
+  void give_law(const Surface& surface, Contact& contact, double least_length, const Beyond& beyond) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;

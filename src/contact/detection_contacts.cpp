@@ -29,22 +29,35 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
   memory.stiffness = stiffness;
 }
 
-/// Of lanes, or of one number each.
+/// An edge beside a line, as SharedLength sees it. Of lanes, or of one number each.
+template <typename Number>
+struct Beside {
+  Number share;     ///< Surface::start_share of the end at the vertex
+  Number from, to;  ///< m, along the line: the ends of what it is a piece of
+  Number pieces;    ///< of that
+};
+
+/// Likewise.
 template <typename Number>
 struct SharedLength {
   Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
   double zone;           ///< m, by which edges may miss each other and still begin or end together
 
-  /// m that the vertex has of what an edge of its block, that goes on to `to`, has in common with this one. Where that edge or this is all
-  /// of it the share is what Surface::start_share gives it of the one or the other, or of both.
-  Number operator()(Number to, Number share_of_other, Number share_of_this) const {
+  /// m that the vertex has of what an edge of its block, that goes on to `to`, has in common with this one: the half, or what
+  /// Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these are divided alike.
+  /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
+  Number operator()(Number to, const Beside<Number>& other, const Beside<Number>& here) const {
     const Number low = smaller(along, to), high = larger(along, to), zero{};
     const Number common = larger(zero, smaller(length, high) - larger(zero, low));
-    const auto is_all_of_other = (low >= -zone) & (high <= length + zone),
-               is_all_of_this = (low <= zone) & (high >= length - zone);
-    const Number half = zero + 0.5, both = 0.5 * (share_of_other + share_of_this);
-    return common * where(is_all_of_other, where(is_all_of_this, both, share_of_other),
-                          where(is_all_of_this, share_of_this, half));
+    const Number other_low = smaller(other.from, other.to), other_high = larger(other.from, other.to);
+    const auto alike = (other.pieces <= here.pieces) & (other.pieces >= here.pieces) &
+                       (other_low >= here.from - zone) & (other_low <= here.from + zone) &
+                       (other_high >= here.to - zone) & (other_high <= here.to + zone),
+               other_within = (other_low >= -zone) & (other_high <= length + zone),
+               here_within = (here.from >= low - zone) & (here.to <= high + zone);
+    const Number half = zero + 0.5, both = 0.5 * (other.share + here.share);
+    return common *
+           where(alike, both, where(other_within, other.share, where(here_within, here.share, half)));
   }
 
  private:
@@ -52,23 +65,54 @@ struct SharedLength {
   static Number larger(Number a, Number b) { return where(a < b, b, a); }
 };
 
+/// Of an edge, by a line through `origin`.
+Beside<double> beside(const Surface& surface, std::size_t edge, Vec2 origin, Vec2 tangent) {
+  std::size_t from = edge, to = at(surface.next[edge]);
+  double share = 0.5, pieces = 1.0;
+  if (!surface.divided.empty()) {
+    const DividedEdge& whole = surface.divided[edge];
+    share = surface.start_share[edge];
+    pieces = whole.pieces;
+    from = at(whole.first);
+    to = at(surface.next[from + at(whole.pieces) - 1]);
+  }
+  const auto along = [&](std::size_t v) { return dot(tangent, surface.position[v] - origin); };
+  return {share, along(from), along(to), pieces};
+}
+
+/// With the share of its other end.
+template <typename Number>
+Beside<Number> at_end(Beside<Number> edge) {
+  edge.share = 1.0 - edge.share;
+  return edge;
+}
+
 }  // namespace
 
 /// Eight at once, or fewer at the end.
 Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
                                        std::span<const Found> found) const {
   Lanes edge[lane_count], vertex[lane_count], length_before{};
-  Lanes share_of_edge = broadcast(0.5), share_of_next = share_of_edge, share_of_before = share_of_edge;
+  // The edge, and those of the vertex that begin and end there.
+  Beside<Lanes> here{broadcast(0.5), {}, {}, broadcast(1.0)}, next = here, last = here;
   for (std::size_t i = 0; i < lane_count; ++i) {
     const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
     const std::size_t before = at(surface.previous[at(c.vertex)]);
     edge[i] = load(&corners_[at(c.edge)].position.x);
     vertex[i] = load(&corners_[at(c.vertex)].position.x);
     length_before[i] = corners_[before].length;
-    if (surface.start_share.empty()) continue;
-    share_of_edge[i] = surface.start_share[at(c.edge)];
-    share_of_next[i] = surface.start_share[at(c.vertex)];
-    share_of_before[i] = surface.start_share[before];
+    if (surface.divided.empty()) continue;
+    const auto look_at = [&](std::size_t e, Beside<Lanes>& side) {
+      const Beside<double> of =
+          beside(surface, e, corners_[at(c.edge)].position, corners_[at(c.edge)].tangent);
+      side.share[i] = of.share;
+      side.from[i] = of.from;
+      side.to[i] = of.to;
+      side.pieces[i] = of.pieces;
+    };
+    look_at(at(c.edge), here);
+    look_at(at(c.vertex), next);
+    look_at(before, last);
   }
   transpose(edge);
   transpose(vertex);
@@ -77,44 +121,50 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
   const SharedLength<Lanes> shared{along, length, tolerances_.end_zone};
   // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
+  const Lanes most = broadcast(tolerances_.least_length);
   Lanes shared_length{}, whole_length{};
-  const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, Lanes share_of_other,
-                            Lanes share_of_this) {
+  auto shares_much = whole_length > 0.0;
+  const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, const Beside<Lanes>& other,
+                            const Beside<Lanes>& this_edge) {
     const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty;
     const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
-    shared_length +=
-        where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, share_of_other, share_of_this));
-    whole_length += where(turned, Lanes{}, least(share_of_other * length_of_other, share_of_this * length));
+    shared_length += where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, other, this_edge));
+    whole_length += where(turned, Lanes{}, least(other.share * length_of_other, this_edge.share * length));
+    const Lanes overlap = least(largest(other.from, other.to), this_edge.to) -
+                          largest(least(other.from, other.to), this_edge.from);
+    shares_much = shares_much | (~turned & (overlap >= 2.0 * most));
   };
-  add_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), share_of_next, 1.0 - share_of_edge);
-  add_edge(vertex[4], vertex[5], length_before, broadcast(-1.0), 1.0 - share_of_before, share_of_edge);
-  const Lanes most = broadcast(tolerances_.least_length);
-  return {gap, along / length, shared_length, where(whole_length > 0.0, least(whole_length, most), most)};
+  add_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), next, at_end(here));
+  add_edge(vertex[4], vertex[5], length_before, broadcast(-1.0), at_end(last), here);
+  const Lanes enough = where(shares_much, Tolerances::least_of_many * most, most);
+  return {gap, along / length, shared_length, where(whole_length > 0.0, least(whole_length, enough), enough)};
 }
 
-/// m, what the contact of two corners has of the edge on the other side of the corner, where face goes on in face: edges of blocks of
+/// What the contact of two corners has of the edge on the other side of the corner, where face goes on in face: edges of blocks of
 /// order > 1 are divided at the same points on both sides of a joint, and of the contacts of the two vertices that meet there one is
 /// left. position: Contact::position.
-double Detection::length_beyond(const Surface& surface, const Candidate& candidate, double position) const {
+Detection::Beyond Detection::beyond_end(const Surface& surface, const Candidate& candidate,
+                                        double position) const {
   const std::size_t next = at(candidate.vertex), before = at(surface.previous[next]),
                     beyond = at(position < 0.5 ? surface.previous[at(candidate.edge)]
                                                : surface.next[at(candidate.edge)]);
   const Corner &vertex = corners_[next], &edge = corners_[at(candidate.edge)], &line = corners_[beyond];
   if (dot(edge.tangent, line.tangent) < 0.0 ||
       std::abs(cross(edge.tangent, line.tangent)) > Tolerances::sine_facing)
-    return 0.0;
-  const auto share_of = [&](std::size_t e) {
-    return surface.start_share.empty() ? 0.5 : surface.start_share[e];
-  };
+    return {};
+  const auto look_at = [&](std::size_t e) { return beside(surface, e, line.position, line.tangent); };
+  const Beside<double> here = look_at(beyond);
   const double along = dot(line.tangent, vertex.position - line.position);
   const SharedLength<double> shared{along, line.length, tolerances_.end_zone};
-  const auto of_edge = [&](Vec2 u, double length_of_other, double share_of_other, double share_of_this) {
+  const auto of_edge = [&](Vec2 u, double length_of_other, const Beside<double>& other,
+                           const Beside<double>& this_edge) {
     const double ahead = dot(u, line.tangent);
     if (ahead > 0.0 || std::abs(cross(u, line.tangent)) > Tolerances::sine_facing) return 0.0;
-    return shared(along + ahead * length_of_other, share_of_other, share_of_this);
+    return shared(along + ahead * length_of_other, other, this_edge);
   };
-  return of_edge(vertex.tangent, vertex.length, share_of(next), 1.0 - share_of(beyond)) +
-         of_edge(vertex.before, -corners_[before].length, 1.0 - share_of(before), share_of(beyond));
+  const double length = of_edge(vertex.tangent, vertex.length, look_at(next), at_end(here)) +
+                        of_edge(vertex.before, -corners_[before].length, at_end(look_at(before)), here);
+  return {length, surface.joint[beyond]};
 }
 
 /// Brings a contact from the chord of a piece of a divided edge to its curve: to the point that the vertex is opposite to.
@@ -131,17 +181,38 @@ void Detection::bend(const Surface& surface, Contact& contact) {
   contact.gap = dot(contact.normal, from_curve(contact.position));
 }
 
-void Detection::give_law(const Surface& surface, Contact& contact, double least_length) const {
-  const JointLaw& law = laws_[at(surface.joint[at(contact.edge)])];
-  const double per_length = law.normal_stiffness > 0.0
-                                ? law.normal_stiffness
-                                : std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
+/// The law of an edge and of the one beyond its end, which has `share` of what belongs to the contact. What is fused is so to its end.
+JointLaw Detection::law_over_corner(JointLaw law, const JointLaw& beyond, double share, double penalty) {
+  const auto stiffness = [&](const JointLaw& of) {
+    return of.normal_stiffness > 0.0 ? of.normal_stiffness : penalty;
+  };
+  const double normal = std::lerp(stiffness(law), stiffness(beyond), share),
+               shear = std::lerp(stiffness(law) * law.stiffness_ratio,
+                                 stiffness(beyond) * beyond.stiffness_ratio, share);
+  law.friction_coefficient = std::lerp(law.friction_coefficient, beyond.friction_coefficient, share);
+  law.cohesion = std::lerp(law.cohesion, beyond.cohesion, share);
+  law.tension = std::lerp(law.tension, beyond.tension, share);
+  law.normal_stiffness = normal;
+  law.stiffness_ratio = shear / normal;
+  return law;
+}
+
+void Detection::give_law(const Surface& surface, Contact& contact, double least_length,
+                         const Beyond& beyond) const {
+  const double penalty = std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
+  const std::size_t joint = at(surface.joint[at(contact.edge)]);
+  const bool mixed = beyond.length > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
+  const JointLaw law =
+      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.length / contact.length, penalty)
+            : laws_[joint];
+  contact.fused = contact.memory.bonded && law.fused;
+  const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty,
+               per_length = contact.fused ? std::max(of_joint, penalty) : of_joint;
   contact.normal_stiffness = per_length * std::max(contact.length, least_length);
   contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
   contact.friction_coefficient = law.friction_coefficient;
   contact.cohesion = contact.memory.bonded ? law.cohesion * contact.length : 0.0;
   contact.tension = contact.memory.bonded ? law.tension * contact.length : 0.0;
-  contact.fused = contact.memory.bonded && law.fused;
 }
 
 void Detection::describe(const Surface& surface, const CandidateList& candidates,
@@ -163,7 +234,8 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
       contact.gap = geometry.gap[i];
       if (is_curved(surface, contact.edge)) bend(surface, contact);
       contact.length = geometry.length[i];
-      if (f.at_end) contact.length += length_beyond(surface, candidate, contact.position);
+      const Beyond beyond = f.at_end ? beyond_end(surface, candidate, contact.position) : Beyond{};
+      contact.length += beyond.length;
       Memory& memory = contact.memory;
       if (f.memory < 0) {
         memory = {};
@@ -172,7 +244,7 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
         memory = candidates.memory[at(f.memory)];
         if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -contact.gap));
       }
-      give_law(surface, contact, geometry.least_length[i]);
+      give_law(surface, contact, geometry.least_length[i], beyond);
       keep_energy(memory, contact.gap, contact.normal_stiffness);
       contact.depth = -contact.gap - memory.offset + memory.multiplier;
     }

@@ -52,6 +52,7 @@ struct JointLaw {
   double stiffness_ratio = 0.4;   ///< shear over normal
   bool fused = false;             ///< an outline of an excavation not yet opened: rock on both sides is one
 
+  friend bool operator==(const JointLaw&, const JointLaw&) = default;
   /// Whether contacts in place are bonded.
   [[nodiscard]] bool may_bond() const { return fused || cohesion > 0.0 || tension > 0.0; }
 };

@@ -49,6 +49,8 @@ struct Tolerances {
 
   /// A vertex touches an edge only when both its own edges lie outside it, up to this angle (sin 2°).
   static constexpr double sine_inside = 0.0349;
+  /// Of the least length, what is enough for one of several contacts between edges that share twice that or more: the others hold them.
+  static constexpr double least_of_many = 0.02;
   /// Entrance lines within this angle are one line (sin 4°).
   static constexpr double sine_parallel = 0.0698;
   /// Entrance lines within this angle part two corners the same way (cos 30°): which of them is taken does not matter.

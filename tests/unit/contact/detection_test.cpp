@@ -11,38 +11,11 @@
 #include <tuple>
 
 #include "core/index.h"
+#include "find_contacts.h"
 #include "surface_builder.h"
 
 namespace keyblock::contact {
 namespace {
-
-/// Contacts of a surface as it stands; `list` keeps the memory between calls.
-std::vector<Contact> find(const Surface& surface, CandidateList& list) {
-  const Tolerances tolerances(1.0);
-  Candidates candidates(tolerances);
-  const std::vector<double> still(static_cast<std::size_t>(surface.blocks()), 0.0);
-  ThreadTeam alone(1);
-  candidates.update(surface, still, list, alone);
-  Detection detection(tolerances, {JointLaw{}},
-                      std::vector<double>(static_cast<std::size_t>(surface.blocks()), 1e9));
-  std::vector<Contact> contacts;
-  detection.find(surface, {still, still, candidates.away(), still}, list, alone, contacts);
-  keep_memory(contacts, list, alone);
-  return contacts;
-}
-
-std::vector<Contact> find(const Surface& surface) {
-  CandidateList list;
-  return find(surface, list);
-}
-
-double total_length(const std::vector<Contact>& contacts, int a, int b) {
-  double sum = 0.0;
-  for (const Contact& c : contacts) {
-    if ((c.block_a == a && c.block_b == b) || (c.block_a == b && c.block_b == a)) sum += c.length;
-  }
-  return sum;
-}
 
 int count(const std::vector<Contact>& contacts, int a, int b) {
   return static_cast<int>(std::count_if(contacts.begin(), contacts.end(), [&](const Contact& c) {
@@ -70,71 +43,6 @@ TEST(Detection, WhatASofterSpringCannotKeepIsLost) {
     EXPECT_NEAR(contact.memory.stored, stored_by(k, contact.depth), 1e-12 * before) << offset;
     EXPECT_NEAR(contact.depth, std::min(2.0 * (depth - offset), depth), 1e-15);
     EXPECT_EQ(contact.memory.stored < before, offset < 0.5 * depth);
-  }
-}
-
-TEST(Detection, EdgeToEdgeIsTwoContactsThatShareItsLengthOnce) {
-  // Equal faces, a block inside a longer face, and one that overhangs it.
-  for (const auto& [x0, x1, shared] :
-       {std::tuple{0.0, 2.0, 2.0}, {0.5, 1.25, 0.75}, {1.5, 2.5, 0.5}, {-0.5, 0.25, 0.25}}) {
-    Surface surface;
-    add_block(surface, rectangle(0, 0, 2, 1));
-    add_block(surface, rectangle(x0, 1, x1, 2));
-    const auto contacts = find(surface);
-    EXPECT_EQ(contacts.size(), 2u) << x0;
-    EXPECT_NEAR(total_length(contacts, 0, 1), shared, 1e-12) << x0;
-    for (const Contact& c : contacts) EXPECT_NEAR(std::abs(c.normal.y), 1.0, 1e-12);
-  }
-}
-
-/// A block from (x0, y0) to (x1, y1) whose lower and upper edges have vertices that divide them into so many parts.
-Polygon divided(double x0, double y0, double x1, double y1, int parts) {
-  Ring ring;
-  for (int k = 0; k < parts; ++k) ring.push_back({x0 + (x1 - x0) * k / parts, y0});
-  for (int k = 0; k < parts; ++k) ring.push_back({x1 + (x0 - x1) * k / parts, y1});
-  ring.insert(ring.begin() + parts, {x1, y0});
-  ring.push_back({x0, y1});
-  return {ring, {}};
-}
-
-// Edges that are divided at the same points, as those of blocks of the same order are: where two vertices meet one contact is left.
-TEST(Detection, DividedEdgesShareTheLengthOfTheirJoint) {
-  for (const auto& [below, above] : {std::pair{1, 1}, {2, 2}, {3, 3}, {6, 6}, {2, 1}, {2, 4}, {3, 2}}) {
-    for (const double shift : {0.0, 0.001, -0.001, 0.01, 0.1}) {
-      Surface surface;
-      add_block(surface, divided(0, 0, 1, 1, below));
-      add_block(surface, divided(shift, 1, 1 + shift, 2, above));
-      const auto contacts = find(surface);
-      // Less than the end zone, 3 mm, counts as none, at each vertex.
-      const double lost = std::abs(shift) < 0.003 ? 0.5 * std::abs(shift) * std::max(below, above) : 0.0;
-      EXPECT_NEAR(total_length(contacts, 0, 1), 1.0 - std::abs(shift), lost + 1e-12)
-          << below << " and " << above << " shifted by " << shift;
-    }
-  }
-}
-
-// Where a piece of an edge is shared as a whole, its ends have the shares that the surface gives them: here those that make the weights of
-// Simpson's rule of the edges. The other side may be divided alike or not at all.
-TEST(Detection, VerticesOfDividedEdgesHaveTheirWeights) {
-  for (const int above : {1, 2}) {
-    for (const double shift : {0.0, 0.001}) {
-      Surface surface;
-      add_block(surface, divided(-1, 0, 2, 1, 1));
-      add_block(surface, divided(0, 1, 1, 2, 2));
-      add_block(surface, divided(shift, 2, 1 + shift, 3, above));
-      for (std::size_t e = 0; e < surface.position.size(); ++e) {
-        const Vec2 start = surface.position[e], end = surface.position[at(surface.next[e])];
-        const bool is_half = std::abs(std::abs(end.x - start.x) - 0.5) < 1e-9;
-        // From a corner to the middle, or on.
-        const bool from_corner = std::abs(end.x - 0.5) < 1e-9 || std::abs(end.x - 0.5 - shift) < 1e-9;
-        surface.start_share.push_back(!is_half ? 0.5 : from_corner ? 1.0 / 3.0 : 2.0 / 3.0);
-      }
-      for (const Contact& c : find(surface)) {
-        const double x = surface.position[at(c.vertex)].x;
-        const double expected = std::abs(x - 0.5) < 0.1 ? 4.0 / 6.0 : 1.0 / 6.0;
-        EXPECT_NEAR(c.length, expected, c.block_b == 2 || c.block_a == 2 ? shift + 1e-12 : 1e-12) << x;
-      }
-    }
   }
 }
 

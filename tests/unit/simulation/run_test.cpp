@@ -159,6 +159,24 @@ TEST(Run, AStageThatIsResumedWithinBeganWhenItDid) {
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
 }
 
+TEST(Run, ResumesBeforeAnythingIsExcavated) {
+  const FreshFolder folder;
+  RunSetup setup = shaken_incline(2);
+  setup.excavations.push_back({"above", {{0.0, 5.0}, {1.0, 5.0}, {1.0, 6.0}}});
+  setup.stages.back().excavate = {0};
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+  Stopper stopper(whole.stages[0].steps + 100);
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  ASSERT_TRUE(run(setup, options, stopper).interrupted);
+  ASSERT_TRUE(read_checkpoint(folder, setup).damage.start.empty());
+  options.stop = nullptr;
+  options.resume = true;
+  EXPECT_EQ(run(setup, options, nobody).state_hash, whole.state_hash);
+}
+
 // The end of a stage has a checkpoint of its own. From one after its last step, no step would be left to find contacts by.
 TEST(Run, NoCheckpointWithinAStageAfterItsLastStep) {
   const FreshFolder folder;
@@ -336,7 +354,7 @@ TEST(Run, GoldenStateHash) {
   two.threads = 2;
   const RunRecord record = run(shaken_wall(), {}, nobody);
   EXPECT_EQ(record.open_close.unconverged_steps, 0);
-  EXPECT_EQ(record.state_hash, "7c116789c33e828e");
+  EXPECT_EQ(record.state_hash, "b042f076d23be38b");
   EXPECT_EQ(run(shaken_wall(), two, nobody).state_hash, record.state_hash);
   EXPECT_LT(record.max_overlap.depth, 1e-3);
 }
