@@ -120,10 +120,10 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
   const SharedLength<Lanes> shared{along, length, tolerances_.end_zone};
-  // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
   const Lanes most = broadcast(tolerances_.least_length);
   Lanes shared_length{}, whole_length{};
   auto shares_much = whole_length > 0.0;
+  // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
   const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, const Beside<Lanes>& other,
                             const Beside<Lanes>& this_edge) {
     const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty;
