@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -17,6 +18,24 @@ std::vector<std::size_t> thin_by_stage(std::span<const int> stage_of, std::size_
   for (std::size_t k = 0; k < others; ++k) kept.insert(k * n / others);
   return {kept.begin(), kept.end()};
 }
+
+namespace {
+
+// The smallest and the largest number in the order in which they occur; NaN where there is none.
+std::pair<double, double> extremes(std::span<const double> values) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const double* low = nullptr;
+  const double* high = nullptr;
+  for (const double& v : values) {
+    if (std::isnan(v)) continue;
+    if (low == nullptr || v < *low) low = &v;
+    if (high == nullptr || v >= *high) high = &v;
+  }
+  if (low == nullptr) return {none, none};
+  return low <= high ? std::pair(*low, *high) : std::pair(*high, *low);
+}
+
+}  // namespace
 
 Curves thin_curves(const Curves& curves, std::size_t limit) {
   const std::size_t n = curves.x.size();
@@ -36,11 +55,10 @@ Curves thin_curves(const Curves& curves, std::size_t limit) {
     thin.x.push_back(curves.x[end - 1]);
     for (std::size_t c = 0; c < curves.columns.size(); ++c) {
       const auto& column = curves.columns[c];
-      auto [low, high] = std::minmax_element(column.begin() + static_cast<std::ptrdiff_t>(begin),
-                                             column.begin() + static_cast<std::ptrdiff_t>(end));
-      if (high < low) std::swap(low, high);
-      thin.columns[c].push_back(*low);
-      thin.columns[c].push_back(*high);
+      const std::span<const double> bucket(column.data() + begin, end - begin);
+      const auto [first, second] = extremes(bucket);
+      thin.columns[c].push_back(first);
+      thin.columns[c].push_back(second);
     }
   }
   copy_row(n - 1);

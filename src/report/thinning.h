@@ -9,7 +9,7 @@ namespace keyblock::report {
 /// i: the first and last of every stage always (even beyond the limit), the others evenly.
 std::vector<std::size_t> thin_by_stage(std::span<const int> stage_of, std::size_t limit);
 
-/// Curves over a common abscissa.
+/// Curves over a common abscissa; NaN where a curve has no value.
 struct Curves {
   std::vector<double> x;
   std::vector<std::vector<double>> columns;  ///< columns[c][i] belongs to x[i]

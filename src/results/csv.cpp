@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 
 #include "core/atomic_file.h"
@@ -38,7 +39,11 @@ std::string histories_csv(const std::vector<std::string>& names,
     auto out = std::back_inserter(text);
     fmt::format_to(out, "{}", row.time);
     for (const auto& p : row.points) {
-      fmt::format_to(out, ",{},{},{},{},{},{},{}", p.ux, p.uy, p.vx, p.vy, p.sxx, p.syy, p.sxy);
+      if (std::isnan(p.ux)) {
+        text += ",,,,,,,";
+      } else {
+        fmt::format_to(out, ",{},{},{},{},{},{},{}", p.ux, p.uy, p.vx, p.vy, p.sxx, p.syy, p.sxy);
+      }
     }
     text += "\n";
   }

@@ -9,6 +9,7 @@
 #include "scenario/key_path.h"
 #include "scenario/polygon_checks.h"
 #include "scenario/stage_steps.h"
+#include "simulation/history_block.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -125,22 +126,24 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   for (loading::Support& support : setup.supports) {
     for (Vec2& p : support.points) p -= origin;
   }
-  setup.histories = scenario.histories;
-  for (simulation::History& history : setup.histories) {
-    history.point -= origin;
-    const auto& blocks = setup.system.blocks;
-    bool held = false;
-    for (std::size_t b = 0; b < blocks.size() && !held; ++b) {
-      const bool meant = history.block.empty() || history.block == setup.properties[b].name;
-      held = meant && lies_in(blocks[b].polygon, history.point);
+}
+
+void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
+  for (const simulation::History& given : scenario.histories) {
+    const std::string key = join_path(join_path("history", given.name), "point");
+    simulation::History history = given;
+    history.point -= setup.system.origin;
+    const auto block = simulation::history_block(setup, history);
+    if (!block) {
+      fail(
+          scenario, key, fmt::format("[{}, {}], outside", given.point.x, given.point.y),
+          given.block.empty() ? "a point of a block" : fmt::format("a point of the block '{}'", given.block));
     }
-    const Vec2 p = history.point + origin;
-    if (!held) {
-      fail(scenario, join_path(join_path("history", history.name), "point"),
-           fmt::format("[{}, {}], outside", p.x, p.y),
-           history.block.empty() ? "a point of a block"
-                                 : fmt::format("a point of the block '{}'", history.block));
+    if (const auto stage = simulation::excavating_stage(setup, *block)) {
+      notes.push_back(fmt::format("{}: lies in rock that the stage '{}' excavates; the history ends there",
+                                  key, setup.stages[*stage].name));
     }
+    setup.histories.push_back(std::move(history));
   }
 }
 
@@ -225,6 +228,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.files = input_files(scenario);
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
+  place_histories(scenario, setup, notes);
   if (auto mistakes = stage_mistakes(scenario, setup.motions); !mistakes.empty())
     throw InputError(std::move(mistakes));
   add_stage_warnings(scenario, notes);

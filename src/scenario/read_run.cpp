@@ -118,8 +118,11 @@ void check_history(TableReader& t, const simulation::History& history, const Sce
 void read_history(TableReader& t, simulation::History& history, const Scenario& scenario) {
   t.name("name", history.name, "history",
          {.meaning = "Name of its columns in histories.csv.", .required = true});
-  t.reference("block", history.block, "block",
-              {.meaning = "The block it belongs to.", .fallback = "the block that holds the point"});
+  t.reference(
+      "block", history.block, "block",
+      {.meaning = "The block it belongs to.",
+       .fallback = "the block that holds the point; of several with a common border, one that no stage "
+                   "excavates or the one excavated last"});
   if (t.point("point", history.point,
               {.meaning = "Material point, by its place before the run.", .unit = "m", .required = true})) {
     check_history(t, history, scenario);
@@ -262,9 +265,11 @@ void read_run(TableReader& root, Scenario& scenario) {
               .at_most = 1e6});
     check_step_count(t, scenario);
   });
-  root.tables("history", scenario.histories,
-              {.meaning = "A point whose displacement, velocity and stress are recorded in histories.csv."},
-              [&](TableReader& t, simulation::History& history) { read_history(t, history, scenario); });
+  root.tables(
+      "history", scenario.histories,
+      {.meaning = "A point whose displacement, velocity and stress are recorded in histories.csv, until a "
+                  "stage excavates its block."},
+      [&](TableReader& t, simulation::History& history) { read_history(t, history, scenario); });
   root.table("damage", {.meaning = "Limits of the damage measures."},
              [&](TableReader& t) { read_damage(t, scenario.damage); });
   root.table("output", {.meaning = "How often results are recorded."},

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/index.h"
 #include "overlap/overlap.h"
 #include "simulation/build_model.h"
+#include "simulation/history_block.h"
 
 namespace keyblock::simulation {
 
@@ -33,20 +35,15 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
     }
   }
   for (const History& history : setup.histories) {
-    std::size_t found = model.blocks.size();
-    for (std::size_t b = 0; b < setup.properties.size() && found == model.blocks.size(); ++b) {
-      const bool meant = history.block.empty() ? lies_in(model.blocks[b].reference, history.point)
-                                               : setup.properties[b].name == history.block;
-      if (meant) found = b;
-    }
-    if (found == model.blocks.size()) {
+    const std::optional<std::size_t> block = history_block(setup, history);
+    if (!block) {
       Diagnostic diagnostic;
       diagnostic.key = fmt::format("history '{}'", history.name);
       diagnostic.found = fmt::format("the point ({}, {})", history.point.x, history.point.y);
       diagnostic.expected = "a point in a block";
       throw InputError(std::move(diagnostic));
     }
-    points_.push_back({found, history.point, {}});
+    points_.push_back({*block, history.point, {}});
   }
   orders_changed();
 }
@@ -155,6 +152,11 @@ HistoryRow Recorder::history(const dynamics::State& state) const {
   row.time = state.time;
   row.step = state.step;
   for (const Point& point : points_) {
+    if (!model_.surface.present[point.block]) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      row.points.push_back({none, none, none, none, none, none, none});
+      continue;
+    }
     const dynamics::Block& block = model_.blocks[point.block];
     Vec2 x, v;
     for (std::size_t k = 0; k < point.phi.size(); ++k) {

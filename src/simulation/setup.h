@@ -42,7 +42,7 @@ struct Excavation {
 
 struct History {
   std::string name;
-  std::string block;  ///< empty: the block that holds the point
+  std::string block;  ///< empty: the block that holds the point, see history_block.h
   Vec2 point;         ///< reference position
 };
 

@@ -55,6 +55,28 @@ class Run(Scenario):
         self.assertGreater(last["s.ux"], 0.0)
         self.assertLess(last["s.uy"], 0.0)
 
+    def test_a_history_ends_as_its_block_is_excavated(self):
+        self.write("incline.toml", self.scenario.read_text() + """
+[[excavation]]
+name = "slider"
+shape = "polygon"
+outer = [[1.0, 5.196152422706632], [1.866025403784439, 4.696152422706632], [2.366025403784439, 5.562177826491071], [1.5, 6.062177826491071]]
+
+[[stage]]
+name = "bare"
+kind = "rest"
+excavate = ["slider"]
+duration = 0.1
+""")  # fmt: skip
+        warning = "incline.toml: warning: history.s.point: lies in rock that the stage 'bare' excavates; the history ends there"
+        self.assertIn(warning, self.keyblock("check", "incline.toml").stderr)
+        self.assertIn(warning, self.keyblock("run", "incline.toml", "-o", "out").stderr)
+        self.keyblock("export", "out", "--format", "csv")
+        for path in ("out/histories.csv", "out/csv/histories.csv"):
+            rows = (self.folder / path).read_text().splitlines()[1:]
+            self.assertEqual(len(rows), 600, path)
+            self.assertEqual([row.endswith(",,,,,,,") for row in rows], [False] * 500 + [True] * 100, path)
+
     def test_same_bits_again_and_for_two_threads(self):
         for folder, threads in (("a", 1), ("b", 1), ("c", 2)):
             self.keyblock("run", "incline.toml", "-o", folder, "--threads", threads)

@@ -129,15 +129,14 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
   const isStatic = time[rows - 1] <= time[0];
   const x = isStatic ? Float64Array.from(values.subarray(0, rows)) : time;
   const axis = isStatic ? overSteps(run, clock) : overTime(run, clock);
-  const scaled = (v: Float32Array, factor: number) => v.map((a) => a * factor);
   return names.map((name, p) => {
-    const largest = column(p, 0).reduce((m, a, i) => Math.max(m, Math.abs(a), Math.abs(column(p, 1)[i])), 0);
-    const inMetres = largest >= 1;
+    const inMetres = [0, 1].some((c) => column(p, c).some((u) => Math.abs(u) >= 1));
     const plot = (title: string, unit: string, series: Series[]) =>
       new Plot({ ...axis, title, unit, x, series }, clock);
     const line = (label: string, c: number, factor: number, k: number): Series => ({
       name: label,
-      values: scaled(column(p, c), factor),
+      // Without a value once the block is excavated.
+      values: Array.from(column(p, c), (v) => (Number.isNaN(v) ? null : factor * v)),
       color: `--curve-${k}`,
     });
     const length = inMetres ? 1 : 1e3;

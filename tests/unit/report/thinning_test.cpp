@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace keyblock::report {
 namespace {
@@ -50,6 +52,25 @@ TEST(ThinCurves, KeepsEndsAndExtremes) {
   EXPECT_EQ(*std::max_element(thin.columns[0].begin(), thin.columns[0].end()), 50.0);
   EXPECT_EQ(*std::min_element(thin.columns[1].begin(), thin.columns[1].end()), -3.0);
   EXPECT_EQ(std::count(thin.columns[0].begin(), thin.columns[0].end(), 50.0), 1);
+}
+
+TEST(ThinCurves, PassesOverRowsWithoutAValue) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Curves curves;
+  curves.columns.resize(2);
+  for (int i = 0; i < 1000; ++i) {
+    curves.x.push_back(i);
+    curves.columns[0].push_back(i < 500 ? i : none);
+    curves.columns[1].push_back(none);
+  }
+  const Curves thin = thin_curves(curves, 100);
+  const std::vector<double>& column = thin.columns[0];
+  const auto end = std::find_if(column.begin(), column.end(), [](double v) { return std::isnan(v); });
+  EXPECT_EQ(end - column.begin(), 51);
+  EXPECT_TRUE(std::is_sorted(column.begin(), end));
+  EXPECT_EQ(end[-1], 499.0);
+  EXPECT_TRUE(std::all_of(end, column.end(), [](double v) { return std::isnan(v); }));
+  EXPECT_TRUE(std::isnan(thin.columns[1][50]));
 }
 
 TEST(ThinCurves, LeavesFewRowsAlone) {

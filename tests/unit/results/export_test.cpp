@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <limits>
 #include <sstream>
 
 #include "../fresh_folder.h"
@@ -14,6 +15,7 @@
 #include "results/block_shape.h"
 #include "results/result_writer.h"
 #include "sample_run.h"
+#include "results/csv.h"
 
 namespace keyblock::results {
 namespace {
@@ -111,6 +113,14 @@ TEST(Export, Csv) {
 
 TEST(Export, GeoJsonOfEveryStageEnd) {
   const FreshFolder folder;
+TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  simulation::HistoryRow row;
+  row.time = 0.5;
+  row.points = {{none, none, none, none, none, none, none}, {1, 2, 3, 4, 5, 6, 7}};
+  EXPECT_THAT(histories_csv({"a", "b"}, {row}), testing::EndsWith("\n0.5,,,,,,,,1,2,3,4,5,6,7\n"));
+}
+
   const auto files = export_run(small_motions(), folder, ExportFormat::geojson);
   ASSERT_THAT(files, testing::ElementsAre(folder / "stage_1_in-situ.geojson",
                                           folder / "stage_2_first-earthquake.geojson"));

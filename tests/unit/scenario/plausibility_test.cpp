@@ -128,6 +128,15 @@ TEST(Warnings, OfTensionThatHoldsNothing) {
               UnorderedElementsAre(
                   HasSubstr("pulled by cohesion / tan(friction), 9.657e+05, before its tension of 1e+06")));
   const auto of_set = HasSubstr("joint_set.bedding: tension without cohesion");
+TEST(Warnings, OfHistoriesThatEndAsTheirRockIsExcavated) {
+  const std::string watched = runnable_domain + "[[history]]\nname = \"h\"\npoint = [2.0, 1.5]\n";
+  EXPECT_THAT(
+      warnings_of(watched),
+      UnorderedElementsAre("history.h.point: lies in rock that the stage 'settled' excavates; the history "
+                           "ends there"));
+  EXPECT_THAT(warnings_of(watched, {"history.h.point=[2.0, 2.0]"}), IsEmpty());  // in the wall
+}
+
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6"}), UnorderedElementsAre(of_set));
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6", "joints.cohesion=1e6"}),
               IsEmpty());

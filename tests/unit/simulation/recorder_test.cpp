@@ -68,5 +68,38 @@ TEST(Recorder, GapOfAContactThatMultipliersPressIsNone) {
   EXPECT_GT(pressed, 4);
 }
 
+struct AllHistories final : RunObserver {
+  std::vector<HistoryRow> rows;
+  void history(const HistoryRow& row) override { rows.push_back(row); }
+};
+
+// Three blocks beside each other fall freely; the first is excavated after two steps, the second after four.
+TEST(Recorder, HistoriesFollowTheRockThatStaysLongestAndEndWithTheirBlock) {
+  Scene scene(3e9, 30.0);
+  for (int b = 0; b < 3; ++b) scene.rectangle({1.0 * b, 0.0}, 1.0, 1.0);
+  for (int e = 0; e < 2; ++e)
+    scene.setup.excavations.push_back(
+        {"", scene.setup.system.blocks[static_cast<std::size_t>(e)].polygon.outer});
+  scene.setup.system.blocks[0].excavations = {0};
+  scene.setup.system.blocks[1].excavations = {1};
+  scene.setup.histories = {
+      {"in the first", "", {0.5, 0.5}}, {"border 0-1", "", {1.0, 0.5}}, {"border 1-2", "", {2.0, 0.5}}};
+  scene.setup.time_step = 0.001;
+  for (int s = 0; s < 3; ++s) {
+    scene.setup.stages.push_back(stage("fall", StageKind::rest, 0.002));
+    if (s > 0) scene.setup.stages.back().excavate = {s - 1};
+  }
+  AllHistories observer;
+  run(scene.setup, {}, observer);
+  ASSERT_EQ(observer.rows.size(), 6U);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto& points = observer.rows[k].points;
+    EXPECT_EQ(std::isnan(points[0].uy), k >= 2) << k;
+    EXPECT_EQ(std::isnan(points[0].sxy), k >= 2) << k;
+    EXPECT_EQ(std::isnan(points[1].uy), k >= 4) << k;
+    EXPECT_FALSE(std::isnan(points[2].uy)) << k;
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
