@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
 
 #include "results/block_shape.h"
 #include "results/export.h"
@@ -11,7 +14,7 @@ namespace keyblock::results {
 namespace {
 
 constexpr std::uint8_t vtk_triangle = 5, vtk_polygon = 7;
-constexpr double smallest_time_step = 1e-6;  // s between the frames of a series
+constexpr double smallest_time_step = 1e-6;  // s between the moments of a series
 
 template <class T>
 std::span<const T> view(const std::vector<T>& values) {
@@ -184,18 +187,49 @@ std::string contact_file(const RunData& data, const JointLocator& locator,
   return file.text();
 }
 
+// A moment of a run: stage, step, and how many frames of the same series are of that step before it.
+using Moment = std::tuple<int, long, int>;
+
+template <class Frames>
+std::vector<Moment> moments_of(const Frames& frames) {
+  std::vector<Moment> moments;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const bool again =
+        k > 0 && frames[k].stage == frames[k - 1].stage && frames[k].step == frames[k - 1].step;
+    moments.emplace_back(frames[k].stage, frames[k].step, again ? std::get<2>(moments.back()) + 1 : 0);
+  }
+  return moments;
+}
+
+// Times of all moments, one and the same for blocks and contacts, that ascend where simulated time stands still.
+std::map<Moment, double> series_times(const RunData& data) {
+  std::map<Moment, double> times;
+  const auto add = [&](const auto& frames) {
+    const std::vector<Moment> moments = moments_of(frames);
+    for (std::size_t k = 0; k < frames.size(); ++k) times.emplace(moments[k], frames[k].time);
+  };
+  add(data.frames);
+  add(data.contacts);
+  double next = -HUGE_VAL;
+  for (auto& [moment, time] : times) {
+    time = std::max(time, next);
+    next = time + smallest_time_step;
+  }
+  return times;
+}
+
 // Writes one file per frame and the series of them; returns the series first.
 template <class Frames, class Content>
-std::vector<std::filesystem::path> write_series(const Frames& frames, FileSet& out, const std::string& name,
+std::vector<std::filesystem::path> write_series(const Frames& frames, const std::map<Moment, double>& times,
+                                                FileSet& out, const std::string& name,
                                                 const std::string& extension, const Content& content) {
+  const std::vector<Moment> moments = moments_of(frames);
   std::vector<std::filesystem::path> files(1);
   std::vector<std::pair<double, std::string>> series;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const std::string file = fmt::format("{}_{:05}.{}", name, k, extension);
     files.push_back(out.write(file, content(frames[k])));
-    const double time =
-        series.empty() ? frames[k].time : std::max(frames[k].time, series.back().first + smallest_time_step);
-    series.emplace_back(time, file);
+    series.emplace_back(times.at(moments[k]), file);
   }
   files.front() = out.write(name + ".pvd", vtk_series(series));
   return files;
@@ -205,12 +239,13 @@ std::vector<std::filesystem::path> write_series(const Frames& frames, FileSet& o
 
 std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out) {
   const Cells cells = block_cells(data.model);
-  auto files = write_series(data.frames, out, "blocks", "vtu", [&](const simulation::Frame& frame) {
+  const auto times = series_times(data);
+  auto files = write_series(data.frames, times, out, "blocks", "vtu", [&](const simulation::Frame& frame) {
     return block_file(data.model, frame, cells);
   });
   const JointLocator locator(data.model);
   const auto contacts =
-      write_series(data.contacts, out, "contacts", "vtp",
+      write_series(data.contacts, times, out, "contacts", "vtp",
                    [&](const simulation::ContactFrame& frame) { return contact_file(data, locator, frame); });
   files.insert(files.begin() + 1, contacts.front());
   files.insert(files.end(), contacts.begin() + 1, contacts.end());

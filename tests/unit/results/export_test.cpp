@@ -3,19 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "results/block_shape.h"
+#include "results/csv.h"
 #include "results/result_writer.h"
 #include "sample_run.h"
-#include "results/csv.h"
 
 namespace keyblock::results {
 namespace {
@@ -111,8 +113,6 @@ TEST(Export, Csv) {
   EXPECT_EQ(lines(folder / "histories.csv").size(), 31U);
 }
 
-TEST(Export, GeoJsonOfEveryStageEnd) {
-  const FreshFolder folder;
 TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   simulation::HistoryRow row;
@@ -121,6 +121,8 @@ TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
   EXPECT_THAT(histories_csv({"a", "b"}, {row}), testing::EndsWith("\n0.5,,,,,,,,1,2,3,4,5,6,7\n"));
 }
 
+TEST(Export, GeoJsonOfEveryStageEnd) {
+  const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::geojson);
   ASSERT_THAT(files, testing::ElementsAre(folder / "stage_1_in-situ.geojson",
                                           folder / "stage_2_first-earthquake.geojson"));
@@ -201,17 +203,41 @@ TEST(Export, LongNamesOfStages) {
                                    folder / ("stage_2_" + part + ".geojson")));
 }
 
+std::vector<double> series_times(const std::filesystem::path& series) {
+  std::vector<double> times;
+  for (const std::string& line : lines(series)) {
+    const std::size_t at = line.find("timestep=\"");
+    if (at != std::string::npos) times.push_back(std::strtod(line.c_str() + at + 10, nullptr));
+  }
+  return times;
+}
+
+// Two static stages: blocks at their starts and ends, and once on the way; contacts at the ends.
+TEST(Export, VtkSeriesHaveTheSameTimeForTheSameStep) {
+  const FreshFolder folder;
+  RunData data = small_motions();
+  data.frames.resize(5, data.frames.front());
+  data.contacts.resize(2, data.contacts.front());
+  const std::pair<int, long> frames[] = {{0, 0}, {0, 10}, {0, 20}, {1, 20}, {1, 35}};
+  for (std::size_t k = 0; k < 5; ++k) std::tie(data.frames[k].stage, data.frames[k].step) = frames[k];
+  for (simulation::Frame& frame : data.frames) frame.time = 0.0;
+  data.contacts[0].stage = 0, data.contacts[0].step = 20;
+  data.contacts[1].stage = 1, data.contacts[1].step = 35;
+  for (simulation::ContactFrame& frame : data.contacts) frame.time = 0.0;
+  const auto files = export_run(data, folder, ExportFormat::vtk);
+  const std::vector<double> blocks = series_times(files[0]);
+  ASSERT_EQ(blocks.size(), 5U);
+  EXPECT_TRUE(std::is_sorted(blocks.begin(), blocks.end(), std::less_equal<>()));
+  EXPECT_THAT(series_times(files[1]), testing::ElementsAre(blocks[2], blocks[4]));
+}
+
 TEST(Export, VtkSeriesHasTimesThatAscend) {
   const FreshFolder folder;
   const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
   EXPECT_EQ(files[0], folder / "blocks.pvd");
   EXPECT_EQ(files[1], folder / "contacts.pvd");
   EXPECT_EQ(files.size(), 2U + 6 + 3);
-  std::vector<double> times;
-  for (const std::string& line : lines(files[0])) {
-    const std::size_t at = line.find("timestep=\"");
-    if (at != std::string::npos) times.push_back(std::strtod(line.c_str() + at + 10, nullptr));
-  }
+  const std::vector<double> times = series_times(files[0]);
   ASSERT_EQ(times.size(), 6U);
   for (std::size_t k = 1; k < times.size(); ++k) EXPECT_GT(times[k], times[k - 1]);
   EXPECT_EQ(times[0], 0.0);
