@@ -89,6 +89,72 @@ std::optional<AccelerationUnit> header_unit(const MotionText& text, std::size_t 
   return unit;
 }
 
+std::vector<std::string> words_of(std::string_view text, std::string_view between) {
+  std::vector<std::string> words;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of(between), text.size());
+    if (end > 0) words.push_back(lower(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return words;
+}
+
+// Seconds per unit; absent for any other word.
+std::optional<double> time_unit(std::string_view word) {
+  for (const char* second : {"s", "sec", "secs", "second", "seconds"}) {
+    if (word == second) return 1.0;
+    if (word == std::string("m") + second || word == std::string("milli") + second) return 1e-3;
+  }
+  return {};
+}
+
+// Seconds per unit of time that a header line names, such as `time (ms), acceleration [g]`, `t_s,a` or `t ms a`; 1 when it names
+// none. Where blanks part the columns, all words but the last may be of the time.
+double header_time_unit(const MotionText& text, std::size_t line) {
+  const std::string_view header = text.line(line);
+  const auto fields = columns(header);
+  if (fields.size() < 2) return 1.0;
+  const bool blanks = header.find_first_of(",;") == std::string_view::npos;
+  const std::string_view time = blanks ? header.substr(0, header.rfind(fields.back())) : fields.front();
+  const std::size_t open = time.find_first_of("([");
+  const std::size_t close = time.find_first_of(")]");
+  constexpr std::string_view between = " \t_:/\"()[]";
+  constexpr std::string_view others[] = {"us",   "µs",      "ns", "usec", "min",
+                                         "mins", "minutes", "h",  "hr",   "hours"};
+  if (open < close && close != std::string_view::npos) {
+    const auto unit = time_unit(lower(trim(time.substr(open + 1, close - open - 1))));
+    if (!unit) text.fail(line, "a unit of time in the header: s or ms");
+    return *unit;
+  }
+  for (const std::string& word : words_of(time, between)) {
+    if (const auto unit = time_unit(word)) return *unit;
+    if (std::find(std::begin(others), std::end(others), word) != std::end(others))
+      text.fail(line, "a unit of time in the header: s or ms");
+  }
+  return 1.0;
+}
+
+// Whether a word of a comment is a unit of acceleration other than m/s2, known or not.
+bool is_other_unit(std::string_view word) {
+  if (const auto unit = acceleration_unit(word)) return unit->in_si != 1.0;
+  std::string plain = lower(word);
+  std::erase_if(plain, [](char c) { return c == '^' || c == '*'; });
+  const auto ends = [&](std::string_view end) { return plain.ends_with(end); };
+  return ends("/s2") || ends("/s²") || ends("/s/s") || ends("/sec2") || ends("/sec/sec") || ends("%g") ||
+         plain == "mg" || plain == "mgal";
+}
+
+// Comments are not read. One that speaks of another unit than the one that is assumed must not be passed over.
+void refuse_unit_in_comment(const MotionText& text) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (!is_comment(text.line(k))) continue;
+    const auto words = words_of(text.line(k), " \t#,;:\"()[]");
+    if (std::any_of(words.begin(), words.end(), is_other_unit))
+      text.fail(k,
+                "the unit in a header line and not in a comment, such as 'time (s), acceleration (cm/s2)'");
+  }
+}
+
 void set_times(MotionComponent& component, std::vector<double> times) {
   component.start = times.front();
   const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
@@ -122,6 +188,7 @@ std::vector<MotionComponent> read_csv(const MotionText& text) {
   component.file = text.file();
   component.format = "CSV";
   std::optional<AccelerationUnit> unit;
+  double seconds = 1.0;
   std::vector<double> times, values;
   bool header_possible = true;
   for (std::size_t k = 0; k < text.size(); ++k) {
@@ -129,8 +196,9 @@ std::vector<MotionComponent> read_csv(const MotionText& text) {
     if (is_comment(line)) continue;
     if (!is_row(line)) {
       if (!header_possible || begins_like_row(line))
-        text.fail(k, "two finite numbers: time in seconds and acceleration");
+        text.fail(k, "two finite numbers: time and acceleration");
       unit = header_unit(text, k);
+      seconds = header_time_unit(text, k);
       header_possible = false;
       continue;
     }
@@ -147,11 +215,13 @@ std::vector<MotionComponent> read_csv(const MotionText& text) {
     values.push_back(*parse_number(fields[1]));
   }
   if (times.size() < 2) text.fail(text.size() - 1, "at least two rows of time and acceleration");
+  for (double& time : times) time *= seconds;
   if (!is_time_step((times.back() - times.front()) / static_cast<double>(times.size() - 1))) {
     text.fail(text.size() - 1, 1, fmt::format("times from {} to {}", times.front(), times.back()),
               std::string(time_step_text) + ", on average");
   }
   if (!unit) {
+    refuse_unit_in_comment(text);
     unit = AccelerationUnit{"m/s2", 1.0};
     component.notes.push_back("the file names no unit; m/s2 is assumed");
   }

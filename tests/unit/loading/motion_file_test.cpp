@@ -295,6 +295,42 @@ TEST(MotionFile, WordsOfTheTitleAreNoUnit) {
   EXPECT_EQ(words[0].file_unit, "cm/s2");
 }
 
+TEST(MotionFile, TimesOfACsvMayBeMilliseconds) {
+  for (const std::string header : {"time (ms),a (g)", "t_ms;a (m/s2)", "Time [msec] acc [g]", "time ms a"}) {
+    SCOPED_TRACE(header);
+    EXPECT_DOUBLE_EQ(read_text(header + "\n0 1\n100 2\n200 3\n")[0].dt, 0.1);
+  }
+  for (const std::string header :
+       {"time (s),a_g", "t_s;a", "t [sec] a [m/s2]", "t a", "t (seconds), a (cm/s2)"}) {
+    SCOPED_TRACE(header);
+    EXPECT_DOUBLE_EQ(read_text(header + "\n0 1\n100 2\n200 3\n")[0].dt, 100.0);
+  }
+  for (const std::string header : {"time (min),a (g)", "t_us,a (m/s2)", "t [µs] a [g]", "time (UTC),a (g)"}) {
+    SCOPED_TRACE(header);
+    const Diagnostic d = error_of(header + "\n0 1\n1 2\n");
+    EXPECT_EQ(d.where.line, 1);
+    EXPECT_THAT(d.expected, HasSubstr("a unit of time in the header: s or ms"));
+  }
+}
+
+TEST(MotionFile, AUnitInACommentOfACsvIsNotPassedOver) {
+  const std::string rows = "0,1\n0.1,2\n0.2,3\n";
+  for (const std::string comment : {"# units: cm/s2", "# acceleration in gal", "# PGA 0.3 g", "#mm/s^2",
+                                    "# a (in/sec/sec)", "# values in %g"}) {
+    SCOPED_TRACE(comment);
+    const Diagnostic d = error_of("# a comment\n" + comment + "\n" + rows);
+    EXPECT_EQ(d.where.line, 2);
+    EXPECT_THAT(d.expected, HasSubstr("the unit in a header line and not in a comment"));
+    EXPECT_EQ(error_of("time acc\n" + comment + "\n" + rows).where.line, 2);
+    EXPECT_EQ(read_text(comment + "\nt,a (m/s2)\n" + rows)[0].acceleration[0], 1.0);
+  }
+  for (const std::string comment :
+       {"# m/s2", "# source: PEER, g=9.81", "# Vs30 760 m/s, 12 km", "# Gilroy"}) {
+    SCOPED_TRACE(comment);
+    EXPECT_EQ(read_text(comment + "\n" + rows)[0].acceleration[0], 1.0);
+  }
+}
+
 TEST(MotionFile, ADamagedFirstRowOfACsvIsNoHeader) {
   for (const std::string row : {"0,nan", "0,5,", "nan,0", "0;", "1e999,2"}) {
     SCOPED_TRACE(row);
