@@ -140,8 +140,27 @@ class Plausibility {
       warn("in_situ.k0 = {}: below 1/3 the crown of a round opening is not compressed (3 K0 < 1)",
            *in_situ.k0);
     }
+    if (in_situ.depth) check_density_at_depth();
     if (!in_situ.depth && (in_situ.sxx > 0.0 || in_situ.syy > 0.0)) {
       warn("in_situ: a positive stress is tension");
+    }
+  }
+
+  void check_density_at_depth() {
+    const double assumed = *scenario_.rock.density;
+    const auto check = [&](const std::string& path, const RockKeys& rock) {
+      if (rock.density.value_or(assumed) == assumed) return;
+      warn(
+          "in_situ.depth: counts on the density of [rock], {} kg/m3, everywhere, but {} has {} kg/m3: its "
+          "stress "
+          "is not in balance before a stage settles; sxx, syy and sxy in place of depth and k0 are taken as "
+          "they are",
+          assumed, path, *rock.density);
+    };
+    for (std::size_t k = 0; k < scenario_.regions.size(); ++k)
+      check(join_index("region", k), scenario_.regions[k].rock);
+    for (const BlockSpec& block : scenario_.blocks) {
+      if (!block.fixed) check(block.path, block.rock);
     }
   }
 

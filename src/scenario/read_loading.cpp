@@ -57,13 +57,15 @@ void read_in_situ(TableReader& t, Scenario& scenario) {
   const bool by_depth = t.find("depth") != nullptr || t.find("k0") != nullptr;
   const bool constant =
       !by_depth && (t.find("sxx") != nullptr || t.find("syy") != nullptr || t.find("sxy") != nullptr);
-  t.number("depth", in_situ.depth,
-           {.meaning =
-                "Rock above the top of the domain: the vertical stress grows downwards by density × gravity.",
-            .unit = "m",
-            .required = !constant && !documenting,
-            .at_least = 0.0,
-            .fallback = "required, or a constant stress"});
+  t.number(
+      "depth", in_situ.depth,
+      {.meaning =
+           "Rock above the top of the domain: the vertical stress grows downwards by density × gravity, with "
+           "the density of `[rock]` everywhere.",
+       .unit = "m",
+       .required = !constant && !documenting,
+       .at_least = 0.0,
+       .fallback = "required, or a constant stress"});
   t.number("k0", in_situ.k0,
            {.meaning = "Horizontal over vertical stress.",
             .required = !constant && !documenting,

@@ -33,6 +33,21 @@ TEST(Warnings, OfStress) {
   EXPECT_THAT(warnings_of(two_blocks, {"in_situ.syy=1e6"}), UnorderedElementsAre(HasSubstr("tension")));
 }
 
+TEST(Warnings, OfStressByDepthWhereDensitiesDiffer) {
+  const std::vector<std::string> by_depth{"in_situ.depth=30", "in_situ.k0=0.5"};
+  const std::string layered =
+      runnable_domain + "[[region]]\nouter = [[0, 0], [4, 0], [4, 1], [0, 1]]\ndensity = 1200.0\n";
+  EXPECT_THAT(warnings_of(layered, by_depth),
+              UnorderedElementsAre(HasSubstr("in_situ.depth: counts on the density of [rock], 2600 kg/m3, "
+                                             "everywhere, but region[0] has 1200 kg/m3")));
+  EXPECT_THAT(warnings_of(layered), IsEmpty());
+  EXPECT_THAT(warnings_of(layered, {"in_situ.syy=-1e6"}), IsEmpty());
+  EXPECT_THAT(warnings_of(layered, {by_depth[0], by_depth[1], "region.0.density=2600"}), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks,
+                          {by_depth[0], by_depth[1], "block.top.density=2000", "block.base.density=9000"}),
+              testing::Contains(HasSubstr("block.top has 2000 kg/m3")).Times(1));
+}
+
 const std::string shaking = R"(
 [[motion]]
 name = "sine"
@@ -113,6 +128,15 @@ TEST(Warnings, OfBlocksThatOverlap) {
               UnorderedElementsAre(HasSubstr("block.base and block.top overlap by 0.1 m at")));
 }
 
+TEST(Warnings, OfHistoriesThatEndAsTheirRockIsExcavated) {
+  const std::string watched = runnable_domain + "[[history]]\nname = \"h\"\npoint = [2.0, 1.5]\n";
+  EXPECT_THAT(
+      warnings_of(watched),
+      UnorderedElementsAre("history.h.point: lies in rock that the stage 'settled' excavates; the history "
+                           "ends there"));
+  EXPECT_THAT(warnings_of(watched, {"history.h.point=[2.0, 2.0]"}), IsEmpty());  // in the wall
+}
+
 TEST(Warnings, OfDistributionsThatAreCutOff) {
   EXPECT_THAT(
       warnings_of(runnable_domain, {"joint_set.bedding.gap={mean=0.5, std=0.5, distribution=\"normal\"}"}),
@@ -128,15 +152,6 @@ TEST(Warnings, OfTensionThatHoldsNothing) {
               UnorderedElementsAre(
                   HasSubstr("pulled by cohesion / tan(friction), 9.657e+05, before its tension of 1e+06")));
   const auto of_set = HasSubstr("joint_set.bedding: tension without cohesion");
-TEST(Warnings, OfHistoriesThatEndAsTheirRockIsExcavated) {
-  const std::string watched = runnable_domain + "[[history]]\nname = \"h\"\npoint = [2.0, 1.5]\n";
-  EXPECT_THAT(
-      warnings_of(watched),
-      UnorderedElementsAre("history.h.point: lies in rock that the stage 'settled' excavates; the history "
-                           "ends there"));
-  EXPECT_THAT(warnings_of(watched, {"history.h.point=[2.0, 2.0]"}), IsEmpty());  // in the wall
-}
-
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6"}), UnorderedElementsAre(of_set));
   EXPECT_THAT(warnings_of(runnable_domain, {"joint_set.bedding.tension=1e6", "joints.cohesion=1e6"}),
               IsEmpty());
