@@ -110,6 +110,30 @@ bool same_value(const Value& a, const Value& b) {
 
 namespace {
 
+// Doubles of this size and more need not have all integers.
+constexpr std::int64_t inexact_integer = std::int64_t{1} << 53;
+
+void make_canonical(Value& value) {
+  if (value.is(Value::Type::integer) && value.integer > -inexact_integer && value.integer < inexact_integer) {
+    value.type = Value::Type::number;
+    value.number = static_cast<double>(value.integer);
+  }
+  if (value.is(Value::Type::number)) value.number += 0.0;  // -0 is 0
+  if (value.is(Value::Type::table))
+    std::sort(value.items.begin(), value.items.end(),
+              [](const Value& a, const Value& b) { return a.key < b.key; });
+  for (Value& item : value.items) make_canonical(item);
+}
+
+}  // namespace
+
+std::string canonical_toml(Value value) {
+  make_canonical(value);
+  return to_toml(value);
+}
+
+namespace {
+
 void add_differences(const Value* there, const Value* here, const std::string& path,
                      std::vector<std::string>& found) {
   const auto text = [](const Value* value) { return value == nullptr ? "nothing" : to_toml(*value); };

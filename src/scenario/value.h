@@ -43,6 +43,9 @@ std::string to_toml(const Value& value);
 /// Whether they mean the same: 1 and 1.0 do, and tables with their keys in another order.
 bool same_value(const Value& a, const Value& b);
 
+/// The value as TOML in one way of writing, the same text for what same_value calls the same.
+std::string canonical_toml(Value value);
+
 /// Where two documents differ, by key path: `rock.young: 3.0e9 there, 5.0e9 here`. Elements of lists are compared by place.
 std::vector<std::string> differences(const Value& there, const Value& here);
 

@@ -32,7 +32,7 @@ std::string combination_hash(const std::vector<std::string>& overrides, const st
     const scenario::Override parsed = scenario::parse_override(text);
     std::string path;
     for (const scenario::PathSegment& segment : parsed.path) path = scenario::join_path(path, segment.key);
-    lines.push_back(path + "=" + scenario::to_toml(parsed.value));
+    lines.push_back(path + "=" + scenario::canonical_toml(parsed.value));
   }
   std::sort(lines.begin(), lines.end());
   std::string text;

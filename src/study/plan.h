@@ -66,7 +66,7 @@ Plan make_plan(const std::filesystem::path& scenario, const std::vector<std::str
                const std::string& version, std::vector<std::string>* warnings = nullptr);
 
 /// The name of a run and of its folder: `r0007-5d2c81a0f3`, the realization and a hash (FNV-1a, 64 bit, its first ten
-/// digits) of the overrides `key=value` in the order of their text, keys written in one way, and of the variant. It
+/// digits) of the overrides `key=value` in the order of their text, keys and values written in one way, and of the variant. It
 /// depends neither on the other runs nor on the order of axes and values.
 std::string run_key(int realization, const std::vector<std::string>& overrides, const std::string& variant);
 

@@ -41,6 +41,12 @@ TEST(RunKey, DependsOnWhatVariesAlone) {
   const std::string key = run_key(1, {"rock.order=2", "stage.'a b'.scale=0.5"}, "");
   EXPECT_EQ(run_key(1, {"stage.\"a b\".scale=0.5", "rock.order=2"}, ""), key);
   EXPECT_EQ(run_key(1, {"stage.'a b'.scale = 0.50", "rock.order =2"}, ""), key);
+  EXPECT_EQ(run_key(1, {"stage.'a b'.scale=5e-1", "rock.order=2.0"}, ""), key);
+  EXPECT_EQ(run_key(0, {"joint_set.J1.gap={mean=1, std=2.0}"}, ""),
+            run_key(0, {"joint_set.J1.gap={std=2, mean=1.0}"}, ""));
+  EXPECT_EQ(run_key(0, {"block.top.velocity=[0, 1]"}, ""),
+            run_key(0, {"block.top.velocity=[-0.0, 1.0]"}, ""));
+  EXPECT_NE(run_key(0, {"seed=9007199254740993"}, ""), run_key(0, {"seed=9007199254740992"}, ""));
   EXPECT_NE(run_key(1, {"stage.'a b'.scale=0.6", "rock.order=2"}, ""), key);
   EXPECT_NE(run_key(1, {"rock.order=2"}, ""), key);
   EXPECT_NE(run_key(1, {"rock.order=2", "stage.'a b'.scale=0.5"}, "released"), key);
