@@ -293,11 +293,21 @@ const tests = {
 
   async "a marginal case says so and lists its moving blocks"() {
     const page = await open("marginal");
+    const findings = await text(page, "#verdict .findings");
     assert.match(
-      await text(page, "#verdict .attention"),
+      findings,
+      /marginal: 1 block .* still moving when “in situ” ended/,
+    );
+    assert.match(
+      findings,
       /marginal: 3 blocks .* still moving when “excavated” ended/,
     );
-    assert.equal(await page.locator("#verdict tbody tr").count(), 3);
+    // One of them is listed in both stages.
+    assert.match(
+      await text(page, "#verdict summary"),
+      /^3 blocks still moving/,
+    );
+    assert.equal(await page.locator("#verdict tbody tr").count(), 4);
     assert.match(await text(page, "#verdict thead"), /Mass\s*t\/m/);
     assert.ok((await page.locator("#quality td.attention").count()) >= 3);
     assert.match(
@@ -306,9 +316,11 @@ const tests = {
     );
     assert.match(
       await text(page, "#quality tbody tr:last-child"),
-      /Marginal static stages\s*“excavated”: no equilibrium, 3 blocks still moving/,
+      /Marginal static stages\s*“in situ”: 1 block still moving and “excavated”: no equilibrium, 3 blocks still moving/,
     );
     await page.locator("#verdict button.link").first().click();
+    assert.match(await label(page), /^in situ/);
+    await page.locator("#verdict button.link").nth(1).click();
     assert.match(await label(page), /^excavated/);
     await shoot(page, "marginal-1400");
     await close(page);

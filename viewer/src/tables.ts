@@ -186,7 +186,7 @@ export function damageTable(run: Run): HTMLElement | null {
 export function movingTable(run: Run, show: (block: number, stage: number) => void): HTMLElement | null {
   const stages = marginalStages(run).filter(({ stage }) => stage.moving.length > 0);
   if (stages.length === 0) return null;
-  const total = stages.reduce((sum, { stage }) => sum + stage.moving.length, 0);
+  const blocks = new Set(stages.flatMap(({ stage }) => stage.moving.map((m) => m.block)));
   const rows = stages.flatMap(({ stage, index }) =>
     stage.moving.map((m) => [
       h(
@@ -213,8 +213,8 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
   ];
   return h(
     "details",
-    { open: total <= 12 },
-    h("summary", {}, `${count(total, "block")} still moving at the end of a static stage`),
+    { open: rows.length <= 12 },
+    h("summary", {}, `${count(blocks.size, "block")} still moving at the end of a static stage`),
     tableBox("Blocks still moving", [head], rows, "narrow"),
   );
 }
