@@ -78,6 +78,7 @@ ResultFolder::ResultFolder(fs::path folder, const std::vector<fs::path>& inputs,
   const fs::path input = folder_ / input_name;
   same_ = file_exists(input) && read_file(input) == input_;
   check_state(use);
+  for (const fs::path& file : files_of(folder_)) remove_stale_temporaries(file);
   has_ended_ =
       use == Use::resume && same_ && file_exists(folder_ / result_name) && results::has_ended(folder_);
   resumes_ = use == Use::resume && same_ && file_exists(simulation::checkpoint_path(folder_));

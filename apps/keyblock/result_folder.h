@@ -23,7 +23,8 @@ class ResultFolder {
   ///   - one of them is a file that the run would write, or the folder is that of a study, or another process is at it;
   ///   - there are results of other input, or files named like results without them, unless they are to be replaced;
   ///   - a run is to be resumed whose results are gone.
-  /// Nothing is changed yet, but that the folder is made, and in it a file `lock` while the object lives.
+  /// Nothing is changed yet, but that the folder is made, in it a file `lock` while the object lives, and that temporary files of
+  /// runs that were killed are taken away.
   ResultFolder(std::filesystem::path folder, const std::vector<std::filesystem::path>& inputs,
                const simulation::RunSetup& setup, Use use);
 

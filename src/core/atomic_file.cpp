@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -13,8 +16,24 @@
 
 namespace keyblock {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view temporary_end = ".tmp";
+
+fs::path temporary_path(const fs::path& path, pid_t process) {
+  return path.string() + fmt::format(".{}{}", process, temporary_end);
+}
+
+bool is_running(pid_t process) {
+  return ::kill(process, 0) == 0 || errno != ESRCH;
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(path_.string() + fmt::format(".{}.tmp", ::getpid())) {
+    : path_(std::move(path)), temporary_(temporary_path(path_, ::getpid())) {
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("create");
 }
@@ -53,6 +72,19 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
   AtomicFile file(path);
   file.write(content);
   file.commit();
+}
+
+void remove_stale_temporaries(const fs::path& path) {
+  const std::string begin = path.filename().string() + ".";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(begin) || !name.ends_with(temporary_end)) continue;
+    pid_t process = 0;
+    std::from_chars(name.data() + begin.size(), name.data() + name.size(), process);
+    if (process <= 0 || entry.path() != temporary_path(path, process) || is_running(process)) continue;
+    fs::remove(entry.path(), ignored);
+  }
 }
 
 std::string read_file(const std::filesystem::path& path) {

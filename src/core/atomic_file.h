@@ -30,6 +30,10 @@ class AtomicFile {
 /// AtomicFile of a content that is there already.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
+/// Takes away what processes that were killed have left of AtomicFiles of this path: temporary files of processes that this machine
+/// does not have. For those who hold the lock of the folder, as other machines may write there, too.
+void remove_stale_temporaries(const std::filesystem::path& path);
+
 /// The whole file as bytes. Throws InputError, with the reason of the system, when it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 

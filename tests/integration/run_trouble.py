@@ -143,6 +143,17 @@ class Interrupt(Background):
         files = [path.name for path in (self.folder / "out/geojson").glob("*.geojson")]
         self.assertEqual(files, ["stage_1_slide_unfinished.geojson"])
 
+    def test_what_a_process_that_is_gone_was_writing_is_taken_away(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        gone = subprocess.Popen(["true"])
+        gone.wait()
+        for options in ((), ("--resume",)):
+            names = {f"{name}.{gone.pid}.tmp" for name in ("report.html", "summary.json", "checkpoint.bin")}
+            for name in names:
+                self.write(f"out/{name}", "half")
+            self.keyblock("run", "incline.toml", "-o", "out", *options)
+            self.assertFalse(names & {path.name for path in (self.folder / "out").iterdir()}, options)
+
     def test_a_second_interrupt_ends_at_once(self):
         run = self.start("out", *lasting(1e5))
         run.send_signal(signal.SIGSTOP)  # both signals arrive before the next step

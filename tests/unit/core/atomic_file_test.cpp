@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "../fresh_folder.h"
 #include "core/error.h"
@@ -48,6 +50,26 @@ TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   EXPECT_THAT(write, Throws<RunError>(Property(&RunError::what, HasSubstr("No space left"))));
   EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(files(), 1) << "temporary files were left";
+}
+
+TEST_F(AtomicFileTest, TemporaryFilesOfProcessesThatAreGoneAreStale) {
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  ASSERT_EQ(::waitpid(gone, nullptr, 0), gone);
+  const std::string stale = fmt::format("data.{}.tmp", gone);
+  const std::vector<std::string> others{fmt::format("data.{}.tmp", ::getppid()),
+                                        "data",
+                                        "data.tmp",
+                                        "data.x.tmp",
+                                        "data.0.tmp",
+                                        fmt::format("other.{}.tmp", gone),
+                                        fmt::format("data.0{}.tmp", gone)};
+  std::ofstream(folder_ / stale) << "half";
+  for (const std::string& name : others) std::ofstream(folder_ / name) << "kept";
+  remove_stale_temporaries(folder_ / "data");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / stale));
+  for (const std::string& name : others) EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+  remove_stale_temporaries(folder_ / "gone" / "data");
 }
 
 TEST_F(AtomicFileTest, FolderThatIsNotThere) {
