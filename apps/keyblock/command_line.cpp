@@ -17,6 +17,19 @@
 namespace keyblock::app {
 namespace {
 
+/// As from a variable of the shell that is not set.
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator given(
+      [](std::string& value) {
+        return value.empty() ? std::string("found nothing; expected a value") : std::string();
+      },
+      "");
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_expected_max() > 0 && option->get_items_expected_max() > 0) option->check(given);
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
+}
+
 void describe(CLI::App& app, int& exit_code) {
   app.name("keyblock");
   app.description(
@@ -44,6 +57,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_motion(app);
   add_verify(app, exit_code);
   add_study(app);
+  refuse_empty_values(app);
 }
 
 /// --help and --version arrive here too; they are no mistakes.

@@ -59,6 +59,12 @@ class Check(Scenario):
     def test_an_override_that_is_wrong(self):
         self.assertIn("--set rock.young=-1", self.keyblock("check", "incline.toml", "--set", "rock.young=-1", expect=1).stderr)
 
+    def test_options_take_no_empty_value(self):
+        for words in (("run", "incline.toml"), ("cut", "incline.toml"), ("study", "run", "incline.toml"), ("verify",)):
+            self.assertIn("--output: found nothing; expected a value", self.keyblock(*words, "-o", "", expect=1).stderr)
+        self.assertIn("SCENARIO: found nothing", self.keyblock("check", "", expect=1).stderr)
+        self.assertIn("--set: found nothing", self.keyblock("check", "incline.toml", "--set", "", expect=1).stderr)
+
     def test_the_same_mistake_stops_a_run(self):
         self.write("bad.toml", "title = 3\n")
         checked = self.keyblock("check", "bad.toml", expect=1).stderr
