@@ -72,10 +72,10 @@ struct ContactRecord {
   Vec2 normal;                ///< unit, out of block_b
   double length = 0.0;        ///< m of joint that belongs to it
   double gap = 0.0;           ///< m, as the joint law has it then: negative where the contact is pressed
-  double slip = 0.0;          ///< m, relative shear displacement since the excavation, signed
+  double slip = 0.0;          ///< m, of block_a along perpendicular(normal), since the excavation
   double normal_force = 0.0;  ///< N per metre thickness, compression positive
-  double shear_force = 0.0;
-  cutting::EdgeLabel label;  ///< of the edge
+  double shear_force = 0.0;   ///< the same; against perpendicular(normal) on block_a
+  cutting::EdgeLabel label;   ///< of the edge
 };
 
 struct ContactFrame {

@@ -68,6 +68,26 @@ TEST(Recorder, GapOfAContactThatMultipliersPressIsNone) {
   EXPECT_GT(pressed, 4);
 }
 
+// A block rests on an incline: what its contacts push it with is its weight.
+TEST(Recorder, ForcesOfContactsOnBlockA) {
+  Scene scene(3e9, 30.0);
+  scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 20.0, true);
+  const Vec2 along{std::cos(20.0 * degree), std::sin(20.0 * degree)};
+  scene.rectangle(Vec2{-1.0, -1.0} + perpendicular(along) + along, 1.0, 0.5, 20.0);
+  scene.setup.time_step = 0.002;
+  scene.setup.stages.push_back(stage("settle", StageKind::settle));
+  AllContacts observer;
+  run(scene.setup, {}, observer);
+  Vec2 on_block;
+  for (const ContactRecord& c : observer.frames.back().contacts) {
+    const Vec2 force = c.normal_force * c.normal + c.shear_force * Vec2{c.normal.y, -c.normal.x};
+    on_block += c.block_a == 1 ? force : -1.0 * force;
+  }
+  const double weight = 0.5 * 2600.0 * g;
+  EXPECT_NEAR(on_block.x, 0.0, 0.02 * weight);
+  EXPECT_NEAR(on_block.y, weight, 0.02 * weight);
+}
+
 struct AllHistories final : RunObserver {
   std::vector<HistoryRow> rows;
   void history(const HistoryRow& row) override { rows.push_back(row); }
