@@ -258,7 +258,7 @@ class StepProblem {
   /// Calls of_vertex(v, share) for the vertices that a point hangs on: itself, or all of its edge.
   template <typename OfVertex>
   void for_vertices_of(std::uint32_t point, const OfVertex& of_vertex) const {
-    if (!is_on_curve(point)) return of_vertex(at(point), 1.0);
+    if (!is_on_curve(point)) return of_vertex(std::size_t{point}, 1.0);
     for_vertices_of_curve(contact_on_curve(point), of_vertex);
   }
   /// Of the point of contact c.

@@ -139,8 +139,7 @@ void Runner::begin() {
   now_.present = model_.surface.present;
   // All potentials count from the start, as gravity does.
   now_.initial_energy = total_energy();
-  if (setup_.excavations.empty())
-    gauge_.start(now_.mechanics, stepper_->find_contacts(now_.mechanics));
+  if (setup_.excavations.empty()) gauge_.start(now_.mechanics, stepper_->find_contacts(now_.mechanics));
   now_.damage = gauge_.reference();
 }
 
