@@ -1,5 +1,6 @@
 #include "loading/motion_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -314,20 +315,19 @@ TEST(MotionFile, TimesOfACsvMayBeMilliseconds) {
 }
 
 TEST(MotionFile, AUnitInACommentOfACsvIsNotPassedOver) {
-  const std::string rows = "0,1\n0.1,2\n0.2,3\n";
-  for (const std::string comment : {"# units: cm/s2", "# acceleration in gal", "# PGA 0.3 g", "#mm/s^2",
-                                    "# a (in/sec/sec)", "# values in %g"}) {
+  constexpr const char* rows = "0,1\n0.1,2\n0.2,3\n";
+  for (const char* comment : {"# units: cm/s2", "# acceleration in gal", "# PGA 0.3 g", "#mm/s^2",
+                              "# a (in/sec/sec)", "# values in %g"}) {
     SCOPED_TRACE(comment);
-    const Diagnostic d = error_of("# a comment\n" + comment + "\n" + rows);
+    const Diagnostic d = error_of(fmt::format("# a comment\n{}\n{}", comment, rows));
     EXPECT_EQ(d.where.line, 2);
     EXPECT_THAT(d.expected, HasSubstr("the unit in a header line and not in a comment"));
-    EXPECT_EQ(error_of("time acc\n" + comment + "\n" + rows).where.line, 2);
-    EXPECT_EQ(read_text(comment + "\nt,a (m/s2)\n" + rows)[0].acceleration[0], 1.0);
+    EXPECT_EQ(error_of(fmt::format("time acc\n{}\n{}", comment, rows)).where.line, 2);
+    EXPECT_EQ(read_text(fmt::format("{}\nt,a (m/s2)\n{}", comment, rows))[0].acceleration[0], 1.0);
   }
-  for (const std::string comment :
-       {"# m/s2", "# source: PEER, g=9.81", "# Vs30 760 m/s, 12 km", "# Gilroy"}) {
+  for (const char* comment : {"# m/s2", "# source: PEER, g=9.81", "# Vs30 760 m/s, 12 km", "# Gilroy"}) {
     SCOPED_TRACE(comment);
-    EXPECT_EQ(read_text(comment + "\n" + rows)[0].acceleration[0], 1.0);
+    EXPECT_EQ(read_text(fmt::format("{}\n{}", comment, rows))[0].acceleration[0], 1.0);
   }
 }
 
