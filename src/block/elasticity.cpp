@@ -143,30 +143,12 @@ double Elasticity::energy(const double* a) const {
   });
 }
 
-/// The geometric part of the tangent to `geometric`, (N − 1)², lower triangle, and the rest to the tangent.
+/// Keeps at all points what the tangent is made of: B_k, then B_{k + 1}.
 template <typename Number, typename Size>
-void Elasticity::add_at(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
-                        const double* a, double viscous, double* force, double* geometric, double* tangent,
-                        int stride) const {
-  struct Columns {
-    Number x[3], y[3];  // of three rows
-  };
-  struct Stressed {
-    SymmetricTensor<Number> stress;  // times the weight
-    Number weight;
-  };
-  // Orders 1 and 2 have room here; higher ones are worth an allocation.
-  constexpr std::size_t few_groups = 2, few = few_groups * 6;
+void Elasticity::add_force(Size size, std::span<const Point<Number>> points,
+                           const Gradient<Number>* gradients, const double* a, double viscous, double* force,
+                           Columns<Number>* b, Stressed<Number>* stressed) const {
   const std::size_t count = points.size();
-  std::array<Columns, few> few_b;
-  std::array<Columns, few_groups> few_cb;
-  std::array<Stressed, few_groups> few_stressed;
-  const bool is_small = count <= few_groups && at(size) * count <= few;
-  std::vector<Columns> many(is_small ? 0 : (at(size) + 1) * count);
-  std::vector<Stressed> many_stressed(is_small ? 0 : count);
-  Columns* b = is_small ? few_b.data() : many.data();  // B_k at all points, then B_{k + 1}
-  Columns* cb = is_small ? few_cb.data() : many.data() + at(size) * count;  // C B_l, weighted
-  Stressed* stressed = is_small ? few_stressed.data() : many_stressed.data();
   for (std::size_t q = 0; q < count; ++q) {
     const Gradient<Number>* g = gradients + q * at(size);
     const Deformation<Number> f = deformation(size, a, g);
@@ -183,6 +165,14 @@ void Elasticity::add_at(Size size, std::span<const Point<Number>> points, const 
                               {f.yx * g[k].x, f.yy * g[k].y, f.yx * g[k].y + f.yy * g[k].x}};
     }
   }
+}
+
+/// cb: room for C B_l at all points, weighted.
+template <typename Number, typename Size>
+void Elasticity::write_tangent(Size size, std::span<const Stressed<Number>> stressed,
+                               const Gradient<Number>* gradients, const Columns<Number>* b,
+                               Columns<Number>* cb, double* tangent, int stride, double* geometric) const {
+  const std::size_t count = stressed.size();
   const auto times = [](const Number(&x)[3], const Number(&y)[3]) {
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
   };
@@ -202,7 +192,7 @@ void Elasticity::add_at(Size size, std::span<const Point<Number>> points, const 
     for (int k = l; k < size; ++k) {
       Number xx{}, yx{}, xy{}, yy{}, g{};
       for (std::size_t q = 0; q < count; ++q) {
-        const Columns &row = b[at(k) * count + q], &column = cb[q];
+        const Columns<Number>&row = b[at(k) * count + q], &column = cb[q];
         const Gradient<Number>&at_k = gradients[q * at(size) + at(k)],
               &at_l = gradients[q * at(size) + at(l)];
         const SymmetricTensor<Number>& s = stressed[q].stress;
@@ -223,8 +213,23 @@ void Elasticity::add_at(Size size, std::span<const Point<Number>> points, const 
 
 void Elasticity::add_force_and_material_tangent(const double* a, double viscous, double* force,
                                                 double* tangent, int stride, double* geometric) const {
-  with_points([&](auto size, auto points, const auto* gradients) {
-    add_at(size, points, gradients, a, viscous, force, geometric, tangent, stride);
+  with_points([&]<typename Number>(auto size, std::span<const Point<Number>> points,
+                                   const Gradient<Number>* gradients) {
+    // Orders 1 and 2 have room here; higher ones are worth an allocation.
+    constexpr std::size_t few_groups = 2, few = few_groups * 6;
+    const std::size_t count = points.size();
+    std::array<Columns<Number>, few> few_b;
+    std::array<Columns<Number>, few_groups> few_cb;
+    std::array<Stressed<Number>, few_groups> few_stressed;
+    const bool is_small = count <= few_groups && at(size) * count <= few;
+    std::vector<Columns<Number>> many(is_small ? 0 : (at(size) + 1) * count);
+    std::vector<Stressed<Number>> many_stressed(is_small ? 0 : count);
+    Columns<Number>* b = is_small ? few_b.data() : many.data();
+    Columns<Number>* cb = is_small ? few_cb.data() : many.data() + at(size) * count;
+    Stressed<Number>* stressed = is_small ? few_stressed.data() : many_stressed.data();
+    add_force(size, points, gradients, a, viscous, force, b, stressed);
+    write_tangent(size, std::span<const Stressed<Number>>(stressed, count), gradients, b, cb, tangent, stride,
+                  geometric);
   });
 }
 

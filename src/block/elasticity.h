@@ -79,10 +79,24 @@ class Elasticity {
   template <typename Number>
   [[nodiscard]] SymmetricTensor<Number> second_piola(const Deformation<Number>& f,
                                                      const SymmetricTensor<Number>& initial) const;
+  /// B_k at a point: the columns of x and y.
+  template <typename Number>
+  struct Columns {
+    Number x[3], y[3];  // of three rows
+  };
+  template <typename Number>
+  struct Stressed {
+    SymmetricTensor<Number> stress;  // times the weight
+    Number weight;
+  };
   template <typename Number, typename Size>
-  void add_at(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
-              const double* a, double viscous, double* force, double* geometric, double* tangent,
-              int stride) const;
+  void add_force(Size size, std::span<const Point<Number>> points, const Gradient<Number>* gradients,
+                 const double* a, double viscous, double* force, Columns<Number>* b,
+                 Stressed<Number>* stressed) const;
+  template <typename Number, typename Size>
+  void write_tangent(Size size, std::span<const Stressed<Number>> stressed, const Gradient<Number>* gradients,
+                     const Columns<Number>* b, Columns<Number>* cb, double* tangent, int stride,
+                     double* geometric) const;
 
   int size_;
   double c11_, c12_, c33_;  ///< plane elasticity matrix; c22 = c11

@@ -1,11 +1,19 @@
 #pragma once
 #include <cstddef>
 #include <type_traits>
+#include <vector>
 
 #include "contact/surface.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
+
+/// Where edges of m pieces are divided, in the reference position: m + 1 points from 0 to 1, ascending.
+struct EdgeDivision {
+  std::vector<double> points;
+  std::vector<double> scales;  ///< of Lagrange's polynomials through them: 1 / Π (p_j − p_i)
+  explicit EdgeDivision(std::vector<double> ascending);
+};
 
 /// Calls of_vertex(v, share) for the vertices along a divided edge, with their shares in what it is at a point of one of its pieces:
 /// the polynomial through all of them (Lagrange), which is what a block of order n does along a straight edge of at least n pieces.

@@ -6,12 +6,7 @@
 
 namespace keyblock::contact {
 
-/// Where edges of m pieces are divided, in the reference position: m + 1 points from 0 to 1, ascending.
-struct EdgeDivision {
-  std::vector<double> points;
-  std::vector<double> scales;  ///< of Lagrange's polynomials through them: 1 / Π (p_j − p_i)
-  explicit EdgeDivision(std::vector<double> ascending);
-};
+struct EdgeDivision;  // edge_curve.h
 
 /// A straight edge of a block of order > 1, of as many pieces as contact divides it into.
 struct DividedEdge {

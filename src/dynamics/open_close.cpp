@@ -13,8 +13,8 @@ namespace {
 constexpr double forcing = 0.003;  // of what is out of balance, what its linear systems may leave over
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
-constexpr double least_share = 0.25;  // of the way to a new bound
-constexpr int most_bond_updates = 20;
+constexpr double least_share = 0.25;   // of the way to a new bound
+constexpr int most_bond_updates = 20;  // in a step, lest two bonds hand a strength to and fro
 // Of the inertia behind a contact, in a step of multipliers: enough for eight contacts that push a rigid block, and the least.
 constexpr double first_multiplier_share = 0.25, least_multiplier_share = 1e-3;
 

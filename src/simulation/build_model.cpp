@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "contact/edge_curve.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "geometry/quadrature.h"

@@ -6,6 +6,7 @@
 #include <random>
 #include <tuple>
 
+#include "contact/edge_curve.h"
 #include "core/index.h"
 #include "find_contacts.h"
 #include "surface_builder.h"
@@ -122,12 +123,15 @@ TEST(JointLength, AContactAtACornerHasTheLawsOfBothJoints) {
       surface.joint[e] = (middle < 0.5) == other_way ? 1 : 0;
     }
     CandidateList list;
+    int at_corner = 0;
     for (const Contact& c : find(surface, list, laws)) {
       if (std::abs(surface.position[at(c.vertex)].x - 0.5) > 0.1) continue;
+      ++at_corner;
       EXPECT_NEAR(c.friction_coefficient, 0.5, 1e-12);
       EXPECT_NEAR(c.normal_stiffness, 2e9 * c.length, 1.0);
       EXPECT_NEAR(c.shear_stiffness, 0.4 * c.normal_stiffness, 1.0);
     }
+    EXPECT_EQ(at_corner, 1);
   }
 }
 
@@ -139,6 +143,7 @@ TEST(JointLength, WhatIsFusedIsNoSofterThanRock) {
   add_block(surface, rectangle(0, 1, 1, 2));
   CandidateList list;
   for (const Contact& c : find(surface, list, laws)) EXPECT_NEAR(c.normal_stiffness, 1e7 * c.length, 1.0);
+  ASSERT_EQ(list.memory.size(), 2u);
   for (Memory& memory : list.memory) memory.bonded = true;
   for (const Contact& c : find(surface, list, laws)) EXPECT_NEAR(c.normal_stiffness, 1e9 * c.length, 1.0);
 }
