@@ -267,9 +267,8 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
   const int maps = static_cast<int>(setup.joints.trace_maps.size());
   switch (label.kind) {
     case cutting::EdgeKind::free:
-    case cutting::EdgeKind::
-        domain:  // what touches it but for the frame, whose edges have a law of their own, is rock
-      return 0;
+    case cutting::EdgeKind::domain:
+      return 0;  // the law of the frame is that of the frame's own edges
     case cutting::EdgeKind::excavation:
       return 2;
     case cutting::EdgeKind::joint_set:
