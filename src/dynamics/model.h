@@ -69,7 +69,9 @@ struct GroundSpring {
 /// Everything that does not change during a run but by excavation.
 struct Model {
   std::vector<Block> blocks;
-  contact::Surface surface;  ///< topology and basis values; positions are those of the start
+  contact::Surface surface;
+  std::vector<Vec2> reference;    ///< position of its vertices
+  std::vector<int> outline_edge;  ///< of its edges: the edge of a polygon it lies on; all count, ring by ring
   std::vector<contact::JointLaw> laws;
   std::vector<GeneralizedLoad> loads;
   std::vector<GroundSpring> springs;

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
-#include "contact/edge_curve.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "geometry/quadrature.h"
+#include "simulation/outline.h"
 
 namespace keyblock::simulation {
 
@@ -75,80 +73,6 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties, int 
   block.size = basis.size();
   block.edge_order = edge_order;
   return block;
-}
-
-/// Where an edge of so many pieces is divided, as a share of it: at the points of Gauss and Lobatto's rule, whose weights are what forces on
-/// the vertices have to be for a traction along the edge to do the same work on a block of that order.
-const contact::EdgeDivision& division(int pieces) {
-  static std::map<int, contact::EdgeDivision> divisions;
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  return divisions.try_emplace(pieces, gauss_lobatto(pieces + 1).points).first->second;
-}
-
-/// Surface::start_share of the pieces: such that each vertex comes to its weight.
-std::vector<double> start_shares(int pieces) {
-  const LineRule& rule = gauss_lobatto(pieces + 1);
-  std::vector<double> shares;
-  double of_piece_before = 0.0;
-  for (std::size_t k = 0; k < at(pieces); ++k) {
-    const double length = rule.points[k + 1] - rule.points[k], at_start = rule.weights[k] - of_piece_before;
-    shares.push_back(at_start / length);
-    of_piece_before = length - at_start;
-  }
-  return shares;
-}
-
-/// Basis functions at the vertices that contact has on the outline of a block, after those of the blocks before it.
-void evaluate_basis(contact::Surface& surface, const Block& block, int vertex) {
-  for (std::size_t r = 0; r < block.reference.ring_count(); ++r) {
-    const Ring& ring = block.reference.ring(r);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 here = ring[k], after = ring[(k + 1) % ring.size()];
-      const int pieces = edge_pieces(norm(after - here), block.area, block.edge_order);
-      for (int piece = 0; piece < pieces; ++piece, ++vertex) {
-        surface.phi_begin[at(vertex)] = surface.phi.size();
-        surface.phi.resize(surface.phi.size() + at(block.size));
-        block.basis.evaluate(lerp(here, after, division(pieces).points[at(piece)]),
-                             surface.phi.data() + surface.phi_begin[at(vertex)]);
-      }
-    }
-  }
-}
-
-void add_to_surface(Model& model, const Block& block, const std::vector<std::vector<int>>& joints) {
-  contact::Surface& surface = model.surface;
-  const int number = surface.blocks();
-  for (std::size_t r = 0; r < block.reference.ring_count(); ++r) {
-    const Ring& ring = block.reference.ring(r);
-    const int first = surface.vertices();
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
-                 after = ring[(k + 1) % ring.size()];
-      const int pieces = edge_pieces(norm(after - here), block.area, block.edge_order);
-      const std::vector<double> shares = start_shares(pieces);
-      surface.start_share.insert(surface.start_share.end(), shares.begin(), shares.end());
-      surface.divided.insert(surface.divided.end(), at(pieces),
-                             {surface.vertices(), pieces, &division(pieces)});
-      for (int piece = 0; piece < pieces; ++piece) {
-        surface.block.push_back(number);
-        surface.joint.push_back(joints[r][k]);
-        surface.position.push_back(lerp(here, after, division(pieces).points[at(piece)]));
-        surface.reflex.push_back(piece == 0 && cross(here - before, after - here) < 0.0);
-      }
-    }
-    const int count = surface.vertices() - first;
-    for (int k = 0; k < count; ++k) {
-      surface.next.push_back(first + (k + 1) % count);
-      surface.previous.push_back(first + (k + count - 1) % count);
-    }
-  }
-  surface.phi_begin.resize(at(surface.vertices()));
-  evaluate_basis(surface, block, surface.block_begin.back());
-  surface.block_begin.push_back(surface.vertices());
-  surface.thickness.push_back(block.area / perimeter(block.reference));
-  surface.present.push_back(1);
-  surface.fixed.push_back(block.fixed);
 }
 
 std::size_t block_named(const RunSetup& setup, const std::string& name, const std::string& key) {
@@ -279,15 +203,6 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
   return 0;
 }
 
-int edge_pieces(double edge_length, double block_area, int order) {
-  // Of the edge, the share of its first vertex is 1 / (n (n + 1)).
-  constexpr double least = 0.01, rounding = 1e-6;
-  const double most = (1.0 + rounding) * edge_length / (least * std::sqrt(block_area));
-  int pieces = 1;
-  while (pieces < order && (pieces + 1) * (pieces + 2) <= most) ++pieces;
-  return pieces;
-}
-
 Model build_model(const RunSetup& setup) {
   Model model;
   model.gravity = setup.gravity;
@@ -300,7 +215,7 @@ Model build_model(const RunSetup& setup) {
   for (const JointProperties& joint : setup.joints.joint_sets) model.laws.push_back(law_of(joint));
   for (const JointProperties& joint : setup.joints.trace_maps) model.laws.push_back(law_of(joint));
 
-  model.surface.block_begin.push_back(0);
+  std::vector<int> joints;
   model.blocks.reserve(setup.system.blocks.size() + 1);
   for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
     const cutting::CutBlock& cut = setup.system.blocks[b];
@@ -310,12 +225,9 @@ Model build_model(const RunSetup& setup) {
     model.blocks.push_back(make_block(cut.polygon, properties, order,
                                       automatic ? setup.automatic_order.highest_order : order,
                                       setup.in_situ));
-    std::vector<std::vector<int>> joints;
     for (const auto& ring : cut.labels) {
-      joints.emplace_back();
-      for (const cutting::EdgeLabel label : ring) joints.back().push_back(joint_law(setup, label));
+      for (const cutting::EdgeLabel label : ring) joints.push_back(joint_law(setup, label));
     }
-    add_to_surface(model, model.blocks.back(), joints);
   }
   if (setup.frame) {
     BlockProperties properties;
@@ -324,13 +236,10 @@ Model build_model(const RunSetup& setup) {
     for (const BlockProperties& block : setup.properties)
       properties.material.young = std::max(properties.material.young, block.material.young);
     model.blocks.push_back(make_block(frame_polygon(setup.domain), properties, 1, 1, {}));
-    add_to_surface(model, model.blocks.back(), {std::vector<int>(4, 1), std::vector<int>(4, 1)});
-  }
-  if (std::ranges::all_of(model.surface.divided, [](const auto& edge) { return edge.pieces == 1; })) {
-    model.surface.divided.clear();
-    model.surface.start_share.clear();
+    joints.insert(joints.end(), 8, 1);
   }
   number_coefficients(model);
+  build_surface(model, joints);
   add_loads(setup, model);
   add_supports(setup, model);
   add_prescribed_motions(setup, model);
@@ -348,9 +257,7 @@ void change_orders(const RunSetup& setup, Model& model, dynamics::State& state, 
     block.unknown = unknown;
   }
   number_coefficients(model);
-  model.surface.phi.clear();
-  for (std::size_t b = 0; b < model.blocks.size(); ++b)
-    evaluate_basis(model.surface, model.blocks[b], model.surface.block_begin[b]);
+  evaluate_basis(model);
   model.loads.clear();
   model.springs.clear();
   add_loads(setup, model);

@@ -22,7 +22,4 @@ void change_orders(const RunSetup& setup, dynamics::Model& model, dynamics::Stat
 /// Reference position, with the velocities of the setup.
 dynamics::State initial_state(const RunSetup& setup, const dynamics::Model& model);
 
-/// Number of pieces into which contact divides an edge of a block, so that its curvature is followed.
-int edge_pieces(double edge_length, double block_area, int order);
-
 }  // namespace keyblock::simulation

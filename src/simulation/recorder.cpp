@@ -20,19 +20,15 @@ static_assert(static_cast<int>(ContactState::sliding) == static_cast<int>(contac
 static_assert(static_cast<int>(ContactState::locked) == static_cast<int>(contact::State::locked));
 
 Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
-    : setup_(setup), model_(model), gauge_(gauge), threads_(threads), start_(model.surface.position) {
-  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
-    for (std::size_t r = 0; r < model.blocks[b].reference.ring_count(); ++r) {
-      const Ring& ring = model.blocks[b].reference.ring(r);
-      for (std::size_t k = 0; k < ring.size(); ++k) {
-        const cutting::EdgeLabel label = b < setup.system.blocks.size()
-                                             ? setup.system.blocks[b].labels[r][k]
-                                             : cutting::EdgeLabel{cutting::EdgeKind::domain, 0};
-        const int pieces = edge_pieces(norm(ring[(k + 1) % ring.size()] - ring[k]), model.blocks[b].area,
-                                       model.blocks[b].edge_order);
-        labels_.insert(labels_.end(), at(pieces), label);
-      }
-    }
+    : setup_(setup), model_(model), gauge_(gauge), threads_(threads) {
+  std::vector<cutting::EdgeLabel> of_outline;
+  for (const cutting::CutBlock& block : setup.system.blocks) {
+    for (const auto& ring : block.labels) of_outline.insert(of_outline.end(), ring.begin(), ring.end());
+  }
+  for (const int edge : model.outline_edge) {
+    labels_.push_back(at(edge) < of_outline.size()
+                          ? of_outline[at(edge)]
+                          : cutting::EdgeLabel{cutting::EdgeKind::domain, 0});  // of the frame
   }
   for (const History& history : setup.histories) {
     const std::optional<std::size_t> block = history_block(setup, history);
@@ -83,7 +79,7 @@ ModelRecord Recorder::model() const {
     row.ring_start.push_back(surface.block_begin[b + 1]);
     record.blocks.push_back(std::move(row));
   }
-  record.vertices = start_;
+  record.vertices = model_.reference;
   record.edge_label = labels_;
   for (const Stage& stage : setup_.stages) record.stage_names.push_back(stage.name);
   record.joint_set_names = setup_.joint_set_names;
@@ -105,9 +101,9 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
   frame.time = state.time;
   frame.stage = stage;
   frame.step = state.step;
-  frame.displacement.reserve(start_.size());
-  for (std::size_t v = 0; v < start_.size(); ++v) {
-    const Vec2 u = model_.surface.position[v] - start_[v];
+  frame.displacement.reserve(model_.reference.size());
+  for (std::size_t v = 0; v < model_.reference.size(); ++v) {
+    const Vec2 u = model_.surface.position[v] - model_.reference[v];
     frame.displacement.push_back({static_cast<float>(u.x), static_cast<float>(u.y)});
   }
   for (const dynamics::Block& block : model_.blocks) {

@@ -40,7 +40,6 @@ class Recorder {
   const dynamics::Model& model_;
   const DamageGauge& gauge_;
   int threads_;
-  std::vector<Vec2> start_;  ///< of every vertex
   std::vector<cutting::EdgeLabel> labels_;
   std::vector<Point> points_;
 };
