@@ -44,18 +44,22 @@ struct SharedLength {
   double zone;           ///< m, by which edges may miss each other and still begin or end together
 
   /// m that the vertex has of what an edge of its block, that goes on to `to`, has in common with this one: the half, or what
-  /// Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these are divided alike.
+  /// Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these are divided alike;
+  /// as blocks slide, the latter become halves.
   /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
   Number operator()(Number to, const Beside<Number>& other, const Beside<Number>& here) const {
+    constexpr double slid = 0.5;  // of an edge: by so much it is not divided like the other one any more
     const Number low = smaller(along, to), high = larger(along, to), zero{};
     const Number common = larger(zero, smaller(length, high) - larger(zero, low));
     const Number other_low = smaller(other.from, other.to), other_high = larger(other.from, other.to);
+    const Number from_apart = other_low - here.from, to_apart = other_high - here.to,
+                 apart = larger(zero, larger(size(from_apart), size(to_apart)) - zone),
+                 left = zero + 1.0 - apart / larger(slid * (here.to - here.from), zero + zone);
     const auto alike = (other.pieces <= here.pieces) & (other.pieces >= here.pieces) &
-                       (other_low >= here.from - zone) & (other_low <= here.from + zone) &
-                       (other_high >= here.to - zone) & (other_high <= here.to + zone),
+                       (size(to_apart - from_apart) <= zone) & (left > 0.0),
                other_within = (other_low >= -zone) & (other_high <= length + zone),
                here_within = (here.from >= low - zone) & (here.to <= high + zone);
-    const Number half = zero + 0.5, both = 0.5 * (other.share + here.share);
+    const Number half = zero + 0.5, both = 0.5 + left * (0.5 * (other.share + here.share) - 0.5);
     return common *
            where(alike, both, where(other_within, other.share, where(here_within, here.share, half)));
   }
@@ -63,6 +67,7 @@ struct SharedLength {
  private:
   static Number smaller(Number a, Number b) { return where(b < a, b, a); }
   static Number larger(Number a, Number b) { return where(a < b, b, a); }
+  static Number size(Number a) { return larger(a, -a); }
 };
 
 /// Of an edge, by a line through `origin`.

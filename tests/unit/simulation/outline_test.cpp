@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -140,6 +141,45 @@ TEST(Outline, ContactsHaveTheWeightsOfTheRule) {
       found[static_cast<std::size_t>(point - points.begin())] += c.length;
     }
     expect_near(found, expected);
+  }
+}
+
+// As blocks slide, the weights of the rule fade into halves: what a block is held by stays right in force and moment, and changes step by
+// step as it goes.
+TEST(Outline, WeightsOfTheRuleFadeAsBlocksSlide) {
+  const double width = 1.1;
+  // Moments of what holds the block on the left about its middle, over what they are where it is held evenly.
+  const auto held_at = [&](double slid, int order) {
+    const TJunction t(width, order, order);
+    dynamics::Model model = build_model(t.scene.setup);
+    dynamics::State state = initial_state(t.scene.setup, model);
+    for (const std::size_t b : {1, 2})
+      state.position[model.blocks[b].first] += slid * std::sqrt(model.blocks[b].area);
+    ThreadTeam alone(1);
+    Profile profile;
+    dynamics::Stepper stepper(model, alone, profile);
+    stepper.start(state);
+    std::array<double, 3> moments{};
+    for (const contact::Contact& c : stepper.find_contacts(state)) {
+      if (std::min(c.block_a, c.block_b) != 0 || std::max(c.block_a, c.block_b) != 1) continue;
+      const double x = (model.surface.position[at(c.vertex)].x - slid) / (0.5 * width) - 1.0;
+      for (std::size_t k = 0; k < moments.size(); ++k)
+        moments[k] += static_cast<double>(k + 1) * c.length / width * std::pow(x, k);
+    }
+    return moments;
+  };
+  for (const int order : {2, 3, 4}) {
+    const std::array<double, 3> in_place = held_at(0.0, order);
+    for (const std::size_t k : {0, 2}) EXPECT_NEAR(in_place[k], 1.0, 1e-9);
+    double before = in_place[2];
+    for (double slid = 0.01; slid < 0.5; slid += 0.01) {
+      const std::array<double, 3> moment = held_at(slid, order);
+      EXPECT_NEAR(moment[0], 1.0, 5e-3) << order << ", " << slid;
+      EXPECT_NEAR(moment[1], 0.0, 5e-3) << order << ", " << slid;
+      EXPECT_NEAR(moment[2], 1.0, slid < 0.2 ? 0.04 : 0.4) << order << ", " << slid;
+      EXPECT_NEAR(moment[2], before, 0.04) << order << ", " << slid;
+      before = moment[2];
+    }
   }
 }
 
