@@ -309,7 +309,7 @@ void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<
     for (int e = surface.block_begin[ib]; e < surface.block_begin[ib + 1]; ++e) {
       const auto from = at(e), to = at(surface.next[from]);
       const bool inside = cross(looked_at_[to] - looked_at_[from], p - looked_at_[from]) > 0.0;
-      const bool deep = inside || surface.reflex[from] || surface.reflex[to];
+      const bool deep = inside || surface.is_nook(from) || surface.is_nook(to);
       const double reach = margin + (deep ? tolerances_.depth_limit : 0.0);
       if (distance_to_segment(p, looked_at_[from], looked_at_[to]) < reach)
         found.push_back({v, e, a, b, clearance(surface, looked_at_, tolerances_, v, e)});

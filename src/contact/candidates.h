@@ -32,6 +32,7 @@ struct Memory {
   double multiplier = 0.0;  ///< m, augmented Lagrangian: normal force over stiffness, in place of penetration
   double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
   double stored = 0.0;      ///< J per thickness, elastic energy of the springs
+  double bond_length = 0.0;  ///< m of joint that a bond holds: it stays what it was when the bond was made
 };
 
 /// A vertex of block a near an edge of block b.

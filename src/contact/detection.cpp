@@ -25,7 +25,7 @@ void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
       corner.position = surface.position[e];
       corner.length = norm(along);
       corner.tangent = corners_[next].before = along / corner.length;
-      corner.reflex = surface.reflex[e] + 2.0 * surface.reflex[next];
+      corner.kinds = surface.reflex[e] + 4.0 * surface.reflex[next];
     }
   });
 }
@@ -42,14 +42,16 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   }
   transpose(edge);
   transpose(vertex);
-  const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6], reflex = edge[7];
+  const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6], kinds = edge[7];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
   const Lanes reach = load(group.reach.data()), deepest = load(group.deepest.data());
   const Lanes zone = least(tolerances_.end_zone + reach, 0.5 * length);
   const Lanes deep_zone = largest(zone, deepest);
-  const auto reflex_start = (reflex == 1.0) | (reflex == 3.0), reflex_end = reflex >= 2.0;
-  const Lanes before = where(reflex_start, deep_zone, zone), after = where(reflex_end, deep_zone, zone);
+  const auto reflex_end = kinds >= 4.0, nook_end = kinds >= 8.0;
+  const Lanes at_start = kinds - where(nook_end, broadcast(8.0), where(reflex_end, broadcast(4.0), Lanes{}));
+  const auto reflex_start = at_start >= 1.0, nook_start = at_start >= 2.0;
+  const Lanes before = where(nook_start, deep_zone, zone), after = where(nook_end, deep_zone, zone);
   // The corner of a block that spins may pass the one that is nearest now.
   const Lanes straight = broadcast(Tolerances::sine_inside);
   const Lanes sine = where(gap > 0.0, least(broadcast(1.0), straight + load(group.turn.data())), straight);

@@ -95,7 +95,7 @@ class Detection {
     Vec2 position;
     Vec2 tangent, before;  ///< directions of the edge and of the one that ends here
     double length = 0.0;   ///< m, of the edge
-    double reflex = 0.0;   ///< Surface::reflex here, and twice that at the end of the edge
+    double kinds = 0.0;    ///< CornerKind here, and four times that at the end of the edge
     [[nodiscard]] Vec2 normal() const { return {tangent.y, -tangent.x}; }
   };
   /// A candidate that passes the geometry.
@@ -225,6 +225,7 @@ class Detection {
   /// Of the edge beyond a corner.
   struct Beyond {
     double length = 0.0;  ///< m, that belongs to the contact at the corner
+    double share = 0.0;   ///< of all that belongs to it
     int joint = 0;        ///< Surface::joint
   };
   [[nodiscard]] Beyond beyond_end(const Surface& surface, const Candidate& candidate, double position) const;

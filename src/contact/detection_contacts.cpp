@@ -42,21 +42,27 @@ template <typename Number>
 struct SharedLength {
   Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
   double zone;           ///< m, by which edges may miss each other and still begin or end together
+  double apart;          ///< m, up to which they are beside each other
 
-  /// m that the vertex has of what an edge of its block, that goes on to `to`, has in common with this one: the half, or what
+  /// m, of the edge, over which one that leaves it at an angle of this sine is beside it.
+  [[nodiscard]] Number beside(Number sine) const {
+    return apart / larger(size(sine), Number{} + apart / largest_length);
+  }
+  /// m that the vertex has of what an edge of its block, that goes on to `to` and is beside this one for so long, has in common with it: the half, or what
   /// Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these are divided alike;
   /// as blocks slide, the latter become halves.
   /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
-  Number operator()(Number to, const Beside<Number>& other, const Beside<Number>& here) const {
+  Number operator()(Number to, Number long_beside, const Beside<Number>& other,
+                    const Beside<Number>& here) const {
     constexpr double slid = 0.5;  // of an edge: by so much it is not divided like the other one any more
     const Number low = smaller(along, to), high = larger(along, to), zero{};
-    const Number common = larger(zero, smaller(length, high) - larger(zero, low));
+    const Number common = smaller(larger(zero, smaller(length, high) - larger(zero, low)), long_beside);
     const Number other_low = smaller(other.from, other.to), other_high = larger(other.from, other.to);
-    const Number from_apart = other_low - here.from, to_apart = other_high - here.to,
-                 apart = larger(zero, larger(size(from_apart), size(to_apart)) - zone),
-                 left = zero + 1.0 - apart / larger(slid * (here.to - here.from), zero + zone);
+    const Number from_slid = other_low - here.from, to_slid = other_high - here.to,
+                 beyond_zone = larger(zero, larger(size(from_slid), size(to_slid)) - zone),
+                 left = zero + 1.0 - beyond_zone / larger(slid * (here.to - here.from), zero + zone);
     const auto alike = (other.pieces <= here.pieces) & (other.pieces >= here.pieces) &
-                       (size(to_apart - from_apart) <= zone) & (left > 0.0),
+                       (size(to_slid - from_slid) <= zone) & (left > 0.0),
                other_within = (other_low >= -zone) & (other_high <= length + zone),
                here_within = (here.from >= low - zone) & (here.to <= high + zone);
     const Number half = zero + 0.5, both = 0.5 + left * (0.5 * (other.share + here.share) - 0.5);
@@ -65,6 +71,7 @@ struct SharedLength {
   }
 
  private:
+  static constexpr double largest_length = 1e100;  // m
   static Number smaller(Number a, Number b) { return where(b < a, b, a); }
   static Number larger(Number a, Number b) { return where(a < b, b, a); }
   static Number size(Number a) { return larger(a, -a); }
@@ -97,15 +104,17 @@ Beside<Number> at_end(Beside<Number> edge) {
 /// Eight at once, or fewer at the end.
 Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
                                        std::span<const Found> found) const {
-  Lanes edge[lane_count], vertex[lane_count], length_before{};
+  Lanes edge[lane_count], vertex[lane_count], length_before{}, at_corner{};
   // The edge, and those of the vertex that begin and end there.
   Beside<Lanes> here{broadcast(0.5), {}, {}, broadcast(1.0)}, next = here, last = here;
   for (std::size_t i = 0; i < lane_count; ++i) {
-    const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
+    const Found& f = found[i < found.size() ? i : 0];
+    const Candidate& c = candidates.pairs[at(f.candidate)];
     const std::size_t before = at(surface.previous[at(c.vertex)]);
     edge[i] = load(&corners_[at(c.edge)].position.x);
     vertex[i] = load(&corners_[at(c.vertex)].position.x);
     length_before[i] = corners_[before].length;
+    at_corner[i] = f.at_end ? 1.0 : 0.0;
     if (surface.divided.empty()) continue;
     const auto look_at = [&](std::size_t e, Beside<Lanes>& side) {
       const Beside<double> of =
@@ -124,24 +133,31 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
   const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
-  const SharedLength<Lanes> shared{along, length, tolerances_.end_zone};
+  const SharedLength<Lanes> shared{along, length, tolerances_.end_zone, tolerances_.activation};
   const Lanes most = broadcast(tolerances_.least_length);
   Lanes shared_length{}, whole_length{};
-  auto shares_much = whole_length > 0.0;
+  auto shares_much = whole_length > 0.0, faces = shares_much;
   // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
   const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, const Beside<Lanes>& other,
                             const Beside<Lanes>& this_edge) {
-    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty;
+    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, long_beside = shared.beside(across);
     const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
-    shared_length += where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, other, this_edge));
-    whole_length += where(turned, Lanes{}, least(other.share * length_of_other, this_edge.share * length));
+    const Lanes common =
+        where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, long_beside, other, this_edge));
+    shared_length += common;
+    faces = faces | ~turned;
+    whole_length =
+        largest(whole_length, where((common > tolerances_.rounding) | (~turned & (at_corner > 0.0)),
+                                    least(other.share * length_of_other, this_edge.share * length), Lanes{}));
     const Lanes overlap = least(largest(other.from, other.to), this_edge.to) -
                           largest(least(other.from, other.to), this_edge.from);
-    shares_much = shares_much | (~turned & (overlap >= 2.0 * most));
+    shares_much = shares_much | (~turned & (least(overlap, long_beside) >= 2.0 * most));
   };
   add_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), next, at_end(here));
   add_edge(vertex[4], vertex[5], length_before, broadcast(-1.0), at_end(last), here);
-  const Lanes enough = where(shares_much, Tolerances::least_of_many * most, most);
+  // One that faces the edge and shares nothing of it, not even where two corners meet, is held by the edge beside.
+  const auto is_one_of_many = shares_much | (faces & ~(whole_length > 0.0));
+  const Lanes enough = where(is_one_of_many, Tolerances::least_of_many * most, most);
   return {gap, along / length, shared_length, where(whole_length > 0.0, least(whole_length, enough), enough)};
 }
 
@@ -160,16 +176,16 @@ Detection::Beyond Detection::beyond_end(const Surface& surface, const Candidate&
   const auto look_at = [&](std::size_t e) { return beside(surface, e, line.position, line.tangent); };
   const Beside<double> here = look_at(beyond);
   const double along = dot(line.tangent, vertex.position - line.position);
-  const SharedLength<double> shared{along, line.length, tolerances_.end_zone};
+  const SharedLength<double> shared{along, line.length, tolerances_.end_zone, tolerances_.activation};
   const auto of_edge = [&](Vec2 u, double length_of_other, const Beside<double>& other,
                            const Beside<double>& this_edge) {
-    const double ahead = dot(u, line.tangent);
-    if (ahead > 0.0 || std::abs(cross(u, line.tangent)) > Tolerances::sine_facing) return 0.0;
-    return shared(along + ahead * length_of_other, other, this_edge);
+    const double ahead = dot(u, line.tangent), across = cross(u, line.tangent);
+    if (ahead > 0.0 || std::abs(across) > Tolerances::sine_facing) return 0.0;
+    return shared(along + ahead * length_of_other, shared.beside(across), other, this_edge);
   };
   const double length = of_edge(vertex.tangent, vertex.length, look_at(next), at_end(here)) +
                         of_edge(vertex.before, -corners_[before].length, at_end(look_at(before)), here);
-  return {length, surface.joint[beyond]};
+  return {length, 0.0, surface.joint[beyond]};
 }
 
 /// Brings a contact from the chord of a piece of a divided edge to its curve: to the point that the vertex is opposite to.
@@ -206,10 +222,9 @@ void Detection::give_law(const Surface& surface, Contact& contact, double least_
                          const Beyond& beyond) const {
   const double penalty = std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
   const std::size_t joint = at(surface.joint[at(contact.edge)]);
-  const bool mixed = beyond.length > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
+  const bool mixed = beyond.share > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
   const JointLaw law =
-      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.length / contact.length, penalty)
-            : laws_[joint];
+      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : laws_[joint];
   contact.fused = contact.memory.bonded && law.fused;
   const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty,
                per_length = contact.fused ? std::max(of_joint, penalty) : of_joint;
@@ -238,9 +253,9 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
       contact.position = geometry.position[i];
       contact.gap = geometry.gap[i];
       if (is_curved(surface, contact.edge)) bend(surface, contact);
-      contact.length = geometry.length[i];
-      const Beyond beyond = f.at_end ? beyond_end(surface, candidate, contact.position) : Beyond{};
-      contact.length += beyond.length;
+      Beyond beyond = f.at_end ? beyond_end(surface, candidate, contact.position) : Beyond{};
+      contact.length = geometry.length[i] + beyond.length;
+      if (beyond.length > 0.0) beyond.share = beyond.length / contact.length;
       Memory& memory = contact.memory;
       if (f.memory < 0) {
         memory = {};
@@ -248,6 +263,7 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
       } else {
         memory = candidates.memory[at(f.memory)];
         if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -contact.gap));
+        if (memory.bonded) contact.length = memory.bond_length;
       }
       give_law(surface, contact, geometry.least_length[i], beyond);
       keep_energy(memory, contact.gap, contact.normal_stiffness);

@@ -55,10 +55,12 @@ double Detection::rival_margin(const Surface& surface, const Candidate& candidat
                                    surface.thickness[at(candidate.block_b)]});
   const bool reflex_start = surface.reflex[at(candidate.edge)] != 0,
              reflex_end = surface.reflex[at(surface.next[at(candidate.edge)])] != 0;
-  const auto beyond = [&](bool reflex) { return reflex ? std::max(zone, deepest) : zone; };
+  const auto beyond = [&](int corner) {
+    return surface.is_nook(at(corner)) ? std::max(zone, deepest) : zone;
+  };
   double margin = std::min({(tolerances_.activation - rival.gap) / gap_rate, (rival.gap + deepest) / gap_rate,
-                            (rival.along + beyond(reflex_start)) / start_rate,
-                            (length + beyond(reflex_end) - rival.along) / end_rate});
+                            (rival.along + beyond(candidate.edge)) / start_rate,
+                            (length + beyond(surface.next[at(candidate.edge)]) - rival.along) / end_rate});
 
   for (const int other : {surface.previous[at(candidate.vertex)], surface.next[at(candidate.vertex)]}) {
     const Vec2 u = surface.position[at(other)] - vertex.position;

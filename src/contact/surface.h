@@ -15,6 +15,19 @@ struct DividedEdge {
   const EdgeDivision* division = nullptr;
 };
 
+/// What a vertex is to others. One at which the block's angle exceeds 180° touches nothing. Where it does so by more than 10° it is a nook,
+/// which a vertex of another block may lie in, and its edges reach past it for that; where by less, the end zone does
+/// (Tolerances: depth_limit · tan 5° < end_zone).
+enum CornerKind : std::uint8_t { convex = 0, reflex = 1, nook = 2 };
+
+/// Of the vertex between two edges; straight but for rounding is convex.
+inline CornerKind corner_kind(Vec2 before, Vec2 after) {
+  constexpr double rounding = 1e-9, sine_nook = 0.174;
+  const double sine = cross(before, after) / (norm(before) * norm(after));
+  if (sine >= -rounding) return CornerKind::convex;
+  return sine < -sine_nook || dot(before, after) < 0.0 ? CornerKind::nook : CornerKind::reflex;
+}
+
 /// The outlines of all blocks as contact sees them: vertices joined by straight edges. Edge k runs from vertex k to
 /// next[k], the block on its left. Blocks of order > 1 have vertices along their edges, which may curve.
 struct Surface {
@@ -23,9 +36,8 @@ struct Surface {
   std::vector<std::uint8_t> fixed;         ///< per block
   std::vector<double> thickness;           ///< m, per block: area over perimeter
   std::vector<int> block, next, previous;  ///< per vertex
-  std::vector<std::uint8_t>
-      reflex;  ///< per vertex: the block's angle there exceeds 180°; such a vertex touches nothing
-  std::vector<int> joint;  ///< per edge: index of its joint law
+  std::vector<std::uint8_t> reflex;        ///< per vertex: CornerKind
+  std::vector<int> joint;                  ///< per edge: index of its joint law
   /// Per edge: share that its start has of the length of joint along it, its end having the rest; empty: a half of each.
   std::vector<double> start_share;
   std::vector<DividedEdge> divided;  ///< per edge: what it is a piece of; empty: no edge is divided
@@ -34,6 +46,7 @@ struct Surface {
   std::vector<std::size_t> phi_begin;
   std::vector<double> phi;
 
+  [[nodiscard]] bool is_nook(std::size_t vertex) const { return reflex[vertex] == CornerKind::nook; }
   [[nodiscard]] int blocks() const { return static_cast<int>(block_begin.size()) - 1; }
   [[nodiscard]] int vertices() const { return static_cast<int>(block.size()); }
 };

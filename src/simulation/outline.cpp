@@ -49,12 +49,6 @@ struct Part {
 /// Of a whole edge, where it is not told otherwise.
 constexpr Part whole[] = {Part{}};
 
-/// Whether an edge turns to the right of the one before, by more than the rounding of a straight line.
-bool is_reflex(Vec2 before, Vec2 after) {
-  constexpr double rounding = 1e-9;
-  return cross(before, after) < -rounding * norm(before) * norm(after);
-}
-
 /// The outlines of the blocks; parts: of each edge of the polygons, or none.
 Surface outlines(const Model& model, std::span<const int> joint, std::span<const std::vector<Part>> parts,
                  std::vector<int>& outline_edge) {
@@ -70,7 +64,7 @@ Surface outlines(const Model& model, std::span<const int> joint, std::span<const
       for (std::size_t k = 0; k < ring.size(); ++k, ++edge) {
         const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
                    after = ring[(k + 1) % ring.size()];
-        const bool reflex = is_reflex(here - before, after - here);
+        const contact::CornerKind kind = contact::corner_kind(here - before, after - here);
         const std::size_t corner = surface.block.size();
         for (const Part& part : parts.empty() ? std::span<const Part>(whole) : parts[edge]) {
           const std::vector<double> shares = start_shares(part.pieces);
@@ -79,7 +73,7 @@ Surface outlines(const Model& model, std::span<const int> joint, std::span<const
                                  {surface.vertices(), part.pieces, &division(part.pieces)});
           for (int piece = 0; piece < part.pieces; ++piece) {
             const double share = std::lerp(part.from, part.to, division(part.pieces).points[at(piece)]);
-            surface.reflex.push_back(reflex && surface.block.size() == corner);
+            surface.reflex.push_back(surface.block.size() == corner ? kind : contact::CornerKind::convex);
             surface.block.push_back(number);
             surface.joint.push_back(joint[edge]);
             surface.position.push_back(lerp(here, after, share));

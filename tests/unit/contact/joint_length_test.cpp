@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <tuple>
 
@@ -110,6 +111,82 @@ TEST(JointLength, DividedEdgesAreHeldEvenly) {
   }
 }
 
+// Two joints that cross at a small angle: above and below meet at the crossing alone, and share no more than lies there.
+TEST(JointLength, BlocksThatMeetWhereJointsCrossShareNoJoint) {
+  for (const double angle : {1.0, 2.0, 4.0, 4.9, 5.1, 10.0}) {
+    const double rise = 5.0 * std::tan(0.5 * angle * std::numbers::pi / 180.0);
+    Surface surface;
+    add_block(surface, {{{-5, -rise}, {-5, -5}, {5, -5}, {5, -rise}, {0, 0}}, {}});
+    add_block(surface, {{{5, rise}, {5, 5}, {-5, 5}, {-5, rise}, {0, 0}}, {}});
+    add_block(surface, {{{-5, -rise}, {0, 0}, {-5, rise}}, {}});
+    add_block(surface, {{{5, -rise}, {5, rise}, {0, 0}}, {}});
+    const auto contacts = find(surface);
+    EXPECT_LT(total_length(contacts, 0, 1), 0.2) << angle;
+    const double side = std::hypot(5.0, rise);
+    for (const int above : {0, 1})
+      for (const int beside : {2, 3}) EXPECT_NEAR(total_length(contacts, above, beside), side, 0.1) << angle;
+  }
+}
+
+// A joint that is drawn with many vertices is as stiff as one that is drawn with few, and has a contact or two at each of them. One side may
+// have vertices between those of the other.
+TEST(JointLength, StiffnessDoesNotDependOnHowFinelyAJointIsDrawn) {
+  // Vertices may not come nearer to each other than the end zone, 3 mm.
+  for (const auto& [segments, between] :
+       {std::pair{4, false}, {40, false}, {400, false}, {4, true}, {40, true}, {100, true}}) {
+    Ring below, above;
+    double length = 0.0;
+    for (int k = 0; k <= segments; ++k) {
+      const double x = 2.0 * k / segments;
+      const Vec2 here{x, 0.01 * std::sin(5.0 * x)};
+      if (k > 0) {
+        const Vec2 before = below.back();
+        length += norm(here - before);
+        if (between) above.push_back(lerp(before, here, 0.25));
+      }
+      above.push_back(here);
+      below.push_back(here);
+    }
+    std::ranges::reverse(below);
+    below.insert(below.end(), {{0.0, -1.0}, {2.0, -1.0}});
+    above.insert(above.end(), {{2.0, 1.0}, {0.0, 1.0}});
+    Surface surface;
+    add_block(surface, {below, {}});
+    add_block(surface, {above, {}});
+    const auto contacts = find(surface);
+    double stiffness = 0.0;
+    for (const Contact& c : contacts) stiffness += c.normal_stiffness;
+    EXPECT_NEAR(stiffness / (1e9 * length), 1.0, 1e-6) << segments << ", " << between;
+    EXPECT_LE(contacts.size(), at((between ? 3 : 2) * segments)) << segments << ", " << between;
+  }
+}
+
+// What a bond holds is what it held when it was made, however its blocks turn. What is not bonded shares as much as lies beside it.
+TEST(JointLength, ABondKeepsItsLength) {
+  for (const bool bonded : {false, true}) {
+    Surface surface;
+    add_block(surface, rectangle(0, 0, 2, 1));
+    add_block(surface, rectangle(0.5, 1, 1.5, 2));
+    CandidateList list;
+    find(surface, list);
+    for (Memory& memory : list.memory) {
+      memory.bonded = bonded;
+      memory.bond_length = 0.5;
+    }
+    for (std::size_t v = 4; v < 8; ++v) {
+      const Vec2 from_corner = surface.position[v] - Vec2{0.5, 1.0};
+      surface.position[v] += 0.01 * Vec2{-from_corner.y, from_corner.x};
+    }
+    int found = 0;
+    for (const Contact& c : find(surface, list)) {
+      if (std::abs(surface.position[at(c.vertex)].x - 0.5) > 0.1) continue;
+      ++found;
+      EXPECT_NEAR(c.length, bonded ? 0.5 : 0.5 * 0.15, 1e-3);
+    }
+    EXPECT_EQ(found, 1);
+  }
+}
+
 // Faces that go on in faces of another joint: the contact of the corners that meet has what both joints give, on whichever side it is.
 TEST(JointLength, AContactAtACornerHasTheLawsOfBothJoints) {
   const std::vector<JointLaw> laws{{.friction_coefficient = 0.2, .normal_stiffness = 1e9},
@@ -144,8 +221,11 @@ TEST(JointLength, WhatIsFusedIsNoSofterThanRock) {
   CandidateList list;
   for (const Contact& c : find(surface, list, laws)) EXPECT_NEAR(c.normal_stiffness, 1e7 * c.length, 1.0);
   ASSERT_EQ(list.memory.size(), 2u);
-  for (Memory& memory : list.memory) memory.bonded = true;
-  for (const Contact& c : find(surface, list, laws)) EXPECT_NEAR(c.normal_stiffness, 1e9 * c.length, 1.0);
+  for (Memory& memory : list.memory) {
+    memory.bonded = true;
+    memory.bond_length = 0.5;
+  }
+  for (const Contact& c : find(surface, list, laws)) EXPECT_NEAR(c.normal_stiffness, 1e9 * 0.5, 1.0);
 }
 
 }  // namespace

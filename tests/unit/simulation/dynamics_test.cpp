@@ -181,6 +181,21 @@ TEST(Bond, CohesionHoldsAndBreaksOnce) {
   }
 }
 
+// Outlines may miss each other by a little where they are bonded: that is how they are, and pulls at nothing.
+TEST(Bond, DoesNotPullItsJointShut) {
+  Scene scene(1e9, 30.0);
+  scene.setup.gravity = {};
+  scene.setup.joints.standard.cohesion = scene.setup.joints.standard.tension = 1e9;
+  scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+  const int block = scene.rectangle({0.0, 5e-5}, 1.0, 1.0);
+  Simulator s(scene);
+  ASSERT_TRUE(
+      std::ranges::any_of(s.stepper.find_contacts(s.state), [](const auto& c) { return c.memory.bonded; }));
+  const Vec2 before = s.centroid(block);
+  s.run(0.02, 0.002);
+  EXPECT_NEAR(norm(s.centroid(block) - before), 0.0, 1e-12);
+}
+
 TEST(Threads, GiveTheSameBits) {
   const auto run = [](int threads, int rows, int columns, double duration) {
     Scene scene(1e9, 35.0);
@@ -211,7 +226,7 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
     scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)
-        scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 1 + row % 2);
+        scene.rectangle({1.0 * column + 0.25 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 1 + row % 2);
     }
     Simulator s(scene);
     const Sine ground(0.3 * g, 2.0);
@@ -248,7 +263,7 @@ TEST(LinearSolver, FactorsOfFewerDigitsGiveTheSameMotion) {
     scene.rectangle({-2.0, -1.0}, columns + 4.0, 1.0, 0.0, true);
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column)
-        scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 2);
+        scene.rectangle({1.0 * column + 0.25 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 2);
     }
     Simulator s(scene);
     const Sine ground(2.0 * g, 10.0);
@@ -306,7 +321,7 @@ TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
     scene.rectangle({-2.0, -1.0}, 12.0, 1.0, 0.0, true);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)
-        scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false,
+        scene.rectangle({1.0 * column + 0.25 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false,
                         row % 2 == 0 ? orders.even_rows : orders.odd_rows);
     }
     if (stone) {
@@ -332,7 +347,7 @@ TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
         if (linear == dynamics::LinearSolver::block) {
           EXPECT_LT(few, 2 * many / 3);
         } else if (!stone) {
-          EXPECT_LT(few, 9 * many / 10);
+          EXPECT_LT(few, 4 * many / 5);
         }
         for (std::size_t k = 0; k < made.size(); ++k) EXPECT_NEAR(kept[k], made[k], 1e-8) << k;
       }
