@@ -85,7 +85,12 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     }
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
-  const bool changed = any && merge(collect(surface, dirty), dirty, list);
+  bool changed = false;
+  if (any) {
+    std::vector<Candidate> found = collect(surface, dirty);
+    add_held(surface, dirty, list, found);
+    changed = merge(found, dirty, list);
+  }
   if (changed || list.block_pairs.empty()) {
     find_block_pairs(dirty, list);
   } else if (any) {
@@ -243,6 +248,22 @@ bool Candidates::before(const Candidate& x, const Candidate& y) {
   return key(x) < key(y);
 }
 
+/// Adds contacts that press and are too deep to be found.
+void Candidates::add_held(const Surface& surface, std::span<const std::uint8_t> dirty,
+                          const CandidateList& list, std::vector<Candidate>& found) {
+  const std::size_t collected = found.size();
+  for (std::size_t k = 0; k < list.tracked.size(); ++k) {
+    const Candidate& c = list.pairs[at(list.tracked[k])];
+    const auto a = at(c.block_a), b = at(c.block_b);
+    if ((dirty[a] == 0 && dirty[b] == 0) || !list.memory[k].holds() || !surface.present[a] ||
+        !surface.present[b])
+      continue;
+    if (!std::binary_search(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(collected), c, before))
+      found.push_back(c);
+  }
+  if (found.size() > collected) std::sort(found.begin(), found.end(), before);
+}
+
 /// Puts what was found into the list, in the place of all candidates of the same blocks.
 bool Candidates::merge(std::span<const Candidate> found, std::span<const std::uint8_t> dirty,
                        CandidateList& list) {
@@ -250,9 +271,9 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
     return dirty[at(c.block_a)] != 0 || dirty[at(c.block_b)] != 0;
   };
   CandidateList::Finder memory_of(list, 0);
-  const auto is_bonded = [&](std::size_t k) {
+  const auto is_held = [&](std::size_t k) {
     const int memory = memory_of(k);
-    return memory >= 0 && list.memory[at(memory)].bonded;
+    return memory >= 0 && list.memory[at(memory)].holds();
   };
   // A block that moves through the air, or shifts a little among its neighbours, leaves the list as it is.
   std::size_t same = 0;
@@ -260,7 +281,7 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
     Candidate& c = list.pairs[k];
     if (!is_old(c)) continue;
     if (found[same].vertex != c.vertex || found[same].edge != c.edge) break;
-    c.clearance = is_bonded(k) ? 0.0 : found[same].clearance;
+    c.clearance = is_held(k) ? 0.0 : found[same].clearance;
     ++same;
   }
   if (same == found.size() &&
@@ -269,7 +290,6 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
 
   CandidateList merged;
   merged.block_pairs = std::move(list.block_pairs);
-  merged.may_have_bonds = list.may_have_bonds;
   merged.pairs.reserve(list.pairs.size() + found.size());
   memory_of = CandidateList::Finder(list, 0);
   const auto add = [&](const Candidate& c, int memory) {
@@ -278,7 +298,7 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
       merged.memory.push_back(list.memory[at(memory)]);
     }
     merged.pairs.push_back(c);
-    if (memory >= 0 && list.memory[at(memory)].bonded) merged.pairs.back().clearance = 0.0;
+    if (memory >= 0 && list.memory[at(memory)].holds()) merged.pairs.back().clearance = 0.0;
   };
   std::size_t k = 0;
   for (const Candidate& c : found) {

@@ -33,6 +33,9 @@ struct Memory {
   double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
   double stored = 0.0;      ///< J per thickness, elastic energy of the springs
   double bond_length = 0.0;  ///< m of joint that a bond holds: it stays what it was when the bond was made
+
+  /// Whether the contact is one at any gap, as a bond, or at any depth, as what presses, as long as its vertex is over the edge.
+  [[nodiscard]] bool holds() const { return bonded || normal_force > 0.0; }
 };
 
 /// A vertex of block a near an edge of block b.
@@ -65,7 +68,6 @@ struct CandidateList {
   std::vector<BlockPair> block_pairs;  ///< derived; Candidates::update sees to it
   std::vector<int> tracked;            ///< contacts of the last step, into pairs; ascending
   std::vector<Memory> memory;          ///< of each of them
-  bool may_have_bonds = true;          ///< false: none of them is bonded. Derived; keep_memory sees to it
 
   /// For what so many contacts remember.
   void make_room(std::size_t contacts) {
@@ -126,6 +128,8 @@ class Candidates {
   static bool before(const Candidate& x, const Candidate& y);
   [[nodiscard]] std::vector<Candidate> collect(const Surface& surface,
                                                std::span<const std::uint8_t> dirty) const;
+  static void add_held(const Surface& surface, std::span<const std::uint8_t> dirty, const CandidateList& list,
+                       std::vector<Candidate>& found);
   static bool merge(std::span<const Candidate> found, std::span<const std::uint8_t> dirty,
                     CandidateList& list);
   void collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const;

@@ -47,7 +47,7 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
   const Lanes reach = load(group.reach.data()), deepest = load(group.deepest.data());
   const Lanes zone = least(tolerances_.end_zone + reach, 0.5 * length);
-  const Lanes deep_zone = largest(zone, deepest);
+  const Lanes deep_zone = largest(zone, least(deepest, broadcast(tolerances_.depth_limit)));
   const auto reflex_end = kinds >= 4.0, nook_end = kinds >= 8.0;
   const Lanes at_start = kinds - where(nook_end, broadcast(8.0), where(reflex_end, broadcast(4.0), Lanes{}));
   const auto reflex_start = at_start >= 1.0, nook_start = at_start >= 2.0;
@@ -86,11 +86,7 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
   rivals.clear();
   if (pairs.empty()) return;
   const int first_candidate = candidates.block_pairs[pairs.front()].first;
-  CandidateList::Finder bond_of(candidates, first_candidate);
-  const auto is_bonded = [&](std::size_t k) {
-    const int memory = bond_of(k);
-    return memory >= 0 && candidates.memory[at(memory)].bonded;
-  };
+  CandidateList::Finder held_by(candidates, first_candidate);
   std::size_t count = 0;
   Group group;
   const auto take = [&] {
@@ -104,15 +100,18 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
                       b = at(pair.block_b);
     const double reach = motion_.reach[a] + motion_.reach[b], turn = motion_.turn[a] + motion_.turn[b],
                  away = motion_.away[a] + motion_.away[b],
-                 deepest = std::min({tolerances_.depth_limit, surface.thickness[a], surface.thickness[b]});
+                 thickness = std::min(surface.thickness[a], surface.thickness[b]),
+                 deepest = std::min(tolerances_.depth_limit, thickness);
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t i = group.size;
       group.candidate[i] = static_cast<int>(k);
       group.pair[i] = static_cast<int>(p);
       group.reach[i] = reach;
       group.turn[i] = turn;
-      group.deepest[i] = deepest;
-      if (candidates.may_have_bonds) group.bonded[i] = is_bonded(k) ? 1.0 : 0.0;
+      const int memory = held_by(k);
+      const bool holds = memory >= 0 && candidates.memory[at(memory)].holds();
+      group.deepest[i] = holds ? thickness : deepest;
+      group.bonded[i] = memory >= 0 && candidates.memory[at(memory)].bonded ? 1.0 : 0.0;
       group.size += away < candidates.pairs[k].clearance ? 0 : 1;
       if (group.size == lane_count) take();
     }

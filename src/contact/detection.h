@@ -48,8 +48,8 @@ struct Contact {
 /// Takes what the contacts of a step remember over into the list. Candidates that were no contacts remember nothing.
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team);
 /// The same in parts, in any order and by several threads, where the list has room for all (make_room): of contacts `first` to
-/// `last`. Whether one of these is bonded.
-bool keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
+/// `last`.
+void keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
                  CandidateList& candidates);
 
 /// Geometry of candidates turned into the contacts of a step.

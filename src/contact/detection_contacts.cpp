@@ -1,6 +1,5 @@
 // What is known of a contact, once it is one.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "contact/detection.h"
@@ -272,27 +271,20 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
   }
 }
 
-bool keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
+void keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
                  CandidateList& candidates) {
-  bool any_bond = false;
   for (std::size_t k = first; k < last; ++k) {
     const Contact& c = contacts[k];
     candidates.tracked[k] = c.candidate;
     candidates.memory[k] = c.memory;
-    if (!c.memory.bonded) continue;
-    candidates.pairs[at(c.candidate)].clearance = 0.0;  // of a bond, any gap is a contact
-    any_bond = true;
+    if (c.memory.bonded) candidates.pairs[at(c.candidate)].clearance = 0.0;  // any gap is a contact
   }
-  return any_bond;
 }
 
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
   candidates.make_room(contacts.size());
-  std::atomic<bool> any_bond = false;
-  team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    if (keep_memory(contacts, begin, end, candidates)) any_bond = true;
-  });
-  candidates.may_have_bonds = any_bond;
+  team.for_range(contacts.size(), contacts_worth_threads,
+                 [&](std::size_t begin, std::size_t end) { keep_memory(contacts, begin, end, candidates); });
 }
 
 }  // namespace keyblock::contact

@@ -1,6 +1,5 @@
 // What contacts remember for the next step, and where their energy went.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "core/index.h"
@@ -117,12 +116,10 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
   state.ledger.numerical += state.contact_energy;
   state.contacts.make_room(contacts_.size());
-  std::atomic<bool> any_bond = false;
   // Piece by piece, which are the same for any number of threads.
   constexpr std::size_t piece = 64 * lane_count;
   accounts_.assign((contacts_.size() + piece - 1) / piece, {});
   team_.for_range(accounts_.size(), contacts_worth_threads / piece, [&](std::size_t begin, std::size_t end) {
-    bool any = false;
     for (std::size_t p = begin; p < end; ++p) {
       const std::size_t last = std::min(contacts_.size(), (p + 1) * piece);
       for (std::size_t c = p * piece; c < last; c += lane_count) {
@@ -132,11 +129,10 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
         if (model_.solver.contact != ContactMethod::penalty) {
           for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts);
         }
-        any |= contact::keep_memory(contacts_, c, c + count, state.contacts);
+        contact::keep_memory(contacts_, c, c + count, state.contacts);
         accounts_[p].add(accounts);
       }
     }
-    if (any) any_bond = true;
   });
   ContactAccounts total;
   for (const ContactAccounts& accounts : accounts_) total.add(accounts);
@@ -145,7 +141,6 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
   for (std::size_t i = 0; i < lane_count; ++i)
     report.penetration = std::max(report.penetration, total.penetration[i]);
   report.closed_contacts = static_cast<int>(sum(total.closed));
-  state.contacts.may_have_bonds = any_bond;
 }
 
 }  // namespace keyblock::dynamics
