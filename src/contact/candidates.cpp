@@ -325,7 +325,7 @@ void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<
   for (int v = surface.block_begin[ia]; v < surface.block_begin[ia + 1]; ++v) {
     const auto iv = at(v);
     const Vec2 p = looked_at_[iv];
-    if (surface.reflex[iv] || !near.contains(p)) continue;
+    if (surface.is_reflex(iv) || !near.contains(p)) continue;
     for (int e = surface.block_begin[ib]; e < surface.block_begin[ib + 1]; ++e) {
       const auto from = at(e), to = at(surface.next[from]);
       const bool inside = cross(looked_at_[to] - looked_at_[from], p - looked_at_[from]) > 0.0;
@@ -343,7 +343,7 @@ std::vector<Candidate> all_pairs_within(const Surface& surface, double distance)
     for (int e = 0; e < surface.vertices(); ++e) {
       const auto iv = at(v), ie = at(e);
       const auto a = at(surface.block[iv]), b = at(surface.block[ie]);
-      if (a == b || surface.reflex[iv] || !surface.present[a] || !surface.present[b] ||
+      if (a == b || surface.is_reflex(iv) || !surface.present[a] || !surface.present[b] ||
           (surface.fixed[a] && surface.fixed[b]))
         continue;
       if (distance_to_segment(surface.position[iv], surface.position[ie],

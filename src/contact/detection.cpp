@@ -25,7 +25,7 @@ void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
       corner.position = surface.position[e];
       corner.length = norm(along);
       corner.tangent = corners_[next].before = along / corner.length;
-      corner.kinds = surface.reflex[e] + 4.0 * surface.reflex[next];
+      corner.kinds = static_cast<double>(surface.kind[e]) + 4.0 * static_cast<double>(surface.kind[next]);
     }
   });
 }
@@ -267,10 +267,9 @@ double Detection::to_nearest_other_edge(const Surface& surface, const Candidate&
     nearest = std::min(nearest, squared_norm(from_start - along * other.tangent));
   };
   int edge = surface.next[at(candidate.edge)];
-  for (; edge != candidate.edge && surface.reflex[at(edge)] == 0; edge = surface.next[at(edge)])
-    look_at(edge);
+  for (; edge != candidate.edge && !surface.is_reflex(at(edge)); edge = surface.next[at(edge)]) look_at(edge);
   if (edge != candidate.edge) {
-    for (edge = candidate.edge; surface.reflex[at(edge)] == 0;) look_at(edge = surface.previous[at(edge)]);
+    for (edge = candidate.edge; !surface.is_reflex(at(edge));) look_at(edge = surface.previous[at(edge)]);
   }
   return std::sqrt(nearest);
 }

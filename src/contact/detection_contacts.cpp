@@ -44,12 +44,12 @@ struct SharedLength {
   double apart;          ///< m, up to which they are beside each other
 
   /// m, of the edge, over which one that leaves it at an angle of this sine is beside it.
-  [[nodiscard]] Number beside(Number sine) const {
+  [[nodiscard]] Number stretch(Number sine) const {
     return apart / larger(size(sine), Number{} + apart / largest_length);
   }
-  /// m that the vertex has of what an edge of its block, that goes on to `to` and is beside this one for so long, has in common with it: the half, or what
-  /// Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these are divided alike;
-  /// as blocks slide, the latter become halves.
+  /// m that the vertex has of what an edge of its block, that goes on to `to` and is beside this one for so long, has in common with it:
+  /// the half, or what Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these
+  /// are divided alike; as blocks slide, the latter become halves.
   /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
   Number operator()(Number to, Number long_beside, const Beside<Number>& other,
                     const Beside<Number>& here) const {
@@ -139,7 +139,7 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
   // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
   const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, const Beside<Lanes>& other,
                             const Beside<Lanes>& this_edge) {
-    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, long_beside = shared.beside(across);
+    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, long_beside = shared.stretch(across);
     const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
     const Lanes common =
         where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, long_beside, other, this_edge));
@@ -180,7 +180,7 @@ Detection::Beyond Detection::beyond_end(const Surface& surface, const Candidate&
                            const Beside<double>& this_edge) {
     const double ahead = dot(u, line.tangent), across = cross(u, line.tangent);
     if (ahead > 0.0 || std::abs(across) > Tolerances::sine_facing) return 0.0;
-    return shared(along + ahead * length_of_other, shared.beside(across), other, this_edge);
+    return shared(along + ahead * length_of_other, shared.stretch(across), other, this_edge);
   };
   const double length = of_edge(vertex.tangent, vertex.length, look_at(next), at_end(here)) +
                         of_edge(vertex.before, -corners_[before].length, at_end(look_at(before)), here);

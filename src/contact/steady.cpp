@@ -53,8 +53,8 @@ double Detection::rival_margin(const Surface& surface, const Candidate& candidat
                gap_rate = std::min(start_rate, end_rate);
   const double deepest = std::min({tolerances_.depth_limit, surface.thickness[at(candidate.block_a)],
                                    surface.thickness[at(candidate.block_b)]});
-  const bool reflex_start = surface.reflex[at(candidate.edge)] != 0,
-             reflex_end = surface.reflex[at(surface.next[at(candidate.edge)])] != 0;
+  const bool reflex_start = surface.is_reflex(at(candidate.edge)),
+             reflex_end = surface.is_reflex(at(surface.next[at(candidate.edge)]));
   const auto beyond = [&](int corner) {
     return surface.is_nook(at(corner)) ? std::max(zone, deepest) : zone;
   };

@@ -18,7 +18,7 @@ struct DividedEdge {
 /// What a vertex is to others. One at which the block's angle exceeds 180° touches nothing. Where it does so by more than 10° it is a nook,
 /// which a vertex of another block may lie in, and its edges reach past it for that; where by less, the end zone does
 /// (Tolerances: depth_limit · tan 5° < end_zone).
-enum CornerKind : std::uint8_t { convex = 0, reflex = 1, nook = 2 };
+enum class CornerKind : std::uint8_t { convex, reflex, nook };
 
 /// Of the vertex between two edges; straight but for rounding is convex.
 inline CornerKind corner_kind(Vec2 before, Vec2 after) {
@@ -36,7 +36,7 @@ struct Surface {
   std::vector<std::uint8_t> fixed;         ///< per block
   std::vector<double> thickness;           ///< m, per block: area over perimeter
   std::vector<int> block, next, previous;  ///< per vertex
-  std::vector<std::uint8_t> reflex;        ///< per vertex: CornerKind
+  std::vector<CornerKind> kind;            ///< per vertex
   std::vector<int> joint;                  ///< per edge: index of its joint law
   /// Per edge: share that its start has of the length of joint along it, its end having the rest; empty: a half of each.
   std::vector<double> start_share;
@@ -46,7 +46,8 @@ struct Surface {
   std::vector<std::size_t> phi_begin;
   std::vector<double> phi;
 
-  [[nodiscard]] bool is_nook(std::size_t vertex) const { return reflex[vertex] == CornerKind::nook; }
+  [[nodiscard]] bool is_reflex(std::size_t vertex) const { return kind[vertex] != CornerKind::convex; }
+  [[nodiscard]] bool is_nook(std::size_t vertex) const { return kind[vertex] == CornerKind::nook; }
   [[nodiscard]] int blocks() const { return static_cast<int>(block_begin.size()) - 1; }
   [[nodiscard]] int vertices() const { return static_cast<int>(block.size()); }
 };

@@ -73,7 +73,7 @@ Surface outlines(const Model& model, std::span<const int> joint, std::span<const
                                  {surface.vertices(), part.pieces, &division(part.pieces)});
           for (int piece = 0; piece < part.pieces; ++piece) {
             const double share = std::lerp(part.from, part.to, division(part.pieces).points[at(piece)]);
-            surface.reflex.push_back(surface.block.size() == corner ? kind : contact::CornerKind::convex);
+            surface.kind.push_back(surface.block.size() == corner ? kind : contact::CornerKind::convex);
             surface.block.push_back(number);
             surface.joint.push_back(joint[edge]);
             surface.position.push_back(lerp(here, after, share));

@@ -16,7 +16,7 @@ inline void add_block(Surface& surface, const Polygon& polygon, bool fixed = fal
       surface.block.push_back(number);
       surface.joint.push_back(0);
       surface.position.push_back(at(k));
-      surface.reflex.push_back(corner_kind(at(k) - at(k - 1), at(k + 1) - at(k)));
+      surface.kind.push_back(corner_kind(at(k) - at(k - 1), at(k + 1) - at(k)));
       surface.next.push_back(first + (k + 1) % count);
       surface.previous.push_back(first + (k + count - 1) % count);
     }

@@ -191,7 +191,7 @@ TEST(Outline, CornersThatAreStraightButForRoundingAreNotReflex) {
   ring.push_back({0.0, 1.0});
   scene.add(ring);
   const dynamics::Model model = build_model(scene.setup);
-  for (const std::uint8_t reflex : model.surface.reflex) EXPECT_EQ(reflex, 0);
+  for (std::size_t v = 0; v < model.surface.kind.size(); ++v) EXPECT_FALSE(model.surface.is_reflex(v));
 }
 
 }  // namespace
