@@ -177,7 +177,9 @@ BlockSystem cut(const CutInput& input) {
   merge_slivers(graph, tolerances, statistics);
   check_area(graph, work.domain_area);
 
-  system.blocks = outlines_of(graph, tolerances.collinear, work.shift - system.origin, statistics);
+  // No default is larger than that of a domain without traces.
+  const double straight = CutTolerances::for_domain(rough_area).collinear;
+  system.blocks = outlines_of(graph, tolerances.collinear, straight, work.shift - system.origin, statistics);
   sort_blocks(system.blocks);
   return system;
 }

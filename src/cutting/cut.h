@@ -24,9 +24,9 @@ struct CutTolerances {
   /// go through it. Usual: 2.5e-4 L [5 mm]. Too small: edges shorter than the end zones of contacts, tongues
   /// thinner than a penetration; too large: shapes and angles change.
   double cluster = 0.0;
-  /// m. A vertex of a block nearer than this to the straight line between its neighbours is dropped. The sides of
-  /// neighbouring blocks then differ by at most this. Usual: 5e-8 L [1 µm]; it must stay far below the
-  /// deformation of a contact.
+  /// m. A vertex nearer than this to the straight line between its neighbours is dropped, by the blocks on both sides.
+  /// Where joints meet, a block drops one only within the default, as the others keep it: the foot of a T. Usual:
+  /// 5e-8 L [1 µm]. Larger: curved joints and outlines of fewer edges; shapes change by as much.
   double collinear = 0.0;
 
   /// L is the square root of the area of the domain (m²), at most 80 times the area over the length of all traces in it (m):

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
+#include "core/index.h"
 
 namespace keyblock::cutting {
 
@@ -29,13 +31,26 @@ class RingSimplifier {
   /// `pinned` vertices, which are sorted, stay.
   LabelledRing simplified(const LabelledRing& ring, const std::vector<int>& pinned) {
     const std::size_t n = ring.vertices.size();
-    keep_.assign(n, false);
-    std::vector<std::size_t> anchors{0, farthest(ring)};
+    std::vector<std::size_t> anchors{0, farthest(ring.vertices)};
     for (std::size_t k = 0; k < n; ++k) {
       const bool label_changes = !(ring.labels[k] == ring.labels[(k + n - 1) % n]);
       const bool is_pinned = std::binary_search(pinned.begin(), pinned.end(), ring.vertices[k]);
       if (label_changes || is_pinned) anchors.push_back(k);
     }
+    const std::vector<bool>& keep = kept(ring.vertices, std::move(anchors));
+    LabelledRing result;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!keep[k]) continue;
+      result.vertices.push_back(ring.vertices[k]);
+      result.labels.push_back(ring.labels[k]);
+    }
+    return result;
+  }
+
+  /// Which vertices of a closed ring stay, those at `anchors` among them.
+  const std::vector<bool>& kept(const std::vector<int>& ring, std::vector<std::size_t> anchors) {
+    const std::size_t n = ring.size();
+    keep_.assign(n, false);
     std::sort(anchors.begin(), anchors.end());
     anchors.erase(std::unique(anchors.begin(), anchors.end()), anchors.end());
     for (std::size_t i = 0; i < anchors.size(); ++i) {
@@ -43,24 +58,13 @@ class RingSimplifier {
       const std::size_t end = i + 1 < anchors.size() ? anchors[i + 1] : n + anchors.front();
       simplify(ring, anchors[i], end);
     }
-    LabelledRing result;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (!keep_[k]) continue;
-      result.vertices.push_back(ring.vertices[k]);
-      result.labels.push_back(ring.labels[k]);
-    }
-    return result;
+    return keep_;
   }
 
- private:
-  [[nodiscard]] Vec2 place(const LabelledRing& ring, std::size_t k) const {
-    return to_vec2(graph_.point(ring.vertices[k % ring.vertices.size()]));
-  }
-
-  /// The vertex farthest from the first one: like the first one a corner of the convex hull.
-  [[nodiscard]] std::size_t farthest(const LabelledRing& ring) const {
+  /// The vertex farthest from the first one: like the first one, where that is the lowest, a corner of the convex hull.
+  [[nodiscard]] std::size_t farthest(const std::vector<int>& ring) const {
     std::size_t best = 0;
-    for (std::size_t k = 1; k < ring.vertices.size(); ++k) {
+    for (std::size_t k = 1; k < ring.size(); ++k) {
       if (squared_norm(place(ring, k) - place(ring, 0)) > squared_norm(place(ring, best) - place(ring, 0))) {
         best = k;
       }
@@ -68,7 +72,12 @@ class RingSimplifier {
     return best;
   }
 
-  void simplify(const LabelledRing& ring, std::size_t from, std::size_t to) {
+ private:
+  [[nodiscard]] Vec2 place(const std::vector<int>& ring, std::size_t k) const {
+    return to_vec2(graph_.point(ring[k % ring.size()]));
+  }
+
+  void simplify(const std::vector<int>& ring, std::size_t from, std::size_t to) {
     std::size_t worst = from;
     double largest = tolerance_;
     for (std::size_t k = from + 1; k < to; ++k) {
@@ -79,7 +88,7 @@ class RingSimplifier {
       }
     }
     if (worst == from) return;
-    keep_[worst % ring.vertices.size()] = true;
+    keep_[worst % ring.size()] = true;
     simplify(ring, from, worst);
     simplify(ring, worst, to);
   }
@@ -90,8 +99,13 @@ class RingSimplifier {
 };
 
 /// Begins at the lowest, then leftmost vertex. Vertex numbers are sorted by place only before vertices are moved, so
-/// the points are compared.
-LabelledRing labelled_ring(const PlanarGraph& graph, const std::vector<HalfEdge>& ring) {
+/// the points are compared. Vertices that are `dropped` are left out.
+LabelledRing labelled_ring(const PlanarGraph& graph, const std::vector<HalfEdge>& whole,
+                           const std::vector<char>& dropped) {
+  std::vector<HalfEdge> ring;
+  for (const HalfEdge h : whole) {
+    if (!dropped[at(graph.origin(h))]) ring.push_back(h);
+  }
   const auto lowest = std::min_element(ring.begin(), ring.end(), [&](HalfEdge g, HalfEdge h) {
     return graph.point(graph.origin(g)) < graph.point(graph.origin(h));
   });
@@ -138,21 +152,131 @@ bool crosses_itself(const PlanarGraph& graph, const std::vector<LabelledRing>& r
   return false;
 }
 
+/// Whether a vertex of the rings lies within `distance` (steps) of an edge of them that does not end in it.
+bool touches_itself(const PlanarGraph& graph, const std::vector<LabelledRing>& rings, double distance) {
+  for (const LabelledRing& ring : rings) {
+    for (std::size_t k = 0; k < ring.vertices.size(); ++k) {
+      const int from = ring.vertices[k], to = ring.vertices[(k + 1) % ring.vertices.size()];
+      const Vec2 a = to_vec2(graph.point(from)), b = to_vec2(graph.point(to));
+      for (const LabelledRing& other : rings) {
+        for (const int v : other.vertices) {
+          if (v != from && v != to && distance_to_line(to_vec2(graph.point(v)), a, b) <= distance)
+            return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/// Whether the face is a polygon the right way round without the `dropped` vertices.
+bool is_simple(const PlanarGraph& graph, const Face& face, const std::vector<char>& dropped,
+               double distance) {
+  std::vector<LabelledRing> rings;
+  for (const auto& ring : face.rings) {
+    rings.push_back(labelled_ring(graph, ring, dropped));
+    Ring points;
+    for (const int v : rings.back().vertices) points.push_back(to_vec2(graph.point(v)));
+    const double area = signed_area(points);
+    if (rings.size() == 1 ? area <= 0.0 : area >= 0.0) return false;
+  }
+  return !crosses_itself(graph, rings) && !touches_itself(graph, rings, distance);
+}
+
+/// A chain is a piece of joint or outline between two vertices at which more than two edges meet or the label changes.
+/// Both of its sides lose the same vertices, so that blocks neither overlap nor part whatever the tolerance.
+class ChainSimplifier {
+ public:
+  /// Both in steps. Vertices do not come within `distance` of other edges.
+  ChainSimplifier(const PlanarGraph& graph, double tolerance, double distance)
+      : graph_(graph),
+        simplifier_(graph, tolerance),
+        distance_(distance),
+        edges_at_(graph.points.size()),
+        seen_(graph.edges.size(), 0),
+        dropped_(graph.points.size(), 0) {
+    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+      edges_at_[at(graph.edges[e].from)].push_back(static_cast<HalfEdge>(2 * e));
+      edges_at_[at(graph.edges[e].to)].push_back(static_cast<HalfEdge>(2 * e + 1));
+    }
+  }
+
+  /// The vertices to leave out. A face that would cross itself or turn over keeps all of its vertices, and with it its
+  /// neighbours keep those that they share.
+  std::vector<char> run() {
+    for (std::size_t v = 0; v < edges_at_.size(); ++v) {
+      if (is_inner(static_cast<int>(v))) continue;
+      for (const HalfEdge h : edges_at_[v]) follow(h);
+    }
+    // What is left are rings without ends. Their lowest vertex is one that both sides agree on.
+    std::vector<int> by_place;
+    for (std::size_t e = 0; e < seen_.size(); ++e) {
+      if (!seen_[e]) by_place.insert(by_place.end(), {graph_.edges[e].from, graph_.edges[e].to});
+    }
+    std::sort(by_place.begin(), by_place.end(),
+              [&](int v, int w) { return graph_.point(v) < graph_.point(w); });
+    for (const int v : by_place) follow(edges_at_[at(v)].front());
+    for (bool again = true; again;) {
+      again = false;
+      for (const Face& face : graph_.faces) {
+        if (is_simple(graph_, face, dropped_, distance_)) continue;
+        for (const auto& ring : face.rings) {
+          for (const HalfEdge h : ring) again = std::exchange(dropped_[at(graph_.origin(h))], 0) || again;
+        }
+      }
+    }
+    return std::move(dropped_);
+  }
+
+ private:
+  [[nodiscard]] bool is_inner(int vertex) const {
+    const auto& edges = edges_at_[at(vertex)];
+    return edges.size() == 2 && graph_.edge(edges[0]).label == graph_.edge(edges[1]).label;
+  }
+
+  void follow(HalfEdge h) {
+    if (seen_[at(h / 2)]) return;
+    const int start = graph_.origin(h);
+    std::vector<int> chain{start};
+    for (;;) {
+      seen_[at(h / 2)] = 1;
+      const int v = graph_.target(h);
+      if (v == start) break;
+      chain.push_back(v);
+      if (!is_inner(v)) break;
+      const auto& edges = edges_at_[at(v)];
+      h = edges[0] == (h ^ 1) ? edges[1] : edges[0];
+    }
+    const bool closed = graph_.target(h) == start;
+    const std::vector<bool>& keep =
+        simplifier_.kept(chain, {0, closed ? simplifier_.farthest(chain) : chain.size() - 1});
+    for (std::size_t k = 0; k < chain.size(); ++k) dropped_[at(chain[k])] = !keep[k];
+  }
+
+  const PlanarGraph& graph_;
+  RingSimplifier simplifier_;
+  double distance_;
+  std::vector<std::vector<HalfEdge>> edges_at_;  ///< that leave each vertex
+  std::vector<char> seen_;                       ///< per edge
+  std::vector<char> dropped_;                    ///< per vertex
+};
+
 }  // namespace
 
-std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, Vec2 shift,
+std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, double straight, Vec2 shift,
                                   CutStatistics& statistics) {
-  RingSimplifier simplifier(graph, collinear / graph.grid);
+  std::vector<char> dropped(graph.points.size(), 0);
+  if (collinear > straight)
+    dropped = ChainSimplifier(graph, collinear / graph.grid, straight / graph.grid).run();
+  RingSimplifier simplifier(graph, std::min(collinear, straight) / graph.grid);
   std::vector<char> seen(graph.points.size(), 0);  // 1: a vertex of a face, 2: a vertex of a block
   std::vector<CutBlock> blocks;
   blocks.reserve(graph.faces.size());
   for (const Face& face : graph.faces) {
     std::vector<LabelledRing> full, rings;
     for (const auto& ring : face.rings) {
-      full.push_back(labelled_ring(graph, ring));
-      for (const int v : full.back().vertices) {
-        seen[static_cast<std::size_t>(v)] |= 1;
-      }
+      full.push_back(labelled_ring(graph, ring, dropped));
+      for (const HalfEdge h : ring) seen[at(graph.origin(h))] |= 1;
     }
     const std::vector<int> common = common_vertices(full);
     for (const LabelledRing& ring : full) {
@@ -165,7 +289,7 @@ std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, Ve
       Ring outline;
       for (const int v : rings[r].vertices) {
         outline.push_back(shift + graph.grid * to_vec2(graph.point(v)));
-        seen[static_cast<std::size_t>(v)] |= 2;
+        seen[at(v)] |= 2;
       }
       r == 0 ? block.polygon.outer = std::move(outline)
              : block.polygon.holes.emplace_back(std::move(outline));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iomanip>
+#include <numbers>
 #include <set>
 
 #include "check_blocks.h"
@@ -205,6 +206,69 @@ TEST(Tolerances, FollowTheSizeOfBlocksInLargeModels) {
   const CutTolerances few_joints = CutTolerances::for_domain(400.0, 1400.0);
   EXPECT_DOUBLE_EQ(few_joints.sliver_area, 1e-3);
   EXPECT_DOUBLE_EQ(few_joints.snapping, CutTolerances::for_domain(400.0).snapping);
+}
+
+Ring regular_polygon(Vec2 centre, double radius, int corners) {
+  Ring ring;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / corners;
+    ring.push_back(centre + radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return ring;
+}
+
+/// A rough joint from side to side, about the height y.
+void add_rough_joint(CutInput& input, double y, int number) {
+  const auto point = [&](int k) {
+    return Vec2{0.1 * k, y + 0.3 * std::sin(0.06 * k + number) + 0.02 * std::sin(3.7 * k + number)};
+  };
+  for (int k = -1; k <= 100; ++k) {
+    input.traces.push_back({point(k), point(k + 1), {TraceSource::Kind::trace_map, 0}, number});
+  }
+}
+
+TEST(Cleaning, BothSidesOfARoughJointLoseTheSameVertices) {
+  CutInput input;
+  input.domain = square;
+  for (int k = 0; k < 3; ++k) add_rough_joint(input, 2.5 * (k + 1), k);
+  for (const double x : {2.03, 4.55, 7.18}) input.traces.push_back({{x, -1.0}, {x + 0.3, 11.0}, {}});
+  const Ring island = regular_polygon({3.5, 6.2}, 0.4, 40);
+  for (std::size_t k = 0; k < island.size(); ++k) {
+    input.traces.push_back(
+        {island[k], island[(k + 1) % island.size()], {TraceSource::Kind::trace_map, 0}, 3});
+  }
+  input.excavations = {regular_polygon({8.8, 1.0}, 0.6, 48)};
+  std::size_t vertices = 0;
+  for (const double collinear : {1e-7, 1e-3, 0.03, 0.1, 0.3, 2.0}) {
+    input.tolerances = CutTolerances::for_domain(100.0);
+    input.tolerances->collinear = collinear;
+    const BlockSystem system = cut(input);
+    EXPECT_EQ(mistake_of_shared_edges(system), "") << collinear;
+    EXPECT_NEAR(total_area(system), 100.0, 1e-9) << collinear;
+    expect_canonical(system);
+    std::size_t count = 0;
+    for (const CutBlock& block : system.blocks) count += block.polygon.outer.size();
+    if (vertices > 0 && collinear <= 0.1) {
+      EXPECT_LT(count, vertices) << collinear;
+    }
+    vertices = count;
+  }
+}
+
+RC_GTEST_PROP(Cleaning, CoversTheDomainWhateverTheCollinearTolerance, ()) {
+  CutInput input = random_input();
+  for (int k = *rc::gen::inRange(0, 4); k > 0; --k)
+    add_rough_joint(input, *rc::gen::inRange(1, 100) * 0.1, k);
+  const double domain_area = signed_area(input.domain);
+  input.tolerances = CutTolerances::for_domain(domain_area);
+  double tiny = input.tolerances->collinear;
+  input.tolerances->collinear = std::pow(10.0, -*rc::gen::inRange(0, 5));
+  const BlockSystem system = cut(input);
+  const double covered = GeosOracle().union_area(system.blocks);
+  for (const CutBlock& block : system.blocks) tiny += 5e-7 * perimeter(block.polygon);
+  RC_ASSERT(std::abs(covered - domain_area) < tiny);         // no gaps
+  RC_ASSERT(std::abs(covered - total_area(system)) < tiny);  // no overlaps
+  RC_ASSERT(GeosOracle().all_valid(system.blocks));
 }
 
 }  // namespace
