@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "rockmass/trace_generator.h"
 #include "scenario/build.h"
 #include "scenario/excavated_blocks.h"
+#include "scenario/expected_blocks.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/sections.h"
@@ -66,6 +69,22 @@ InputError placed(const Scenario& scenario, const InputError& error) {
   return InputError(std::move(diagnostics));
 }
 
+// A model of far too many blocks is refused before it is cut: that would take minutes and gigabytes.
+void check_expected_blocks(const Scenario& scenario, const cutting::CutInput& input, const Box& window) {
+  constexpr double least_unknowns = 6.0;  // of a block
+  constexpr double clearly = 1.5;
+  const double most_blocks = clearly * most_unknowns / least_unknowns;
+  const double traces = static_cast<double>(input.traces.size());
+  if (traces * (traces + 1.0) / 2.0 + 1.0 <= most_blocks) return;
+  const double blocks = expected_blocks(input.traces, window, *input.tolerances);
+  if (blocks <= most_blocks) return;
+  throw InputError(Diagnostic{
+      scenario.where("domain"), "domain",
+      fmt::format("joints that cut it into {:.2g} blocks or more, with {:.2g} unknowns (an estimate)", blocks,
+                  least_unknowns * blocks),
+      fmt::format("at most {:.0e} unknowns", most_unknowns), "joints farther apart, or a smaller domain"});
+}
+
 void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   const Domain& domain = *scenario.domain;
   const Box window = domain.box();
@@ -81,6 +100,7 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   input.traces = model.traces;
   input.excavations = model.outlines;
   input.tolerances = tolerances_of(scenario.cutting, window, model.traces);
+  check_expected_blocks(scenario, input, window);
   try {
     model.system = cutting::cut(input);
   } catch (const InputError& error) {

@@ -5,6 +5,7 @@
 
 #include "overlap/overlap.h"
 #include "scenario/build.h"
+#include "scenario/expected_blocks.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/polygon_checks.h"
@@ -13,9 +14,6 @@
 
 namespace keyblock::scenario {
 namespace {
-
-// Unknowns beyond which a model is refused: its matrices would not fit into the memory of a large machine.
-constexpr double most_unknowns = 2e7;
 
 // Overlaps of explicit blocks deeper than this share of the size of the smallest block are warned of, the deepest ones.
 constexpr double overlap_share = 1e-4;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "rockmass/intensity.h"
 #include "scenario/build.h"
+#include "scenario/expected_blocks.h"
 #include "scenario_text.h"
 
 namespace keyblock::scenario {
@@ -11,6 +13,7 @@ namespace {
 
 using cutting::EdgeKind;
 using cutting::EdgeLabel;
+using testing::AllOf;
 using testing::HasSubstr;
 
 double total_area(const cutting::BlockSystem& system) {
@@ -45,6 +48,46 @@ TEST(BuildBlocks, RealizationsDifferAndAreRepeated) {
   ASSERT_EQ(first.traces.size(), again.traces.size());
   EXPECT_EQ(first.traces[0].a, again.traces[0].a);
   EXPECT_FALSE(first.traces.size() == other.traces.size() && first.traces[0].a == other.traces[0].a);
+}
+
+const std::string persistent_sets = jointed_domain + R"(
+[[joint_set]]
+name = "cross"
+dip = 70.0
+dip_direction = 90.0
+spacing = 0.1
+length = 100.0
+gap = 0
+)";
+
+TEST(BuildBlocks, FarTooManyAreRefusedBeforeTheyAreCut) {
+  const auto text = [](double spacing) { return "joint_set.cross.spacing=" + std::to_string(spacing); };
+  const std::vector<std::string> dense{"joint_set.bedding.length=100", "joint_set.bedding.gap=0",
+                                       "joint_set.bedding.spacing=0.0008", text(0.0008)};
+  EXPECT_THAT(refusal(parse(persistent_sets, dense)),
+              AllOf(HasSubstr("domain: found joints that cut it into"),
+                    HasSubstr("unknowns (an estimate); expected at most 2e+07 unknowns")));
+}
+
+TEST(BuildBlocks, AreNotExpectedToBeMoreThanThereAre) {
+  for (const double length : {0.3, 1.0, 100.0}) {
+    Scenario s = parse(persistent_sets, {"joint_set.bedding.spacing=0.05"});
+    for (JointSetSpec& spec : s.joint_sets) spec.set.length.mean = length;
+    const BlockModel model = build_blocks(s, 0);
+    for (const bool twice : {false, true}) {
+      std::vector<rockmass::Trace> traces = model.traces;
+      if (twice) traces.insert(traces.end(), model.traces.begin(), model.traces.end());
+      double sum = 0.0;
+      for (const auto& trace : traces) sum += rockmass::length_inside(trace, s.domain->box());
+      const double expected =
+          expected_blocks(traces, s.domain->box(), cutting::CutTolerances::for_domain(12.0, sum));
+      const double count = static_cast<double>(model.system.blocks.size());
+      EXPECT_LT(expected, 1.1 * count) << length << ' ' << twice;
+      if (length == 100.0 && !twice) {
+        EXPECT_GT(expected, 0.8 * count);
+      }
+    }
+  }
 }
 
 TEST(BuildBlocks, NeedNoStages) {
