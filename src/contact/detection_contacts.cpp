@@ -45,7 +45,8 @@ struct SharedLength {
 
   /// m, of the edge, over which one that leaves it at an angle of this sine is beside it.
   [[nodiscard]] Number stretch(Number sine) const {
-    return apart / larger(size(sine), Number{} + apart / largest_length);
+    const Number most = Number{} + apart;
+    return most / larger(size(sine), most * (1.0 / largest_length));
   }
   /// m that the vertex has of what an edge of its block, that goes on to `to` and is beside this one for so long, has in common with it:
   /// the half, or what Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these
