@@ -153,7 +153,7 @@ TEST(Outline, WeightsOfTheRuleFadeAsBlocksSlide) {
     const TJunction t(width, order, order);
     dynamics::Model model = build_model(t.scene.setup);
     dynamics::State state = initial_state(t.scene.setup, model);
-    for (const std::size_t b : {1, 2})
+    for (const std::size_t b : {1U, 2U})
       state.position[model.blocks[b].first] += slid * std::sqrt(model.blocks[b].area);
     ThreadTeam alone(1);
     Profile profile;
@@ -170,7 +170,7 @@ TEST(Outline, WeightsOfTheRuleFadeAsBlocksSlide) {
   };
   for (const int order : {2, 3, 4}) {
     const std::array<double, 3> in_place = held_at(0.0, order);
-    for (const std::size_t k : {0, 2}) EXPECT_NEAR(in_place[k], 1.0, 1e-9);
+    for (const std::size_t k : {0U, 2U}) EXPECT_NEAR(in_place[k], 1.0, 1e-9);
     double before = in_place[2];
     for (double slid = 0.01; slid < 0.5; slid += 0.01) {
       const std::array<double, 3> moment = held_at(slid, order);
