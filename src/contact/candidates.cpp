@@ -248,7 +248,7 @@ bool Candidates::before(const Candidate& x, const Candidate& y) {
   return key(x) < key(y);
 }
 
-/// Adds contacts that press and are too deep to be found.
+/// Adds contacts that hold, but are too deep or too far apart to be found.
 void Candidates::add_held(const Surface& surface, std::span<const std::uint8_t> dirty,
                           const CandidateList& list, std::vector<Candidate>& found) {
   const std::size_t collected = found.size();

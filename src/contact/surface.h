@@ -8,7 +8,7 @@ namespace keyblock::contact {
 
 struct EdgeDivision;  // edge_curve.h
 
-/// A straight edge of a block of order > 1, of as many pieces as contact divides it into.
+/// A straight edge of a block, or the part of one that faces one neighbour, of as many pieces as contact divides it into.
 struct DividedEdge {
   int first = 0;   ///< its first piece, by the vertex where that begins; the others follow
   int pieces = 1;  ///< m

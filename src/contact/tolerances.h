@@ -55,7 +55,7 @@ struct Tolerances {
   static constexpr double sine_parallel = 0.0698;
   /// Entrance lines within this angle part two corners the same way (cos 30°): which of them is taken does not matter.
   static constexpr double cosine_alike = 0.866;
-  /// Edges within this angle share a length of joint (sin 5°).
+  /// Edges within this angle share a length of joint (sin 5°), as far as they are no more than `activation` apart.
   static constexpr double sine_facing = 0.0872;
 };
 

@@ -28,7 +28,7 @@ struct Block {
   block::Elasticity elasticity;
   Polygon reference;
   block::Basis basis;
-  int edge_order = 1;  ///< contact divides the edges as for a block of this order
+  int edge_order = 1;  ///< contact divides the edges as for a block of this order at least; 1: it does not
   /// Force per unit acceleration on coefficient 0, ρ √A; the others feel no uniform body force.
   [[nodiscard]] double body_force() const { return material.density * std::sqrt(area); }
   [[nodiscard]] double mass() const { return material.density * area; }

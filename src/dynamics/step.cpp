@@ -90,8 +90,10 @@ void Stepper::start(State& state) {
     if (std::abs(c.gap) > tolerances_.in_place || c.length <= tolerances_.rounding) continue;
     const contact::JointLaw& law = model_.laws[at(model_.surface.joint[at(c.edge)])];
     memory.bonded = law.may_bond();
-    memory.bond_length = c.length;
-    if (memory.bonded) memory.offset = -c.gap;  // a gap that is there does not pull
+    if (memory.bonded) {
+      memory.bond_length = c.length;
+      memory.offset = -c.gap;  // a gap that is there does not pull
+    }
     if (!model_.in_situ) continue;
     // The joint carries the stress of the rock from the start: traction on block a is −σ n.
     const int end = model_.surface.next[at(c.edge)];
