@@ -249,7 +249,8 @@ void read_cutting(TableReader& t, CuttingKeys& cutting) {
             .at_least = 0.0,
             .fallback = "2.5e-4 L"});
   t.number("collinear", cutting.collinear,
-           {.meaning = "A vertex nearer than this to the straight line between its neighbours is dropped.",
+           {.meaning = "A vertex nearer than this to the straight line between its neighbours is dropped, by "
+                       "the blocks on both sides.",
             .unit = "m",
             .at_least = 0.0,
             .fallback = "5e-8 L"});
