@@ -17,6 +17,7 @@ constexpr std::size_t piece = 1'024;  // pairs of blocks
 
 void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
   corners_.resize(surface.position.size());
+  wholes_.resize(surface.divided.size());
   team.for_range(corners_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const std::size_t next = at(surface.next[e]);
@@ -26,6 +27,11 @@ void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
       corner.length = norm(along);
       corner.tangent = corners_[next].before = along / corner.length;
       corner.kinds = static_cast<double>(surface.kind[e]) + 4.0 * static_cast<double>(surface.kind[next]);
+      if (wholes_.empty()) continue;
+      const DividedEdge& whole = surface.divided[e];
+      wholes_[e] = {surface.position[at(whole.first)],
+                    surface.position[at(surface.next[at(whole.first + whole.pieces - 1)])],
+                    surface.start_share[e], static_cast<double>(whole.pieces)};
     }
   });
 }

@@ -98,6 +98,13 @@ class Detection {
     double kinds = 0.0;    ///< CornerKind here, and four times that at the end of the edge
     [[nodiscard]] Vec2 normal() const { return {tangent.y, -tangent.x}; }
   };
+  /// What an edge is a piece of, likewise.
+  struct Whole {
+    Vec2 from, to;             ///< where it begins and ends
+    double start_share = 0.5;  ///< Surface::start_share of the edge
+    double pieces = 1.0;
+    double unused[2]{};
+  };
   /// A candidate that passes the geometry.
   struct Rival {
     int candidate;          ///< −1: has lost to another of the same two corners
@@ -220,6 +227,7 @@ class Detection {
     /// where the edges that face each other share all that they have.
     Lanes least_length;
   };
+  template <bool divided>
   [[nodiscard]] Geometry measure(const Surface& surface, const CandidateList& candidates,
                                  std::span<const Found> found) const;
   /// Of the edge beyond a corner.
@@ -238,6 +246,7 @@ class Detection {
   std::vector<double> penalty_;
   // Scratch.
   std::vector<Corner> corners_;  ///< per vertex
+  std::vector<Whole> wholes_;    ///< per edge; empty: no edge is divided
   Motion motion_;                ///< in the step
   std::vector<std::vector<Found>>
       found_;  ///< by piece of the pairs of blocks, in the order of the candidates

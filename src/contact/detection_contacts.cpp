@@ -1,9 +1,11 @@
 // What is known of a contact, once it is one.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contact/detection.h"
 #include "contact/edge_curve.h"
+#include "contact/shared_length.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
@@ -28,111 +30,39 @@ void keep_energy(Memory& memory, double gap, double stiffness) {
   memory.stiffness = stiffness;
 }
 
-/// An edge beside a line, as SharedLength sees it. Of lanes, or of one number each.
-template <typename Number>
-struct Beside {
-  Number share;     ///< Surface::start_share of the end at the vertex
-  Number from, to;  ///< m, along the line: the ends of what it is a piece of
-  Number pieces;    ///< of that
-};
-
-/// Likewise.
-template <typename Number>
-struct SharedLength {
-  Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
-  double zone;           ///< m, by which edges may miss each other and still begin or end together
-  double apart;          ///< m, up to which they are beside each other
-
-  /// m, of the edge, over which one that leaves it at an angle of this sine is beside it.
-  [[nodiscard]] Number stretch(Number sine) const {
-    const Number most = Number{} + apart;
-    return most / larger(size(sine), most * (1.0 / largest_length));
-  }
-  /// m that the vertex has of what an edge of its block, that goes on to `to` and is beside this one for so long, has in common with it:
-  /// the half, or what Surface::start_share gives it of the one that lies within the other with all of its pieces, or of both, where these
-  /// are divided alike; as blocks slide, the latter become halves.
-  /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
-  Number operator()(Number to, Number long_beside, const Beside<Number>& other,
-                    const Beside<Number>& here) const {
-    constexpr double slid = 0.5;  // of an edge: by so much it is not divided like the other one any more
-    const Number low = smaller(along, to), high = larger(along, to), zero{};
-    const Number common = smaller(larger(zero, smaller(length, high) - larger(zero, low)), long_beside);
-    const Number other_low = smaller(other.from, other.to), other_high = larger(other.from, other.to);
-    const Number from_slid = other_low - here.from, to_slid = other_high - here.to,
-                 beyond_zone = larger(zero, larger(size(from_slid), size(to_slid)) - zone),
-                 left = zero + 1.0 - beyond_zone / larger(slid * (here.to - here.from), zero + zone);
-    const auto alike = (other.pieces <= here.pieces) & (other.pieces >= here.pieces) &
-                       (size(to_slid - from_slid) <= zone) & (left > 0.0),
-               other_within = (other_low >= -zone) & (other_high <= length + zone),
-               here_within = (here.from >= low - zone) & (here.to <= high + zone);
-    const Number half = zero + 0.5, both = 0.5 + left * (0.5 * (other.share + here.share) - 0.5);
-    return common *
-           where(alike, both, where(other_within, other.share, where(here_within, here.share, half)));
-  }
-
- private:
-  static constexpr double largest_length = 1e100;  // m
-  static Number smaller(Number a, Number b) { return where(b < a, b, a); }
-  static Number larger(Number a, Number b) { return where(a < b, b, a); }
-  static Number size(Number a) { return larger(a, -a); }
-};
-
-/// Of an edge, by a line through `origin`.
-Beside<double> beside(const Surface& surface, std::size_t edge, Vec2 origin, Vec2 tangent) {
-  std::size_t from = edge, to = at(surface.next[edge]);
-  double share = 0.5, pieces = 1.0;
-  if (!surface.divided.empty()) {
-    const DividedEdge& whole = surface.divided[edge];
-    share = surface.start_share[edge];
-    pieces = whole.pieces;
-    from = at(whole.first);
-    to = at(surface.next[from + at(whole.pieces) - 1]);
-  }
-  const auto along = [&](std::size_t v) { return dot(tangent, surface.position[v] - origin); };
-  return {share, along(from), along(to), pieces};
-}
-
-/// With the share of its other end.
-template <typename Number>
-Beside<Number> at_end(Beside<Number> edge) {
-  edge.share = 1.0 - edge.share;
-  return edge;
-}
-
 }  // namespace
 
-/// Eight at once, or fewer at the end.
+/// Eight at once, or fewer at the end. Where no edge is divided, each vertex has the half of what edges have in common.
+template <bool divided>
 Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
                                        std::span<const Found> found) const {
   Lanes edge[lane_count], vertex[lane_count], length_before{}, at_corner{};
-  // The edge, and those of the vertex that begin and end there.
-  Beside<Lanes> here{broadcast(0.5), {}, {}, broadcast(1.0)}, next = here, last = here;
+  std::array<std::size_t, lane_count> edges{}, after{}, before{};  // those of the vertex begin and end there
   for (std::size_t i = 0; i < lane_count; ++i) {
     const Found& f = found[i < found.size() ? i : 0];
     const Candidate& c = candidates.pairs[at(f.candidate)];
-    const std::size_t before = at(surface.previous[at(c.vertex)]);
-    edge[i] = load(&corners_[at(c.edge)].position.x);
-    vertex[i] = load(&corners_[at(c.vertex)].position.x);
-    length_before[i] = corners_[before].length;
+    edges[i] = at(c.edge);
+    after[i] = at(c.vertex);
+    before[i] = at(surface.previous[at(c.vertex)]);
+    edge[i] = load(&corners_[edges[i]].position.x);
+    vertex[i] = load(&corners_[after[i]].position.x);
+    length_before[i] = corners_[before[i]].length;
     at_corner[i] = f.at_end ? 1.0 : 0.0;
-    if (surface.divided.empty()) continue;
-    const auto look_at = [&](std::size_t e, Beside<Lanes>& side) {
-      const Beside<double> of =
-          beside(surface, e, corners_[at(c.edge)].position, corners_[at(c.edge)].tangent);
-      side.share[i] = of.share;
-      side.from[i] = of.from;
-      side.to[i] = of.to;
-      side.pieces[i] = of.pieces;
-    };
-    look_at(at(c.edge), here);
-    look_at(at(c.vertex), next);
-    look_at(before, last);
   }
   transpose(edge);
   transpose(vertex);
   const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
   const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
   const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
+  const auto look_at = [&](const std::array<std::size_t, lane_count>& of) -> Beside<Lanes> {
+    if constexpr (!divided) return {broadcast(0.5), Lanes{}, Lanes{}, broadcast(1.0)};
+    Lanes w[lane_count];
+    for (std::size_t i = 0; i < lane_count; ++i) w[i] = load(&wholes_[of[i]].from.x);
+    transpose(w);
+    return {w[4], tx * (w[0] - edge[0]) + ty * (w[1] - edge[1]),
+            tx * (w[2] - edge[0]) + ty * (w[3] - edge[1]), w[5]};
+  };
+  const Beside<Lanes> here = look_at(edges), next = look_at(after), last = look_at(before);
   const SharedLength<Lanes> shared{along, length, tolerances_.end_zone, tolerances_.activation};
   const Lanes most = broadcast(tolerances_.least_length);
   Lanes shared_length{}, whole_length{};
@@ -142,13 +72,16 @@ Detection::Geometry Detection::measure(const Surface& surface, const CandidateLi
                             const Beside<Lanes>& this_edge) {
     const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, long_beside = shared.stretch(across);
     const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
-    const Lanes common =
-        where(turned, Lanes{}, shared(along + ahead * sign * length_of_other, long_beside, other, this_edge));
+    const Lanes to = along + ahead * sign * length_of_other;
+    const Lanes of_vertex = divided ? shared(to, long_beside, other, this_edge)
+                                    : 0.5 * shared.common(to, long_beside),
+                common = where(turned, Lanes{}, of_vertex);
     shared_length += common;
     faces = faces | ~turned;
     whole_length =
         largest(whole_length, where((common > tolerances_.rounding) | (~turned & (at_corner > 0.0)),
                                     least(other.share * length_of_other, this_edge.share * length), Lanes{}));
+    if (!divided) return;  // what has that length in common gives each vertex more than the least
     const Lanes overlap = least(largest(other.from, other.to), this_edge.to) -
                           largest(least(other.from, other.to), this_edge.from);
     shares_much = shares_much | (~turned & (least(overlap, long_beside) >= 2.0 * most));
@@ -173,7 +106,12 @@ Detection::Beyond Detection::beyond_end(const Surface& surface, const Candidate&
   if (dot(edge.tangent, line.tangent) < 0.0 ||
       std::abs(cross(edge.tangent, line.tangent)) > Tolerances::sine_facing)
     return {};
-  const auto look_at = [&](std::size_t e) { return beside(surface, e, line.position, line.tangent); };
+  const auto look_at = [&](std::size_t e) -> Beside<double> {
+    if (wholes_.empty()) return {0.5, 0.0, 0.0, 1.0};
+    const Whole& whole = wholes_[e];
+    const auto along = [&](Vec2 end) { return dot(line.tangent, end - line.position); };
+    return {whole.start_share, along(whole.from), along(whole.to), whole.pieces};
+  };
   const Beside<double> here = look_at(beyond);
   const double along = dot(line.tangent, vertex.position - line.position);
   const SharedLength<double> shared{along, line.length, tolerances_.end_zone, tolerances_.activation};
@@ -239,7 +177,9 @@ void Detection::describe(const Surface& surface, const CandidateList& candidates
                          std::span<const Found> found, std::span<Contact> contacts) const {
   for (std::size_t begin = 0; begin < found.size(); begin += lane_count) {
     const std::size_t count = std::min(found.size() - begin, std::size_t{lane_count});
-    const Geometry geometry = measure(surface, candidates, found.subspan(begin, count));
+    const std::span<const Found> some = found.subspan(begin, count);
+    const Geometry geometry = wholes_.empty() ? measure<false>(surface, candidates, some)
+                                              : measure<true>(surface, candidates, some);
     for (std::size_t i = 0; i < count; ++i) {
       const Found& f = found[begin + i];
       const Candidate& candidate = candidates.pairs[at(f.candidate)];

@@ -1,0 +1,66 @@
+#pragma once
+#include "core/lanes.h"
+
+// How much of what two edges that face each other have in common belongs to the contact of a vertex (docs/decisions/0012-length-of-joints.md).
+namespace keyblock::contact {
+
+/// An edge beside a line, as SharedLength sees it. Of lanes, or of one number each.
+template <typename Number>
+struct Beside {
+  Number share;     ///< Surface::start_share of the end at the vertex
+  Number from, to;  ///< m, along the line: the ends of what it is a piece of
+  Number pieces;    ///< of that
+};
+
+/// Likewise.
+template <typename Number>
+struct SharedLength {
+  Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
+  double zone;           ///< m, by which edges may miss each other and still begin or end together
+  double apart;          ///< m, up to which they are beside each other
+
+  /// m, of the edge, over which one that leaves it at an angle of this sine is beside it.
+  [[nodiscard]] Number stretch(Number sine) const {
+    const Number most = Number{} + apart;
+    return most / larger(size(sine), most * (1.0 / largest_length));
+  }
+  /// m that an edge of the vertex's block, that goes on to `to` and is beside this one for so long, has in common with it.
+  [[nodiscard]] Number common(Number to, Number long_beside) const {
+    const Number low = smaller(along, to), high = larger(along, to), zero{};
+    return smaller(larger(zero, smaller(length, high) - larger(zero, low)), long_beside);
+  }
+  /// m that the vertex has of that: the half, or what Surface::start_share gives it of the one that lies within the other with all of its
+  /// pieces, or of both, where these are divided alike; as blocks slide, the latter become halves.
+  /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
+  Number operator()(Number to, Number long_beside, const Beside<Number>& other,
+                    const Beside<Number>& here) const {
+    constexpr double slid = 0.5;  // of an edge: by so much it is not divided like the other one any more
+    const Number low = smaller(along, to), high = larger(along, to), zero{};
+    const Number other_low = smaller(other.from, other.to), other_high = larger(other.from, other.to);
+    const Number from_slid = other_low - here.from, to_slid = other_high - here.to,
+                 beyond_zone = larger(zero, larger(size(from_slid), size(to_slid)) - zone),
+                 left = zero + 1.0 - beyond_zone / larger(slid * (here.to - here.from), zero + zone);
+    const auto alike = (other.pieces <= here.pieces) & (other.pieces >= here.pieces) &
+                       (size(to_slid - from_slid) <= zone) & (left > 0.0),
+               other_within = (other_low >= -zone) & (other_high <= length + zone),
+               here_within = (here.from >= low - zone) & (here.to <= high + zone);
+    const Number half = zero + 0.5, both = 0.5 + left * (0.5 * (other.share + here.share) - 0.5);
+    return common(to, long_beside) *
+           where(alike, both, where(other_within, other.share, where(here_within, here.share, half)));
+  }
+
+ private:
+  static constexpr double largest_length = 1e100;  // m
+  static Number smaller(Number a, Number b) { return where(b < a, b, a); }
+  static Number larger(Number a, Number b) { return where(a < b, b, a); }
+  static Number size(Number a) { return larger(a, -a); }
+};
+
+/// With the share of its other end.
+template <typename Number>
+Beside<Number> at_end(Beside<Number> edge) {
+  edge.share = 1.0 - edge.share;
+  return edge;
+}
+
+}  // namespace keyblock::contact
