@@ -52,9 +52,25 @@ time = [[0.0, 0.0], [60.0, 60.0]]
 ''',
         stages='[[stage]]\nname = "pull"\nkind = "rest"\nduration = 55.0\n',
     )
+    scenario(
+        "joint_in_bending", title="A stiff block on a soft joint, pressed more at one end", gravity=(0.0, 0.0), step=0.05,
+        rock='density = 2600.0\nyoung = 1.0e13\npoisson = 0.0\nstate = "plane-stress"',
+        joints="friction = 30.0\nnormal_stiffness = 1.0e9",
+        blocks=[("base", box(-1, -1, 3, 1), FIXED), ("block", box(0, 0, 1, 1), "")],
+        histories=[("left", "block", (0.0, 0.0)), ("right", "block", (1.0, 0.0))],
+        extra="""[[load]]
+block = "block"
+from = [0.0, 1.0]
+to = [1.0, 1.0]
+traction = [0.0, -500.0]
+traction_end = [0.0, -1500.0]
+
+""",
+        stages='[[stage]]\nname = "settle"\nkind = "settle"\ntolerance = 1.0e-9\nmax_steps = 5000\n',
+    )
     text = '''title = "Column and stack"
 case  = 20
-about = """Five blocks of 1 m on one another, settled: the contacts under each carry the weight above. Five on joints as soft as the blocks, pressed together by 1 kPa: blocks and joints get shorter by as much, and the stress is the same everywhere, with any order. A block that is pulled off its base: the bond breaks at its strength times its length. Nine blocks in three rows, set down at once, keep their places for 1 s of dynamics with any time step."""
+about = """Five blocks of 1 m on one another, settled: the contacts under each carry the weight above. Five on joints as soft as the blocks, pressed together by 1 kPa: blocks and joints get shorter by as much, and the stress is the same everywhere, with any order. A block that is pulled off its base: the bond breaks at its strength times its length. A stiff block on a soft joint of width b, pressed more at one end: it turns by M/(kn b³/12) with three contacts along the joint or more; with two, as blocks of order 1 have unless asked for more, by a third of that. Nine blocks in three rows, set down at once, keep their places for 1 s of dynamics with any time step."""
 
 [[run]]
 name = "column"
@@ -79,6 +95,22 @@ scenario = "scenarios/bond_in_tension.toml"
 orders = [1, 2, 3, 4, 6]
 '''
     text += quantity("peak of the pull", "1e3*crossing('block.vy', 5e-4)", "N/m", expected="5e4", tolerance=1e-3)
+    turn = "end('left.uy') - end('right.uy')"
+    text += '''
+[[run]]
+name = "joint in bending"
+scenario = "scenarios/joint_in_bending.toml"
+set = ["solver.face_contacts=3"]
+orders = [1, 2, 3]
+'''
+    text += quantity("turn of the block", turn, "rad", expected="(1e3/12)/(1e9/12)", tolerance=1e-3)
+    text += '''
+[[run]]
+name = "joint in bending, contacts at its ends"
+scenario = "scenarios/joint_in_bending.toml"
+orders = [1]
+'''
+    text += quantity("turn of the block", turn, "rad", expected="(1e3/12)/(1e9/4)", tolerance=1e-3)
     text += '''
 [[run]]
 name = "stack"

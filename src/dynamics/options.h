@@ -40,6 +40,8 @@ struct SolverOptions {
   double bound_accuracy = 1e-4;
   int max_bound_updates = 8;
   ContactMethod contact = ContactMethod::penalty;
+  /// Along a face, at the least: at its ends, and from 3 on between them, too. A block of order n has n + 1.
+  int face_contacts = 2;
   double penalty = 20.0;  ///< normal stiffness of joints that give none: times Young's modulus, per metre
   /// Augmented Lagrangian: largest penetration, and drift of a contact that holds, over the block size.
   double penetration_tolerance = 1e-10;

@@ -222,9 +222,9 @@ Model build_model(const RunSetup& setup) {
     const BlockProperties& properties = setup.properties[b];
     const int order = properties.fixed ? 1 : properties.order;
     const bool automatic = properties.automatic_order && !properties.fixed;
-    model.blocks.push_back(make_block(cut.polygon, properties, order,
-                                      automatic ? setup.automatic_order.highest_order : order,
-                                      setup.in_situ));
+    const int of_block = automatic ? setup.automatic_order.highest_order : order,
+              edge_order = properties.fixed ? 1 : std::max(of_block, setup.solver.face_contacts - 1);
+    model.blocks.push_back(make_block(cut.polygon, properties, order, edge_order, setup.in_situ));
     for (const auto& ring : cut.labels) {
       for (const cutting::EdgeLabel label : ring) joints.push_back(joint_law(setup, label));
     }

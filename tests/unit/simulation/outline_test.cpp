@@ -83,6 +83,22 @@ TEST(Outline, EdgesOfBlocksOfOrder1StayWhole) {
   EXPECT_TRUE(build_model(TJunction(1.1, 1, 1).scene.setup).surface.divided.empty());
 }
 
+TEST(Outline, FacesHaveAsManyContactsAsAreAskedFor) {
+  for (const int order : {1, 2}) {
+    TJunction t(1.1, order, 1);
+    t.scene.setup.solver.face_contacts = 3;
+    const dynamics::Model model = build_model(t.scene.setup);
+    expect_near(t.vertices(model, 0, 0), by_rule({0.0, 1.1, 3.0}, 2));
+    expect_near(t.vertices(model, 1, 2), by_rule({0.0, 1.1, 3.0}, 2));
+  }
+  TJunction on_fixed(1.1, 3, 1);
+  on_fixed.scene.setup.solver.face_contacts = 3;
+  on_fixed.scene.setup.properties[0].fixed = true;
+  const dynamics::Model model = build_model(on_fixed.scene.setup);
+  expect_near(on_fixed.vertices(model, 0, 0), {0.0, 3.0});
+  expect_near(on_fixed.vertices(model, 1, 2), by_rule({0.0, 1.1, 3.0}, 2));
+}
+
 TEST(Outline, NothingIsCutNearAnEndOrWhereBlocksAreApart) {
   const TJunction near_end(0.002, 2, 1), apart(1.1, 2, 2, 0.0, 0.001);
   expect_near(near_end.vertices(build_model(near_end.scene.setup), 0, 0), by_rule({0.0, 3.0}, 2));
