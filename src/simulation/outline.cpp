@@ -144,17 +144,27 @@ class Divider {
     }
   }
 
-  /// What edges of two blocks have in common, where they face each other.
+  /// What edges of two blocks have in common, where they face each other and stay beside each other to its ends: those that part at a
+  /// crossing do not.
   void add_common(std::size_t one, std::size_t other) {
     const Vec2 u = along(one), v = along(other);
     if (dot(u, v) > 0.0 || std::abs(cross(u, v)) > contact::Tolerances::sine_facing * norm(u) * norm(v))
       return;
     const auto add = [&](std::size_t edge, std::size_t beside) {
       const double length = norm(along(edge));
-      const Vec2 tangent = (1.0 / length) * along(edge), origin = corners_.position[edge];
-      const double to = std::min(dot(tangent, corners_.position[beside] - origin), length),
-                   from = std::max(dot(tangent, corners_.position[at(corners_.next[beside])] - origin), 0.0);
-      if (to - from > tolerances_.end_zone) neighbours_[edge].push_back({from, to, corners_.block[beside]});
+      const Vec2 tangent = (1.0 / length) * along(edge);
+      const auto of_edge = [&](std::size_t vertex) {
+        const Vec2 r = corners_.position[vertex] - corners_.position[edge];
+        return Vec2{dot(tangent, r), cross(tangent, r)};  // along and across it
+      };
+      const Vec2 begin = of_edge(at(corners_.next[beside])), end = of_edge(beside);
+      const double from = std::max(begin.x, 0.0), to = std::min(end.x, length);
+      const auto is_beside = [&](double x) {
+        return std::abs(std::lerp(begin.y, end.y, (x - begin.x) / (end.x - begin.x))) <=
+               tolerances_.activation;
+      };
+      if (to - from > tolerances_.end_zone && is_beside(from) && is_beside(to))
+        neighbours_[edge].push_back({from, to, corners_.block[beside]});
     };
     add(one, other);
     add(other, one);

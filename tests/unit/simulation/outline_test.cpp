@@ -114,6 +114,20 @@ TEST(Outline, NothingIsCutByATip) {
   EXPECT_EQ(model.surface.block_begin[1], 8);
 }
 
+// Blocks that meet at a point where two joints cross at a small angle have nothing of their edges in common.
+TEST(Outline, NothingIsCutWhereJointsCross) {
+  for (const auto& [angle, vertices] : {std::pair{3.0, 3}, {0.001, 6}}) {
+    Scene scene(1e9, 30.0);
+    const double rise = 2.0 * std::tan(angle * degree);
+    scene.add({{0.0, -1.0}, {3.0, -1.0}, {3.0, 0.0}, {0.0, 0.0}}, false, 2);
+    scene.add({{0.0, 0.0}, {2.0, rise}, {2.0, 1.0}, {0.0, 1.0}}, false, 3);
+    const dynamics::Model model = build_model(scene.setup);
+    const std::span<const Vec2> below =
+        std::span<const Vec2>(model.reference).first(at(model.surface.block_begin[1]));
+    EXPECT_EQ(std::ranges::count_if(below, [](Vec2 p) { return p.y == 0.0; }), vertices) << angle;
+  }
+}
+
 // Of every edge of the surface it is known which edge of which polygon it lies on.
 TEST(Outline, EdgesKnowWhatTheyAreOf) {
   TJunction t(1.1, 2, 3, 17.0);
