@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -39,6 +40,18 @@ void find_block_pairs(std::span<const std::uint8_t> dirty, CandidateList& list) 
     pair.block_a = a;
     pair.block_b = b;
     list.block_pairs.push_back(pair);
+  }
+  list.first_of_block.assign(dirty.size() + 1, 0);
+  for (const BlockPair& pair : list.block_pairs) {
+    ++list.first_of_block[at(pair.block_a) + 1];
+    ++list.first_of_block[at(pair.block_b) + 1];
+  }
+  std::partial_sum(list.first_of_block.begin(), list.first_of_block.end(), list.first_of_block.begin());
+  std::vector<int> next(list.first_of_block.begin(), list.first_of_block.end() - 1);
+  list.pair_of_block.resize(2 * list.block_pairs.size());
+  for (std::size_t p = 0; p < list.block_pairs.size(); ++p) {
+    for (const int block : {list.block_pairs[p].block_a, list.block_pairs[p].block_b})
+      list.pair_of_block[at(next[at(block)]++)] = static_cast<int>(p);
   }
 }
 

@@ -66,8 +66,10 @@ struct BlockPair {
 struct CandidateList {
   std::vector<Candidate> pairs;
   std::vector<BlockPair> block_pairs;  ///< derived; Candidates::update sees to it
-  std::vector<int> tracked;            ///< contacts of the last step, into pairs; ascending
-  std::vector<Memory> memory;          ///< of each of them
+  /// Likewise: into block_pairs, those of block b from first_of_block[b] to first_of_block[b + 1].
+  std::vector<int> pair_of_block, first_of_block;
+  std::vector<int> tracked;    ///< contacts of the last step, into pairs; ascending
+  std::vector<Memory> memory;  ///< of each of them
 
   /// For what so many contacts remember.
   void make_room(std::size_t contacts) {
@@ -77,6 +79,12 @@ struct CandidateList {
   /// Of the candidates of a pair of blocks.
   [[nodiscard]] std::size_t end_of_pair(std::size_t p) const {
     return p + 1 < block_pairs.size() ? static_cast<std::size_t>(block_pairs[p + 1].first) : pairs.size();
+  }
+
+  /// Into block_pairs, ascending.
+  [[nodiscard]] std::span<const int> pairs_of(int block) const {
+    const int *first = &first_of_block[static_cast<std::size_t>(block)], *all = pair_of_block.data();
+    return {all + first[0], all + first[1]};
   }
 
   /// Walks over the candidates in their order: where the memory of each is.

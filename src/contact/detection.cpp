@@ -57,7 +57,10 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const auto reflex_end = kinds >= 4.0, nook_end = kinds >= 8.0;
   const Lanes at_start = kinds - where(nook_end, broadcast(8.0), where(reflex_end, broadcast(4.0), Lanes{}));
   const auto reflex_start = at_start >= 1.0, nook_start = at_start >= 2.0;
-  const Lanes before = where(nook_start, deep_zone, zone), after = where(nook_end, deep_zone, zone);
+  const auto holds = load(group.holds.data()) > 0.0;
+  const Lanes pressed_zone = largest(zone, deepest);
+  const Lanes before = where(holds, pressed_zone, where(nook_start, deep_zone, zone)),
+              after = where(holds, pressed_zone, where(nook_end, deep_zone, zone));
   // The corner of a block that spins may pass the one that is nearest now.
   const Lanes straight = broadcast(Tolerances::sine_inside);
   const Lanes sine = where(gap > 0.0, least(broadcast(1.0), straight + load(group.turn.data())), straight);
@@ -73,6 +76,8 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const auto first_half = along < 0.5 * length;
   const auto disputed =
       (least(along, length - along) < zone) & ~((first_half & reflex_start) | (~first_half & reflex_end));
+  const auto is_beyond =
+      (along < -where(nook_start, deep_zone, zone)) | (along > length + where(nook_end, deep_zone, zone));
   std::size_t count = 0;
   for (std::size_t i = 0; i < group.size; ++i) {
     passed[count].candidate = group.candidate[i];
@@ -80,6 +85,7 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
     passed[count].gap = gap[i];
     passed[count].along = along[i];
     passed[count].first_half = first_half[i] != 0;
+    passed[count].is_beyond = is_beyond[i] != 0;
     passed[count].disputed = disputed[i] != 0;
     count += passes[i] != 0 ? 1 : 0;
   }
@@ -117,6 +123,7 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
       const int memory = held_by(k);
       const bool holds = memory >= 0 && candidates.memory[at(memory)].holds();
       group.deepest[i] = holds ? thickness : deepest;
+      group.holds[i] = memory >= 0 && candidates.memory[at(memory)].normal_force > 0.0 ? 1.0 : 0.0;
       group.bonded[i] = memory >= 0 && candidates.memory[at(memory)].bonded ? 1.0 : 0.0;
       group.size += away < candidates.pairs[k].clearance ? 0 : 1;
       if (group.size == lane_count) take();
@@ -147,7 +154,9 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   const bool tries = pair.wait == 0 && end - at(pair.first) <= most_candidates;
   double margin = tries ? candidate_margin(surface, candidates, pair, end, rivals, reach_share * reach) : 0.0;
   for (Rival& r : rivals) {
-    if (!has_come_in_elsewhere(surface, r, candidates)) continue;
+    if (!r.is_beyond && !has_come_in_elsewhere(surface, r, candidates)) continue;
+    margin = 0.0;  // hangs on third blocks
+    if (!is_out(surface, pair, r, candidates)) continue;
     r.candidate = -1;
     r.corners = 0;
   }
@@ -160,7 +169,7 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
       if (rivals[k].corners == corners) meeting[size++] = &rivals[k];
     }
     const auto same = std::span(meeting).first(size);
-    const Outcome outcome = compete(surface, same, candidates);
+    const Outcome outcome = compete_in_joints(surface, pair, same, candidates);
     if (margin > 0.0) margin = std::min(margin, outcome_margin(surface, same, outcome, candidates));
     for (Rival* r : same) {
       r->corners = 0;
@@ -262,11 +271,13 @@ void Detection::find(const Surface& surface, const Motion& motion, CandidateList
   });
 }
 
-/// m, from a vertex to the nearest edge of the block of `edge` but this, without a reflex vertex between the two.
-double Detection::to_nearest_other_edge(const Surface& surface, const Candidate& candidate) const {
+/// m, from a vertex to the nearest edge of the block of `edge` but this and `except`, without a reflex vertex between the two.
+double Detection::to_nearest_other_edge(const Surface& surface, const Candidate& candidate,
+                                        int except) const {
   const Vec2 vertex = corners_[at(candidate.vertex)].position;
   double nearest = HUGE_VAL;
   const auto look_at = [&](int edge) {
+    if (edge == except) return;
     const Corner& other = corners_[at(edge)];
     const Vec2 from_start = vertex - other.position;
     const double along = std::clamp(dot(other.tangent, from_start), 0.0, other.length);
@@ -284,7 +295,7 @@ double Detection::to_nearest_other_edge(const Surface& surface, const Candidate&
 /// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face, nor one that the face has held since
 /// before it was behind it, however deep an impact presses it in.
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
-                                      const CandidateList& candidates) const {
+                                      const CandidateList& candidates, int except) const {
   if (rival.gap >= -deep(rival)) return false;
   if (rival.memory >= 0 && candidates.memory[at(rival.memory)].offset <= 0.0) return false;
   const Candidate& c = candidates.pairs[at(rival.candidate)];
@@ -292,7 +303,7 @@ bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival
     const Vec2 inwards = line_inwards(rival, c);
     if (dot(side, inwards) > 0.0 && std::abs(cross(side, inwards)) < Tolerances::sine_facing) return false;
   }
-  return to_nearest_other_edge(surface, c) < -rival.gap;
+  return to_nearest_other_edge(surface, c, except) < -rival.gap;
 }
 
 bool Detection::lies_outside(const Surface& surface, const Rival& rival,
@@ -384,8 +395,8 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
     parallel = parallel && !turned(line(*f, candidates), line(*all[0], candidates));
     if (faces(*f, candidates)) facing[count++] = f;
   }
-  const bool some_face = parallel && count > 0 && count < all.size();
-  const std::span<Rival* const> rivals = some_face ? std::span<Rival* const>(facing).first(count) : all;
+  const bool left_out = parallel && count > 0 && count < all.size();
+  const std::span<Rival* const> rivals = left_out ? std::span<Rival* const>(facing).first(count) : all;
   const auto line = [&](const Rival& f) -> const Corner& { return this->line(f, candidates); };
   const auto over = [&](const Rival& f) { return inside(f.along, line(f).length); };
   const auto force = [&](const Rival& f) { return candidates.memory[at(f.memory)].normal_force; };
@@ -412,7 +423,7 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
   // tangents of the two lines run against each other, and normal and tangent turn together.
   const bool hands_over = winner != nullptr && holder != nullptr && parallel && winner != holder;
   if (hands_over) winner->memory = holder->memory;
-  return {winner, parallel, hands_over, some_face};
+  return {winner, parallel, hands_over, left_out};
 }
 
 }  // namespace keyblock::contact

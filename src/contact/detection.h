@@ -61,7 +61,7 @@ void keep_memory(std::span<const Contact> contacts, std::size_t first, std::size
 ///     already was in contact stays until it has clearly left, and then hands its memory over.
 ///   - otherwise corner to corner: the line that is passed last in the step, as the corners go now. Of lines that are not passed,
 ///     or were before, that of the largest gap, which is the shortest way out; while that is a tie
-///     none, or the one that presses.
+///     none, or the one that presses. Not a line that a third block is in the way of (closed_joints.cpp).
 ///
 /// All this hangs on thresholds of a share of a block, while blocks in contact move by a millionth of one in a step. A pair of blocks
 /// is looked at when it may have passed one (BlockPair); of the others only the geometry of their contacts is computed.
@@ -111,6 +111,7 @@ class Detection {
     int pair;               ///< of blocks
     int memory;             ///< of the list, that it goes on with; −1: none
     bool first_half;        ///< of the edge is where the vertex is
+    bool is_beyond;         ///< the end zone: a contact only in a nook between two blocks
     bool disputed;          ///< the vertex is near an end of the edge, so that two corners meet
     std::uint64_t corners;  ///< the two that meet; 0: none
     double gap, along;      ///< m
@@ -131,9 +132,12 @@ class Detection {
   [[nodiscard]] bool is_steady(const Surface& surface, const BlockPair& pair) const;
   // m, from the first vertex of block a to that of block b.
   [[nodiscard]] static Vec2 apart(const Surface& surface, const BlockPair& pair);
-  [[nodiscard]] double to_nearest_other_edge(const Surface& surface, const Candidate& candidate) const;
+  [[nodiscard]] double to_nearest_other_edge(const Surface& surface, const Candidate& candidate,
+                                             int except = -1) const;
   [[nodiscard]] bool has_come_in_elsewhere(const Surface& surface, const Rival& rival,
-                                           const CandidateList& candidates) const;
+                                           const CandidateList& candidates, int except = -1) const;
+  [[nodiscard]] bool is_out(const Surface& surface, const BlockPair& pair, const Rival& rival,
+                            const CandidateList& candidates) const;
   /// m, behind an edge, from which on it is asked where a vertex has come in. A tip that presses on the very end of a face is nearer to the
   /// side below.
   [[nodiscard]] double deep(const Rival& rival) const {
@@ -153,12 +157,29 @@ class Detection {
     Rival* winner = nullptr;   ///< null: none
     bool parallel = true;      ///< all their lines
     bool handed_over = false;  ///< the winner goes on with the memory of another
-    bool some_face = false;    ///< others were left out that no edge of their vertex faces
+    bool left_out = false;     ///< others were, that no edge of their vertex faces or that are closed
   };
   /// Whether an edge of the vertex and the edge face each other: they run against each other, each with its block on the left.
   [[nodiscard]] bool faces(const Rival& rival, const CandidateList& candidates) const;
   [[nodiscard]] Outcome compete(const Surface& surface, std::span<Rival* const> rivals,
                                 const CandidateList& candidates) const;
+  [[nodiscard]] Outcome compete_in_joints(const Surface& surface, const BlockPair& pair,
+                                          std::span<Rival* const> all, const CandidateList& candidates) const;
+  /// What third blocks are to a line, near the end where two corners meet.
+  struct Third {
+    /// `closed`: one covers the edge there, or is inside the line beyond an edge of the vertex that it covers. Less: both corners stand on
+    /// its face, and this is the sine of the angle at which the line pushes one of them into that.
+    double in_the_way = 0.0;
+    bool is_beside = false;    ///< one covers the edge that follows at that end
+    bool is_in_front = false;  ///< and goes on in front of this one: what it lets in has nowhere else to go
+  };
+  static constexpr double closed = 2.0;
+  [[nodiscard]] Third third(const Surface& surface, const BlockPair& pair, const Rival& rival,
+                            const CandidateList& candidates) const;
+  template <typename Call>
+  void for_third_edges(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
+                       const Call& call) const;
+  [[nodiscard]] Vec2 beyond_joint(const Surface& surface, int corner, bool begins, int edge) const;
   [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
                                         const CandidateList& candidates) const;
   // Whether both edges of the vertex lie outside the line, now or as the corners go.
@@ -187,8 +208,8 @@ class Detection {
     std::size_t size = 0;
     std::array<int, lane_count> candidate{}, pair{};
     std::array<double, lane_count> reach{}, turn{};
-    std::array<double, lane_count> deepest{};  ///< m, depth up to which they may be in contact
-    std::array<double, lane_count> bonded{};   ///< 1 or 0
+    std::array<double, lane_count> deepest{};          ///< m, depth up to which they may be in contact
+    std::array<double, lane_count> bonded{}, holds{};  ///< 1 or 0
   };
   std::size_t pass(const CandidateList& candidates, const Group& group, Rival* passed) const;
   /// Whether lines cannot count as one.

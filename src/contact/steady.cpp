@@ -109,7 +109,8 @@ double Detection::facing_margin(const Surface& surface, const Candidate& candida
 /// are within the margin, where they will be.
 double Detection::outcome_margin(const Surface& surface, std::span<Rival* const> rivals,
                                  const Outcome& outcome, const CandidateList& candidates) const {
-  if (outcome.handed_over || outcome.some_face) return 0.0;
+  // Which line parts two corners hangs on third blocks, too.
+  if (outcome.handed_over || outcome.left_out || (outcome.winner != nullptr && !outcome.parallel)) return 0.0;
   const auto line = [&](const Rival* r) -> const Corner& { return this->line(*r, candidates); };
   // Near an end of their lines, all of them.
   const auto over_rate = [&](const Rival* r) {
@@ -147,23 +148,12 @@ double Detection::outcome_margin(const Surface& surface, std::span<Rival* const>
       margin = std::min(margin, (-tolerances_.rounding - inside(r->along, line(r).length)) / over_rate(r));
     return margin;
   }
-  margin = std::min(margin, while_alike);
-  if (winner == nullptr) {  // a tie, whichever has the largest gap
-    if (!each_has_other) return 0.0;
-    for (const Rival* r : rivals)
-      margin = std::min(margin, std::abs(r->gap + tolerances_.corner_depth) / fastest);
-    return std::min({margin, (largest_gap + tolerances_.corner_depth) / fastest,
-                     (tolerances_.corner_tie - (largest_gap - least_gap)) / (2.0 * fastest)});
-  }
-  double second = -HUGE_VAL;
-  for (const Rival* r : rivals) {
-    if (r == winner) continue;
-    margin = std::min(margin, (winner->gap - r->gap) / (2.0 * fastest));
-    if (part_otherwise(*r, *winner, candidates)) second = std::max(second, r->gap);
-  }
-  const double deep = (-tolerances_.corner_depth - winner->gap) / fastest,
-               apart = (winner->gap - second - tolerances_.corner_tie) / (2.0 * fastest);
-  return std::min(margin, std::max(deep, apart));
+  // A tie, whichever has the largest gap.
+  if (!each_has_other) return 0.0;
+  for (const Rival* r : rivals)
+    margin = std::min(margin, std::abs(r->gap + tolerances_.corner_depth) / fastest);
+  return std::min({margin, while_alike, (largest_gap + tolerances_.corner_depth) / fastest,
+                   (tolerances_.corner_tie - (largest_gap - least_gap)) / (2.0 * fastest)});
 }
 
 }  // namespace keyblock::contact

@@ -1,0 +1,116 @@
+// Lines that part no corners, as third blocks are in the way.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/detection.h"
+#include "core/index.h"
+
+namespace keyblock::contact {
+
+/// Calls with every edge of a third block that the vertex is near to: near enough for it to be a candidate, whenever the block was looked
+/// at. Or that it presses on.
+template <typename Call>
+void Detection::for_third_edges(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
+                                const Call& call) const {
+  for (const int p : candidates.pairs_of(block)) {
+    const BlockPair& other = candidates.block_pairs[at(p)];
+    if (other.first == pair.first) continue;
+    const double near =
+        tolerances_.activation + motion_.reach[at(other.block_a)] + motion_.reach[at(other.block_b)];
+    const auto begin = candidates.pairs.begin() + other.first,
+               end = candidates.pairs.begin() + static_cast<std::ptrdiff_t>(candidates.end_of_pair(at(p)));
+    auto c = std::partition_point(begin, end, [&](const Candidate& known) { return known.vertex < vertex; });
+    for (; c != end && c->vertex == vertex; ++c) {
+      const Corner& edge = corners_[at(c->edge)];
+      const Vec2 from_start = corners_[at(vertex)].position - edge.position;
+      const double along = std::clamp(dot(edge.tangent, from_start), 0.0, edge.length);
+      const auto presses = [&] {
+        const auto candidate = static_cast<std::size_t>(c - candidates.pairs.begin());
+        const int memory = CandidateList::Finder(candidates, static_cast<int>(candidate))(candidate);
+        return memory >= 0 && candidates.memory[at(memory)].holds();
+      };
+      if (norm(from_start - along * edge.tangent) <= near || presses()) call(c->edge);
+    }
+  }
+}
+
+/// Where the surface goes on at a corner one of whose edges, that beginning there or that ending there, lies against an edge of another
+/// block: along that, or around its end. Zero: the edge is open to the corner.
+Vec2 Detection::beyond_joint(const Surface& surface, int corner, bool begins, int edge) const {
+  const Corner &here = corners_[at(corner)], &other = corners_[at(edge)];
+  const Vec2 along = begins ? here.tangent : here.before, from_start = here.position - other.position;
+  if (dot(along, other.tangent) > 0.0 || std::abs(cross(along, other.tangent)) > Tolerances::sine_facing)
+    return {};
+  const double gap = dot(other.normal(), from_start), from_end = dot(other.tangent, from_start),
+               beyond = begins ? other.length - from_end : from_end;
+  const bool touches = gap <= tolerances_.corner_depth && gap >= -tolerances_.depth_limit,
+             reaches = beyond >= -tolerances_.corner_depth && beyond < other.length;
+  if (!touches || !reaches) return {};
+  if (beyond > tolerances_.corner_depth) return (begins ? 1.0 : -1.0) * other.tangent;
+  return begins ? corners_[at(surface.next[at(edge)])].tangent : -1.0 * other.before;
+}
+
+Detection::Third Detection::third(const Surface& surface, const BlockPair& pair, const Rival& rival,
+                                  const CandidateList& candidates) const {
+  const Candidate& c = candidates.pairs[at(rival.candidate)];
+  const bool begins = rival.first_half;
+  const int end = begins ? c.edge : surface.next[at(c.edge)];
+  const Vec2 normal = corners_[at(c.edge)].normal();
+  Third found;
+  const auto look_at = [&](int edge) {
+    if (squared_norm(beyond_joint(surface, end, begins, edge)) > 0.0) found.in_the_way = closed;
+    const Vec2 beyond = beyond_joint(surface, end, !begins, edge);
+    const bool is_in_front = dot(normal, beyond) > Tolerances::sine_inside;
+    found.is_in_front = found.is_in_front || is_in_front;
+    found.is_beside = found.is_beside || squared_norm(beyond) > 0.0;
+    for (const bool side : {true, false}) {
+      if (dot(normal, beyond_joint(surface, c.vertex, side, edge)) >= -Tolerances::sine_inside) continue;
+      const double into = is_in_front ? std::abs(dot(normal, corners_[at(edge)].normal())) : closed;
+      found.in_the_way = std::max(found.in_the_way, into);
+    }
+  };
+  for_third_edges(candidates, pair, c.vertex, c.block_a, look_at);
+  for_third_edges(candidates, pair, end, c.block_b, look_at);
+  return found;
+}
+
+/// Whether a vertex that is beyond the end of an edge, or nearer to another, has no contact with it: not where a third block covers the one
+/// that follows, so that a joint lets it in there, and no way leads out.
+bool Detection::is_out(const Surface& surface, const BlockPair& pair, const Rival& rival,
+                       const CandidateList& candidates) const {
+  const Third found = third(surface, pair, rival, candidates);
+  if (rival.is_beyond) return !found.is_in_front;
+  const std::size_t edge = at(candidates.pairs[at(rival.candidate)].edge);
+  return !found.is_beside ||
+         has_come_in_elsewhere(surface, rival, candidates,
+                               rival.first_half ? surface.previous[edge] : surface.next[edge]);
+}
+
+/// As compete(), but for lines that third blocks are in the way of more than of others.
+Detection::Outcome Detection::compete_in_joints(const Surface& surface, const BlockPair& pair,
+                                                std::span<Rival* const> all,
+                                                const CandidateList& candidates) const {
+  Outcome outcome = compete(surface, all, candidates);
+  if (outcome.parallel || outcome.winner == nullptr) return outcome;
+  if (!(third(surface, pair, *outcome.winner, candidates).in_the_way > 0.0)) return outcome;
+  std::array<Third, 4> thirds{};
+  double least = closed;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    thirds[i] = third(surface, pair, *all[i], candidates);
+    least = std::min(least, thirds[i].in_the_way);
+  }
+  std::array<Rival*, 4> open{};
+  std::size_t count = 0;
+  Rival* in_nook = nullptr;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (thirds[i].in_the_way > least + Tolerances::sine_inside) continue;
+    open[count++] = all[i];
+    if (thirds[i].is_in_front) in_nook = all[i];
+  }
+  if (count < all.size()) outcome = compete(surface, std::span<Rival* const>(open).first(count), candidates);
+  if (outcome.winner == nullptr) outcome.winner = in_nook;
+  outcome.left_out = true;
+  return outcome;
+}
+
+}  // namespace keyblock::contact

@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "overlap/overlap.h"
+#include "scene.h"
+#include "simulation/damage.h"
+
+namespace keyblock::simulation {
+namespace {
+
+/// A wedge that strikes two or more blocks at their joint.
+struct Strike {
+  double young = 1e9;      // Pa
+  double stiffness = 0.0;  // Pa/m, of joints; 0: by the solver's penalty
+  double step = 0.0005;    // s
+  double speed = 8.0;      // m/s
+  double opening = 50.0;   // degrees, of the wedge
+  double leaning = 90.0;   // degrees, of its bisector
+  double way = 90.0;       // degrees, that it comes from
+  Vec2 aim{};              // of its tip
+};
+
+/// Adds the wedge, block b, with its tip 30 mm off.
+void add_wedge(Scene& scene, const Strike& strike) {
+  const auto direction = [](double angle) {
+    return Vec2{std::cos(angle * degree), std::sin(angle * degree)};
+  };
+  const Vec2 tip = strike.aim + 0.03 * direction(strike.way);
+  const int wedge = scene.add({tip, tip + 0.8 * direction(strike.leaning - 0.5 * strike.opening),
+                               tip + 0.8 * direction(strike.leaning + 0.5 * strike.opening)});
+  scene.setup.properties[static_cast<std::size_t>(wedge)].velocity = -strike.speed * direction(strike.way);
+  scene.setup.joints.standard.normal_stiffness = strike.stiffness;
+}
+
+/// m, the largest there is in 0.15 s.
+double largest_overlap_of(const Scene& scene, double dt) {
+  Simulator s(scene);
+  double largest = 0.0;
+  for (int k = 0; k < 30; ++k) {
+    s.run(0.005, dt);
+    std::vector<Polygon> blocks;
+    for (std::size_t b = 0; b < s.model.blocks.size(); ++b) blocks.push_back(deformed_polygon(s.model, b));
+    largest = std::max(largest, overlap::largest_overlap(blocks).depth);
+  }
+  return largest;
+}
+
+/// Onto the joint between two flush blocks.
+double overlap_at_flush_joint(const Strike& strike) {
+  Scene scene(strike.young, 30.0);
+  scene.rectangle({-3.0, -1.0}, 3.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, -1.0}, 3.0, 1.0, 0.0, true);
+  add_wedge(scene, strike);
+  return largest_overlap_of(scene, strike.step);
+}
+
+/// Into the corner between a floor and a wall that stands on it.
+double overlap_at_wall(const Strike& strike) {
+  Scene scene(strike.young, 30.0);
+  scene.rectangle({-2.0, -1.0}, 6.0, 1.0, 0.0, true);
+  scene.rectangle({-2.0, 0.0}, 2.0, 4.0, 0.0, true);
+  add_wedge(scene, strike);
+  return largest_overlap_of(scene, strike.step);
+}
+
+// What a tip is pressed into the faces beside a closed joint made it go along the sides within the joint: up to 0.7 m deep.
+TEST(ClosedJoint, KeepsOutTipsThatStrikeIt) {
+  for (const double young : {1e9, 3e9, 3e10}) {
+    for (const double step : {0.002, 0.0005, 0.0002}) {
+      for (const double leaning : {70.0, 90.0, 110.0}) {
+        for (const double beside : {-0.0035, -0.0005, 0.001, 0.002}) {
+          const double depth = overlap_at_flush_joint(
+              {.young = young, .step = step, .leaning = leaning, .aim = {beside, 0.0}});
+          EXPECT_LT(depth, 0.005) << young << " " << step << " " << leaning << " " << beside;
+        }
+      }
+    }
+  }
+}
+
+TEST(ClosedJoint, KeepsOutTipsThatRunIntoACorner) {
+  for (const double young : {1e9, 3e9, 3e10}) {
+    for (const double step : {0.002, 0.0005, 0.0002}) {
+      for (const double leaning : {26.0, 30.0, 45.0, 60.0}) {
+        for (const double aside : {-0.002, 0.0, 0.002}) {
+          const double depth = overlap_at_wall({.young = young,
+                                                .step = step,
+                                                .speed = 5.0,
+                                                .leaning = leaning,
+                                                .way = leaning,
+                                                .aim = {0.0, aside}});
+          EXPECT_LT(depth, 0.005) << young << " " << step << " " << leaning << " " << aside;
+        }
+      }
+    }
+  }
+}
+
+// Tips pressed in deeper than the zone in which corners compete are beyond the end of the wall, and nearer to the sides within the joint.
+TEST(ClosedJoint, KeepsOutTipsThatSoftJointsLetIn) {
+  for (const double step : {0.002, 0.0005, 0.0002}) {
+    for (const double speed : {2.0, 4.0}) {
+      for (const double leaning : {60.0, 90.0, 100.0}) {
+        for (const double beside : {-0.002, 0.0005}) {
+          const double depth = overlap_at_flush_joint({.young = 3e9,
+                                                       .stiffness = 1e10,
+                                                       .step = step,
+                                                       .speed = speed,
+                                                       .leaning = leaning,
+                                                       .way = 80.0,
+                                                       .aim = {beside, 0.0}});
+          EXPECT_LT(depth, 0.01) << step << " " << speed << " " << leaning << " " << beside;
+        }
+      }
+      for (const double leaning : {30.0, 45.0, 60.0}) {
+        const double depth = overlap_at_wall({.young = 3e9,
+                                              .stiffness = 1e10,
+                                              .step = step,
+                                              .speed = speed,
+                                              .leaning = leaning,
+                                              .way = leaning});
+        EXPECT_LT(depth, 0.01) << step << " " << speed << " " << leaning;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
