@@ -35,7 +35,8 @@ void Detection::for_third_edges(const CandidateList& candidates, const BlockPair
 }
 
 /// Where the surface goes on at a corner one of whose edges, that beginning there or that ending there, lies against an edge of another
-/// block: along that, or around its end. Zero: the edge is open to the corner.
+/// block: along that, or around its end. A joint that is open by less than the zone in which corners compete has no room for a tip. Zero:
+/// the edge is open to the corner.
 Vec2 Detection::beyond_joint(const Surface& surface, int corner, bool begins, int edge) const {
   const Corner &here = corners_[at(corner)], &other = corners_[at(edge)];
   const Vec2 along = begins ? here.tangent : here.before, from_start = here.position - other.position;
@@ -43,7 +44,7 @@ Vec2 Detection::beyond_joint(const Surface& surface, int corner, bool begins, in
     return {};
   const double gap = dot(other.normal(), from_start), from_end = dot(other.tangent, from_start),
                beyond = begins ? other.length - from_end : from_end;
-  const bool touches = gap <= tolerances_.corner_depth && gap >= -tolerances_.depth_limit,
+  const bool touches = gap <= tolerances_.end_zone && gap >= -tolerances_.depth_limit,
              reaches = beyond >= -tolerances_.corner_depth && beyond < other.length;
   if (!touches || !reaches) return {};
   if (beyond > tolerances_.corner_depth) return (begins ? 1.0 : -1.0) * other.tangent;

@@ -48,10 +48,10 @@ double largest_overlap_of(const Scene& scene, double dt) {
   return largest;
 }
 
-/// Onto the joint between two flush blocks.
-double overlap_at_flush_joint(const Strike& strike) {
+/// Onto the joint between two flush blocks, open by so much, m.
+double overlap_at_flush_joint(const Strike& strike, double open = 0.0) {
   Scene scene(strike.young, 30.0);
-  scene.rectangle({-3.0, -1.0}, 3.0, 1.0, 0.0, true);
+  scene.rectangle({-3.0 - open, -1.0}, 3.0, 1.0, 0.0, true);
   scene.rectangle({0.0, -1.0}, 3.0, 1.0, 0.0, true);
   add_wedge(scene, strike);
   return largest_overlap_of(scene, strike.step);
@@ -75,6 +75,29 @@ TEST(ClosedJoint, KeepsOutTipsThatStrikeIt) {
           const double depth = overlap_at_flush_joint(
               {.young = young, .step = step, .leaning = leaning, .aim = {beside, 0.0}});
           EXPECT_LT(depth, 0.005) << young << " " << step << " " << leaning << " " << beside;
+        }
+      }
+    }
+  }
+}
+
+// A joint that is open by less than the zone in which corners compete has no room for a tip either.
+TEST(ClosedJoint, KeepsOutTipsWhereItIsALittleOpen) {
+  for (const double open : {0.0005, 0.001, 0.002}) {
+    for (const double stiffness : {0.0, 1e10}) {
+      for (const double step : {0.002, 0.0005, 0.0002}) {
+        for (const double leaning : {60.0, 70.0, 90.0, 110.0, 120.0}) {
+          for (const double beside : {-0.0035, -0.002, -0.0005, 0.001, 0.002}) {
+            const double depth = overlap_at_flush_joint({.young = 3e9,
+                                                         .stiffness = stiffness,
+                                                         .step = step,
+                                                         .speed = 4.0,
+                                                         .leaning = leaning,
+                                                         .aim = {beside, 0.0}},
+                                                        open);
+            EXPECT_LT(depth, 0.01) << open << " " << stiffness << " " << step << " " << leaning << " "
+                                   << beside;
+          }
         }
       }
     }
