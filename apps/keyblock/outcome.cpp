@@ -84,9 +84,10 @@ std::vector<std::string> warnings(const RunRecord& run) {
   }
   const simulation::OverlapRecord& overlap = run.max_overlap;
   if (overlap.depth >= largest_overlap && overlap.block_a >= 0) {
-    texts.push_back(fmt::format(
-        "blocks {} and {} overlap by {:.1f} mm at {:.2f} s, in stage \"{}\": a smaller time step may help",
-        overlap.block_a, overlap.block_b, 1000.0 * overlap.depth, overlap.time, overlap.stage));
+    texts.push_back(
+        fmt::format("blocks {} and {} overlap by {:.1f} mm at {:.2f} s, in stage \"{}\": a smaller time "
+                    "step, or stiffer joints, may help",
+                    overlap.block_a, overlap.block_b, 1000.0 * overlap.depth, overlap.time, overlap.stage));
   }
   return texts;
 }

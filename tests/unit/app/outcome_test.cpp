@@ -59,7 +59,7 @@ TEST(OutcomeText, SaysWhatToBeWaryOf) {
   EXPECT_THAT(
       outcome_text(run, 9),
       HasSubstr("note: blocks 347 and 552 overlap by 6.9 mm at 1.00 s, in stage \"first earthquake\": "
-                "a smaller time step may help\n"));
+                "a smaller time step, or stiffer joints, may help\n"));
   run.stages[0].moving = {{17, 0.25}};
   EXPECT_THAT(outcome_text(run, 9),
               HasSubstr("note: stage \"in situ\": 1 block keeps moving (share of the weight that is "
