@@ -173,6 +173,35 @@ void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic)
              .at_most = block::highest_order});
 }
 
+void read_contact_method(TableReader& t, dynamics::SolverOptions& solver) {
+  t.word(
+      "contact", solver.contact, contact_methods,
+      {.meaning = "How contacts keep blocks apart: springs that are penetrated a little, or multipliers that "
+                  "leave no penetration and no drift of contacts that hold."});
+  t.integer(
+      "face_contacts", solver.face_contacts,
+      {.meaning =
+           "Contacts along a face that blocks share, at the least: 2 are at its ends. With 3, another in its "
+           "middle, joints between blocks of order 1 have their bending stiffness and strength, too; blocks "
+           "of order n have n + 1 in any case.",
+       .at_least = 2.0,
+       .at_most = 25.0});
+  t.number(
+      "penalty", solver.penalty,
+      {.meaning = "Normal stiffness of joints that give none, as a multiple of Young's modulus of the softer "
+                  "block, per metre.",
+       .unit = "1/m",
+       .above = 0.0});
+  const bool multipliers = t.documenting() || solver.contact == dynamics::ContactMethod::augmented_lagrangian;
+  constexpr std::string_view with_multipliers = "contact = \"augmented-lagrangian\"";
+  t.number("penetration_tolerance", solver.penetration_tolerance,
+           only(multipliers, with_multipliers,
+                {.meaning = "Largest penetration and drift, over the block size.", .above = 0.0}));
+  t.integer("max_multiplier_updates", solver.max_multiplier_updates,
+            only(multipliers, with_multipliers,
+                 {.meaning = "How often multipliers are updated in a step at most.", .at_least = 1.0}));
+}
+
 void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
   t.word("integrator", solver.integrator, integrators, {.meaning = "Rule of time integration."});
   const auto rule_is = [&](dynamics::TimeIntegration rule) {
@@ -223,33 +252,7 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
            {.meaning = "The error they are then brought below.", .above = 0.0});
   t.integer("max_bound_updates", solver.max_bound_updates,
             {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
-  t.word(
-      "contact", solver.contact, contact_methods,
-      {.meaning = "How contacts keep blocks apart: springs that are penetrated a little, or multipliers that "
-                  "leave no penetration and no drift of contacts that hold."});
-  t.integer(
-      "face_contacts", solver.face_contacts,
-      {.meaning =
-           "Contacts along a face that blocks share, at the least: 2 are at its ends. With 3, another in its "
-           "middle, joints between blocks of order 1 have their bending stiffness and strength, too; blocks "
-           "of "
-           "order n have n + 1 in any case.",
-       .at_least = 2.0,
-       .at_most = 25.0});
-  t.number(
-      "penalty", solver.penalty,
-      {.meaning = "Normal stiffness of joints that give none, as a multiple of Young's modulus of the softer "
-                  "block, per metre.",
-       .unit = "1/m",
-       .above = 0.0});
-  const bool multipliers = t.documenting() || solver.contact == dynamics::ContactMethod::augmented_lagrangian;
-  constexpr std::string_view with_multipliers = "contact = \"augmented-lagrangian\"";
-  t.number("penetration_tolerance", solver.penetration_tolerance,
-           only(multipliers, with_multipliers,
-                {.meaning = "Largest penetration and drift, over the block size.", .above = 0.0}));
-  t.integer("max_multiplier_updates", solver.max_multiplier_updates,
-            only(multipliers, with_multipliers,
-                 {.meaning = "How often multipliers are updated in a step at most.", .at_least = 1.0}));
+  read_contact_method(t, solver);
   t.word("linear", solver.linear, linear_solvers,
          {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "
                      "conjugate gradients, "
