@@ -41,7 +41,11 @@ void find_block_pairs(std::span<const std::uint8_t> dirty, CandidateList& list) 
     pair.block_b = b;
     list.block_pairs.push_back(pair);
   }
-  list.first_of_block.assign(dirty.size() + 1, 0);
+}
+
+/// The pairs of each of so many blocks.
+void index_block_pairs(std::size_t blocks, CandidateList& list) {
+  list.first_of_block.assign(blocks + 1, 0);
   for (const BlockPair& pair : list.block_pairs) {
     ++list.first_of_block[at(pair.block_a) + 1];
     ++list.first_of_block[at(pair.block_b) + 1];
@@ -106,6 +110,7 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
   }
   if (changed || list.block_pairs.empty()) {
     find_block_pairs(dirty, list);
+    index_block_pairs(blocks, list);
   } else if (any) {
     for (BlockPair& pair : list.block_pairs) {
       if (dirty[at(pair.block_a)] != 0 || dirty[at(pair.block_b)] != 0) pair.steady = -1.0;

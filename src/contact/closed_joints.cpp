@@ -110,7 +110,7 @@ Detection::Outcome Detection::compete_in_joints(const Surface& surface, const Bl
   }
   if (count < all.size()) outcome = compete(surface, std::span<Rival* const>(open).first(count), candidates);
   if (outcome.winner == nullptr) outcome.winner = in_nook;
-  outcome.left_out = true;
+  outcome.left_out = count < all.size();
   return outcome;
 }
 

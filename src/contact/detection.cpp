@@ -57,10 +57,10 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const auto reflex_end = kinds >= 4.0, nook_end = kinds >= 8.0;
   const Lanes at_start = kinds - where(nook_end, broadcast(8.0), where(reflex_end, broadcast(4.0), Lanes{}));
   const auto reflex_start = at_start >= 1.0, nook_start = at_start >= 2.0;
-  const auto holds = load(group.holds.data()) > 0.0;
-  const Lanes pressed_zone = largest(zone, deepest);
-  const Lanes before = where(holds, pressed_zone, where(nook_start, deep_zone, zone)),
-              after = where(holds, pressed_zone, where(nook_end, deep_zone, zone));
+  const Lanes past_start = where(nook_start, deep_zone, zone), past_end = where(nook_end, deep_zone, zone);
+  const auto presses = load(group.presses.data()) > 0.0;
+  const Lanes pressed_zone = largest(zone, deepest), before = where(presses, pressed_zone, past_start),
+              after = where(presses, pressed_zone, past_end);
   // The corner of a block that spins may pass the one that is nearest now.
   const Lanes straight = broadcast(Tolerances::sine_inside);
   const Lanes sine = where(gap > 0.0, least(broadcast(1.0), straight + load(group.turn.data())), straight);
@@ -76,8 +76,7 @@ std::size_t Detection::pass(const CandidateList& candidates, const Group& group,
   const auto first_half = along < 0.5 * length;
   const auto disputed =
       (least(along, length - along) < zone) & ~((first_half & reflex_start) | (~first_half & reflex_end));
-  const auto is_beyond =
-      (along < -where(nook_start, deep_zone, zone)) | (along > length + where(nook_end, deep_zone, zone));
+  const auto is_beyond = (along < -past_start) | (along > length + past_end);
   std::size_t count = 0;
   for (std::size_t i = 0; i < group.size; ++i) {
     passed[count].candidate = group.candidate[i];
@@ -106,6 +105,7 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
     count += pass(candidates, group, &rivals[count]);
     group.size = 0;
   };
+  const Memory nothing;
   for (const std::size_t p : pairs) {
     const BlockPair& pair = candidates.block_pairs[p];
     const std::size_t begin = at(pair.first), end = candidates.end_of_pair(p), a = at(pair.block_a),
@@ -121,10 +121,10 @@ void Detection::find_rivals(const Surface& surface, const CandidateList& candida
       group.reach[i] = reach;
       group.turn[i] = turn;
       const int memory = held_by(k);
-      const bool holds = memory >= 0 && candidates.memory[at(memory)].holds();
-      group.deepest[i] = holds ? thickness : deepest;
-      group.holds[i] = memory >= 0 && candidates.memory[at(memory)].normal_force > 0.0 ? 1.0 : 0.0;
-      group.bonded[i] = memory >= 0 && candidates.memory[at(memory)].bonded ? 1.0 : 0.0;
+      const Memory& before = memory >= 0 ? candidates.memory[at(memory)] : nothing;
+      group.deepest[i] = before.holds() ? thickness : deepest;
+      group.presses[i] = before.normal_force > 0.0 ? 1.0 : 0.0;
+      group.bonded[i] = before.bonded ? 1.0 : 0.0;
       group.size += away < candidates.pairs[k].clearance ? 0 : 1;
       if (group.size == lane_count) take();
     }

@@ -208,8 +208,8 @@ class Detection {
     std::size_t size = 0;
     std::array<int, lane_count> candidate{}, pair{};
     std::array<double, lane_count> reach{}, turn{};
-    std::array<double, lane_count> deepest{};          ///< m, depth up to which they may be in contact
-    std::array<double, lane_count> bonded{}, holds{};  ///< 1 or 0
+    std::array<double, lane_count> deepest{};            ///< m, depth up to which they may be in contact
+    std::array<double, lane_count> bonded{}, presses{};  ///< 1 or 0
   };
   std::size_t pass(const CandidateList& candidates, const Group& group, Rival* passed) const;
   /// Whether lines cannot count as one.

@@ -119,7 +119,8 @@ Detection::Beyond Detection::beyond_end(const Surface& surface, const Candidate&
                            const Beside<double>& this_edge) {
     const double ahead = dot(u, line.tangent), across = cross(u, line.tangent);
     if (ahead > 0.0 || std::abs(across) > Tolerances::sine_facing) return 0.0;
-    return shared(along + ahead * length_of_other, shared.stretch(across), other, this_edge);
+    const double to = along + ahead * length_of_other, long_beside = shared.stretch(across);
+    return wholes_.empty() ? 0.5 * shared.common(to, long_beside) : shared(to, long_beside, other, this_edge);
   };
   const double length = of_edge(vertex.tangent, vertex.length, look_at(next), at_end(here)) +
                         of_edge(vertex.before, -corners_[before].length, at_end(look_at(before)), here);

@@ -1,7 +1,8 @@
 #pragma once
 #include "core/lanes.h"
 
-// How much of what two edges that face each other have in common belongs to the contact of a vertex (docs/decisions/0012-length-of-joints.md).
+// How much of what two edges that face each other have in common belongs to the contact of a vertex
+// (docs/decisions/0012-length-of-joints.md).
 namespace keyblock::contact {
 
 /// An edge beside a line, as SharedLength sees it. Of lanes, or of one number each.
