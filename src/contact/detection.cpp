@@ -19,15 +19,31 @@ void Detection::measure_corners(const Surface& surface, ThreadTeam& team) {
   corners_.resize(surface.position.size());
   wholes_.resize(surface.divided.size());
   team.for_range(corners_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin; first < end; first += lane_count) {
+      const std::size_t count = std::min(end - first, std::size_t{lane_count});
+      std::array<Vec2, lane_count> along;
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        const std::size_t e = first + (i < count ? i : 0);
+        along[i] = surface.position[at(surface.next[e])] - surface.position[e];
+      }
+      const Lanes x = each_lane([&](std::size_t i) { return along[i].x; }),
+                  y = each_lane([&](std::size_t i) { return along[i].y; }),
+                  length = square_root(x * x + y * y), tx = x / length, ty = y / length;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t e = first + i, next = at(surface.next[e]);
+        Corner &corner = corners_[e], &after = corners_[next];
+        corner.position = surface.position[e];
+        corner.length = length[i];
+        // One by one: two numbers that are stored singly cannot be loaded as one vector at once.
+        corner.tangent.x = after.before.x = tx[i];
+        corner.tangent.y = after.before.y = ty[i];
+        corner.kinds = static_cast<double>(surface.kind[e]) + 4.0 * static_cast<double>(surface.kind[next]);
+      }
+    }
+  });
+  if (wholes_.empty()) return;
+  team.for_range(wholes_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      const std::size_t next = at(surface.next[e]);
-      const Vec2 along = surface.position[next] - surface.position[e];
-      Corner& corner = corners_[e];
-      corner.position = surface.position[e];
-      corner.length = norm(along);
-      corner.tangent = corners_[next].before = along / corner.length;
-      corner.kinds = static_cast<double>(surface.kind[e]) + 4.0 * static_cast<double>(surface.kind[next]);
-      if (wholes_.empty()) continue;
       const DividedEdge& whole = surface.divided[e];
       wholes_[e] = {surface.position[at(whole.first)],
                     surface.position[at(surface.next[at(whole.first + whole.pieces - 1)])],
@@ -222,16 +238,25 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
   }
   std::vector<Rival> rivals;
   find_rivals(surface, candidates, unsteady, rivals);
-  found.clear();
+  std::size_t count = 0;
+  const auto add = [&](std::size_t more) {
+    if (count + more > found.size()) found.resize(std::max(count + more, 2 * found.size()));
+    Found* begin = found.data() + count;
+    count += more;
+    return begin;
+  };
   CandidateList::Finder memory_of(candidates, candidates.block_pairs[first].first);
   auto r = rivals.begin();
   auto next_unsteady = unsteady.begin();
   for (std::size_t p = first; p < last; ++p) {
     BlockPair& pair = candidates.block_pairs[p];
     if (next_unsteady == unsteady.end() || *next_unsteady != p) {
-      for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1) {
-        const int k = std::countr_zero(left), candidate = pair.first + k;
-        found.push_back({candidate, memory_of(at(candidate)), (pair.at_end >> k & 1) != 0});
+      Found* next = add(static_cast<std::size_t>(std::popcount(pair.contacts)));
+      for (std::uint64_t left = pair.contacts; left != 0; left &= left - 1, ++next) {
+        const int k = std::countr_zero(left);
+        next->candidate = pair.first + k;
+        next->memory = memory_of(at(next->candidate));
+        next->at_end = (pair.at_end >> k & 1) != 0;
       }
       continue;
     }
@@ -239,9 +264,10 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
     const auto next = std::find_if(r, rivals.end(), [&](const Rival& other) { return at(other.pair) != p; });
     decide(surface, candidates, pair, candidates.end_of_pair(p), {r, next});
     for (; r != next; ++r) {
-      if (r->candidate >= 0) found.push_back({r->candidate, r->memory, r->disputed});
+      if (r->candidate >= 0) *add(1) = {r->candidate, r->memory, r->disputed};
     }
   }
+  found.resize(count);
 }
 
 /// Piece by piece of the pairs of blocks, so that the order of what is found is the same whoever finds it.

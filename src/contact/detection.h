@@ -241,6 +241,8 @@ class Detection {
   }
   void describe(const Surface& surface, const CandidateList& candidates, std::span<const Found> found,
                 std::span<Contact> contacts) const;
+  void describe_some(const Surface& surface, const CandidateList& candidates, std::span<const Found> found,
+                     std::span<Contact> contacts) const;
   /// What is computed of as many contacts as there are lanes at once.
   struct Geometry {
     Lanes gap, position, length;  ///< as of Contact
@@ -260,7 +262,16 @@ class Detection {
   [[nodiscard]] Beyond beyond_end(const Surface& surface, const Candidate& candidate, double position) const;
   static void bend(const Surface& surface, Contact& contact);
   static JointLaw law_over_corner(JointLaw law, const JointLaw& beyond, double share, double penalty);
-  void give_law(const Surface& surface, Contact& contact, double least_length, const Beyond& beyond) const;
+  /// What the springs of a contact have of its joint.
+  struct SpringLaw {
+    double per_length;  ///< Pa/m, normal stiffness
+    double stiffness_ratio, friction;
+    double cohesion, tension;  ///< Pa, of a bond
+    bool fused;
+  };
+  void find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
+                SpringLaw& of_contact) const;
+  void identify(const Found& found, const Candidate& candidate, Contact& contact) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;

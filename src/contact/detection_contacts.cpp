@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "contact/contact_lanes.h"
 #include "contact/detection.h"
 #include "contact/edge_curve.h"
 #include "contact/shared_length.h"
@@ -15,18 +16,18 @@ namespace {
 /// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
 /// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
 /// comes back from there when the joint gets shorter again. What it has no room for is lost by a spring that gets softer.
-void keep_energy(Memory& memory, double gap, double stiffness) {
-  const double depth = -gap - memory.offset;
-  if (memory.multiplier > 0.0) {  // a force that belongs to no penetration stays
-    memory.multiplier *= memory.stiffness / stiffness;
-    memory.shear *= memory.stiffness / stiffness;
-  } else if (memory.stiffness > 0.0 && stiffness != memory.stiffness && depth > 0.0) {
-    const double scale = std::sqrt(memory.stiffness / stiffness), wanted = scale * depth;
-    memory.offset = std::max(-gap - wanted, std::min(memory.offset, 0.0));
-    memory.shear *= scale;
-    const double now = -gap - memory.offset;
-    if (now < wanted) memory.stored -= 0.5 * stiffness * (wanted * wanted - now * now);
-  }
+void keep_energy(MemoryLanes& memory, Lanes gap, Lanes stiffness) {
+  const Lanes zero{}, depth = -gap - memory.offset, ratio = memory.stiffness / stiffness;
+  const auto pushes = memory.multiplier > 0.0;  // a force that belongs to no penetration stays
+  const auto is_other = (stiffness < memory.stiffness) | (stiffness > memory.stiffness),
+             changes = ~pushes & (memory.stiffness > 0.0) & is_other & (depth > 0.0);
+  const Lanes scale = square_root(ratio), wanted = scale * depth,
+              offset = largest(-gap - wanted, least(memory.offset, zero)), now = -gap - offset;
+  memory.stored = where(changes & (now < wanted),
+                        memory.stored - 0.5 * stiffness * (wanted * wanted - now * now), memory.stored);
+  memory.offset = where(changes, offset, memory.offset);
+  memory.multiplier = where(pushes, memory.multiplier * ratio, memory.multiplier);
+  memory.shear = where(pushes, memory.shear * ratio, where(changes, memory.shear * scale, memory.shear));
   memory.stiffness = stiffness;
 }
 
@@ -157,59 +158,96 @@ JointLaw Detection::law_over_corner(JointLaw law, const JointLaw& beyond, double
   return law;
 }
 
-void Detection::give_law(const Surface& surface, Contact& contact, double least_length,
-                         const Beyond& beyond) const {
+/// Of a contact that knows its blocks and whether it is bonded. Written in place: numbers that are stored one by one cannot be copied together
+/// at once.
+void Detection::find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
+                         SpringLaw& of_contact) const {
   const double penalty = std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
   const std::size_t joint = at(surface.joint[at(contact.edge)]);
   const bool mixed = beyond.share > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
-  const JointLaw law =
-      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : laws_[joint];
-  contact.fused = contact.memory.bonded && law.fused;
-  const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty,
-               per_length = contact.fused ? std::max(of_joint, penalty) : of_joint;
-  contact.normal_stiffness = per_length * std::max(contact.length, least_length);
-  contact.shear_stiffness = law.stiffness_ratio * contact.normal_stiffness;
-  contact.friction_coefficient = law.friction_coefficient;
-  contact.cohesion = contact.memory.bonded ? law.cohesion * contact.length : 0.0;
-  contact.tension = contact.memory.bonded ? law.tension * contact.length : 0.0;
+  const JointLaw over_corner =
+      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : JointLaw{};
+  const JointLaw& law = mixed ? over_corner : laws_[joint];
+  const bool bonded = contact.memory.bonded;
+  const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty;
+  of_contact.fused = bonded && law.fused;
+  of_contact.per_length = of_contact.fused ? std::max(of_joint, penalty) : of_joint;
+  of_contact.stiffness_ratio = law.stiffness_ratio;
+  of_contact.friction = law.friction_coefficient;
+  of_contact.cohesion = bonded ? law.cohesion : 0.0;
+  of_contact.tension = bonded ? law.tension : 0.0;
+}
+
+/// Which blocks meet where.
+void Detection::identify(const Found& found, const Candidate& candidate, Contact& contact) const {
+  contact.candidate = found.candidate;
+  contact.block_a = candidate.block_a;
+  contact.block_b = candidate.block_b;
+  contact.vertex = candidate.vertex;
+  contact.edge = candidate.edge;
+  contact.normal = corners_[at(candidate.edge)].normal();
+}
+
+/// As many as there are lanes, or fewer.
+void Detection::describe_some(const Surface& surface, const CandidateList& candidates,
+                              std::span<const Found> found, std::span<Contact> contacts) const {
+  static constexpr Memory nothing;
+  const auto before = [&](const Found& f) -> const Memory& {
+    return f.memory < 0 ? nothing : candidates.memory[at(f.memory)];
+  };
+  const Geometry geometry = wholes_.empty() ? measure<false>(surface, candidates, found)
+                                            : measure<true>(surface, candidates, found);
+  std::array<SpringLaw, lane_count> laws;
+  LawLanes law{};
+  law.gap = geometry.gap;
+  law.length = geometry.length;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Candidate& candidate = candidates.pairs[at(found[i].candidate)];
+    Contact& contact = contacts[i];
+    identify(found[i], candidate, contact);
+    contact.position = geometry.position[i];
+    if (is_curved(surface, contact.edge)) {
+      contact.gap = geometry.gap[i];
+      bend(surface, contact);
+      law.gap[i] = contact.gap;
+    }
+    Beyond beyond = found[i].at_end ? beyond_end(surface, candidate, contact.position) : Beyond{};
+    if (beyond.length > 0.0) {
+      law.length[i] += beyond.length;
+      beyond.share = beyond.length / law.length[i];
+    }
+    const Memory& memory = before(found[i]);
+    contact.memory.state = memory.state;
+    contact.memory.bonded = memory.bonded;
+    contact.memory.bond_length = memory.bond_length;
+    if (memory.bonded) law.length[i] = memory.bond_length;
+    find_law(surface, contact, beyond, laws[i]);
+    contact.fused = laws[i].fused;
+  }
+  const std::span<const SpringLaw> of_joints = std::span(laws).first(contacts.size());
+  const auto of_joint = [&](double SpringLaw::*number) {
+    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.*number; });
+  };
+  law.normal_stiffness = of_joint(&SpringLaw::per_length) * largest(law.length, geometry.least_length);
+  law.shear_stiffness = of_joint(&SpringLaw::stiffness_ratio) * law.normal_stiffness;
+  law.friction = of_joint(&SpringLaw::friction);
+  law.cohesion = of_joint(&SpringLaw::cohesion) * law.length;
+  law.tension = of_joint(&SpringLaw::tension) * law.length;
+  MemoryLanes memory = components_of<MemoryLanes>(found, [&](const Found& f) { return &before(f).offset; });
+  const auto is_new = lanes_where(found, [](const Found& f) { return f.memory < 0; });
+  const Lanes zero{}, born = largest(zero, -law.gap);
+  memory.offset = where(is_new, born, where(memory.offset > 0.0, least(memory.offset, born), memory.offset));
+  keep_energy(memory, law.gap, law.normal_stiffness);
+  law.depth = -law.gap - memory.offset + memory.multiplier;
+  keep(law, contacts);
+  keep(memory, contacts);
 }
 
 void Detection::describe(const Surface& surface, const CandidateList& candidates,
                          std::span<const Found> found, std::span<Contact> contacts) const {
   for (std::size_t begin = 0; begin < found.size(); begin += lane_count) {
     const std::size_t count = std::min(found.size() - begin, std::size_t{lane_count});
-    const std::span<const Found> some = found.subspan(begin, count);
-    const Geometry geometry = wholes_.empty() ? measure<false>(surface, candidates, some)
-                                              : measure<true>(surface, candidates, some);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Found& f = found[begin + i];
-      const Candidate& candidate = candidates.pairs[at(f.candidate)];
-      Contact& contact = contacts[begin + i];
-      contact.candidate = f.candidate;
-      contact.block_a = candidate.block_a;
-      contact.block_b = candidate.block_b;
-      contact.vertex = candidate.vertex;
-      contact.edge = candidate.edge;
-      contact.normal = corners_[at(candidate.edge)].normal();
-      contact.position = geometry.position[i];
-      contact.gap = geometry.gap[i];
-      if (is_curved(surface, contact.edge)) bend(surface, contact);
-      Beyond beyond = f.at_end ? beyond_end(surface, candidate, contact.position) : Beyond{};
-      contact.length = geometry.length[i] + beyond.length;
-      if (beyond.length > 0.0) beyond.share = beyond.length / contact.length;
-      Memory& memory = contact.memory;
-      if (f.memory < 0) {
-        memory = {};
-        memory.offset = std::max(0.0, -contact.gap);
-      } else {
-        memory = candidates.memory[at(f.memory)];
-        if (memory.offset > 0.0) memory.offset = std::min(memory.offset, std::max(0.0, -contact.gap));
-        if (memory.bonded) contact.length = memory.bond_length;
-      }
-      give_law(surface, contact, geometry.least_length[i], beyond);
-      keep_energy(memory, contact.gap, contact.normal_stiffness);
-      contact.depth = -contact.gap - memory.offset + memory.multiplier;
-    }
+    describe_some(surface, candidates, found.subspan(begin, count), contacts.subspan(begin, count));
   }
 }
 

@@ -25,6 +25,11 @@ template <typename Do>
 void in_lanes(int n, const Do& what) {
   for (int k = 0; k < n; k += lane_count) what(k, n - k < lane_count ? n - k : lane_count);
 }
+/// number(i) in lane i.
+template <typename Number>
+Lanes each_lane(const Number& number) {
+  return lanes_from(number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7));
+}
 inline Lanes broadcast(double x) {
   return lanes_from(x, x, x, x, x, x, x, x);
 }

@@ -159,6 +159,16 @@ inline LaneCondition lane_codes(const std::uint16_t* codes) {
 #endif
 }
 
+/// Likewise, back.
+inline void store_codes(std::uint16_t* codes, LaneCondition c) {
+  for (int i = 0; i < 8; ++i) codes[i] = static_cast<std::uint16_t>(c[i]);
+}
+
+/// Each number in the place of its neighbour: 1 0 3 2 …
+inline Lanes swap_neighbours(Lanes v) {
+  return {__builtin_shufflevector(v.low, v.low, 1, 0, 3, 2),
+          __builtin_shufflevector(v.high, v.high, 1, 0, 3, 2)};
+}
 /// Every second number of both, a's first.
 inline Lanes even_lanes(Lanes a, Lanes b) {
   return {__builtin_shufflevector(a.low, a.high, 0, 2, 4, 6),

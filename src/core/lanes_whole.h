@@ -56,6 +56,16 @@ inline LaneCondition lane_codes(const std::uint16_t* codes) {
       _mm512_maskz_cvtepu16_epi64(0xff, _mm_loadu_si128(reinterpret_cast<const __m128i*>(codes))));
 }
 
+/// Likewise, back.
+inline void store_codes(std::uint16_t* codes, LaneCondition c) {
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(codes),
+                   _mm512_maskz_cvtepi64_epi16(0xff, reinterpret_cast<__m512i>(c)));
+}
+
+/// Each number in the place of its neighbour: 1 0 3 2 …
+inline Lanes swap_neighbours(Lanes v) {
+  return __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
+}
 /// Every second number of both, a's first.
 inline Lanes even_lanes(Lanes a, Lanes b) {
   return __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);

@@ -56,11 +56,12 @@ class IncrementHistory {
   template <std::size_t count>
   void combine(std::array<double, count> weights, std::span<double> sum, ThreadTeam& team) const {
     team.for_range(sum.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        double x = weights[0] * increments_[0][i];
-        for (std::size_t k = 1; k < count; ++k) x += weights[k] * increments_[k][i];
-        sum[i] = x;
-      }
+      in_lanes(static_cast<int>(end - begin), [&](int first, int lanes) {
+        const std::size_t i = begin + static_cast<std::size_t>(first);
+        Lanes x = weights[0] * load_first(&increments_[0][i], lanes);
+        for (std::size_t k = 1; k < count; ++k) x += weights[k] * load_first(&increments_[k][i], lanes);
+        store_first(&sum[i], x, lanes);
+      });
     });
   }
 

@@ -22,6 +22,7 @@ struct Block {
   int unknown = -1;  ///< number among the blocks that move; −1: fixed
   bool fixed = false;
   double area = 0.0;    ///< m², of the reference polygon
+  Vec2 centroid;        ///< m, likewise
   double radius = 0.0;  ///< m, from the centroid to the farthest vertex
   Material material;
   block::Pose pose;

@@ -105,14 +105,10 @@ bool OpenClose::improve_linear(const StepProblem& problem, linalg::BlockSolver& 
 
 /// What the direction of search does to every spring.
 void OpenClose::find_direction(const StepProblem& problem) {
-  const auto& rows = problem.rows();
   problem.displace(direction_, displacement_);
-  team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const Vec2 r = rows[c].relative(displacement_);
-      springs_->dy[c] = -dot(rows[c].normal, r);
-      springs_->dw[c] = dot(rows[c].tangent(), r);
-    }
+  for_relatives(problem.rows(), [&](std::size_t c, std::size_t count, const Relatives& r) {
+    store_first(&springs_->dy[c], -r.normal, static_cast<int>(count));
+    store_first(&springs_->dw[c], r.tangent, static_cast<int>(count));
   });
 }
 
@@ -433,8 +429,13 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
     enough = options.tolerance;
   }
   if (!knows_relative_) place(problem, d);
-  result.finite = std::isfinite(sum_of<double>(team, gradient_.size(), coefficients_worth_threads,
-                                               [&](std::size_t k) { return gradient_[k]; }));
+  const auto some = [&](std::size_t group) {
+    const std::size_t k = group * lane_count;
+    return load_first(&gradient_[k],
+                      static_cast<int>(std::min<std::size_t>(lane_count, gradient_.size() - k)));
+  };
+  result.finite = std::isfinite(sum(sum_of<Lanes>(team, (gradient_.size() + lane_count - 1) / lane_count,
+                                                  coefficients_worth_threads / lane_count, some)));
   judge_factor(result);
   return result;
 }

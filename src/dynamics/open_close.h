@@ -98,6 +98,32 @@ class OpenClose {
   }
   bool minimize(const StepProblem& problem, linalg::BlockSolver& solver, const SolverOptions& options,
                 bool warm, double enough, std::span<double> d, OpenCloseResult& result);
+  /// What the two sides of some contacts are displaced by against each other: each, and along normals and tangents.
+  struct Relatives {
+    Pair each[lane_count];
+    Lanes normal, tangent;
+  };
+  /// Calls of_some(c, count, relatives) with what displacement_ is of as many contacts as there are lanes, or fewer, from c on.
+  template <typename OfSome>
+  void for_relatives(std::span<const StepProblem::Row> rows, const OfSome& of_some) {
+    team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = begin; c < end; c += lane_count) {
+        const std::size_t count = std::min(end - c, std::size_t{lane_count});
+        const auto row = [&](std::size_t i) -> const auto& {
+          return rows[c + (i < count ? i : 0)];
+        };
+        Relatives r;
+        for (std::size_t i = 0; i < lane_count; ++i) r.each[i] = row(i).relative(displacement_);
+        const Lanes x = each_lane([&](std::size_t i) { return r.each[i][0]; }),
+                    y = each_lane([&](std::size_t i) { return r.each[i][1]; }),
+                    nx = each_lane([&](std::size_t i) { return row(i).normal.x; }),
+                    ny = each_lane([&](std::size_t i) { return row(i).normal.y; });
+        r.normal = nx * x + ny * y;
+        r.tangent = -ny * x + nx * y;
+        of_some(c, count, r);
+      }
+    });
+  }
   void place(const StepProblem& problem, std::span<const double> d);
   void find_bent();
   void start_on_lines(const StepProblem& problem);

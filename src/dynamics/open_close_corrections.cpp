@@ -28,16 +28,11 @@ void OpenClose::start_on_lines(const StepProblem& problem) {
 
 /// Springs and their pieces at D.
 void OpenClose::place(const StepProblem& problem, std::span<const double> d) {
-  const auto& rows = problem.rows();
   problem.displace(d, displacement_);
-  team_->for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const Vec2 r = rows[c].relative(displacement_);
-      r_[c] = r + rows[c].moved;
-      springs_->y[c] = springs_->y0[c] - dot(rows[c].normal, r);
-      springs_->w[c] = springs_->w0[c] + dot(rows[c].tangent(), r);
-      springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
-    }
+  for_relatives(problem.rows(), [&](std::size_t c, std::size_t count, const Relatives& r) {
+    for (std::size_t i = 0; i < count; ++i)
+      store_pair(r_[c + i], r.each[i] + load_pair(problem.rows()[c + i].moved));
+    springs_->stretch(c, count, r.normal, r.tangent);
   });
   knows_relative_ = true;
 }
@@ -197,7 +192,9 @@ bool OpenClose::begin_correcting(const StepProblem& problem, linalg::BlockSolver
 void OpenClose::go_corrected(const StepProblem& problem, std::span<const double> direction,
                              std::span<double> d, OpenCloseResult& result) {
   ++result.iterations;
-  for (std::size_t k = 0; k < direction.size(); ++k) d[k] += direction[k];
+  in_lanes(static_cast<int>(direction.size()), [&](int k, int count) {
+    store_first(&d[at(k)], load_first(&d[at(k)], count) + load_first(&direction[at(k)], count), count);
+  });
   for (const std::size_t b : free_) problem.solve_alone(b, d);
   place(problem, d);
   find_bent();

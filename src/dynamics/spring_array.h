@@ -65,10 +65,14 @@ class SpringArray {
   }
   /// Goes on along the direction of search; `piece` stays that of where it was.
   void go(double alpha, std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      y[c] += alpha * dy[c];
-      w[c] += alpha * dw[c];
-    }
+    const auto add = [&](std::vector<double>& to, const std::vector<double>& change, std::size_t c,
+                         int count) {
+      store_first(&to[c], load_first(&to[c], count) + alpha * load_first(&change[c], count), count);
+    };
+    in_lanes(static_cast<int>(end - begin), [&](int first, int count) {
+      add(y, dy, begin + static_cast<std::size_t>(first), count);
+      add(w, dw, begin + static_cast<std::size_t>(first), count);
+    });
   }
 
   [[nodiscard]] Piece piece_at(std::size_t c, double penetration, double displacement) const {
@@ -78,16 +82,30 @@ class SpringArray {
                                     : elastic < -bound[c] ? Shear::backward
                                                           : Shear::held};
   }
-  /// Whether one of as many contacts as there are lanes, from c on, leaves its `piece` by α along the direction of search; beyond the
-  /// last one it may say so of none.
-  [[nodiscard]] bool any_leaves(std::size_t c, double alpha) const {
-    const Lanes a = broadcast(alpha), penetration = load(&y[c]) + a * load(&dy[c]),
-                elastic = load(&ks[c]) * (load(&w[c]) + a * load(&dw[c])), most = load(&bound[c]);
-    const auto closed = penetration > load(&floor[c]), none = most <= 0.0, forward = ~none & (elastic > most),
-               backward = ~none & ~forward & (elastic < -most);
+  /// As codes, of as many contacts as there are lanes; `held` where the shear spring is none of the others.
+  [[nodiscard]] static LaneCondition codes_of(LaneCondition closed, LaneCondition none, LaneCondition forward,
+                                              LaneCondition backward) {
     const auto code = [](Piece p) { return std::int64_t{std::bit_cast<std::uint16_t>(p)}; };
-    const auto now = (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
-                     (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
+    return (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
+           (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
+  }
+  /// Those of `count` contacts from c on.
+  void set_pieces(std::size_t c, std::size_t count, LaneCondition pieces) {
+    std::uint16_t codes[lane_count];
+    store_codes(codes, pieces);
+    std::memcpy(static_cast<void*>(&piece[c]), &codes, count * sizeof(Piece));
+  }
+  /// piece_at of as many contacts as there are lanes, from c on.
+  [[nodiscard]] LaneCondition pieces_at(std::size_t c, Lanes penetration, Lanes displacement) const {
+    const Lanes elastic = load(&ks[c]) * displacement, most = load(&bound[c]);
+    const auto none = most <= 0.0, forward = ~none & (elastic > most),
+               backward = ~none & ~forward & (elastic < -most);
+    return codes_of(penetration > load(&floor[c]), none, forward, backward);
+  }
+  /// Whether one of them leaves its `piece` by α along the direction of search; beyond the last one it may say so of none.
+  [[nodiscard]] bool any_leaves(std::size_t c, double alpha) const {
+    const Lanes a = broadcast(alpha);
+    const auto now = pieces_at(c, load(&y[c]) + a * load(&dy[c]), load(&w[c]) + a * load(&dw[c]));
     std::uint16_t codes[lane_count] = {};
     if (c + lane_count <= size_) {
       std::memcpy(&codes, &piece[c], sizeof(codes));
@@ -95,6 +113,14 @@ class SpringArray {
       std::memcpy(&codes, &piece[c], (size_ - c) * sizeof(Piece));
     }
     return any(now != lane_codes(codes));
+  }
+  /// Stretches the springs of `count` contacts, at most as many as there are lanes, from c on, by a displacement of the two sides against
+  /// each other along normal and tangent.
+  void stretch(std::size_t c, std::size_t count, Lanes normal, Lanes tangent) {
+    const Lanes penetration = load(&y0[c]) - normal, displacement = load(&w0[c]) + tangent;
+    store_first(&y[c], penetration, static_cast<int>(count));
+    store_first(&w[c], displacement, static_cast<int>(count));
+    set_pieces(c, count, pieces_at(c, penetration, displacement));
   }
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
     return {penetration > floor[c] ? kn[c] * penetration : 0.0,

@@ -167,7 +167,7 @@ double Stepper::gravity_energy(const State& state) const {
     if (!model_.moves(b)) continue;
     const Block& block = model_.blocks[b];
     const Vec2 now{state.position[block.first], state.position[block.first + 1]};
-    sum -= block.body_force() * dot(model_.gravity, now - std::sqrt(block.area) * centroid(block.reference));
+    sum -= block.body_force() * dot(model_.gravity, now - std::sqrt(block.area) * block.centroid);
   }
   return sum;
 }

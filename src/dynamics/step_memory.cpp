@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/contact_lanes.h"
 #include "core/index.h"
-#include "dynamics/contact_lanes.h"
 #include "dynamics/step.h"
 
 namespace keyblock::dynamics {
@@ -27,8 +27,8 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
   const std::span<const StepProblem::Row> rows = std::span(problem_.rows()).subspan(first, count);
   const SpringArray& springs = problem_.springs();
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
-  const LawLanes law = laws_of(contacts);
-  MemoryLanes memory = memories_of(contacts);
+  const contact::LawLanes law = contact::laws_of(contacts);
+  contact::MemoryLanes memory = contact::memories_of(contacts);
   Lanes moved_normal{}, moved_shear{}, turned_normal{}, turned_shear{};
   if (drive.moves_contacts()) {
     moved_normal = moved_along(rows, false);
@@ -67,7 +67,7 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
   }
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;
-  keep(memory, contacts);
+  contact::keep(memory, contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool is_closed = closed[i] != 0;
     contacts[i].memory.state = !is_closed       ? contact::State::open

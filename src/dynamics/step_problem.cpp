@@ -34,6 +34,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     coefficients_.clear();
     bodies_.clear();
     body_force_.clear();
+    frequency_.clear();
     largest_size_ = 0;
     most_vertices_ = 0;
     for (const contact::DividedEdge& edge : surface.divided)
@@ -43,6 +44,8 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
       largest_size_ = std::max(largest_size_, block.size);
       h_first_.push_back(used);
       body_force_.push_back(block.body_force());
+      frequency_.push_back(std::numbers::pi *
+                           std::sqrt(block.material.young / (block.material.density * block.area)));
       coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
       bodies_.push_back({static_cast<std::uint32_t>(block.first), block.fixed ? 0 : block.size, block.unknown,
                          block.fixed ? 0.0 : block.mass()});
@@ -55,7 +58,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     weight_.assign(model.blocks.size(), 0.0);
     stress_.assign(model.blocks.size(), 0.0);
     for (std::size_t i = 0; i < model.blocks.size() && model.gravity == Vec2{}; ++i) {
-      const block::Stress s = block::in_situ_at(model.in_situ, centroid(model.blocks[i].reference));
+      const block::Stress s = block::in_situ_at(model.in_situ, model.blocks[i].centroid);
       stress_[i] = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy)});
     }
   }
@@ -88,9 +91,7 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   std::fill(h, h + 2 * stride, 0.0);  // translation; the rest is written below
   inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                 (drive.is_static ? drive.inertia_scale[i] : 1.0);
-  const double frequency =
-      std::numbers::pi * std::sqrt(block.material.young / (block.material.density * block.area));
-  viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency * drive.step);
+  viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency_[i] * drive.step);
   const auto linearize = [&](double* geometric) {
     block.elasticity.add_force_and_material_tangent(a, viscous_[i], b, h, stride, geometric);
     for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
@@ -229,21 +230,30 @@ void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) cons
 /// Adds what the forces at the vertices of a block do to its coefficients.
 void StepProblem::add_vertex_forces(std::size_t b, std::span<const Vec2> forces,
                                     std::span<double> out) const {
+  double* coefficients = &out[bodies_[b].first];
   with_known_size(bodies_[b].size, [&](auto size) {
-    const auto add = [&](double* sums) {
-      for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
-        add_at(&surface_->phi[surface_->phi_begin[v]], size, forces[v], sums);
-    };
-    double* coefficients = &out[bodies_[b].first];
     if constexpr (std::is_same_v<decltype(size), int>) {
-      add(coefficients);
-    } else {  // a copy that nothing else may point to: it stays in registers
-      std::array<double, 2 * at(size)> sums;
-      std::copy_n(coefficients, sums.size(), sums.begin());
-      add(sums.data());
-      std::copy_n(sums.begin(), sums.size(), coefficients);
+      for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v)
+        add_at(phi_of(v), size, forces[v], coefficients);
+    } else {
+      add_vertex_forces(
+          size, b, forces, [&](int k) { return load_pair(coefficients + 2 * k); }, coefficients);
     }
   });
+}
+
+/// The same where the size is known: what they do and, of each basis function k, start(k). Summed in registers.
+template <int size, typename Start>
+void StepProblem::add_vertex_forces(std::integral_constant<int, size>, std::size_t b,
+                                    std::span<const Vec2> forces, const Start& start,
+                                    double* coefficients) const {
+  std::array<Pair, at(size)> sums;
+  for (int k = 0; k < size; ++k) sums[at(k)] = start(k);
+  for (std::size_t v = at(surface_->block_begin[b]); v < at(surface_->block_begin[b + 1]); ++v) {
+    const Pair force = load_pair(forces[v]);
+    for (int k = 0; k < size; ++k) sums[at(k)] += phi_of(v)[k] * force;
+  }
+  for (int k = 0; k < size; ++k) store_pair(coefficients + 2 * k, sums[at(k)]);
 }
 
 void StepProblem::add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const {
@@ -254,15 +264,16 @@ void StepProblem::add_vertex_forces(std::span<const Vec2> forces, std::span<doub
 
 namespace {
 
-/// y = H x of one block, eight rows at once.
-template <typename Size>
-void multiply_block(Size size, const double* h, const double* x, double* y) {
+/// Calls of_rows(first, count, rows) with the rows of H x of one block, as many at once as there are lanes: in registers, as what is stored
+/// in part cannot be loaded again at once.
+template <typename Size, typename OfRows>
+void multiply_block(Size size, const double* h, const double* x, const OfRows& of_rows) {
   const int n = 2 * size, stride = linalg::padded_rows(n);
-  for (int first = 0; first < n; first += lane_count) {
+  in_lanes(n, [&](int first, int count) {
     Lanes rows{};
     for (int c = 0; c < n; ++c) rows += load(h + c * stride + first) * broadcast(x[c]);
-    store_first(y + first, rows, std::min(n - first, lane_count));
-  }
+    of_rows(first, count, rows);
+  });
 }
 
 }  // namespace
@@ -270,17 +281,37 @@ void multiply_block(Size size, const double* h, const double* x, double* y) {
 void StepProblem::multiply(std::size_t i, std::span<const double> x, std::span<double> y) const {
   const std::size_t first = coefficients_[i].first, end = coefficients_[i].second;
   if (!model_->moves(i)) return std::fill(&y[first], y.data() + end, 0.0);
-  with_known_size(static_cast<int>(end - first) / 2,
-                  [&](auto size) { multiply_block(size, &h_[h_first_[i]], &x[first], &y[first]); });
+  with_known_size(static_cast<int>(end - first) / 2, [&](auto size) {
+    multiply_block(size, &h_[h_first_[i]], &x[first],
+                   [&](int k, int count, Lanes rows) { store_first(&y[first + at(k)], rows, count); });
+  });
 }
 
 void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2> forces,
                                 std::span<double> g) const {
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      multiply(i, d, g);
-      for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k) g[k] -= b_[k];
-      add_vertex_forces(i, forces, g);
+      const std::size_t first = coefficients_[i].first, last = coefficients_[i].second;
+      const auto of_size = [&](auto size) {
+        std::array<Lanes, (2 * at(size) + lane_count - 1) / lane_count> terms;
+        multiply_block(size, &h_[h_first_[i]], &d[first], [&](int k, int count, Lanes rows) {
+          terms[at(k / lane_count)] = rows - load_first(&b_[first + at(k)], count);
+        });
+        const auto start = [&](int k) {
+          const Lanes& of = terms[at(2 * k / lane_count)];
+          return Pair{of[2 * k % lane_count], of[2 * k % lane_count + 1]};
+        };
+        add_vertex_forces(size, i, forces, start, &g[first]);
+      };
+      if (model_->moves(i) && bodies_[i].size == 3) {
+        of_size(std::integral_constant<int, 3>{});
+      } else if (model_->moves(i) && bodies_[i].size == 6) {
+        of_size(std::integral_constant<int, 6>{});
+      } else {
+        multiply(i, d, g);
+        for (std::size_t k = first; k < last; ++k) g[k] -= b_[k];
+        add_vertex_forces(i, forces, g);
+      }
     }
   });
 }
@@ -319,31 +350,42 @@ double StepProblem::residual_ratio(std::span<const double> g) const {
 
 namespace {
 
-/// Row k of w × r, of the relative part r of a block's coefficients.
+/// Row k of w × r, of the relative part r of a block's coefficients; likewise as many as there are lanes, from an even k on.
 double turn_of(double w, const double* position, std::size_t k) {
   return k < 2 ? 0.0 : k % 2 == 0 ? -w * position[k + 1] : w * position[k - 1];
+}
+Lanes turn_of(double w, const double* position, int k, int count) {
+  const Lanes turns =
+      lanes_from(-w, w, -w, w, -w, w, -w, w) * swap_neighbours(load_first(position + k, count));
+  return k == 0 ? where(first_lanes(2), Lanes{}, turns) : turns;
 }
 
 }  // namespace
 
 template <typename Size>
 StepProblem::ElasticLoss StepProblem::block_loss(Size size, std::size_t i, const double* position,
-                                                 const double* d, double spin, double* turn,
-                                                 double* product) const {
+                                                 const double* d, double spin, double* turn) const {
   const double* h = &h_[h_first_[i]];
-  /// xᵀ H y without inertia, with H y in product.
-  const auto stiffness = [&](const double* x, const double* y) {
-    double sum = 0.0;
-    for (int k = 0; k < 2 * size; ++k) sum += x[k] * (product[k] - inertia_[i] * y[k]);
-    return sum;
+  const Lanes inertia = broadcast(inertia_[i]);
+  double of_motion = 0.0, of_both = 0.0, of_turn = 0.0;  // dᵀ H d, dᵀ H s and sᵀ H s, without inertia
+  const auto add = [](double& sum, int count, Lanes products) {
+    for (int k = 0; k < count; ++k) sum += products[k];
   };
+  multiply_block(size, h, d, [&](int first, int count, Lanes rows) {
+    const Lanes x = load_first(d + first, count);
+    add(of_motion, count, x * (rows - inertia * x));
+  });
+  in_lanes(2 * size, [&](int k, int count) { store(turn + k, turn_of(spin, position, k, count)); });
+  multiply_block(size, h, turn, [&](int first, int count, Lanes rows) {
+    const Lanes x = load_first(d + first, count), s = load_first(turn + first, count),
+                force = rows - inertia * s;
+    add(of_both, count, x * force);
+    add(of_turn, count, s * force);
+  });
   ElasticLoss loss;
   loss.damping = viscous_[i] * model_->blocks[i].elasticity.material_work(position, d);
-  multiply_block(size, h, d, product);
-  loss.numerical = 0.5 * (stiffness(d, d) - loss.damping);
-  for (std::size_t k = 0; k < at(2 * size); ++k) turn[k] = turn_of(spin, position, k);
-  multiply_block(size, h, turn, product);
-  loss.numerical += stiffness(d, turn) - 0.5 * stiffness(turn, turn);
+  loss.numerical = 0.5 * (of_motion - loss.damping);
+  loss.numerical += of_both - 0.5 * of_turn;
   return loss;
 }
 
@@ -351,13 +393,12 @@ StepProblem::ElasticLoss StepProblem::elastic_loss(const State& state, std::span
                                                    std::span<const double> spin) {
   losses_.assign(model_->blocks.size(), {});
   team_->for_range(losses_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> turn(at(2 * largest_size_)), product(at(2 * largest_size_));
+    std::vector<double> turn(at(linalg::padded_rows(2 * largest_size_)));
     for (std::size_t i = begin; i < end; ++i) {
       if (!model_->moves(i)) continue;
       const Block& block = model_->blocks[i];
       losses_[i] = with_known_size(block.size, [&](auto size) {
-        return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data(),
-                          product.data());
+        return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data());
       });
     }
   });

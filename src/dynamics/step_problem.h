@@ -73,8 +73,8 @@ class StepProblem {
       return force.shear * tangent() - force.normal * normal;
     }
     /// r, but for the known part.
-    [[nodiscard]] Vec2 relative(std::span<const Vec2> u) const {
-      return vec2_of(load_pair(u[vertex]) - lerp(load_pair(u[from]), load_pair(u[to]), position));
+    [[nodiscard]] Pair relative(std::span<const Vec2> u) const {
+      return load_pair(u[vertex]) - lerp(load_pair(u[from]), load_pair(u[to]), position);
     }
   };
   static_assert(sizeof(Row) == 64);
@@ -242,6 +242,9 @@ class StepProblem {
     });
   }
   void add_vertex_forces(std::size_t block, std::span<const Vec2> forces, std::span<double> out) const;
+  template <int size, typename Start>
+  void add_vertex_forces(std::integral_constant<int, size>, std::size_t block, std::span<const Vec2> forces,
+                         const Start& start, double* coefficients) const;
   void add_vertex_forces(std::span<const Vec2> forces, std::span<double> out) const;
   void gradient_with(std::span<const double> d, std::span<const Vec2> forces, std::span<double> g) const;
   [[nodiscard]] bool is_on_curve(std::uint32_t point) const { return point >= surface_->position.size(); }
@@ -313,13 +316,12 @@ class StepProblem {
   void finish_blocks(PressedBlocks& pressed);
   template <typename Size>
   [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
-                                       double spin, double* turn, double* product) const;
+                                       double spin, double* turn) const;
   void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs);
   void build_row(const Drive& drive, const contact::Contact& contact, std::size_t c);
   void find_owners();
-  [[nodiscard]] SpringArray::Piece assumed_piece(contact::State state, std::size_t c, double origin) const;
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
 
   const Model* model_ = nullptr;
@@ -345,6 +347,7 @@ class StepProblem {
   std::vector<double> inertia_;      ///< per block, cρ/Δt²; 0: it does not move
   std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> body_force_;   ///< per block, Block::body_force
+  std::vector<double> frequency_;    ///< rad/s, per block: its first elastic one, about
   std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
   std::vector<double> stress_;       ///< the same of its in-situ stress, where there is no gravity; else 0
   std::vector<ElasticLoss> losses_;  ///< scratch, per block

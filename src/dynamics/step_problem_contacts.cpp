@@ -3,9 +3,9 @@
 #include <atomic>
 #include <cmath>
 
+#include "contact/contact_lanes.h"
 #include "core/index.h"
 #include "core/known_size.h"
-#include "dynamics/contact_lanes.h"
 #include "dynamics/step_problem.h"
 
 namespace keyblock::dynamics {
@@ -92,13 +92,16 @@ void StepProblem::build_row(const Drive& drive, const contact::Contact& contact,
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
 void StepProblem::build_springs(const Drive& drive, std::span<const contact::Contact> contacts,
                                 std::size_t first) {
-  const LawLanes law = laws_of(contacts);
-  const MemoryLanes memory = memories_of(contacts);
-  const Lanes a = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_a)].mass; });
-  const Lanes b = lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_b)].mass; });
+  const contact::LawLanes law = contact::laws_of(contacts);
+  const contact::MemoryLanes memory = contact::memories_of(contacts);
+  const Lanes a =
+      contact::lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_a)].mass; });
+  const Lanes b =
+      contact::lanes_of(contacts, [&](const contact::Contact& c) { return bodies_[at(c.block_b)].mass; });
   const Lanes mass = where(a == 0.0, b, where(b == 0.0, a, a * b / (a + b)));
-  const auto fused = lanes_where(contacts, [](const contact::Contact& c) { return c.fused; });
-  const auto bonded = lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
+  const auto fused = contact::lanes_where(contacts, [](const contact::Contact& c) { return c.fused; });
+  const auto bonded =
+      contact::lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
   const auto tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
   const Lanes bound = where(fused, broadcast(HUGE_VAL),
@@ -108,6 +111,7 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
       damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
   const std::size_t count = contacts.size();
   const auto keep = [&](std::vector<double>& numbers, Lanes v) {
+    if (count == lane_count) return store(&numbers[first], v);
     store_first(&numbers[first], v, static_cast<int>(count));
   };
   keep(springs_.kn, spring.normal_stiffness());
@@ -116,8 +120,15 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   keep(springs_.floor, where(tensile, broadcast(-HUGE_VAL), Lanes{}));
   keep(springs_.friction, where(fused, broadcast(-1.0), law.friction));
   keep(springs_.cohesion, law.cohesion);
-  for (std::size_t i = 0; i < count; ++i)
-    springs_.piece[first + i] = assumed_piece(contacts[i].memory.state, first + i, spring.shear()[i]);
+  // The pieces that acted in the last step. What is fused never slides, whatever it did.
+  const auto was = [&](contact::State state) {
+    return contact::lanes_where(contacts, [&](const contact::Contact& c) { return c.memory.state == state; });
+  };
+  const auto slips = (bound > 0.0) & ~(was(contact::State::locked) | fused),
+             forward = slips & (spring.shear() > 0.0), backward = slips & (spring.shear() < 0.0),
+             none = ~(bound > 0.0) | (slips & ~forward & ~backward);
+  springs_.set_pieces(first, count,
+                      SpringArray::codes_of(tensile | ~was(contact::State::open), none, forward, backward));
   Lanes y = spring.depth(), w = spring.shear();
   if (drive.moves_contacts()) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -130,21 +141,6 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   keep(springs_.y, y);
   keep(springs_.w0, w);
   keep(springs_.w, w);
-}
-
-/// The piece on which a contact was in the last step; origin: w of its spring, but for what blocks are moved by.
-SpringArray::Piece StepProblem::assumed_piece(contact::State state, std::size_t c, double origin) const {
-  using Shear = SpringArray::Shear;
-  Shear shear = Shear::none;
-  if (springs_.bound[c] > 0.0) {
-    // What is fused never slides, whatever it did.
-    if (state == contact::State::locked || springs_.bound[c] == HUGE_VAL) {
-      shear = Shear::held;
-    } else if (origin != 0.0) {
-      shear = origin > 0.0 ? Shear::forward : Shear::backward;
-    }
-  }
-  return {state != contact::State::open || springs_.is_tensile(c), shear};
 }
 
 contact::Spring StepProblem::spring(const contact::Contact& contact, std::size_t c) const {

@@ -63,13 +63,13 @@ Block make_block(const Polygon& polygon, const BlockProperties& properties, int 
   const block::Basis basis = make_basis(polygon, properties, order);
   Block block{.fixed = properties.fixed,
               .area = area(polygon),
+              .centroid = centroid(polygon),
               .material = properties.material,
               .pose = block::Pose(polygon, basis),
               .elasticity = block::Elasticity(polygon, basis, properties.material, in_situ),
               .reference = polygon,
               .basis = basis};
-  const Vec2 centre = centroid(polygon);
-  for (const Vec2 p : polygon.outer) block.radius = std::max(block.radius, norm(p - centre));
+  for (const Vec2 p : polygon.outer) block.radius = std::max(block.radius, norm(p - block.centroid));
   block.size = basis.size();
   block.edge_order = edge_order;
   return block;
@@ -159,7 +159,7 @@ void add_prescribed_motions(const RunSetup& setup, Model& model) {
     const BlockProperties& properties = setup.properties[b];
     if (properties.motion_x.empty() && properties.motion_y.empty()) continue;
     model.motions.push_back(
-        {static_cast<int>(b), centroid(model.blocks[b].reference), properties.motion_x, properties.motion_y});
+        {static_cast<int>(b), model.blocks[b].centroid, properties.motion_x, properties.motion_y});
   }
 }
 

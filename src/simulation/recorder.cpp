@@ -71,7 +71,7 @@ ModelRecord Recorder::model() const {
     row.area = block.area;
     row.density = block.material.density;
     if (!is_frame) row.excavations = setup_.system.blocks[b].excavations;
-    row.centroid = centroid(block.reference);
+    row.centroid = block.centroid;
     const contact::Surface& surface = model_.surface;
     for (int v = surface.block_begin[b]; v < surface.block_begin[b + 1]; ++v) {
       if (surface.previous[at(v)] >= v) row.ring_start.push_back(v);  // the first vertex of a ring

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstddef>
+#include <span>
+
+#include "contact/detection.h"
+#include "core/lanes.h"
+
+namespace keyblock::contact {
+
+/// Of as many contacts as there are lanes, by component: as many numbers as stand side by side in each.
+struct LawLanes {
+  Lanes gap, length, depth, normal_stiffness, shear_stiffness, friction, cohesion, tension;
+};
+struct MemoryLanes {
+  Lanes offset, stiffness, shear, normal_force, bounding_force, multiplier, drift, stored;
+};
+static_assert(offsetof(Contact, tension) - offsetof(Contact, gap) == (lane_count - 1) * sizeof(double));
+static_assert(offsetof(Memory, stored) - offsetof(Memory, offset) == (lane_count - 1) * sizeof(double));
+
+/// Of the first of `some`, at least one, whose numbers begin at begin(each); lanes beyond the last are those of the first.
+template <typename Components, typename Some, typename Begin>
+Components components_of(std::span<const Some> some, const Begin& begin) {
+  Lanes lines[lane_count];
+  for (std::size_t i = 0; i < lane_count; ++i) lines[i] = load(begin(some[i < some.size() ? i : 0]));
+  transpose(lines);
+  return {lines[0], lines[1], lines[2], lines[3], lines[4], lines[5], lines[6], lines[7]};
+}
+inline LawLanes laws_of(std::span<const Contact> contacts) {
+  return components_of<LawLanes>(contacts, [](const Contact& c) { return &c.gap; });
+}
+inline MemoryLanes memories_of(std::span<const Contact> contacts) {
+  return components_of<MemoryLanes>(contacts, [](const Contact& c) { return &c.memory.offset; });
+}
+/// Back into as many contacts.
+inline void keep(const LawLanes& law, std::span<Contact> contacts) {
+  Lanes lines[lane_count] = {
+      law.gap,      law.length,   law.depth,  law.normal_stiffness, law.shear_stiffness,
+      law.friction, law.cohesion, law.tension};
+  transpose(lines);
+  for (std::size_t i = 0; i < lane_count && i < contacts.size(); ++i) store(&contacts[i].gap, lines[i]);
+}
+inline void keep(const MemoryLanes& m, std::span<Contact> contacts) {
+  Lanes lines[lane_count] = {m.offset,         m.stiffness,  m.shear, m.normal_force,
+                             m.bounding_force, m.multiplier, m.drift, m.stored};
+  transpose(lines);
+  for (std::size_t i = 0; i < lane_count && i < contacts.size(); ++i)
+    store(&contacts[i].memory.offset, lines[i]);
+}
+
+/// number(each) of the first of `some`, likewise.
+template <typename Some, typename Number>
+Lanes lanes_of(std::span<const Some> some, const Number& number) {
+  return each_lane([&](std::size_t i) { return number(some[i < some.size() ? i : 0]); });
+}
+/// Whether `is` of each.
+template <typename Some, typename Is>
+auto lanes_where(std::span<const Some> some, const Is& is) {
+  return lanes_of(some, [&](const Some& one) { return is(one) ? 1.0 : 0.0; }) > 0.0;
+}
+
+}  // namespace keyblock::contact
