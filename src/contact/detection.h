@@ -249,17 +249,25 @@ class Detection {
     /// m, of joint that gives the contact its stiffness at the least: Tolerances::least_length, but no more than belongs to the vertex
     /// where the edges that face each other share all that they have.
     Lanes least_length;
+    /// m of the length that belongs to it beyond the end of its edge, where two corners meet, and the edge that begins or ends there.
+    Lanes length_beyond;
+    std::array<std::size_t, lane_count> beyond;
   };
+  struct Vertices;
+  template <bool divided, typename OfEdge>
+  void for_facing(const Vertices& vertices, const Lanes (&line)[lane_count],
+                  const std::array<std::size_t, lane_count>& lines, const OfEdge& of_edge) const;
+  template <bool divided>
+  [[nodiscard]] Lanes length_beyond(const Vertices& vertices, const Lanes (&edge)[lane_count],
+                                    const std::array<std::size_t, lane_count>& beyond) const;
   template <bool divided>
   [[nodiscard]] Geometry measure(const Surface& surface, const CandidateList& candidates,
                                  std::span<const Found> found) const;
   /// Of the edge beyond a corner.
   struct Beyond {
-    double length = 0.0;  ///< m, that belongs to the contact at the corner
-    double share = 0.0;   ///< of all that belongs to it
-    int joint = 0;        ///< Surface::joint
+    double share;  ///< of the length that belongs to the contact at the corner
+    int joint;     ///< Surface::joint
   };
-  [[nodiscard]] Beyond beyond_end(const Surface& surface, const Candidate& candidate, double position) const;
   static void bend(const Surface& surface, Contact& contact);
   static JointLaw law_over_corner(JointLaw law, const JointLaw& beyond, double share, double penalty);
   /// What the springs of a contact have of its joint.

@@ -33,99 +33,123 @@ void keep_energy(MemoryLanes& memory, Lanes gap, Lanes stiffness) {
 
 }  // namespace
 
-/// Eight at once, or fewer at the end. Where no edge is divided, each vertex has the half of what edges have in common.
-template <bool divided>
-Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
-                                       std::span<const Found> found) const {
-  Lanes edge[lane_count], vertex[lane_count], length_before{}, at_corner{};
-  std::array<std::size_t, lane_count> edges{}, after{}, before{};  // those of the vertex begin and end there
-  for (std::size_t i = 0; i < lane_count; ++i) {
-    const Found& f = found[i < found.size() ? i : 0];
-    const Candidate& c = candidates.pairs[at(f.candidate)];
-    edges[i] = at(c.edge);
-    after[i] = at(c.vertex);
-    before[i] = at(surface.previous[at(c.vertex)]);
-    edge[i] = load(&corners_[edges[i]].position.x);
-    vertex[i] = load(&corners_[after[i]].position.x);
-    length_before[i] = corners_[before[i]].length;
-    at_corner[i] = f.at_end ? 1.0 : 0.0;
-  }
-  transpose(edge);
-  transpose(vertex);
-  const Lanes tx = edge[2], ty = edge[3], nx = ty, ny = -tx, length = edge[6];
-  const Lanes dx = vertex[0] - edge[0], dy = vertex[1] - edge[1];
-  const Lanes gap = nx * dx + ny * dy, along = tx * dx + ty * dy;
+/// Some vertices, as many as there are lanes, and what their edges have in common with a line each.
+struct Detection::Vertices {
+  Lanes corner[lane_count];                          ///< components of Corner
+  Lanes length_before;                               ///< m, of the edge that ends there
+  std::array<std::size_t, lane_count> next, before;  ///< the edges that begin and end there
+
+  /// One of their edges, where it faces the line: they run against each other, both with their block on the left.
+  struct Facing {
+    LaneCondition faces;
+    Lanes
+        common;  ///< m of the line that the vertex has of what both have in common; 0 where they do not face each other
+    Lanes long_beside;         ///< m
+    Lanes length;              ///< m, of the edge of the vertex
+    Beside<Lanes> edge, line;  ///< at the end that the vertex is nearer to
+  };
+};
+
+/// Calls of_edge(facing) for both edges of the vertices. line: components of Corner. Where no edge is divided, each vertex has the half of
+/// what edges have in common.
+template <bool divided, typename OfEdge>
+void Detection::for_facing(const Vertices& vertices, const Lanes (&line)[lane_count],
+                           const std::array<std::size_t, lane_count>& lines, const OfEdge& of_edge) const {
+  const Lanes(&vertex)[lane_count] = vertices.corner;
+  const Lanes tx = line[2], ty = line[3], along = tx * (vertex[0] - line[0]) + ty * (vertex[1] - line[1]);
   const auto look_at = [&](const std::array<std::size_t, lane_count>& of) -> Beside<Lanes> {
     if constexpr (!divided) return {broadcast(0.5), Lanes{}, Lanes{}, broadcast(1.0)};
     Lanes w[lane_count];
     for (std::size_t i = 0; i < lane_count; ++i) w[i] = load(&wholes_[of[i]].from.x);
     transpose(w);
-    return {w[4], tx * (w[0] - edge[0]) + ty * (w[1] - edge[1]),
-            tx * (w[2] - edge[0]) + ty * (w[3] - edge[1]), w[5]};
+    return {w[4], tx * (w[0] - line[0]) + ty * (w[1] - line[1]),
+            tx * (w[2] - line[0]) + ty * (w[3] - line[1]), w[5]};
   };
-  const Beside<Lanes> here = look_at(edges), next = look_at(after), last = look_at(before);
-  const SharedLength<Lanes> shared{along, length, tolerances_.end_zone, tolerances_.activation};
-  const Lanes most = broadcast(tolerances_.least_length);
-  Lanes shared_length{}, whole_length{};
-  auto shares_much = whole_length > 0.0, faces = shares_much;
-  // With an edge of the vertex, of direction u, where they face each other: they run against each other, both with their block on the left.
-  const auto add_edge = [&](Lanes ux, Lanes uy, Lanes length_of_other, Lanes sign, const Beside<Lanes>& other,
-                            const Beside<Lanes>& this_edge) {
-    const Lanes across = nx * ux + ny * uy, ahead = ux * tx + uy * ty, long_beside = shared.stretch(across);
-    const auto turned = (ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing);
-    const Lanes to = along + ahead * sign * length_of_other;
-    const Lanes of_vertex = divided ? shared(to, long_beside, other, this_edge)
-                                    : 0.5 * shared.common(to, long_beside),
-                common = where(turned, Lanes{}, of_vertex);
-    shared_length += common;
-    faces = faces | ~turned;
-    whole_length =
-        largest(whole_length, where((common > tolerances_.rounding) | (~turned & (at_corner > 0.0)),
-                                    least(other.share * length_of_other, this_edge.share * length), Lanes{}));
-    if (!divided) return;  // what has that length in common gives each vertex more than the least
-    const Lanes overlap = least(largest(other.from, other.to), this_edge.to) -
-                          largest(least(other.from, other.to), this_edge.from);
-    shares_much = shares_much | (~turned & (least(overlap, long_beside) >= 2.0 * most));
+  const SharedLength<Lanes> shared{along, line[6], tolerances_.end_zone, tolerances_.activation};
+  const auto look_at_edge = [&](Lanes ux, Lanes uy, Lanes length, Lanes sign, const Beside<Lanes>& edge,
+                                const Beside<Lanes>& of_line) {
+    const Lanes across = ty * ux - tx * uy, ahead = ux * tx + uy * ty, long_beside = shared.stretch(across);
+    const auto faces =
+        ~((ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing));
+    const Lanes to = along + ahead * sign * length;
+    const Lanes of_vertex =
+        divided ? shared(to, long_beside, edge, of_line) : 0.5 * shared.common(to, long_beside);
+    of_edge(typename Vertices::Facing{faces, where(faces, of_vertex, Lanes{}), long_beside, length, edge,
+                                      of_line});
   };
-  add_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), next, at_end(here));
-  add_edge(vertex[4], vertex[5], length_before, broadcast(-1.0), at_end(last), here);
-  // One that faces the edge and shares nothing of it, not even where two corners meet, is held by the edge beside.
-  const auto is_one_of_many = shares_much | (faces & ~(whole_length > 0.0));
-  const Lanes enough = where(is_one_of_many, Tolerances::least_of_many * most, most);
-  return {gap, along / length, shared_length, where(whole_length > 0.0, least(whole_length, enough), enough)};
+  const Beside<Lanes> here = look_at(lines);
+  look_at_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), look_at(vertices.next), at_end(here));
+  look_at_edge(vertex[4], vertex[5], vertices.length_before, broadcast(-1.0),
+               at_end(look_at(vertices.before)), here);
 }
 
-/// What the contact of two corners has of the edge on the other side of the corner, where face goes on in face: edges of blocks of
+/// Eight at once, or fewer at the end.
+template <bool divided>
+Detection::Geometry Detection::measure(const Surface& surface, const CandidateList& candidates,
+                                       std::span<const Found> found) const {
+  Vertices vertices;
+  Lanes edge[lane_count];
+  std::array<std::size_t, lane_count> edges;
+  for (std::size_t i = 0; i < lane_count; ++i) {
+    const Candidate& c = candidates.pairs[at(found[i < found.size() ? i : 0].candidate)];
+    edges[i] = at(c.edge);
+    vertices.next[i] = at(c.vertex);
+    vertices.before[i] = at(surface.previous[at(c.vertex)]);
+    edge[i] = load(&corners_[edges[i]].position.x);
+    vertices.corner[i] = load(&corners_[vertices.next[i]].position.x);
+  }
+  transpose(edge);
+  transpose(vertices.corner);
+  vertices.length_before = each_lane([&](std::size_t i) { return corners_[vertices.before[i]].length; });
+  const auto at_corner = lanes_where(found, [](const Found& f) { return f.at_end; });
+  const Lanes dx = vertices.corner[0] - edge[0], dy = vertices.corner[1] - edge[1], length = edge[6],
+              position = (edge[2] * dx + edge[3] * dy) / length, most = broadcast(tolerances_.least_length);
+  Lanes shared_length{}, whole_length{};
+  auto shares_much = whole_length > 0.0, any_faces = shares_much;
+  for_facing<divided>(vertices, edge, edges, [&](const Vertices::Facing& f) {
+    shared_length += f.common;
+    any_faces = any_faces | f.faces;
+    whole_length =
+        largest(whole_length, where((f.common > tolerances_.rounding) | (f.faces & at_corner),
+                                    least(f.edge.share * f.length, f.line.share * length), Lanes{}));
+    if (!divided) return;  // what has that length in common gives each vertex more than the least
+    const Lanes overlap = least(largest(f.edge.from, f.edge.to), f.line.to) -
+                          largest(least(f.edge.from, f.edge.to), f.line.from);
+    shares_much = shares_much | (f.faces & (least(overlap, f.long_beside) >= 2.0 * most));
+  });
+  // One that faces the edge and shares nothing of it, not even where two corners meet, is held by the edge beside.
+  const auto is_one_of_many = shares_much | (any_faces & ~(whole_length > 0.0));
+  const Lanes enough = where(is_one_of_many, Tolerances::least_of_many * most, most);
+  Geometry geometry{edge[3] * dx - edge[2] * dy,
+                    position,
+                    shared_length,
+                    where(whole_length > 0.0, least(whole_length, enough), enough),
+                    Lanes{},
+                    edges};
+  if (any(at_corner)) {
+    for (std::size_t i = 0; i < lane_count; ++i)
+      geometry.beyond[i] = at((position[i] < 0.5 ? surface.previous : surface.next)[edges[i]]);
+    geometry.length_beyond =
+        where(at_corner, length_beyond<divided>(vertices, edge, geometry.beyond), Lanes{});
+  }
+  return geometry;
+}
+
+/// What the contacts of two corners have of the edges on the other side of the corner, where face goes on in face: edges of blocks of
 /// order > 1 are divided at the same points on both sides of a joint, and of the contacts of the two vertices that meet there one is
-/// left. position: Contact::position.
-Detection::Beyond Detection::beyond_end(const Surface& surface, const Candidate& candidate,
-                                        double position) const {
-  const std::size_t next = at(candidate.vertex), before = at(surface.previous[next]),
-                    beyond = at(position < 0.5 ? surface.previous[at(candidate.edge)]
-                                               : surface.next[at(candidate.edge)]);
-  const Corner &vertex = corners_[next], &edge = corners_[at(candidate.edge)], &line = corners_[beyond];
-  if (dot(edge.tangent, line.tangent) < 0.0 ||
-      std::abs(cross(edge.tangent, line.tangent)) > Tolerances::sine_facing)
-    return {};
-  const auto look_at = [&](std::size_t e) -> Beside<double> {
-    if (wholes_.empty()) return {0.5, 0.0, 0.0, 1.0};
-    const Whole& whole = wholes_[e];
-    const auto along = [&](Vec2 end) { return dot(line.tangent, end - line.position); };
-    return {whole.start_share, along(whole.from), along(whole.to), whole.pieces};
-  };
-  const Beside<double> here = look_at(beyond);
-  const double along = dot(line.tangent, vertex.position - line.position);
-  const SharedLength<double> shared{along, line.length, tolerances_.end_zone, tolerances_.activation};
-  const auto of_edge = [&](Vec2 u, double length_of_other, const Beside<double>& other,
-                           const Beside<double>& this_edge) {
-    const double ahead = dot(u, line.tangent), across = cross(u, line.tangent);
-    if (ahead > 0.0 || std::abs(across) > Tolerances::sine_facing) return 0.0;
-    const double to = along + ahead * length_of_other, long_beside = shared.stretch(across);
-    return wholes_.empty() ? 0.5 * shared.common(to, long_beside) : shared(to, long_beside, other, this_edge);
-  };
-  const double length = of_edge(vertex.tangent, vertex.length, look_at(next), at_end(here)) +
-                        of_edge(vertex.before, -corners_[before].length, at_end(look_at(before)), here);
-  return {length, 0.0, surface.joint[beyond]};
+/// left.
+template <bool divided>
+Lanes Detection::length_beyond(const Vertices& vertices, const Lanes (&edge)[lane_count],
+                               const std::array<std::size_t, lane_count>& beyond) const {
+  Lanes line[lane_count], length{};
+  for (std::size_t i = 0; i < lane_count; ++i) line[i] = load(&corners_[beyond[i]].position.x);
+  transpose(line);
+  const Lanes ahead = edge[2] * line[2] + edge[3] * line[3], across = edge[2] * line[3] - edge[3] * line[2];
+  const auto goes_on =
+      (ahead >= 0.0) & (across * across <= Tolerances::sine_facing * Tolerances::sine_facing);
+  if (!any(goes_on)) return length;
+  for_facing<divided>(vertices, line, beyond, [&](const Vertices::Facing& f) { length += f.common; });
+  return where(goes_on, length, Lanes{});
 }
 
 /// Brings a contact from the chord of a piece of a divided edge to its curve: to the point that the vertex is opposite to.
@@ -200,7 +224,7 @@ void Detection::describe_some(const Surface& surface, const CandidateList& candi
   std::array<SpringLaw, lane_count> laws;
   LawLanes law{};
   law.gap = geometry.gap;
-  law.length = geometry.length;
+  law.length = geometry.length + geometry.length_beyond;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Candidate& candidate = candidates.pairs[at(found[i].candidate)];
     Contact& contact = contacts[i];
@@ -211,17 +235,14 @@ void Detection::describe_some(const Surface& surface, const CandidateList& candi
       bend(surface, contact);
       law.gap[i] = contact.gap;
     }
-    Beyond beyond = found[i].at_end ? beyond_end(surface, candidate, contact.position) : Beyond{};
-    if (beyond.length > 0.0) {
-      law.length[i] += beyond.length;
-      beyond.share = beyond.length / law.length[i];
-    }
+    const double beyond = geometry.length_beyond[i];
+    const Beyond over_corner{beyond > 0.0 ? beyond / law.length[i] : 0.0, surface.joint[geometry.beyond[i]]};
     const Memory& memory = before(found[i]);
     contact.memory.state = memory.state;
     contact.memory.bonded = memory.bonded;
     contact.memory.bond_length = memory.bond_length;
     if (memory.bonded) law.length[i] = memory.bond_length;
-    find_law(surface, contact, beyond, laws[i]);
+    find_law(surface, contact, over_corner, laws[i]);
     contact.fused = laws[i].fused;
   }
   const std::span<const SpringLaw> of_joints = std::span(laws).first(contacts.size());

@@ -46,6 +46,31 @@ bool lies_in_a_hole(const Ring& points, const Polygon& polygon) {
                      [&](const Ring& hole) { return lies_in_hole(points, hole); });
 }
 
+// The hull of a hole that is convex, but for `rounding` in m; else nothing.
+std::optional<Ring> convex_hole(const Ring& hole, double rounding) {
+  const Ring hull = convex_hull(hole);
+  const auto is_on_hull = [&](Vec2 p) {
+    for (std::size_t k = 0; k < hull.size(); ++k) {
+      if (cross(normalized(hull[(k + 1) % hull.size()] - hull[k]), p - hull[k]) <= rounding) return true;
+    }
+    return false;
+  };
+  if (hull.size() < 3 || !std::all_of(hole.begin(), hole.end(), is_on_hull)) return std::nullopt;
+  return hull;
+}
+
+// m, by how much points lie beyond the sides of a convex ring, those of all sides together.
+double beyond_sides(const Ring& points, const Ring& ring) {
+  double together = 0.0;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec2 along = normalized(ring[(k + 1) % ring.size()] - ring[k]);
+    double beyond = 0.0;
+    for (const Vec2 p : points) beyond = std::max(beyond, -cross(along, p - ring[k]));
+    together += beyond;
+  }
+  return together;
+}
+
 // Whether no two edges of a ring that do not follow each other meet.
 bool is_simple(const Ring& ring) {
   const auto vertex = [&](std::size_t k) { return ring[k % ring.size()]; };
@@ -143,11 +168,17 @@ struct Pair {
 class Finder {
  public:
   explicit Finder(std::span<const Polygon> blocks)
-      : blocks_(blocks), geometries_(blocks.size()), parts_(blocks.size()) {
+      : blocks_(blocks), geometries_(blocks.size()), parts_(blocks.size()), convex_holes_(blocks.size()) {
     for (const Polygon& block : blocks) {
       boxes_.push_back(bounds(block));
       hulls_.push_back(convex_hull(block.outer));
       for (const Vec2 p : block.outer) largest_ = std::max({largest_, std::abs(p.x), std::abs(p.y)});
+    }
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      for (const Ring& hole : blocks[k].holes) {
+        if (std::optional<Ring> convex = convex_hole(hole, resolution()))
+          convex_holes_[k].push_back(std::move(*convex));
+      }
     }
   }
 
@@ -173,6 +204,7 @@ class Finder {
   std::vector<Box> boxes_;
   std::vector<Ring> hulls_;
   std::vector<std::optional<std::vector<Ring>>> parts_;
+  std::vector<std::vector<Ring>> convex_holes_;
   double largest_ = 0.0;
 };
 
@@ -196,10 +228,15 @@ const std::vector<Ring>& Finder::parts(std::size_t block) {
 }
 
 // Where hulls overlap by more than `least`, convex parts know more: what blocks share is covered by what pairs of parts share, and a
-// convex body that planks cover is no wider than they are together (Bang 1951).
+// convex body that planks cover is no wider than they are together (Bang 1951). Likewise with what lies in a convex hole, as in the frame:
+// what it shares with the block around lies beyond the sides of the hole.
 double Finder::upper_bound(std::size_t a, std::size_t b, double least) {
   if (lies_in_a_hole(hulls_[a], blocks_[b]) || lies_in_a_hole(hulls_[b], blocks_[a])) return 0.0;
-  const double of_hulls = hull_penetration(hulls_[a], hulls_[b]);
+  double of_hulls = hull_penetration(hulls_[a], hulls_[b]);
+  for (const Ring& hole : convex_holes_[a])
+    of_hulls = std::min(of_hulls, resolution() + beyond_sides(hulls_[b], hole));
+  for (const Ring& hole : convex_holes_[b])
+    of_hulls = std::min(of_hulls, resolution() + beyond_sides(hulls_[a], hole));
   if (of_hulls <= least) return of_hulls;
   const std::vector<Ring>&of_a = parts(a), &of_b = parts(b);
   if (of_a.empty() || of_b.empty() || of_a.size() * of_b.size() == 1) return of_hulls;

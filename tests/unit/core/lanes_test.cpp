@@ -32,5 +32,17 @@ TEST(Lanes, AllNumbersHaveTheirTurnOnce) {
   }
 }
 
+TEST(Lanes, NeighboursChangePlaces) {
+  const Lanes v = swap_neighbours(each_lane([](std::size_t i) { return static_cast<double>(i); }));
+  for (int k = 0; k < lane_count; ++k) EXPECT_EQ(v[k], k % 2 == 0 ? k + 1.0 : k - 1.0);
+}
+
+TEST(Lanes, CodesComeBack) {
+  const std::uint16_t codes[lane_count] = {0, 1, 255, 256, 257, 32'768, 65'281, 65'535};
+  std::uint16_t back[lane_count] = {};
+  store_codes(back, lane_codes(codes));
+  for (int k = 0; k < lane_count; ++k) EXPECT_EQ(back[k], codes[k]);
+}
+
 }  // namespace
 }  // namespace keyblock

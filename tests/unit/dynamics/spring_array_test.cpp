@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace keyblock::dynamics {
 namespace {
@@ -48,6 +49,33 @@ TEST(SpringArray, SaysWhereContactsLeaveTheirPiece) {
   }
   EXPECT_GT(leaving, 100);
   EXPECT_GT(staying, 400);
+}
+
+// Likewise; fewer than eight leave the others as they are.
+TEST(SpringArray, StretchesAsManyAsItIsToldTo) {
+  constexpr std::size_t n = 24;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const SpringArray before = some_springs(n, seed);
+    SpringArray springs = before;
+    std::vector<double> normal(n), tangent(n);
+    for (std::size_t c = 0; c < n; ++c) {
+      springs.y0[c] = before.w[c];
+      springs.w0[c] = before.y[c];
+      normal[c] = 3.0 * before.dy[c];
+      tangent[c] = 9.0 * before.dw[c];
+    }
+    const std::size_t first = seed % 9, count = 1 + seed % 8;
+    springs.stretch(first, count, load(&normal[first]), load(&tangent[first]));
+    for (std::size_t c = 0; c < n; ++c) {
+      const bool is_stretched = c >= first && c < first + count;
+      const double y = is_stretched ? springs.y0[c] - normal[c] : before.y[c],
+                   w = is_stretched ? springs.w0[c] + tangent[c] : before.w[c];
+      EXPECT_EQ(springs.y[c], y) << seed << " " << c;
+      EXPECT_EQ(springs.w[c], w) << seed << " " << c;
+      EXPECT_EQ(springs.piece[c], is_stretched ? springs.piece_at(c, y, w) : before.piece[c])
+          << seed << " " << c;
+    }
+  }
 }
 
 TEST(SpringArray, LargestForceIsThatOfTheContactThatPressesOrPullsMost) {

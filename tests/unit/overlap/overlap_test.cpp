@@ -130,6 +130,22 @@ TEST(Overlap, HolesAreRespected) {
   EXPECT_NEAR(through.area, 0.5, 1e-14);  // of one of the two regions
 }
 
+// Blocks that press on a frame from within are told from its hole, if that has no corner that sticks out.
+TEST(Overlap, ConvexHolesBoundIt) {
+  const double d = 1e-4;
+  Polygon frame = rectangle(0, 0, 3, 3);
+  frame.holes.push_back(
+      {{1, 1}, {1, 1.5}, {1, 2}, {1.4, 2}, {2, 2}, {2, 1}});  // with places where joints end
+  const Polygon one = rectangle(1 - d, 1 - d, 1.4, 1.5), other = rectangle(1.4 - 0.5 * d, 1, 2, 2);
+  const Overlap largest = largest_overlap(std::vector<Polygon>{frame, one, other}, 0.0);
+  EXPECT_NEAR(largest.depth, d, 1e-6);
+  EXPECT_EQ(largest.block_a, 0);
+  EXPECT_EQ(largest.block_b, 1);
+  Polygon notched = rectangle(0, 0, 3, 3);
+  notched.holes.push_back({{1, 1}, {1, 2}, {1.5, 2}, {1.5, 1.5}, {2, 1.5}, {2, 1}});
+  EXPECT_NEAR(of(notched, rectangle(1.2, 1.2, 1.8, 1.8)).depth, 0.3, 1e-12);
+}
+
 TEST(Overlap, RegionsOfOnePairCountApart) {
   const Polygon fork{{{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {}};
   const std::vector<Polygon> blocks{fork, rectangle(-1, 1.9, 4, 3), rectangle(10, 10, 11, 11)};
