@@ -51,6 +51,15 @@ Vec2 Detection::beyond_joint(const Surface& surface, int corner, bool begins, in
   return begins ? corners_[at(surface.next[at(edge)])].tangent : -1.0 * other.before;
 }
 
+/// Whether a vertex is over the face of the line's block, and that between it and an edge of a third one: the thin end of a block lets nothing
+/// through to the joint below.
+bool Detection::lies_behind(const Rival& rival, const Candidate& candidate, int edge) const {
+  const Corner& other = corners_[at(edge)];
+  const double behind = dot(other.normal(), corners_[at(candidate.vertex)].position - other.position);
+  return inside(rival.along, corners_[at(candidate.edge)].length) >= 0.0 &&
+         behind > std::max(0.0, rival.gap) + tolerances_.corner_depth;
+}
+
 Detection::Third Detection::third(const Surface& surface, const BlockPair& pair, const Rival& rival,
                                   const CandidateList& candidates) const {
   const Candidate& c = candidates.pairs[at(rival.candidate)];
@@ -64,6 +73,7 @@ Detection::Third Detection::third(const Surface& surface, const BlockPair& pair,
     const bool is_in_front = dot(normal, beyond) > Tolerances::sine_inside;
     found.is_in_front = found.is_in_front || is_in_front;
     found.is_beside = found.is_beside || squared_norm(beyond) > 0.0;
+    if (lies_behind(rival, c, edge)) return;
     for (const bool side : {true, false}) {
       if (dot(normal, beyond_joint(surface, c.vertex, side, edge)) >= -Tolerances::sine_inside) continue;
       const double into = is_in_front ? std::abs(dot(normal, corners_[at(edge)].normal())) : closed;

@@ -179,6 +179,7 @@ class Detection {
   template <typename Call>
   void for_third_edges(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
                        const Call& call) const;
+  [[nodiscard]] bool lies_behind(const Rival& rival, const Candidate& candidate, int edge) const;
   [[nodiscard]] Vec2 beyond_joint(const Surface& surface, int corner, bool begins, int edge) const;
   [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
                                         const CandidateList& candidates) const;

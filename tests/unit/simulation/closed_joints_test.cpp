@@ -122,6 +122,27 @@ TEST(ClosedJoint, KeepsOutTipsThatRunIntoACorner) {
   }
 }
 
+// Where a joint comes out at a small angle, a block ends so thin that what strikes it is within that zone of the joint below: it went
+// through. Distances as in a tunnel, where a stone fell on its floor.
+TEST(ClosedJoint, ThinEndsOfBlocksKeepOutWhatStrikesThem) {
+  for (const double speed : {1.0, 4.0, 10.0}) {
+    for (const double beside : {0.003, 0.004, 0.006, 0.01, 0.03}) {
+      for (const double above : {0.00002, 0.0005, 0.005, 0.01, 0.03}) {
+        Scene scene(3e9, 39.0);
+        scene.add({{-0.5, -0.5}, {0.3, -0.5}, {0.2006, -0.0175}, {0.0, 0.0}, {-0.5, -0.0827}}, true);
+        scene.add({{0.0, 0.0}, {0.2006, -0.0175}, {0.181, 0.0347}, {0.1098, 0.0181}}, true);
+        scene.rectangle({10.0, 10.0}, 1.0,
+                        1.0);  // lengths of contact go with the mean area of blocks that move
+        const Vec2 tip{beside, 0.165 * beside + above};
+        const int stone = scene.add(
+            {tip, tip + Vec2{-0.0478, 0.1184}, tip + Vec2{-0.1222, 0.0139}, tip + Vec2{-0.072, 0.0102}});
+        scene.setup.properties[static_cast<std::size_t>(stone)].velocity = {0.0, -speed};
+        EXPECT_LT(largest_overlap_of(scene, 0.002), 0.002) << speed << " " << beside << " " << above;
+      }
+    }
+  }
+}
+
 // Tips pressed in deeper than the zone in which corners compete are beyond the end of the wall, and nearer to the sides within the joint.
 TEST(ClosedJoint, KeepsOutTipsThatSoftJointsLetIn) {
   for (const double step : {0.002, 0.0005, 0.0002}) {
