@@ -292,26 +292,23 @@ void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2>
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = coefficients_[i].first, last = coefficients_[i].second;
-      const auto of_size = [&](auto size) {
-        std::array<Lanes, (2 * at(size) + lane_count - 1) / lane_count> terms;
-        multiply_block(size, &h_[h_first_[i]], &d[first], [&](int k, int count, Lanes rows) {
-          terms[at(k / lane_count)] = rows - load_first(&b_[first + at(k)], count);
-        });
-        const auto start = [&](int k) {
-          const Lanes& of = terms[at(2 * k / lane_count)];
-          return Pair{of[2 * k % lane_count], of[2 * k % lane_count + 1]};
-        };
-        add_vertex_forces(size, i, forces, start, &g[first]);
-      };
-      if (model_->moves(i) && bodies_[i].size == 3) {
-        of_size(std::integral_constant<int, 3>{});
-      } else if (model_->moves(i) && bodies_[i].size == 6) {
-        of_size(std::integral_constant<int, 6>{});
-      } else {
-        multiply(i, d, g);
-        for (std::size_t k = first; k < last; ++k) g[k] -= b_[k];
-        add_vertex_forces(i, forces, g);
-      }
+      with_known_size(model_->moves(i) ? bodies_[i].size : 0, [&](auto size) {
+        if constexpr (std::is_same_v<decltype(size), int>) {
+          multiply(i, d, g);
+          for (std::size_t k = first; k < last; ++k) g[k] -= b_[k];
+          add_vertex_forces(i, forces, g);
+        } else {
+          std::array<Lanes, (2 * at(size) + lane_count - 1) / lane_count> terms;
+          multiply_block(size, &h_[h_first_[i]], &d[first], [&](int k, int count, Lanes rows) {
+            terms[at(k / lane_count)] = rows - load_first(&b_[first + at(k)], count);
+          });
+          const auto start = [&](int k) {
+            const Lanes& of = terms[at(2 * k / lane_count)];
+            return Pair{of[2 * k % lane_count], of[2 * k % lane_count + 1]};
+          };
+          add_vertex_forces(size, i, forces, start, &g[first]);
+        }
+      });
     }
   });
 }
