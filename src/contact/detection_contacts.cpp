@@ -42,10 +42,9 @@ struct Detection::Vertices {
   /// One of their edges, where it faces the line: they run against each other, both with their block on the left.
   struct Facing {
     LaneCondition faces;
-    Lanes
-        common;  ///< m of the line that the vertex has of what both have in common; 0 where they do not face each other
-    Lanes long_beside;         ///< m
-    Lanes length;              ///< m, of the edge of the vertex
+    Lanes common;       ///< m of the line that the vertex has of what both share; 0 where it does not face
+    Lanes long_beside;  ///< m
+    Lanes length;       ///< m, of the edge of the vertex
     Beside<Lanes> edge, line;  ///< at the end that the vertex is nearer to
   };
 };
@@ -74,8 +73,7 @@ void Detection::for_facing(const Vertices& vertices, const Lanes (&line)[lane_co
     const Lanes to = along + ahead * sign * length;
     const Lanes of_vertex =
         divided ? shared(to, long_beside, edge, of_line) : 0.5 * shared.common(to, long_beside);
-    of_edge(typename Vertices::Facing{faces, where(faces, of_vertex, Lanes{}), long_beside, length, edge,
-                                      of_line});
+    of_edge(Vertices::Facing{faces, where(faces, of_vertex, Lanes{}), long_beside, length, edge, of_line});
   };
   const Beside<Lanes> here = look_at(lines);
   look_at_edge(vertex[2], vertex[3], vertex[6], broadcast(1.0), look_at(vertices.next), at_end(here));
