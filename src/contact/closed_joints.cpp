@@ -47,17 +47,21 @@ Vec2 Detection::beyond_joint(const Surface& surface, int corner, bool begins, in
   const bool touches = gap <= tolerances_.end_zone && gap >= -tolerances_.depth_limit,
              reaches = beyond >= -tolerances_.corner_depth && beyond < other.length;
   if (!touches || !reaches) return {};
+  // A corner that is deep behind the edge and nearer to another has not come in by this one, but gone past its end.
+  if (gap < -tolerances_.corner_depth && to_nearest_other_edge(surface, corner, edge) < -gap) return {};
   if (beyond > tolerances_.corner_depth) return (begins ? 1.0 : -1.0) * other.tangent;
   return begins ? corners_[at(surface.next[at(edge)])].tangent : -1.0 * other.before;
 }
 
 /// Whether a vertex is over the face of the line's block, and that between it and an edge of a third one: the thin end of a block lets nothing
-/// through to the joint below.
+/// through to the joint below, however thin where the vertex is over that as well.
 bool Detection::lies_behind(const Rival& rival, const Candidate& candidate, int edge) const {
   const Corner& other = corners_[at(edge)];
-  const double behind = dot(other.normal(), corners_[at(candidate.vertex)].position - other.position);
+  const Vec2 from_start = corners_[at(candidate.vertex)].position - other.position;
+  const bool is_over_both = inside(dot(other.tangent, from_start), other.length) > 0.0;
   return inside(rival.along, corners_[at(candidate.edge)].length) >= 0.0 &&
-         behind > std::max(0.0, rival.gap) + tolerances_.corner_depth;
+         dot(other.normal(), from_start) >
+             std::max(0.0, rival.gap) + (is_over_both ? tolerances_.rounding : tolerances_.corner_depth);
 }
 
 Detection::Third Detection::third(const Surface& surface, const BlockPair& pair, const Rival& rival,

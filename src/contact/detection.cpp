@@ -189,7 +189,10 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
     if (margin > 0.0) margin = std::min(margin, outcome_margin(surface, same, outcome, candidates));
     for (Rival* r : same) {
       r->corners = 0;
-      if (r != outcome.winner) r->candidate = -1;
+      // Corners that meet only because their blocks may move far in the step: lines as good as one hold both.
+      const bool is_apart = outcome.parallel && !outcome.left_out &&
+                            inside(r->along, line(*r, candidates).length) > tolerances_.end_zone;
+      if (r != outcome.winner && !is_apart) r->candidate = -1;
     }
   }
   pair.wait = std::max(0, pair.wait - 1);
@@ -297,22 +300,21 @@ void Detection::find(const Surface& surface, const Motion& motion, CandidateList
   });
 }
 
-/// m, from a vertex to the nearest edge of the block of `edge` but this and `except`, without a reflex vertex between the two.
-double Detection::to_nearest_other_edge(const Surface& surface, const Candidate& candidate,
-                                        int except) const {
-  const Vec2 vertex = corners_[at(candidate.vertex)].position;
+/// m, from a vertex to the nearest edge of the block of edge `of` but this and `except`, without a reflex vertex between the two.
+double Detection::to_nearest_other_edge(const Surface& surface, int vertex, int of, int except) const {
+  const Vec2 from = corners_[at(vertex)].position;
   double nearest = HUGE_VAL;
   const auto look_at = [&](int edge) {
     if (edge == except) return;
     const Corner& other = corners_[at(edge)];
-    const Vec2 from_start = vertex - other.position;
+    const Vec2 from_start = from - other.position;
     const double along = std::clamp(dot(other.tangent, from_start), 0.0, other.length);
     nearest = std::min(nearest, squared_norm(from_start - along * other.tangent));
   };
-  int edge = surface.next[at(candidate.edge)];
-  for (; edge != candidate.edge && !surface.is_reflex(at(edge)); edge = surface.next[at(edge)]) look_at(edge);
-  if (edge != candidate.edge) {
-    for (edge = candidate.edge; !surface.is_reflex(at(edge));) look_at(edge = surface.previous[at(edge)]);
+  int edge = surface.next[at(of)];
+  for (; edge != of && !surface.is_reflex(at(edge)); edge = surface.next[at(edge)]) look_at(edge);
+  if (edge != of) {
+    for (edge = of; !surface.is_reflex(at(edge));) look_at(edge = surface.previous[at(edge)]);
   }
   return std::sqrt(nearest);
 }
@@ -329,7 +331,7 @@ bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival
     const Vec2 inwards = line_inwards(rival, c);
     if (dot(side, inwards) > 0.0 && std::abs(cross(side, inwards)) < Tolerances::sine_facing) return false;
   }
-  return to_nearest_other_edge(surface, c, except) < -rival.gap;
+  return to_nearest_other_edge(surface, c.vertex, c.edge, except) < -rival.gap;
 }
 
 }  // namespace keyblock::contact

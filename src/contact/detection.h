@@ -132,7 +132,7 @@ class Detection {
   [[nodiscard]] bool is_steady(const Surface& surface, const BlockPair& pair) const;
   // m, from the first vertex of block a to that of block b.
   [[nodiscard]] static Vec2 apart(const Surface& surface, const BlockPair& pair);
-  [[nodiscard]] double to_nearest_other_edge(const Surface& surface, const Candidate& candidate,
+  [[nodiscard]] double to_nearest_other_edge(const Surface& surface, int vertex, int of,
                                              int except = -1) const;
   [[nodiscard]] bool has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                            const CandidateList& candidates, int except = -1) const;

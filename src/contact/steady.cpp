@@ -86,7 +86,7 @@ double Detection::depth_margin(const Surface& surface, const Candidate& candidat
   if (too_deep < 0.0) return -too_deep / gap_rate;
   // The vertex and the other edges move by no more than the blocks do.
   const double length = corners_[at(candidate.edge)].length,
-               farther = to_nearest_other_edge(surface, candidate) + rival.gap;
+               farther = to_nearest_other_edge(surface, candidate.vertex, candidate.edge) + rival.gap;
   const double margin = std::min({too_deep / gap_rate, std::abs(farther) / (1.0 + gap_rate),
                                   std::abs(rival.along - 0.5 * length) / rate(length, length)});
   return std::min(margin, facing_margin(surface, candidate));

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <numbers>
 #include <string>
@@ -6,7 +7,9 @@
 
 #include "core/parallel.h"
 #include "dynamics/step.h"
+#include "overlap/overlap.h"
 #include "simulation/build_model.h"
+#include "simulation/damage.h"
 #include "simulation/run.h"
 
 namespace keyblock::simulation {
@@ -127,5 +130,18 @@ struct Simulator {
   double initial_energy = 0.0;
   long unconverged = 0, retried = 0, iterations = 0;
 };
+
+/// m, the largest overlap there is in 0.15 s.
+inline double largest_overlap_of(const Scene& scene, double dt) {
+  Simulator s(scene);
+  double largest = 0.0;
+  for (int k = 0; k < 30; ++k) {
+    s.run(0.005, dt);
+    std::vector<Polygon> blocks;
+    for (std::size_t b = 0; b < s.model.blocks.size(); ++b) blocks.push_back(deformed_polygon(s.model, b));
+    largest = std::max(largest, overlap::largest_overlap(blocks).depth);
+  }
+  return largest;
+}
 
 }  // namespace keyblock::simulation
