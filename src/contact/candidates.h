@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/surface.h"
@@ -79,6 +80,17 @@ struct CandidateList {
   /// Of the candidates of a pair of blocks.
   [[nodiscard]] std::size_t end_of_pair(std::size_t p) const {
     return p + 1 < block_pairs.size() ? static_cast<std::size_t>(block_pairs[p + 1].first) : pairs.size();
+  }
+
+  /// The candidates of a vertex among those of pair of blocks p.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> of_vertex(std::size_t p, int vertex) const {
+    const std::size_t first = static_cast<std::size_t>(block_pairs[p].first);
+    const auto of_pair = std::span(pairs).subspan(first, end_of_pair(p) - first);
+    const auto place = [&](auto candidate) {
+      return first + static_cast<std::size_t>(candidate - of_pair.begin());
+    };
+    return {place(std::ranges::lower_bound(of_pair, vertex, {}, &Candidate::vertex)),
+            place(std::ranges::upper_bound(of_pair, vertex, {}, &Candidate::vertex))};
   }
 
   /// Into block_pairs, ascending.

@@ -7,31 +7,34 @@
 
 namespace keyblock::contact {
 
+/// Calls with every candidate of a vertex and a third block.
+template <typename Call>
+void Detection::for_third_candidates(const CandidateList& candidates, const BlockPair& pair, int vertex,
+                                     int block, const Call& call) const {
+  for (const int p : candidates.pairs_of(block)) {
+    if (candidates.block_pairs[at(p)].first == pair.first) continue;
+    const auto [first, last] = candidates.of_vertex(at(p), vertex);
+    for (std::size_t k = first; k < last; ++k) call(k);
+  }
+}
+
 /// Calls with every edge of a third block that the vertex is near to: near enough for it to be a candidate, whenever the block was looked
 /// at. Or that it presses on.
 template <typename Call>
 void Detection::for_third_edges(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
                                 const Call& call) const {
-  for (const int p : candidates.pairs_of(block)) {
-    const BlockPair& other = candidates.block_pairs[at(p)];
-    if (other.first == pair.first) continue;
-    const double near =
-        tolerances_.activation + motion_.reach[at(other.block_a)] + motion_.reach[at(other.block_b)];
-    const auto begin = candidates.pairs.begin() + other.first,
-               end = candidates.pairs.begin() + static_cast<std::ptrdiff_t>(candidates.end_of_pair(at(p)));
-    auto c = std::partition_point(begin, end, [&](const Candidate& known) { return known.vertex < vertex; });
-    for (; c != end && c->vertex == vertex; ++c) {
-      const Corner& edge = corners_[at(c->edge)];
-      const Vec2 from_start = corners_[at(vertex)].position - edge.position;
-      const double along = std::clamp(dot(edge.tangent, from_start), 0.0, edge.length);
-      const auto presses = [&] {
-        const auto candidate = static_cast<std::size_t>(c - candidates.pairs.begin());
-        const int memory = CandidateList::Finder(candidates, static_cast<int>(candidate))(candidate);
-        return memory >= 0 && candidates.memory[at(memory)].holds();
-      };
-      if (norm(from_start - along * edge.tangent) <= near || presses()) call(c->edge);
-    }
-  }
+  for_third_candidates(candidates, pair, vertex, block, [&](std::size_t k) {
+    const Candidate& c = candidates.pairs[k];
+    const Corner& edge = corners_[at(c.edge)];
+    const Vec2 from_start = corners_[at(vertex)].position - edge.position;
+    const double along = std::clamp(dot(edge.tangent, from_start), 0.0, edge.length),
+                 near = tolerances_.activation + motion_.reach[at(c.block_a)] + motion_.reach[at(c.block_b)];
+    const auto presses = [&] {
+      const int memory = CandidateList::Finder(candidates, static_cast<int>(k))(k);
+      return memory >= 0 && candidates.memory[at(memory)].holds();
+    };
+    if (norm(from_start - along * edge.tangent) <= near || presses()) call(c.edge);
+  });
 }
 
 /// Where the surface goes on at a corner one of whose edges, that beginning there or that ending there, lies against an edge of another
@@ -64,20 +67,71 @@ bool Detection::lies_behind(const Rival& rival, const Candidate& candidate, int 
              std::max(0.0, rival.gap) + (is_over_both ? tolerances_.rounding : tolerances_.corner_depth);
 }
 
+/// Whether a vertex that is past the end of a face is over an edge of another block that goes on with it.
+bool Detection::goes_on(const Surface& surface, int vertex, int face, int edge) const {
+  const Corner &from = corners_[at(face)], &to = corners_[at(edge)];
+  const Vec2 here = corners_[at(vertex)].position;
+  const double along = dot(from.tangent, here - from.position);
+  if (inside(along, from.length) >= 0.0 || inside(dot(to.tangent, here - to.position), to.length) < 0.0)
+    return false;
+  if (dot(from.tangent, to.tangent) <= 0.0 ||
+      std::abs(cross(from.tangent, to.tangent)) > Tolerances::sine_facing)
+    return false;
+  const bool at_start = along < 0.0;
+  const Vec2 joint = at_start ? corners_[at(surface.next[at(edge)])].position - from.position
+                              : to.position - corners_[at(surface.next[at(face)])].position;
+  return std::abs(dot(from.normal(), joint)) <= tolerances_.corner_depth &&
+         std::abs(dot(from.tangent, joint)) <= tolerances_.end_zone;
+}
+
+/// A vertex that a face holds and that slides over a joint to the next block comes to be deep behind the face of that, and nearer to its
+/// sides, but it has come in by the face. That takes over what held the vertex where it has left the end zone of the one before; sides do
+/// not count. False where the rival, which had no contact, is such a side. rivals: of the pair.
+bool Detection::take_over_joint(const Surface& surface, const CandidateList& candidates,
+                                const BlockPair& pair, std::span<const Rival> rivals, Rival& rival) const {
+  const Candidate& c = candidates.pairs[at(rival.candidate)];
+  const auto has_left = [&](const Candidate& held) {
+    const Corner& face = corners_[at(held.edge)];
+    const double zone =
+                     tolerances_.end_zone + motion_.reach[at(held.block_a)] + motion_.reach[at(held.block_b)],
+                 along = dot(face.tangent, corners_[at(held.vertex)].position - face.position);
+    return -inside(along, face.length) > std::min(zone, 0.5 * face.length);
+  };
+  bool counts = true;
+  for_third_candidates(candidates, pair, c.vertex, c.block_a, [&](std::size_t k) {
+    const Candidate& held = candidates.pairs[k];
+    const int memory = CandidateList::Finder(candidates, static_cast<int>(k))(k);
+    if (memory < 0 || candidates.memory[at(memory)].bonded ||
+        candidates.memory[at(memory)].normal_force <= 0.0)
+      return;
+    if (goes_on(surface, c.vertex, held.edge, c.edge)) {
+      if (has_left(held)) rival.memory = memory;
+      return;
+    }
+    counts = counts && std::ranges::none_of(rivals, [&](const Rival& r) {
+               if (r.candidate < 0) return false;
+               const Candidate& other = candidates.pairs[at(r.candidate)];
+               return other.vertex == c.vertex && goes_on(surface, c.vertex, held.edge, other.edge);
+             });
+  });
+  return counts;
+}
+
 Detection::Third Detection::third(const Surface& surface, const BlockPair& pair, const Rival& rival,
                                   const CandidateList& candidates) const {
   const Candidate& c = candidates.pairs[at(rival.candidate)];
   const bool begins = rival.first_half;
   const int end = begins ? c.edge : surface.next[at(c.edge)];
   const Vec2 normal = corners_[at(c.edge)].normal();
+  const bool is_face = faces(rival, candidates);  // which two blocks share, whatever third one it goes on to
   Third found;
   const auto look_at = [&](int edge) {
-    if (squared_norm(beyond_joint(surface, end, begins, edge)) > 0.0) found.in_the_way = closed;
+    if (!is_face && squared_norm(beyond_joint(surface, end, begins, edge)) > 0.0) found.in_the_way = closed;
     const Vec2 beyond = beyond_joint(surface, end, !begins, edge);
     const bool is_in_front = dot(normal, beyond) > Tolerances::sine_inside;
     found.is_in_front = found.is_in_front || is_in_front;
     found.is_beside = found.is_beside || squared_norm(beyond) > 0.0;
-    if (lies_behind(rival, c, edge)) return;
+    if (is_face || lies_behind(rival, c, edge)) return;
     for (const bool side : {true, false}) {
       if (dot(normal, beyond_joint(surface, c.vertex, side, edge)) >= -Tolerances::sine_inside) continue;
       const double into = is_in_front ? std::abs(dot(normal, corners_[at(edge)].normal())) : closed;

@@ -120,6 +120,10 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
     winner = line_passed_last(surface, rivals, candidates);
     // Corners that press on each other may part in the step, where one of them meets a third block.
     if (winner == nullptr && holder != nullptr && force(*holder) > 0.0) winner = holder;
+    // Nor does one leave a face that holds it, and that it is over, by a line that it has long passed without having been held there.
+    if (winner != nullptr && holder != nullptr && winner->gap <= -tolerances_.corner_depth &&
+        over(*holder) >= 0.0 && force(*holder) > 0.0 && has_come_in_here(*holder, candidates))
+      winner = holder;
   }
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.

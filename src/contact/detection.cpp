@@ -170,6 +170,15 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   const bool tries = pair.wait == 0 && end - at(pair.first) <= most_candidates;
   double margin = tries ? candidate_margin(surface, candidates, pair, end, rivals, reach_share * reach) : 0.0;
   for (Rival& r : rivals) {
+    if (r.memory >= 0 || r.disputed || r.gap >= -tolerances_.corner_depth) continue;
+    const bool counts = take_over_joint(surface, candidates, pair, rivals, r);
+    if (!counts || r.memory >= 0) margin = 0.0;  // hangs on third blocks
+    if (counts) continue;
+    r.candidate = -1;
+    r.corners = 0;
+  }
+  for (Rival& r : rivals) {
+    if (r.candidate < 0) continue;
     if (!r.is_beyond && !has_come_in_elsewhere(surface, r, candidates)) continue;
     margin = 0.0;  // hangs on third blocks
     if (!is_out(surface, pair, r, candidates)) continue;
@@ -325,7 +334,7 @@ double Detection::to_nearest_other_edge(const Surface& surface, int vertex, int 
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                       const CandidateList& candidates, int except) const {
   if (rival.gap >= -deep(rival)) return false;
-  if (rival.memory >= 0 && candidates.memory[at(rival.memory)].offset <= 0.0) return false;
+  if (has_come_in_here(rival, candidates)) return false;
   const Candidate& c = candidates.pairs[at(rival.candidate)];
   for (const Vec2 side : sides(c)) {
     const Vec2 inwards = line_inwards(rival, c);

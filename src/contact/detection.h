@@ -143,6 +143,11 @@ class Detection {
   [[nodiscard]] double deep(const Rival& rival) const {
     return rival.disputed ? tolerances_.end_zone : tolerances_.corner_depth;
   }
+  /// Whether the face has held the vertex since it was no deeper behind it than that.
+  [[nodiscard]] bool has_come_in_here(const Rival& rival, const CandidateList& candidates) const {
+    return rival.memory >= 0 &&
+           candidates.memory[static_cast<std::size_t>(rival.memory)].offset <= tolerances_.end_zone;
+  }
   /// Directions of the edges of the vertex, away from it.
   [[nodiscard]] std::array<Vec2, 2> sides(const Candidate& candidate) const {
     const Corner& vertex = corners_[static_cast<std::size_t>(candidate.vertex)];
@@ -177,8 +182,14 @@ class Detection {
   [[nodiscard]] Third third(const Surface& surface, const BlockPair& pair, const Rival& rival,
                             const CandidateList& candidates) const;
   template <typename Call>
+  void for_third_candidates(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
+                            const Call& call) const;
+  template <typename Call>
   void for_third_edges(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
                        const Call& call) const;
+  [[nodiscard]] bool goes_on(const Surface& surface, int vertex, int face, int edge) const;
+  bool take_over_joint(const Surface& surface, const CandidateList& candidates, const BlockPair& pair,
+                       std::span<const Rival> rivals, Rival& rival) const;
   [[nodiscard]] bool lies_behind(const Rival& rival, const Candidate& candidate, int edge) const;
   [[nodiscard]] Vec2 beyond_joint(const Surface& surface, int corner, bool begins, int edge) const;
   [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,

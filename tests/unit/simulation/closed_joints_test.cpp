@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene.h"
@@ -145,27 +146,32 @@ TEST(ClosedJoint, ThinEndsKeepOutWhatStrikesTheirVeryTip) {
 }
 
 // A tip that has slid along a face past its end, into the mouth of a joint that has room for it, lies behind the face beyond, but has not
-// come in by that.
+// come in by that; and its own face, at 4° or 5° to those of both blocks, rests on the corner, also where the tip comes to lie on the other
+// block.
 TEST(ClosedJoint, HoldsTipsInItsMouth) {
-  for (const double open : {0.002, 0.003}) {
-    for (const double past : {0.0005, 0.001, 0.0015, 0.002, 0.0025}) {
-      for (const double gap : {0.00005, 0.0003}) {
-        for (const double sinking : {2.0, 6.0, 10.0}) {  // degrees, of its way against its own face
-          for (const double speed : {1.0, 2.0, 4.0}) {
-            Scene scene(6e9, 30.0);
-            const Vec2 down = direction(-120.0);
-            const Vec2 corner{-open / std::sin(60.0 * degree), 0.0};
-            scene.add({{0.0, 0.0}, 2.0 * down, 2.0 * down + Vec2{2.0, 0.0}, {2.0, 0.0}}, true);
-            scene.add({corner, corner + Vec2{-1.0, 0.0}, corner + 2.0 * down + Vec2{-1.0, 0.0},
-                       corner + 2.0 * down},
-                      true);
-            scene.rectangle({10.0, 10.0}, 0.9, 0.9);  // for the lengths of contact
-            const Vec2 tip = gap * direction(94.0) - past * direction(4.0);
-            const int wedge = scene.add({tip, tip + 0.5 * direction(4.0), tip + 0.5 * direction(32.0)});
-            scene.setup.properties[static_cast<std::size_t>(wedge)].velocity =
-                -speed * direction(4.0 + sinking);
-            EXPECT_LT(largest_overlap_of(scene, 0.001), 0.002)
-                << open << " " << past << " " << gap << " " << sinking << " " << speed;
+  for (const Vec2 open : {Vec2{-0.0023, 0.0}, Vec2{-0.0035, 0.0}, Vec2{-0.002, -0.0018}}) {
+    for (const double past : {0.0005, 0.001, 0.0015, 0.0025, 0.004}) {
+      for (const double gap : {0.00005, 0.0003, 0.003}) {
+        for (const double own : {4.0, 4.9}) {               // degrees, of its face
+          for (const double sinking : {2.0, 6.0, 120.0}) {  // degrees, of its way against that
+            for (const double speed : {2.0, 4.0}) {
+              Scene scene(6e9, 30.0);
+              const Vec2 down = direction(open.y < 0.0 ? -80.0 : -120.0);
+              const Vec2 corner = open;
+              scene.add({{0.0, 0.0}, 2.0 * down, 2.0 * down + Vec2{2.0, 0.0}, {2.0, 0.0}}, true);
+              scene.add({corner, corner + Vec2{-1.0, 0.0}, corner + 2.0 * down + Vec2{-1.0, 0.0},
+                         corner + 2.0 * down},
+                        true);
+              scene.rectangle({10.0, 10.0}, 0.9, 0.9);  // for the lengths of contact
+              const Vec2 tip = gap * direction(own + 90.0) - past * direction(own);
+              const int wedge =
+                  scene.add({tip, tip + 0.5 * direction(own), tip + 0.5 * direction(own + 28.0)});
+              scene.setup.properties[static_cast<std::size_t>(wedge)].velocity =
+                  -speed * direction(own + sinking);
+              EXPECT_LT(largest_overlap_of(scene, 0.002), 0.002)
+                  << open.x << " " << open.y << " " << past << " " << gap << " " << own << " " << sinking
+                  << " " << speed;
+            }
           }
         }
       }
@@ -200,6 +206,38 @@ TEST(ClosedJoint, KeepsOutTipsThatSoftJointsLetIn) {
       }
     }
   }
+}
+
+// Joints of 1 GPa/m give way by more than the zone in which corners compete: a tip stays with the face that has held it, and where it slides
+// over the joint the next face takes over what held it. The blow takes less than 8 mm. Not so in four of 216 scenes (23 to 35 mm), in which
+// the tip slides to and fro over the joint (decision 0009).
+TEST(ClosedJoint, KeepsOutTipsThatVerySoftJointsLetIn) {
+  int deep = 0;
+  double deepest = 0.0;
+  for (const double open : {0.0, 0.0007}) {
+    for (const double step : {0.0007, 0.0003}) {
+      for (const double speed : {0.6, 2.0}) {
+        for (const double leaning : {70.0, 95.0, 115.0}) {
+          for (const double way : {77.0, 103.0, 120.0}) {
+            for (const double beside : {-0.003, -0.001, 0.002}) {
+              const double depth = overlap_at_flush_joint({.young = 4e9,
+                                                           .stiffness = 1e9,
+                                                           .step = step,
+                                                           .speed = speed,
+                                                           .leaning = leaning,
+                                                           .way = way,
+                                                           .aim = {beside, 0.0}},
+                                                          open);
+              deep += depth > 0.008 ? 1 : 0;
+              deepest = std::max(deepest, depth);
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_LE(deep, 4);
+  EXPECT_LT(deepest, 0.04);
 }
 
 }  // namespace
