@@ -20,10 +20,6 @@ struct Strike {
   Vec2 aim{};              // of its tip
 };
 
-Vec2 direction(double angle) {
-  return {std::cos(angle * degree), std::sin(angle * degree)};
-}
-
 /// Adds the wedge, block b, with its tip 30 mm off.
 void add_wedge(Scene& scene, const Strike& strike) {
   const Vec2 tip = strike.aim + 0.03 * direction(strike.way);

@@ -23,10 +23,6 @@ class Chance {
   std::mt19937 engine_;
 };
 
-Vec2 direction(double angle) {
-  return {std::cos(angle * degree), std::sin(angle * degree)};
-}
-
 /// Where a wedge comes from. Angles in degrees.
 struct Wedge {
   double opening, leaning;  ///< leaning: of its bisector

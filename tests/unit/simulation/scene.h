@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -16,6 +17,11 @@ namespace keyblock::simulation {
 
 constexpr double g = 9.81;                           // m/s²
 constexpr double degree = std::numbers::pi / 180.0;  // rad
+
+/// Of a line at so many degrees from the x axis.
+inline Vec2 direction(double angle) {
+  return {std::cos(angle * degree), std::sin(angle * degree)};
+}
 
 /// A small model of explicit blocks, for tests of mechanics and contact.
 struct Scene {
