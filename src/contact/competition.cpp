@@ -8,8 +8,8 @@
 
 namespace keyblock::contact {
 
-bool Detection::lies_outside(const Surface& surface, const Rival& rival,
-                             const CandidateList& candidates) const {
+bool Detection::lies_outside(const Surface& surface, const Rival& rival, const CandidateList& candidates,
+                             std::span<const Vec2> ahead) const {
   const Candidate& c = candidates.pairs[at(rival.candidate)];
   const auto outside = [&](const auto& place) {
     const Vec2 along = place(surface.next[at(c.edge)]) - place(c.edge), corner = place(c.vertex);
@@ -20,41 +20,42 @@ bool Detection::lies_outside(const Surface& surface, const Rival& rival,
     return is_outside(surface.previous[at(c.vertex)]) && is_outside(surface.next[at(c.vertex)]);
   };
   return outside([&](int v) { return surface.position[at(v)]; }) ||
-         outside([&](int v) { return surface.position[at(v)] + motion_.ahead[at(v)]; });
+         outside([&](int v) { return surface.position[at(v)] + ahead[at(v)]; });
 }
 
-double Detection::gap_ahead(const Surface& surface, const Rival& rival,
-                            const CandidateList& candidates) const {
-  if (motion_.ahead.empty()) return rival.gap;
+double Detection::gap_ahead(const Surface& surface, const Rival& rival, const CandidateList& candidates,
+                            std::span<const Vec2> ahead) const {
+  if (ahead.empty()) return rival.gap;
   const Candidate& c = candidates.pairs[at(rival.candidate)];
   const Corner& edge = corners_[at(c.edge)];
-  const Vec2 r =
-      motion_.ahead[at(c.vertex)] -
-      lerp(motion_.ahead[at(c.edge)], motion_.ahead[at(surface.next[at(c.edge)])], rival.along / edge.length);
+  const Vec2 r = ahead[at(c.vertex)] -
+                 lerp(ahead[at(c.edge)], ahead[at(surface.next[at(c.edge)])], rival.along / edge.length);
   return rival.gap + dot(edge.normal(), r);
 }
 
-double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates) const {
+double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates,
+                          std::span<const Vec2> ahead) const {
   const double depth = tolerances_.corner_depth;
   if (rival.gap <= -depth) return 0.0;
-  const double ahead = gap_ahead(surface, rival, candidates);
-  return ahead < -depth ? (rival.gap + depth) / (rival.gap - ahead) : HUGE_VAL;
+  const double end = gap_ahead(surface, rival, candidates, ahead);
+  return end < -depth ? (rival.gap + depth) / (rival.gap - end) : HUGE_VAL;
 }
 
 /// Of two corners of which each has passed a line of the other, the one is in the other when it has passed the last: a corner that slides
 /// along a face and over the joint at its end passes the side of the next block, but not its face. Null: there is no telling.
 Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<Rival* const> all,
-                                              const CandidateList& candidates) const {
+                                              const CandidateList& candidates,
+                                              std::span<const Vec2> ahead) const {
   std::array<Rival*, 4> outside{};  // the others are there for turns that blocks might make
   std::size_t count = 0;
   for (Rival* r : all) {
-    if (!motion_.ahead.empty() && lies_outside(surface, *r, candidates)) outside[count++] = r;
+    if (!ahead.empty() && lies_outside(surface, *r, candidates, ahead)) outside[count++] = r;
   }
   const std::span<Rival* const> rivals = count > 0 ? std::span<Rival* const>(outside).first(count) : all;
   std::array<double, 4> when{};
   std::size_t last = 0, farthest = 0;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    when[i] = passing(surface, *rivals[i], candidates);
+    when[i] = passing(surface, *rivals[i], candidates, ahead);
     if (rivals[i]->gap > rivals[farthest]->gap) farthest = i;
     if (when[i] > when[last] || (when[i] == when[last] && rivals[i]->gap > rivals[last]->gap)) last = i;
   }
@@ -71,7 +72,7 @@ Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<
   // One that comes to lie just inside of all lines gets out the shortest way from there: a corner that slides along a face is no deeper
   // behind the side of the next block than behind that face, though that side is farther away now.
   std::array<double, 4> ends{};
-  for (std::size_t i = 0; i < rivals.size(); ++i) ends[i] = gap_ahead(surface, *rivals[i], candidates);
+  for (std::size_t i = 0; i < rivals.size(); ++i) ends[i] = gap_ahead(surface, *rivals[i], candidates, ahead);
   const auto nearest = static_cast<std::size_t>(
       std::max_element(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(rivals.size())) -
       ends.begin());
@@ -117,7 +118,10 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
       winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
     }
   } else {
-    winner = line_passed_last(surface, rivals, candidates);
+    winner = line_passed_last(surface, rivals, candidates, motion_.ahead);
+    // Corners that were held in the first look at the step seem to go nowhere in the next.
+    if (winner == nullptr && !motion_.ahead_at_first.empty())
+      winner = line_passed_last(surface, rivals, candidates, motion_.ahead_at_first);
     // Corners that press on each other may part in the step, where one of them meets a third block.
     if (winner == nullptr && holder != nullptr && force(*holder) > 0.0) winner = holder;
     // Nor does one leave a face that holds it, and that it is over, by a line that it has long passed without having been held there.

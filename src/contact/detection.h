@@ -84,6 +84,7 @@ class Detection {
     /// before; and, per block, how far from where the first one goes at most. Empty: nowhere.
     std::span<const Vec2> ahead = {};
     std::span<const double> way_ahead = {};
+    std::span<const Vec2> ahead_at_first = {};  ///< `ahead` of the first look at the step; empty: this is it
   };
   /// Contacts of the step in the order of the candidates.
   void find(const Surface& surface, const Motion& motion, CandidateList& candidates, ThreadTeam& team,
@@ -193,16 +194,16 @@ class Detection {
   [[nodiscard]] bool lies_behind(const Rival& rival, const Candidate& candidate, int edge) const;
   [[nodiscard]] Vec2 beyond_joint(const Surface& surface, int corner, bool begins, int edge) const;
   [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,
-                                        const CandidateList& candidates) const;
+                                        const CandidateList& candidates, std::span<const Vec2> ahead) const;
   // Whether both edges of the vertex lie outside the line, now or as the corners go.
-  [[nodiscard]] bool lies_outside(const Surface& surface, const Rival& rival,
-                                  const CandidateList& candidates) const;
+  [[nodiscard]] bool lies_outside(const Surface& surface, const Rival& rival, const CandidateList& candidates,
+                                  std::span<const Vec2> ahead) const;
   // m, as the corners go.
-  [[nodiscard]] double gap_ahead(const Surface& surface, const Rival& rival,
-                                 const CandidateList& candidates) const;
+  [[nodiscard]] double gap_ahead(const Surface& surface, const Rival& rival, const CandidateList& candidates,
+                                 std::span<const Vec2> ahead) const;
   // When, as a share of the step, the vertex will be deeper than Tolerances::corner_depth; 0: it is; HUGE_VAL: not in this step.
-  [[nodiscard]] double passing(const Surface& surface, const Rival& rival,
-                               const CandidateList& candidates) const;
+  [[nodiscard]] double passing(const Surface& surface, const Rival& rival, const CandidateList& candidates,
+                               std::span<const Vec2> ahead) const;
   // m by which both blocks of a pair together may move before its contacts are others; 0: not known. `reach`: m, what their reaches
   // add up to at most.
   [[nodiscard]] double candidate_margin(const Surface& surface, const CandidateList& candidates,

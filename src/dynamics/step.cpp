@@ -30,6 +30,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       reach_(model.blocks.size(), 0.0),
       turn_(model.blocks.size(), 0.0),
       way_(model.blocks.size(), 0.0),
+      is_far_(model.blocks.size(), 0),
       ahead_(model.surface.position.size()),
       way_ahead_(model.blocks.size(), 0.0),
       increment_(model.coefficients, 0.0),
@@ -196,6 +197,7 @@ bool Stepper::detect(State& state, bool is_static) {
   if (!is_static) {
     motion.ahead = ahead_;
     motion.way_ahead = way_ahead_;
+    motion.ahead_at_first = ahead_at_first_;
   }
   detection_.find(model_.surface, motion, state.contacts, team_, contacts_);
   if (changed || !knows_pairs_) find_pairs(state);
@@ -217,6 +219,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   drive.rule = rule_;
   prescribe(state, drive);
   predict_reach(state, drive);
+  ahead_at_first_.clear();
   constexpr int looks = 4, most_turns = 4;
   bool must_be_direct = false, same_contacts = false;
   int turns = 0;  // times the step was taken again because blocks turn

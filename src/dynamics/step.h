@@ -189,7 +189,9 @@ class Stepper {
   bool knows_pairs_ = false;            ///< of these candidates and this pattern
   // Detection::Motion
   std::vector<double> reach_, turn_, way_;  ///< m and rad, per block
+  std::vector<std::uint8_t> is_far_;        ///< per block: it went or turned farther than foreseen
   std::vector<Vec2> ahead_;                 ///< m, per vertex
+  std::vector<Vec2> ahead_at_first_;        ///< the same in the first look at the step; empty: this is it
   std::vector<double> way_ahead_;           ///< m, per block
   std::vector<double> increment_;
   IncrementHistory history_;      ///< of dynamic steps

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "contact/edge_curve.h"
 #include "core/index.h"
@@ -172,10 +173,14 @@ double Stepper::keep_turned_shear(State& state) {
 /// it went.
 bool Stepper::moved_too_far() {
   std::atomic<bool> any = false;
+  const std::span<const Vec2> went = open_close_.displacement();
+  const auto vertices_of = [&](std::size_t b) {
+    const auto first = model_.surface.block_begin.begin() + static_cast<std::ptrdiff_t>(b);
+    return std::pair(at(first[0]), at(first[1]));
+  };
   for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
-    const std::size_t begin = at(model_.surface.block_begin[b]), end = at(model_.surface.block_begin[b + 1]);
-    const std::span<const Vec2> went = open_close_.displacement();
+    const auto [begin, end] = vertices_of(b);
     double moved = 0.0;
     for (std::size_t v = begin; v < end; ++v) moved = std::max(moved, squared_norm(went[v]));
     moved = std::sqrt(moved);
@@ -186,8 +191,14 @@ bool Stepper::moved_too_far() {
       turn_[b] = 1.5 * std::abs(spin_[b]);
       reach_[b] = std::max(reach_[b], turn_[b] * block.radius);
     }
-    if (!is_far && !is_turned) return;
-    any = true;
+    is_far_[b] = is_far || is_turned;
+    if (is_far_[b] != 0) any = true;
+  });
+  if (!any) return false;
+  if (ahead_at_first_.empty()) ahead_at_first_ = ahead_;
+  for_blocks([&](std::size_t b) {
+    if (is_far_[b] == 0) return;
+    const auto [begin, end] = vertices_of(b);
     double against_first = 0.0;
     for (std::size_t v = begin; v < end; ++v) {
       ahead_[v] = went[v];
@@ -195,7 +206,7 @@ bool Stepper::moved_too_far() {
     }
     way_ahead_[b] = std::sqrt(against_first);
   });
-  return any;
+  return true;
 }
 
 }  // namespace keyblock::dynamics
