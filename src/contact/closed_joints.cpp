@@ -1,4 +1,4 @@
-// Lines that part no corners, as third blocks are in the way.
+// What third blocks are to the contacts of two: in the way of lines, which part no corners then, or the face that a vertex has come in by.
 #include <algorithm>
 #include <cmath>
 
@@ -123,7 +123,8 @@ Detection::Third Detection::third(const Surface& surface, const BlockPair& pair,
   const bool begins = rival.first_half;
   const int end = begins ? c.edge : surface.next[at(c.edge)];
   const Vec2 normal = corners_[at(c.edge)].normal();
-  const bool is_face = faces(rival, candidates);  // which two blocks share, whatever third one it goes on to
+  // Along an edge of the vertex the line is the face that two blocks share, whatever third one that goes on to.
+  const bool is_face = faces(rival, candidates);
   Third found;
   const auto look_at = [&](int edge) {
     if (!is_face && squared_norm(beyond_joint(surface, end, begins, edge)) > 0.0) found.in_the_way = closed;

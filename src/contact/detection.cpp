@@ -169,21 +169,21 @@ void Detection::decide(const Surface& surface, const CandidateList& candidates, 
   const double reach = motion_.reach[at(pair.block_a)] + motion_.reach[at(pair.block_b)];
   const bool tries = pair.wait == 0 && end - at(pair.first) <= most_candidates;
   double margin = tries ? candidate_margin(surface, candidates, pair, end, rivals, reach_share * reach) : 0.0;
+  const auto leave_out = [](Rival& r) {
+    r.candidate = -1;
+    r.corners = 0;
+  };
   for (Rival& r : rivals) {
     if (r.memory >= 0 || r.disputed || r.gap >= -tolerances_.corner_depth) continue;
     const bool counts = take_over_joint(surface, candidates, pair, rivals, r);
     if (!counts || r.memory >= 0) margin = 0.0;  // hangs on third blocks
-    if (counts) continue;
-    r.candidate = -1;
-    r.corners = 0;
+    if (!counts) leave_out(r);
   }
   for (Rival& r : rivals) {
     if (r.candidate < 0) continue;
     if (!r.is_beyond && !has_come_in_elsewhere(surface, r, candidates)) continue;
     margin = 0.0;  // hangs on third blocks
-    if (!is_out(surface, pair, r, candidates)) continue;
-    r.candidate = -1;
-    r.corners = 0;
+    if (is_out(surface, pair, r, candidates)) leave_out(r);
   }
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     const std::uint64_t corners = rivals[i].corners;
@@ -329,8 +329,8 @@ double Detection::to_nearest_other_edge(const Surface& surface, int vertex, int 
 }
 
 /// Whether a vertex deep behind an edge is nearer to another: one that has come in by one face of a sharp corner, or that has slid past a
-/// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face, nor one that the face has held since
-/// before it was behind it, however deep an impact presses it in.
+/// corner beside it, lies behind the other face, too. Not a vertex whose own edge lies on the face, nor one that has come in
+/// by the face, however deep an impact presses it in.
 bool Detection::has_come_in_elsewhere(const Surface& surface, const Rival& rival,
                                       const CandidateList& candidates, int except) const {
   if (rival.gap >= -deep(rival)) return false;

@@ -58,7 +58,8 @@ void keep_memory(std::span<const Contact> contacts, std::size_t first, std::size
 /// limit, and both edges of the vertex lie outside, or may come to in the step by the turn of the blocks. Where two corners meet, up to four candidates describe the same
 /// corner pair; they compete, so that one contact remains (vertex-vertex contact with a unique entrance line):
 ///   - all lines parallel: the end of an edge-edge contact. The vertex that lies over the other's edge; the one that
-///     already was in contact stays until it has clearly left, and then hands its memory over.
+///     already was in contact stays until it has clearly left, and then hands its memory over. Both, where each vertex is far from the
+///     end and the corners meet only as their blocks may move far in the step.
 ///   - otherwise corner to corner: the line that is passed last in the step, as the corners go now. Of lines that are not passed,
 ///     or were before, that of the largest gap, which is the shortest way out; while that is a tie
 ///     none, or the one that presses. Not a line that a third block is in the way of (closed_joints.cpp).
@@ -144,7 +145,7 @@ class Detection {
   [[nodiscard]] double deep(const Rival& rival) const {
     return rival.disputed ? tolerances_.end_zone : tolerances_.corner_depth;
   }
-  /// Whether the face has held the vertex since it was no deeper behind it than that.
+  /// Whether the vertex has come in by the face: that has been in contact with it since it was no deeper behind it than the end zone.
   [[nodiscard]] bool has_come_in_here(const Rival& rival, const CandidateList& candidates) const {
     return rival.memory >= 0 &&
            candidates.memory[static_cast<std::size_t>(rival.memory)].offset <= tolerances_.end_zone;
@@ -189,8 +190,9 @@ class Detection {
   void for_third_edges(const CandidateList& candidates, const BlockPair& pair, int vertex, int block,
                        const Call& call) const;
   [[nodiscard]] bool goes_on(const Surface& surface, int vertex, int face, int edge) const;
-  bool take_over_joint(const Surface& surface, const CandidateList& candidates, const BlockPair& pair,
-                       std::span<const Rival> rivals, Rival& rival) const;
+  [[nodiscard]] bool take_over_joint(const Surface& surface, const CandidateList& candidates,
+                                     const BlockPair& pair, std::span<const Rival> rivals,
+                                     Rival& rival) const;
   [[nodiscard]] bool lies_behind(const Rival& rival, const Candidate& candidate, int edge) const;
   [[nodiscard]] Vec2 beyond_joint(const Surface& surface, int corner, bool begins, int edge) const;
   [[nodiscard]] Rival* line_passed_last(const Surface& surface, std::span<Rival* const> rivals,

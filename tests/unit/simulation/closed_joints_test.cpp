@@ -112,8 +112,7 @@ TEST(ClosedJoint, ThinEndsOfBlocksKeepOutWhatStrikesThem) {
         Scene scene(3e9, 39.0);
         scene.add({{-0.5, -0.5}, {0.3, -0.5}, {0.2006, -0.0175}, {0.0, 0.0}, {-0.5, -0.0827}}, true);
         scene.add({{0.0, 0.0}, {0.2006, -0.0175}, {0.181, 0.0347}, {0.1098, 0.0181}}, true);
-        scene.rectangle({10.0, 10.0}, 1.0,
-                        1.0);  // lengths of contact go with the mean area of blocks that move
+        scene.rectangle({10.0, 10.0}, 1.0, 1.0);  // for the lengths of contact
         const Vec2 tip{beside, 0.165 * beside + above};
         const int stone = scene.add(
             {tip, tip + Vec2{-0.0478, 0.1184}, tip + Vec2{-0.1222, 0.0139}, tip + Vec2{-0.072, 0.0102}});
@@ -145,15 +144,15 @@ TEST(ClosedJoint, ThinEndsKeepOutWhatStrikesTheirVeryTip) {
 // come in by that; and its own face, at 4° or 5° to those of both blocks, rests on the corner, also where the tip comes to lie on the other
 // block.
 TEST(ClosedJoint, HoldsTipsInItsMouth) {
-  for (const Vec2 open : {Vec2{-0.0023, 0.0}, Vec2{-0.0035, 0.0}, Vec2{-0.002, -0.0018}}) {
+  for (const Vec2 corner :
+       {Vec2{-0.0023, 0.0}, Vec2{-0.0035, 0.0}, Vec2{-0.002, -0.0018}}) {  // of the block beyond
     for (const double past : {0.0005, 0.001, 0.0015, 0.0025, 0.004}) {
       for (const double gap : {0.00005, 0.0003, 0.003}) {
         for (const double own : {4.0, 4.9}) {               // degrees, of its face
           for (const double sinking : {2.0, 6.0, 120.0}) {  // degrees, of its way against that
             for (const double speed : {2.0, 4.0}) {
               Scene scene(6e9, 30.0);
-              const Vec2 down = direction(open.y < 0.0 ? -80.0 : -120.0);
-              const Vec2 corner = open;
+              const Vec2 down = direction(corner.y < 0.0 ? -80.0 : -120.0);
               scene.add({{0.0, 0.0}, 2.0 * down, 2.0 * down + Vec2{2.0, 0.0}, {2.0, 0.0}}, true);
               scene.add({corner, corner + Vec2{-1.0, 0.0}, corner + 2.0 * down + Vec2{-1.0, 0.0},
                          corner + 2.0 * down},
@@ -165,7 +164,7 @@ TEST(ClosedJoint, HoldsTipsInItsMouth) {
               scene.setup.properties[static_cast<std::size_t>(wedge)].velocity =
                   -speed * direction(own + sinking);
               EXPECT_LT(largest_overlap_of(scene, 0.002), 0.002)
-                  << open.x << " " << open.y << " " << past << " " << gap << " " << own << " " << sinking
+                  << corner.x << " " << corner.y << " " << past << " " << gap << " " << own << " " << sinking
                   << " " << speed;
             }
           }

@@ -1,11 +1,11 @@
-// Wedges at random that strike joints, their mouths, thin ends of blocks and the corners of walls, and faces that come down on ledges.
+// Wedges at random that strike joints, their mouths, thin ends of blocks and the corners of walls.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
+#include "overlap/overlap.h"
 #include "scene.h"
 
 namespace keyblock::simulation {
@@ -64,11 +64,10 @@ Wedge at_mouth(Scene& scene, Chance& chance) {
   const Vec2 down = 2.0 * direction(joint);
   scene.add({{0.0, 0.0}, down, down + 2.0 * direction(face), 2.0 * direction(face)}, true);
   scene.add({corner, corner + direction(beyond), corner + direction(beyond) + down, corner + down}, true);
-  const double opening = chance.between(6.0, 40.0);
+  const double opening = chance.between(6.0, 40.0), above = chance.of_size(0.00001, 0.004),
+               along = chance.between(-0.002, 0.006);
   return {opening, face + chance.between(-0.5, 6.0) + 0.5 * opening, face + chance.between(-3.0, 15.0),
-          chance.of_size(0.00001, 0.004) * direction(face + 90.0) +
-              chance.between(-0.002, 0.006) * direction(face),
-          chance.between(0.002, 0.03)};
+          above * direction(face + 90.0) + along * direction(face), chance.between(0.002, 0.03)};
 }
 
 /// Onto the end of a block that a joint leaves thin.

@@ -109,6 +109,11 @@ struct Simulator {
     const dynamics::Block& block = model.blocks[static_cast<std::size_t>(b)];
     return Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
   }
+  /// rad/s.
+  [[nodiscard]] double spin(int b) const {
+    const dynamics::Block& block = model.blocks[static_cast<std::size_t>(b)];
+    return block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
+  }
   void run(double duration, double dt, const dynamics::GroundAcceleration* ground = nullptr) {
     const long steps = std::lround(duration / dt);
     for (long k = 0; k < steps; ++k) {
