@@ -216,13 +216,15 @@ TEST(ResultFile, OfAKilledRunWhatIsNotKnownIsNoNumber) {
   EXPECT_FALSE(read_run(folder).cut_off);
 }
 
-// The kill may come at any moment, in the middle of a flush, too.
+// The kill may come at any moment, in the middle of a flush, too: some time after the file is there, or after so many frames.
 TEST(ResultFile, SurvivesAKillAtAnyMoment) {
   const FreshFolder folder;
   SampleRun sample;
   int with_frames = 0;
   for (int round = 0; round < 40; ++round) {
     std::filesystem::remove(folder / "result.h5");
+    int frames[2];  // a byte for each that is written
+    ASSERT_EQ(::pipe(frames), 0);
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -232,13 +234,19 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
         writer.history(sample.history(step));
         writer.contacts(sample.contacts(0, step, 50));
         writer.frame(sample.frame(0, step));
+        if (::write(frames[1], "", 1) != 1) ::_exit(1);
       }
     }
+    ::close(frames[1]);  // or a child that ends early would be waited for
+    const int at_least = round / 4;
+    char byte = 0;
+    for (int k = 0; k < at_least; ++k) ASSERT_EQ(::read(frames[0], &byte, 1), 1);
     while (!std::filesystem::exists(folder / "result.h5")) ::usleep(500);
-    ::usleep(static_cast<useconds_t>(1000 + 1700 * round));
+    ::usleep(static_cast<useconds_t>(170 * round));
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);
+    ::close(frames[0]);
     const RunData data = read_run(folder);
     with_frames += data.frames.empty() ? 0 : 1;
     for (std::size_t k = 0; k < data.frames.size(); ++k) {
@@ -256,7 +264,7 @@ TEST(ResultFile, SurvivesAKillAtAnyMoment) {
       ASSERT_EQ(data.histories[k].points[1].sxx, sample.history(static_cast<long>(k) + 1).points[1].sxx);
     }
   }
-  EXPECT_GE(with_frames, 10);
+  EXPECT_GE(with_frames, 30);  // a flush may come a frame later
 }
 
 TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
