@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/huge_pages.h"
 #include "core/index.h"
 #include "linalg/block_solver.h"
 
@@ -46,8 +45,8 @@ class BlockConjugateGradient final : public BlockSolver {
   static constexpr int most_iterations = 400;
   /// By which the residual may be larger than before; beyond that the matrix is not positive definite.
   static constexpr double most_growth = 100.0;
-  using Vector = HugePageVector<float>;
-  using WideVector = HugePageVector<double>;
+  using Vector = std::vector<float>;
+  using WideVector = std::vector<double>;
   struct Range {
     std::size_t first, last;  ///< places
   };

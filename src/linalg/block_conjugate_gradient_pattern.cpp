@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/assign_with_room.h"
 #include "linalg/block_conjugate_gradient.h"
 #include "linalg/paired_columns.h"
 #include "linalg/partition.h"

@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/huge_pages.h"
 #include "linalg/block_pattern.h"
 #include "linalg/block_solver.h"
 
@@ -33,7 +32,7 @@ class BlockMatrix {
     std::size_t row;       ///< column of the pattern; that on the diagonal comes first
     std::size_t count;
   };
-  HugePageVector<double> values_;
+  std::vector<double> values_;
   std::vector<std::size_t> diagonal_;      ///< per block, into values_
   std::vector<Source> sources_;            ///< by column
   std::vector<std::size_t> source_start_;  ///< per column, into sources_
