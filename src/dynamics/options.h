@@ -2,7 +2,7 @@
 
 namespace keyblock::dynamics {
 
-/// automatic: block factors, or conjugate gradients where they take less; direct: a library, to check the others by.
+/// automatic: block factors, or conjugate residuals where they take less; direct: a library, to check the others by.
 enum class LinearSolver { automatic, block, iterative, direct };
 
 /// How contacts keep blocks apart: by penetration of a spring, or by multipliers that leave none (augmented Lagrangian).

@@ -26,7 +26,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       detection_(tolerances_, model.laws, penalties(model)),
       direct_{model.solver.linear == LinearSolver::direct ? linalg::make_cholmod()
                                                           : linalg::make_block_cholesky()},
-      iterative_{linalg::make_block_conjugate_gradient(&team)},
+      iterative_{linalg::make_block_conjugate_residual(&team)},
       reach_(model.blocks.size(), 0.0),
       turn_(model.blocks.size(), 0.0),
       way_(model.blocks.size(), 0.0),

@@ -62,13 +62,13 @@ void Stepper::make_room(State& state) {
 /// The solver that takes least, knowing the pattern. The choice depends on the state alone, so that a run that is resumed takes
 /// the same.
 linalg::BlockSolver& Stepper::solver(const State& state, bool is_static, bool must_be_direct) {
-  // Block products of a factorization, for each block, that conjugate gradients are worth (docs/performance.md). Static steps have
+  // Block products of a factorization, for each block, that conjugate residuals are worth (docs/performance.md). Static steps have
   // little inertia, and need many more iterations.
   constexpr double dynamic_worth = 120.0, static_worth = 450.0;
   constexpr std::size_t never_factored = 30'000;  // blocks; not even the order of elimination is looked for
   const Profile::Scope scope(profile_, Phase::assembly);
   const LinearSolver wanted = model_.solver.linear;
-  // Multipliers ask for more digits than conjugate gradients are stopped at.
+  // Multipliers ask for more digits than conjugate residuals are stopped at.
   const bool may_iterate = !must_be_direct && model_.solver.contact == ContactMethod::penalty;
   bool iterative = may_iterate && wanted == LinearSolver::iterative;
   if (may_iterate && wanted == LinearSolver::automatic) {

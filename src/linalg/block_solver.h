@@ -118,10 +118,10 @@ enum class Precision {
 /// precision, and halves are those of a matrix that differs from it in the seventh digit.
 std::unique_ptr<BlockSolver> make_block_cholesky(Precision precision = Precision::automatic);
 
-/// Conjugate gradients with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat
+/// Conjugate residuals with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat
 /// 1981). In a dynamic step inertia bounds the condition of the matrix, so that the iterations do not grow with the model.
 /// Large systems are solved by the threads of `team`, which may be null; the bits are the same.
-std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team);
+std::unique_ptr<BlockSolver> make_block_conjugate_residual(ThreadTeam* team);
 
 /// CHOLMOD on the scalar matrix: slower at the sizes of a block system, kept as the oracle.
 std::unique_ptr<BlockSolver> make_cholmod();

@@ -255,7 +255,7 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
   read_contact_method(t, solver);
   t.word("linear", solver.linear, linear_solvers,
          {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "
-                     "conjugate gradients, "
+                     "conjugate residuals, "
                      "`automatic` the cheaper of the two, and `direct` the factorization of a library, to "
                      "check them by. The augmented Lagrangian always factors."});
 }

@@ -62,6 +62,6 @@ int main() {
   for (const std::vector<int>& choice : {std::vector{6}, {12}, {6, 12, 20}}) {
     solve("full", *make_block_cholesky(Precision::full), choice);
     solve("single", *make_block_cholesky(Precision::single), choice);
-    solve("iterative", *make_block_conjugate_gradient(nullptr), choice);
+    solve("iterative", *make_block_conjugate_residual(nullptr), choice);
   }
 }

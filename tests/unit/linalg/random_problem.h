@@ -93,7 +93,7 @@ inline Eigen::VectorXd solve(BlockSolver& solver, const Problem& p) {
 }
 
 inline std::unique_ptr<BlockSolver> make_iterative() {
-  return make_block_conjugate_gradient(nullptr);
+  return make_block_conjugate_residual(nullptr);
 }
 
 }  // namespace keyblock::linalg

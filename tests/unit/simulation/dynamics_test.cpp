@@ -343,7 +343,7 @@ TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
         const auto [made, many] = run(linear, orders, stone, false);
         const auto [kept, few] = run(linear, orders, stone, true);
         EXPECT_GE(many, steps);
-        // What springs change of a matrix for conjugate gradients counts as well; the last bits of corners that meet decide how often.
+        // What springs change of a matrix for conjugate residuals counts as well; the last bits of corners that meet decide how often.
         if (linear == dynamics::LinearSolver::block) {
           EXPECT_LT(few, 2 * many / 3);
         } else if (!stone) {

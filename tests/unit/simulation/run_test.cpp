@@ -103,9 +103,9 @@ void expect_equal_energies(const Energy& one, const Energy& other) {
     EXPECT_EQ(one.*term, other.*term);
 }
 
-/// By conjugate gradients, or as it is by default.
+/// By conjugate residuals, or as it is by default.
 class ResumedRun : public ::testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(ByConjugateGradients, ResumedRun, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(ByConjugateResiduals, ResumedRun, ::testing::Bool());
 
 TEST_P(ResumedRun, EndsInTheSameBits) {
   const FreshFolder folder;

@@ -232,7 +232,7 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
     problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
     const auto solver = kind == Solver::iterative
-                            ? linalg::make_block_conjugate_gradient(&s.team)
+                            ? linalg::make_block_conjugate_residual(&s.team)
                             : linalg::make_block_cholesky(kind == Solver::full ? linalg::Precision::full
                                                                                : linalg::Precision::single);
     analyse(s.model, problem, *solver);

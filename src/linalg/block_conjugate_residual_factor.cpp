@@ -1,13 +1,13 @@
-// The matrix of conjugate gradients, and what is scaled by its diagonal blocks.
+// The matrix of conjugate residuals, and what is scaled by its diagonal blocks.
 #include <algorithm>
 
-#include "linalg/block_conjugate_gradient.h"
+#include "linalg/block_conjugate_residual.h"
 #include "linalg/block_kernels.h"
 #include "linalg/paired_columns.h"
 
 namespace keyblock::linalg {
 
-void BlockConjugateGradient::clear() {
+void BlockConjugateResidual::clear() {
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
   // Each diagonal block is followed by those above it, and these by the next diagonal block.
   const auto start = [&](std::size_t place) {
@@ -17,7 +17,7 @@ void BlockConjugateGradient::clear() {
 }
 
 /// C_i⁻¹ A C_j⁻ᵀ
-void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const double* a,
+void BlockConjugateResidual::scale_block(std::size_t i, std::size_t j, const double* a,
                                          double* scaled) const {
   const double *left = &inverse_[inverse_start_[i]], *right = &inverse_[inverse_start_[j]];
   const auto multiply_left = [&](int lanes, int rows, int columns) {
@@ -36,7 +36,7 @@ void BlockConjugateGradient::scale_block(std::size_t i, std::size_t j, const dou
 }
 
 /// In single precision, as U has it.
-void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const double* scaled,
+void BlockConjugateResidual::store_scaled(std::size_t i, std::size_t j, const double* scaled,
                                           float* above) const {
   if (!same_) {
     for (int k = 0; k < stride_[i] * size_[j]; k += row_padding) store(above + k, narrow(load(scaled + k)));
@@ -48,7 +48,7 @@ void BlockConjugateGradient::store_scaled(std::size_t i, std::size_t j, const do
   }
 }
 
-bool BlockConjugateGradient::factor() {
+bool BlockConjugateResidual::factor() {
   lag_ = lag_near_ = {};
   std::vector<std::uint8_t> good(begin_.size() - 1, 1);
   for_ranges([&](std::size_t k, Range range) {
@@ -102,7 +102,7 @@ bool BlockConjugateGradient::factor() {
 }
 
 /// Those that were scaled anew.
-void BlockConjugateGradient::copy_rows_between() {
+void BlockConjugateResidual::copy_rows_between() {
   for_rows_between([&](std::size_t row) {
     for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
       const RowEntry& entry = row_entries_[k];

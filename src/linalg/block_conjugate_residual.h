@@ -8,25 +8,31 @@
 #include <vector>
 
 #include "core/index.h"
+#include "core/lanes.h"
 #include "linalg/block_solver.h"
 
 namespace keyblock::linalg {
 
-/// make_block_conjugate_gradient(). Its pattern is found in block_conjugate_gradient_pattern.cpp, the matrix made ready in
-/// block_conjugate_gradient_factor.cpp; block_conjugate_gradient_near.cpp solves near some blocks alone.
+/// make_block_conjugate_residual(). Its pattern is found in block_conjugate_residual_pattern.cpp, the matrix made ready in
+/// block_conjugate_residual_factor.cpp; block_conjugate_residual_near.cpp solves near some blocks alone.
 ///
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (Uᵀ + 1 + U) Cᵀ with
 /// U_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly above the diagonal. Preconditioned from both sides by (1 + U) it is
 ///
-///     Â p = t + (1 + U)⁻¹ (p − t),     t = (1 + Uᵀ)⁻¹ p
+///     Â r = t + (1 + U)⁻¹ (r − t),     t = (1 + Uᵀ)⁻¹ r
+///
+/// Conjugate residuals (Stiefel 1955) make the norm of r smallest, where conjugate gradients make that of the error: it is what is out of
+/// balance that ends the iteration. With s = Â p:
+///
+///     β = r·Âr / (r·Âr of the last iteration),   p ← r + β p,   s ← Â r + β s,   α = r·Âr / s·s,   z ← z + α p,   r ← r − α s
 ///
 /// U and the vectors have single precision: half the memory to read in every iteration, and half the instructions. A few digits of
 /// the solution are found so; the residual is then that of the matrix itself, and asks for more where they do not do.
 /// Vectors are padded as the blocks are. In the order of `partition`, the parts follow each other, each forward, with the memory,
 /// and backward while a cache has it, or go at the same time, by as many threads as there are; sums go part by part.
-class BlockConjugateGradient final : public BlockSolver {
+class BlockConjugateResidual final : public BlockSolver {
  public:
-  explicit BlockConjugateGradient(ThreadTeam* team) : team_(team) {}
+  explicit BlockConjugateResidual(ThreadTeam* team) : team_(team) {}
   void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
   void clear() override;
   double* diagonal(int block) override { return &matrix_[diagonal_[place_[at(block)]]]; }
@@ -78,14 +84,18 @@ class BlockConjugateGradient final : public BlockSolver {
     }
   };
   static constexpr std::uint8_t at_edge = 2;
-  /// Dot products of an iteration, with q = Â p; they give r · r after it too.
+  /// The step of an iteration: p ← γ r + β p, s ← γ Â r + β s, z ← z + α p, r ← r − α s, with γ = 1; or none.
+  struct Way {
+    float alpha = 0.0F, beta = 1.0F, gamma = 0.0F;
+  };
+  /// Dot products of an iteration, with q = Â r and s of the last one; they give s · s and r · r after it too.
   struct Dots {
-    double rr = 0.0, pq = 0.0, rq = 0.0, qq = 0.0;
+    double rr = 0.0, rq = 0.0, qq = 0.0, qs = 0.0;
     Dots& operator+=(const Dots& other) {
       rr += other.rr;
-      pq += other.pq;
       rq += other.rq;
       qq += other.qq;
+      qs += other.qs;
       return *this;
     }
   };
@@ -183,12 +193,13 @@ class BlockConjugateGradient final : public BlockSolver {
   void subtract_scaled_of_parts(Layout layout, const float* x, float* y) const;
   template <typename Layout>
   void store_transposed(Layout layout, std::size_t j, const float* x, float* y) const;
+  NarrowLanes advance(Way way, std::size_t k);
   template <typename Layout, typename Some>
-  void go_forward(Layout layout, Some places, float alpha, float beta);
+  void go_forward(Layout layout, Some places, Way way);
   template <typename Layout, typename Some>
   [[nodiscard]] Dots go_backward(Layout layout, Some places);
-  Dots apply(double alpha, double beta);
-  void go(double alpha);
+  Dots apply(Way way);
+  void go(Way way);
   void start(std::span<const double> x);
   template <typename Layout>
   void unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch, WideVector& x) const;
@@ -247,14 +258,15 @@ class BlockConjugateGradient final : public BlockSolver {
   Vector above_by_rows_;
   std::vector<std::uint8_t> stale_;
   int largest_ = 0;               ///< stride of a block
-  Vector t_, z_, r_, p_, q_;      ///< padded; between iterations Â p is in t_
+  Vector t_, z_, r_, p_, q_, s_;  ///< padded; between iterations Â r is in t_
   WideVector wide_, product_;     ///< padded: scratch
   std::vector<double> estimate_;  ///< of the residual
   std::vector<Dots> dots_;        ///< per range
   /// Of the last solutions with this matrix: by how much less the square of the residual fell than that of its norm in the scaled
   /// system; 0: not known.
   std::array<double, 3> lag_{}, lag_near_{};
-  double beta_ = 0.0;  ///< of the next iteration; 0: the first
+  double rho_ = 0.0;  ///< r · Â r of the last iteration; 0: the next is the first
+  double ss_ = 0.0;   ///< s · s of that
   bool solved_ = true;
 };
 

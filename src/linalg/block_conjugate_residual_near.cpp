@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "linalg/block_conjugate_gradient.h"
+#include "linalg/block_conjugate_residual.h"
 
 namespace keyblock::linalg {
 
@@ -16,7 +16,7 @@ constexpr double most_share = 0.3;
 }  // namespace
 
 /// Some blocks, and those so many layers around them. False where they are so many that all are as well.
-bool BlockConjugateGradient::find_near(std::span<const std::size_t> blocks) {
+bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks) {
   const auto most = static_cast<std::size_t>(most_share * static_cast<double>(place_.size()));
   if (blocks.size() > most) return false;
   near_.places.clear();
@@ -53,13 +53,13 @@ bool BlockConjugateGradient::find_near(std::span<const std::size_t> blocks) {
   return true;
 }
 
-bool BlockConjugateGradient::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
+bool BlockConjugateResidual::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
                                         std::span<double> residual, const Excess& excess) {
   if (!find_near(blocks)) return false;
   for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
   for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });
-  beta_ = 0.0;
+  rho_ = 0.0;
   is_near_ = true;
   lag_.swap(lag_near_);
   solved_ = true;

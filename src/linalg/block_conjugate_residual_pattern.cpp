@@ -3,13 +3,13 @@
 #include <numeric>
 
 #include "core/assign_with_room.h"
-#include "linalg/block_conjugate_gradient.h"
+#include "linalg/block_conjugate_residual.h"
 #include "linalg/paired_columns.h"
 #include "linalg/partition.h"
 
 namespace keyblock::linalg {
 
-void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
+void BlockConjugateResidual::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
   Partition found = partition(sizes.size(), pairs);
   begin_ = std::move(found.begin);
   dots_.assign(begin_.size() - 1, {});
@@ -27,7 +27,7 @@ void BlockConjugateGradient::analyse(std::span<const int> sizes, std::span<const
   }
 }
 
-void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span<const int> order) {
+void BlockConjugateResidual::place_vectors(std::span<const int> sizes, std::span<const int> order) {
   std::vector<std::size_t> unknown(sizes.size() + 1, 0);
   for (std::size_t b = 0; b < sizes.size(); ++b) unknown[b + 1] = unknown[b] + at(sizes[b]);
   size_.clear();
@@ -46,11 +46,11 @@ void BlockConjugateGradient::place_vectors(std::span<const int> sizes, std::span
     padded += at(padded_rows(size));
     largest_ = std::max(largest_, padded_rows(size));
   }
-  for (Vector* v : {&t_, &z_, &r_, &p_, &q_}) assign_with_room(*v, padded, 0.0F);
+  for (Vector* v : {&t_, &z_, &r_, &p_, &q_, &s_}) assign_with_room(*v, padded, 0.0F);
   for (WideVector* v : {&wide_, &product_}) assign_with_room(*v, padded, 0.0);
 }
 
-void BlockConjugateGradient::find_neighbours(std::span<const std::pair<int, int>> pairs) {
+void BlockConjugateResidual::find_neighbours(std::span<const std::pair<int, int>> pairs) {
   neighbours_start_.assign(place_.size() + 1, 0);
   for (const auto& [i, j] : pairs) {
     ++neighbours_start_[place_[at(i)] + 1];
@@ -65,12 +65,12 @@ void BlockConjugateGradient::find_neighbours(std::span<const std::pair<int, int>
   }
 }
 
-std::size_t BlockConjugateGradient::scaled_count(std::size_t i, std::size_t j) const {
+std::size_t BlockConjugateResidual::scaled_count(std::size_t i, std::size_t j) const {
   return same_ ? std::size_t{paired_columns::block_size} : at(stride_[i] * size_[j]);
 }
 
 /// Where the block of every pair is in matrix_.
-std::vector<std::size_t> BlockConjugateGradient::place_matrix(std::span<const std::pair<int, int>> pairs) {
+std::vector<std::size_t> BlockConjugateResidual::place_matrix(std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = size_.size();
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> above(n);  // row, pair
   for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -1,4 +1,4 @@
-#include "linalg/block_conjugate_gradient.h"
+#include "linalg/block_conjugate_residual.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,14 +42,14 @@ void for_registers(Layout layout, std::size_t j, const Body& body) {
 }  // namespace
 
 template <typename Body>
-decltype(auto) BlockConjugateGradient::with_layout(const Body& body) const {
+decltype(auto) BlockConjugateResidual::with_layout(const Body& body) const {
   if (same_) return body(BlocksOfOrder1{});
   return body(AnyBlocks{size_.data(), stride_.data(), start_.data()});
 }
 
 /// y −= S_j x_j of the rows of the same range, with S_j what stands above the diagonal in column j of A, from `block` on.
 template <typename Layout, typename Number>
-void BlockConjugateGradient::subtract_above(Layout layout, std::size_t j, const Number* block,
+void BlockConjugateResidual::subtract_above(Layout layout, std::size_t j, const Number* block,
                                             const Number* x, Number* y) const {
   const Number* x_j = x + layout.start(j);
   for (std::size_t e = column_start_[j]; e < own_start_[j]; ++e)
@@ -63,7 +63,7 @@ void BlockConjugateGradient::subtract_above(Layout layout, std::size_t j, const 
 
 /// The same with U.
 template <typename Layout>
-void BlockConjugateGradient::subtract_scaled(Layout layout, std::size_t j, const float* x, float* y) const {
+void BlockConjugateResidual::subtract_scaled(Layout layout, std::size_t j, const float* x, float* y) const {
   if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
     const float* block = &above_[std::size_t{own_start_[j]} * paired_columns::block_size];
     const paired_columns::Factors factors(load(x + layout.start(j)));
@@ -79,11 +79,11 @@ void BlockConjugateGradient::subtract_scaled(Layout layout, std::size_t j, const
 /// y −= S x of the rows between the parts, with S the blocks whose columns lie in parts; subtract(entry, row) does it for one. Rows
 /// gather, so that no two parts write to them.
 template <typename Subtract>
-void BlockConjugateGradient::for_entries_between(const Subtract& subtract) const {
+void BlockConjugateResidual::for_entries_between(const Subtract& subtract) const {
   for_rows_between([&](std::size_t row) { for_entries(row, subtract); });
 }
 template <typename Subtract>
-void BlockConjugateGradient::for_entries(std::size_t row, const Subtract& subtract) const {
+void BlockConjugateResidual::for_entries(std::size_t row, const Subtract& subtract) const {
   for (std::size_t k = row_start_[row]; k < row_start_[row + 1]; ++k) {
     if (!is_near_ || near_.has[row_entries_[k].column] == 1) subtract(row_entries_[k], row);
   }
@@ -91,7 +91,7 @@ void BlockConjugateGradient::for_entries(std::size_t row, const Subtract& subtra
 
 /// y −= U x of the rows between the parts, of columns in parts.
 template <typename Layout>
-void BlockConjugateGradient::subtract_scaled_of_parts(Layout layout, const float* x, float* y) const {
+void BlockConjugateResidual::subtract_scaled_of_parts(Layout layout, const float* x, float* y) const {
   for_entries_between([&](const RowEntry& entry, std::size_t row) {
     const float *block = &above_by_rows_[entry.copy], *x_j = x + layout.start(entry.column);
     float* y_i = y + layout.start(row);
@@ -105,7 +105,7 @@ void BlockConjugateGradient::subtract_scaled_of_parts(Layout layout, const float
 
 /// y_j ← (Uᵀ x)_j.
 template <typename Layout>
-void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
+void BlockConjugateResidual::store_transposed(Layout layout, std::size_t j, const float* x, float* y) const {
   if constexpr (std::is_same_v<Layout, BlocksOfOrder1>) {
     const float* block = &above_[std::size_t{column_start_[j]} * paired_columns::block_size];
     paired_columns::RowProducts products;
@@ -127,51 +127,54 @@ void BlockConjugateGradient::store_transposed(Layout layout, std::size_t j, cons
   }
 }
 
-/// z ← z + α p and r ← r − α Â p of the last iteration, p ← r + β p, t ← (1 + Uᵀ)⁻¹ p and q ← p − t, of some places.
-/// No calls within: they would keep vectors from staying in registers.
+/// The step of the last iteration, of one register, Â r being in t_. Returns r after it.
+inline NarrowLanes BlockConjugateResidual::advance(Way way, std::size_t k) {
+  const NarrowLanes alpha = broadcast(way.alpha), beta = broadcast(way.beta), gamma = broadcast(way.gamma),
+                    r = load(&r_[k]), p = gamma * r + beta * load(&p_[k]),
+                    s = gamma * load(&t_[k]) + beta * load(&s_[k]), after = r - alpha * s;
+  store(&p_[k], p);
+  store(&s_[k], s);
+  store(&z_[k], load(&z_[k]) + alpha * p);
+  store(&r_[k], after);
+  return after;
+}
+
+/// The step of the last iteration; then t ← (1 + Uᵀ)⁻¹ r and q ← r − t, of some places. No calls within: they would keep vectors from
+/// staying in registers.
 template <typename Layout, typename Some>
-[[gnu::flatten]] void BlockConjugateGradient::go_forward(Layout layout, Some places, float alpha,
-                                                         float beta) {
-  const NarrowLanes a = broadcast(alpha), b = broadcast(beta);
+[[gnu::flatten]] void BlockConjugateResidual::go_forward(Layout layout, Some places, Way way) {
   for_each(places, [&](std::size_t j) {
     store_transposed(layout, j, t_.data(), q_.data());
-    for_registers(layout, j, [&](std::size_t k) {
-      const NarrowLanes p = load(&p_[k]), r = load(&r_[k]) - a * load(&t_[k]), next = r + b * p;
-      store(&t_[k], next - load(&q_[k]));
-      store(&z_[k], load(&z_[k]) + a * p);
-      store(&r_[k], r);
-      store(&p_[k], next);
-    });
+    for_registers(layout, j, [&](std::size_t k) { store(&t_[k], advance(way, k) - load(&q_[k])); });
   });
 }
 
-/// q ← (1 + U)⁻¹ q and t ← t + q of some places, but for what columns elsewhere add to their rows.
+/// q ← (1 + U)⁻¹ q and t ← t + q, which is Â r, of some places, but for what columns elsewhere add to their rows.
 template <typename Layout, typename Some>
-[[gnu::flatten]] BlockConjugateGradient::Dots BlockConjugateGradient::go_backward(Layout layout,
+[[gnu::flatten]] BlockConjugateResidual::Dots BlockConjugateResidual::go_backward(Layout layout,
                                                                                   Some places) {
-  Lanes rr{}, pq{}, rq{}, qq{};
+  Lanes rr{}, rq{}, qq{}, qs{};
   for_each_backward(places, [&](std::size_t j) {
     subtract_scaled(layout, j, q_.data(), q_.data());
     for_registers(layout, j, [&](std::size_t k) {
       const NarrowLanes t = load(&t_[k]) + load(&q_[k]);
       store(&t_[k], t);
-      const Lanes q = widen(t), r = widen(load(&r_[k]));
+      const Lanes q = widen(t), r = widen(load(&r_[k])), s = widen(load(&s_[k]));
       rr = add_product(r, r, rr);
-      pq = add_product(widen(load(&p_[k])), q, pq);
       rq = add_product(r, q, rq);
       qq = add_product(q, q, qq);
+      qs = add_product(q, s, qs);
     });
   });
-  return {sum(rr), sum(pq), sum(rq), sum(qq)};
+  return {sum(rr), sum(rq), sum(qq), sum(qs)};
 }
 
-/// z ← z + α p and r ← r − α Â p for the last p; p ← r + β p; and Â p, into t_, for this one.
-BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double beta) {
+/// The step of the last iteration, and Â r, into t_, for the next.
+BlockConjugateResidual::Dots BlockConjugateResidual::apply(Way way) {
   return with_layout([&](auto layout) {
-    const auto a = static_cast<float>(alpha), b = static_cast<float>(beta);
-    with_between([&](auto places) { go_forward(layout, places, a, b); });
+    with_between([&](auto places) { go_forward(layout, places, way); });
     for_parts([&](std::size_t k, auto places) {
-      go_forward(layout, places, a, b);
+      go_forward(layout, places, way);
       dots_[k] = go_backward(layout, places);
     });
     subtract_scaled_of_parts(layout, q_.data(), q_.data());
@@ -182,24 +185,19 @@ BlockConjugateGradient::Dots BlockConjugateGradient::apply(double alpha, double 
   });
 }
 
-/// z ← z + α p and r ← r − α Â p.
-void BlockConjugateGradient::go(double alpha) {
-  const NarrowLanes a = broadcast(static_cast<float>(alpha));
+/// The step of an iteration by itself.
+void BlockConjugateResidual::go(Way way) {
   with_layout([&](auto layout) {
     for_pieces([&](std::size_t, auto places) {
-      for_each(places, [&](std::size_t j) {
-        for_registers(layout, j, [&](std::size_t k) {
-          store(&z_[k], load(&z_[k]) + a * load(&p_[k]));
-          store(&r_[k], load(&r_[k]) - a * load(&t_[k]));
-        });
-      });
+      for_each(places,
+               [&](std::size_t j) { for_registers(layout, j, [&](std::size_t k) { advance(way, k); }); });
     });
   });
 }
 
 /// r ← (1 + U)⁻¹ C⁻¹ x, and everything else to zero.
-void BlockConjugateGradient::start(std::span<const double> x) {
-  beta_ = 0.0;
+void BlockConjugateResidual::start(std::span<const double> x) {
+  rho_ = 0.0;
   with_layout([&](auto layout) {
     const auto divide = [&](auto places) {
       for_each_backward(places, [&](std::size_t j) { subtract_scaled(layout, j, r_.data(), r_.data()); });
@@ -211,7 +209,7 @@ void BlockConjugateGradient::start(std::span<const double> x) {
                  scaled);
         for_registers(layout, j, [&](std::size_t k) {
           store(&r_[k], narrow(load(&wide_[k])));
-          for (Vector* v : {&z_, &p_, &t_}) store(&(*v)[k], NarrowLanes{});
+          for (Vector* v : {&z_, &p_, &t_, &s_}) store(&(*v)[k], NarrowLanes{});
         });
       });
     };
@@ -235,7 +233,7 @@ void BlockConjugateGradient::start(std::span<const double> x) {
 
 /// x_j ← C_j⁻ᵀ v_j.
 template <typename Layout>
-void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch,
+void BlockConjugateResidual::unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch,
                                      WideVector& x) const {
   for_registers(layout, j, [&](std::size_t k) { store(&scratch[k], widen(load(&v[k]))); });
   const double *wide = &scratch[layout.start(j)], *inverse = &inverse_[inverse_start_[j]];
@@ -249,7 +247,7 @@ void BlockConjugateGradient::unscale(Layout layout, std::size_t j, const Vector&
 
 /// What x lacks of the solution, as the iteration has it: C (1 + U) r. It is that of the matrix but for what single precision
 /// leaves.
-void BlockConjugateGradient::find_residual(std::span<double> residual) {
+void BlockConjugateResidual::find_residual(std::span<double> residual) {
   with_layout([&](auto layout) {
     const auto copy = [&](auto places) {
       for_each(places, [&](std::size_t j) {
@@ -277,7 +275,7 @@ void BlockConjugateGradient::find_residual(std::span<double> residual) {
 
 /// product −= A wide, column j and row j of A, but for rows of other ranges.
 template <typename Layout>
-void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
+void BlockConjugateResidual::subtract_product_of(Layout layout, std::size_t j) {
   const double *x = wide_.data(), *x_j = x + layout.start(j), *block = &matrix_[diagonal_[j]];
   double *y = product_.data(), *y_j = y + layout.start(j);
   const int size = layout.size(j), stride = layout.stride(j);
@@ -293,7 +291,7 @@ void BlockConjugateGradient::subtract_product_of(Layout layout, std::size_t j) {
 
 /// The same at the edge of a neighbourhood, of row j above the diagonal.
 template <typename Layout>
-void BlockConjugateGradient::subtract_product_at_edge(Layout layout, std::size_t j) {
+void BlockConjugateResidual::subtract_product_at_edge(Layout layout, std::size_t j) {
   const int size = layout.size(j), stride = layout.stride(j);
   const double* block = &matrix_[diagonal_[j]] + static_cast<std::ptrdiff_t>(stride) * size;
   for (std::size_t e = column_start_[j]; e < column_start_[j + 1]; ++e) {
@@ -307,7 +305,7 @@ void BlockConjugateGradient::subtract_product_at_edge(Layout layout, std::size_t
 }
 
 /// x += C⁻ᵀ (1 + Uᵀ)⁻¹ z, and residual −= A times that, or residual ← the estimate at hand.
-void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> residual, Residual kind) {
+void BlockConjugateResidual::take_over(std::span<double> x, std::span<double> residual, Residual kind) {
   const bool exact = kind == Residual::exact;
   with_layout([&](auto layout) {
     const auto clear_product = [&](std::size_t j) {
@@ -356,32 +354,37 @@ void BlockConjugateGradient::take_over(std::span<double> x, std::span<double> re
   });
 }
 
-/// Conjugate gradients from r_, p_ and beta_ on, to z_.
+/// Conjugate residuals from r_, p_, s_, rho_ and ss_ on, to z_.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
 /// factor of ten and more, the one way or the other. As it costs more than an iteration it is looked at when it should be small
 /// enough, going by how far it was away the last time; the first time by the last solutions, or three quarters of the digits on the way.
-BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_large, const Excess& excess,
+BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(double too_large, const Excess& excess,
                                                                    int most) {
   const double start = too_large;
-  const bool goes_on = beta_ > 0.0;
-  double alpha = 0.0, wanted = 0.0, first_rr = 0.0;
+  const bool goes_on = rho_ > 0.0;
+  Way way;
+  double wanted = 0.0, first_rr = 0.0;
   for (int iterations = 1;; ++iterations) {
-    const Dots dots = apply(alpha, beta_);
+    const Dots dots = apply(way);
     if (iterations == 1) {
       first_rr = dots.rr;
       const double lag = *std::max_element(lag_.begin(), lag_.end()), three_quarters = std::sqrt(start);
       wanted =
           first_rr * (lag > 0.0 ? std::min(three_quarters, early * lag) : three_quarters) / (start * start);
     }
-    // Nothing is left of p in single precision, or the matrix is not positive definite.
-    if (!(dots.pq > 0.0 && dots.rr <= most_growth * most_growth * first_rr)) return {iterations, false};
-    alpha = dots.rr / dots.pq;
-    const double rr = std::max(0.0, dots.rr - 2.0 * alpha * dots.rq + alpha * alpha * dots.qq);
-    beta_ = rr / dots.rr;
+    const double beta = rho_ > 0.0 ? dots.rq / rho_ : 0.0;
+    rho_ = dots.rq;
+    ss_ = dots.qq + 2.0 * beta * dots.qs + beta * beta * ss_;
+    // Nothing is left of r in single precision, or the matrix is not positive definite.
+    if (!(rho_ > 0.0 && ss_ > 0.0 && dots.rr <= most_growth * most_growth * first_rr))
+      return {iterations, false};
+    const double alpha = rho_ / ss_;
+    way = {static_cast<float>(alpha), static_cast<float>(beta), 1.0F};
+    const double rr = std::max(0.0, dots.rr - alpha * rho_);
     if (rr > wanted && iterations < most) continue;
-    go(alpha);
-    alpha = 0.0;
+    go(way);
+    way = {};
     if (iterations == most) return {iterations, false};
     find_residual(estimate_);
     too_large = excess(estimate_);
@@ -395,11 +398,11 @@ BlockConjugateGradient::Iterations BlockConjugateGradient::iterate(double too_la
   }
 }
 
-/// From where the iteration is, or from the beginning where beta_ is 0.
-void BlockConjugateGradient::approach(std::span<double> x, std::span<double> residual, const Excess& excess,
+/// From where the iteration is, or from the beginning where rho_ is 0.
+void BlockConjugateResidual::approach(std::span<double> x, std::span<double> residual, const Excess& excess,
                                       Residual kind) {
   solved_ = true;
-  bool goes_on = beta_ > 0.0;
+  bool goes_on = rho_ > 0.0;
   int iterations = 0;
   double most = HUGE_VAL;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
@@ -420,22 +423,22 @@ void BlockConjugateGradient::approach(std::span<double> x, std::span<double> res
   }
 }
 
-void BlockConjugateGradient::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
+void BlockConjugateResidual::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                    Residual kind) {
   for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
-  beta_ = 0.0;
+  rho_ = 0.0;
   approach(x, residual, excess, kind);
 }
 
-void BlockConjugateGradient::improve(std::span<double> x, std::span<double> residual, const Excess& excess,
+void BlockConjugateResidual::improve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                      Residual kind) {
   for_numbers(z_.size(), [&](std::size_t k) { z_[k] = 0.0F; });
   approach(x, residual, excess, kind);
 }
 
-std::unique_ptr<BlockSolver> make_block_conjugate_gradient(ThreadTeam* team) {
-  return std::make_unique<BlockConjugateGradient>(team);
+std::unique_ptr<BlockSolver> make_block_conjugate_residual(ThreadTeam* team) {
+  return std::make_unique<BlockConjugateResidual>(team);
 }
 
 }  // namespace keyblock::linalg

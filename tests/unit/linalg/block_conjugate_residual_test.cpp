@@ -214,7 +214,7 @@ TEST(BlockSolver, PartsGiveTheSameBitsForAnyNumberOfThreads) {
     for (std::size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(alone[k], expected[k], 1e-10);
     for (const int threads : {2, 3, 8}) {
       ThreadTeam team(threads);
-      EXPECT_EQ(problem.solution(*make_block_conjugate_gradient(&team)), alone) << threads;
+      EXPECT_EQ(problem.solution(*make_block_conjugate_residual(&team)), alone) << threads;
     }
   }
 }
@@ -241,7 +241,7 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
     std::vector<double> alone;
     for (const int threads : {1, 2, 3}) {
       ThreadTeam team(threads);
-      const auto solver = make_block_conjugate_gradient(&team);
+      const auto solver = make_block_conjugate_residual(&team);
       problem.fill(*solver);
       ASSERT_TRUE(solver->factor());
       std::vector<double> x = b, residual(b.size());
