@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "dynamics/line_search.h"
@@ -10,7 +12,8 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr double forcing = 0.003;  // of what is out of balance, what its linear systems may leave over
+// Of what is out of balance, what linear systems may leave over: of all blocks, and near some of them, where contacts then bend again.
+constexpr double forcing = 0.003, forcing_near = 0.03;
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
 constexpr double least_share = 0.25;   // of the way to a new bound
@@ -57,26 +60,6 @@ linalg::BlockSolver::Excess OpenClose::excess_over(const StepProblem& problem, d
   };
 }
 
-/// Whether what is out of balance at few blocks may be taken off near these. In a static step, which has little inertia, that is everywhere.
-bool OpenClose::solves_near(const StepProblem& problem, const linalg::BlockSolver& solver) {
-  return solver.solves_near() && !problem.is_static();
-}
-
-/// direction_ ← A⁻¹ direction_ near the blocks that are out of balance, where these are few. False, and nothing is done, where not.
-bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough) {
-  constexpr double share =
-      0.5;  // of what is enough, that the others may be out of balance by: the solver looks at all
-  if (!solves_near(problem, solver)) return false;
-  find_all(
-      *team_, problem.blocks(), blocks_worth_threads,
-      [&](std::size_t b) { return problem.residual_ratio(b, gradient_) > share * enough; },
-      out_of_balance_blocks_);
-  for (std::size_t& b : out_of_balance_blocks_) b = at(problem.unknown(b));
-  const std::size_t n = problem.unknowns();
-  return solver.solve_near(out_of_balance_blocks_, std::span(direction_).first(n),
-                           std::span(residual_).first(n), excess_over(problem, enough));
-}
-
 /// direction_ ← A⁻¹ direction_, but for what is left in residual_. False when it cannot be had.
 bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                              const OpenCloseResult& result) {
@@ -85,12 +68,15 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
   const std::size_t n = problem.unknowns();
   const std::span<double> x = std::span(direction_).first(n);
   // The springs that act are not known better than to a share of what is out of balance.
-  const double enough = std::max(linear_share * tolerance, forcing * out_of_balance(problem));
+  const auto enough = [&](double share) {
+    return std::max(linear_share * tolerance, share * out_of_balance(problem));
+  };
   // Where no contact bends and little is out of balance, one system of all blocks is all that is needed.
   const bool is_calm = result.bends == 0 && out_of_balance(problem) <= calm * tolerance;
-  near_ = !is_calm && solve_near(problem, solver, enough);
-  if (!near_)
-    solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough), residual_kind(solver));
+  is_near_ = !is_calm && solve_near(problem, solver, enough(forcing_near));
+  if (!is_near_)
+    solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough(forcing)),
+                 residual_kind(solver));
   return solver.solved();
 }
 
@@ -105,6 +91,7 @@ bool OpenClose::improve_linear(const StepProblem& problem, linalg::BlockSolver& 
 
 /// What the direction of search does to every spring.
 void OpenClose::find_direction(const StepProblem& problem) {
+  if (is_near_) return find_direction_near(problem);
   problem.displace(direction_, displacement_);
   for_relatives(problem.rows(), [&](std::size_t c, std::size_t count, const Relatives& r) {
     store_first(&springs_->dy[c], -r.normal, static_cast<int>(count));
@@ -119,6 +106,11 @@ void OpenClose::find_bends(double alpha) {
                                        springs_->w[c] + alpha * springs_->dw[c]);
     return p != springs_->piece[c];
   };
+  if (is_near_) {
+    bends_.clear();
+    std::ranges::copy_if(near_contacts_, std::back_inserter(bends_), bends);
+    return;
+  }
   find_few<lane_count>(
       *team_, springs_->size(), contacts_worth_threads,
       [&](std::size_t first) { return springs_->any_leaves(first, alpha); }, bends, bends_);
@@ -134,13 +126,12 @@ double OpenClose::slope(double alpha) const {
   return sum;
 }
 
-double OpenClose::search_line() {
-  const auto [from_gradient, from_residual] =
-      sum_of<Sums<double>>(*team_, direction_.size(), coefficients_worth_threads, [&](std::size_t k) {
-        return Sums<double>{gradient_[k] * direction_[k], residual_[k] * direction_[k]};
-      });
-  slope_at_zero_ = from_gradient;
-  curvature_ = -from_residual - from_gradient;
+double OpenClose::search_line(const StepProblem& problem) {
+  const Products products = is_near_ ? products_near(problem)
+                                     : sum_of<Products>(*team_, direction_.size(), coefficients_worth_threads,
+                                                        [&](std::size_t k) { return products_of(k); });
+  slope_at_zero_ = products.gradient;
+  curvature_ = -products.residual - products.gradient;
   find_bends(1.0);
   return line_search(
       slope_at_zero_, [&](double alpha) { find_bends(alpha); }, [&](double alpha) { return slope(alpha); });
@@ -148,16 +139,25 @@ double OpenClose::search_line() {
 
 /// D ← D + αp, and the gradient and springs with it.
 void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d) {
-  team_->for_range(d.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+  const auto go_coefficients = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       d[k] += alpha * direction_[k];
       gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
     }
-  });
+  };
+  const auto go_springs = [&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); };
+  if (is_near_) {
+    for (const std::size_t b : near_.blocks) std::apply(go_coefficients, problem.coefficients(b));
+  } else {
+    team_->for_range(d.size(), coefficients_worth_threads, go_coefficients);
+  }
   out_of_balance_.reset();
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
-  team_->for_range(springs_->size(), contacts_worth_threads,
-                   [&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); });
+  if (is_near_) {
+    for (const std::size_t c : near_contacts_) go_springs(c, c + 1);
+  } else {
+    team_->for_range(springs_->size(), contacts_worth_threads, go_springs);
+  }
   knows_relative_ = false;
   for (const std::size_t c : bends_)
     springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
@@ -176,14 +176,14 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
   if (!solve_linear(problem, solver, tolerance, result)) return false;
   if (was_exact != is_exact(solver)) forget_corrections();  // they are of another factor
   find_direction(problem);
-  const bool whole_way = !near_ && std::exchange(may_go_whole_way_, false);
+  const bool whole_way = !is_near_ && std::exchange(may_go_whole_way_, false);
   if (whole_way) find_bends(1.0);
-  double alpha = whole_way ? 1.0 : search_line();
+  double alpha = whole_way ? 1.0 : search_line(problem);
   // Where no contact changes, what the system left over is all that is.
-  if (!near_ && bends_.empty() && problem.residual_ratio(residual_) >= enough) {
+  if (!is_near_ && bends_.empty() && problem.residual_ratio(residual_) >= enough) {
     if (!improve_linear(problem, solver, tolerance)) return false;
     find_direction(problem);
-    alpha = search_line();
+    alpha = search_line(problem);
   }
   go(problem, alpha, d);
   result.bends += bends_.size();
@@ -386,6 +386,8 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   assembled_ = knows_relative_ = false;
   misses_ = 0;
   may_go_whole_way_ = solves_near(problem, solver);
+  is_near_ = false;
+  first_contact_.clear();
   bound_steps_.clear();
   try_factor(problem, solver);
   OpenCloseResult result;

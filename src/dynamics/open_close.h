@@ -151,7 +151,23 @@ class OpenClose {
                    std::span<double> d, OpenCloseResult& result);
   [[nodiscard]] std::size_t bent_contacts() const;
   void find_direction(const StepProblem& problem);
-  [[nodiscard]] double search_line();
+  void find_contacts_of_blocks(const StepProblem& problem);
+  void find_near(const StepProblem& problem);
+  void find_direction_near(const StepProblem& problem);
+  /// Of coefficients of the direction of search: with those of the gradient, and of the residual.
+  struct Products {
+    double gradient = 0.0, residual = 0.0;
+    Products& operator+=(const Products& other) {
+      gradient += other.gradient;
+      residual += other.residual;
+      return *this;
+    }
+  };
+  [[nodiscard]] Products products_of(std::size_t k) const {
+    return {gradient_[k] * direction_[k], residual_[k] * direction_[k]};
+  }
+  [[nodiscard]] Products products_near(const StepProblem& problem) const;
+  [[nodiscard]] double search_line(const StepProblem& problem);
   void find_bends(double alpha);
   [[nodiscard]] double slope(double alpha) const;
   void go(const StepProblem& problem, double alpha, std::span<double> d);
@@ -228,9 +244,15 @@ class OpenClose {
   std::vector<BoundStep>
       bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
-  std::optional<double> out_of_balance_;            ///< by gradient_, where it is known
-  std::vector<double> residual_;                    ///< ρ of the last linear solution: A p = −g − ρ
-  bool near_ = false;                               ///< it was of the neighbourhood of some blocks
+  std::optional<double> out_of_balance_;    ///< by gradient_, where it is known
+  std::vector<double> residual_;            ///< ρ of the last linear solution: A p = −g − ρ
+  bool is_near_ = false;                    ///< it was of the neighbourhood of some blocks:
+  linalg::BlockSolver::Reach near_;         ///< these, as Block::unknown at first and then by themselves
+  std::vector<std::size_t> near_contacts_;  ///< of those that it moves
+  std::vector<std::uint8_t> is_taken_;      ///< scratch, per unknown block
+  /// Contacts of each unknown block; empty: not needed in this step yet.
+  std::vector<std::size_t> first_contact_;
+  std::vector<std::uint32_t> contacts_of_block_;
   std::vector<std::size_t> out_of_balance_blocks_;  ///< scratch: Block::unknown of these
   /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do
   /// otherwise is mended near them.

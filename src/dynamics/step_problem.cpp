@@ -32,6 +32,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     model_ = &model;
     h_first_.clear();
     coefficients_.clear();
+    block_of_unknown_.clear();
     bodies_.clear();
     body_force_.clear();
     frequency_.clear();
@@ -49,6 +50,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
       coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
       bodies_.push_back({static_cast<std::uint32_t>(block.first), block.fixed ? 0 : block.size, block.unknown,
                          block.fixed ? 0.0 : block.mass()});
+      if (block.unknown >= 0) block_of_unknown_.push_back(bodies_.size() - 1);
       used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
     }
     h_.assign(used, 0.0);
@@ -211,20 +213,32 @@ void StepProblem::displace(std::span<const double> d, std::vector<Vec2>& u) cons
   const std::size_t vertices = surface_->position.size();
   u.resize(vertices + (most_vertices_ > 0 ? rows_.size() : 0));
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      for_vertex_values(*surface_, b, bodies_[b].size, &d[bodies_[b].first],
-                        [&](std::size_t v, Vec2 x) { u[v] = x; });
-    }
+    for (std::size_t b = begin; b < end; ++b) displace_block(b, d, u);
   });
   if (most_vertices_ == 0) return;
   team_->for_range(rows_.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      if (!is_on_curve(rows_[c].from)) continue;
-      Pair sum{};
-      for_vertices_of_curve(c, [&](std::size_t v, double share) { sum += share * load_pair(u[v]); });
-      u[vertices + c] = vec2_of(sum);
-    }
+    for (std::size_t c = begin; c < end; ++c) displace_point(c, u);
   });
+}
+
+void StepProblem::displace(std::span<const double> d, std::span<const std::size_t> blocks,
+                           std::span<const std::size_t> contacts, std::span<Vec2> u) const {
+  for (const std::size_t b : blocks) displace_block(b, d, u);
+  if (most_vertices_ == 0) return;
+  for (const std::size_t c : contacts) displace_point(c, u);
+}
+
+void StepProblem::displace_block(std::size_t b, std::span<const double> d, std::span<Vec2> u) const {
+  for_vertex_values(*surface_, b, bodies_[b].size, &d[bodies_[b].first],
+                    [&](std::size_t v, Vec2 x) { u[v] = x; });
+}
+
+/// Of a contact on a curved edge, whose vertices are displaced.
+void StepProblem::displace_point(std::size_t c, std::span<Vec2> u) const {
+  if (!is_on_curve(rows_[c].from)) return;
+  Pair sum{};
+  for_vertices_of_curve(c, [&](std::size_t v, double share) { sum += share * load_pair(u[v]); });
+  u[surface_->position.size() + c] = vec2_of(sum);
 }
 
 /// Adds what the forces at the vertices of a block do to its coefficients.

@@ -106,6 +106,9 @@ class StepProblem {
   [[nodiscard]] double reduced_mass(const contact::Contact& c) const;
   /// u of increment D, m, at every point: the vertices of the surface, then, where edges are divided, one of each contact.
   void displace(std::span<const double> d, std::vector<Vec2>& u) const;
+  /// The same of some blocks, and of points of some contacts.
+  void displace(std::span<const double> d, std::span<const std::size_t> blocks,
+                std::span<const std::size_t> contacts, std::span<Vec2> u) const;
   /// r of a contact for increment D, but for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
     const auto displacement = [&](std::uint32_t point) {
@@ -185,6 +188,12 @@ class StepProblem {
   [[nodiscard]] std::size_t blocks() const { return bodies_.size(); }
   [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
   [[nodiscard]] int unknown(std::size_t block) const { return bodies_[block].unknown; }
+  /// The block with this number among the unknown ones.
+  [[nodiscard]] std::size_t block(std::size_t unknown) const { return block_of_unknown_[unknown]; }
+  /// The first of its coefficients, and the one after the last.
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> coefficients(std::size_t block) const {
+    return coefficients_[block];
+  }
   [[nodiscard]] double block_size() const { return model_->block_size; }
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   /// Whether there is anything to measure residuals by: not without gravity, loads and shaking.
@@ -276,6 +285,8 @@ class StepProblem {
     if (point.pieces == 2) return for_pieces(std::integral_constant<int, 2>{});
     for_pieces(point.pieces);
   }
+  void displace_block(std::size_t block, std::span<const double> d, std::span<Vec2> u) const;
+  void displace_point(std::size_t contact, std::span<Vec2> u) const;
   template <typename Do>
   void with_phi(const Row& row, double position, const Do& what) const;
   /// Some of the unknown blocks, those of a thread. What contacts add to a block is added by its owner, in the order of the contacts,
@@ -341,6 +352,7 @@ class StepProblem {
   int largest_size_ = 0;                                ///< N
   /// Per block: the first of its coefficients, and where they end.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coefficients_;
+  std::vector<std::size_t> block_of_unknown_;
   std::vector<std::size_t> h_first_;  ///< per block, into h_
   std::vector<double> h_;             ///< H of each, columns of padded_rows(2N)
   std::vector<double> b_;

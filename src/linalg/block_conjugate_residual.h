@@ -43,7 +43,7 @@ class BlockConjugateResidual final : public BlockSolver {
   void improve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   [[nodiscard]] bool solves_near() const override { return true; }
   bool solve_near(std::span<const std::size_t> blocks, std::span<double> x, std::span<double> residual,
-                  const Excess& excess) override;
+                  const Excess& excess, Reach& reach) override;
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
 
@@ -225,6 +225,7 @@ class BlockConjugateResidual final : public BlockSolver {
   // Everything is by place in the order of the partition, but for the slots.
   ThreadTeam* team_;
   std::vector<std::size_t> place_;  ///< block → place
+  std::vector<int> block_at_;       ///< place → block
   std::vector<std::size_t> begin_;  ///< Partition::begin
   Near near_;
   bool is_near_ = false;                       ///< what is solved is that, and not all

@@ -42,7 +42,10 @@ bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks) {
       near_.edge.push_back(place);
     }
   }
-  std::sort(near_.places.begin(), near_.places.end());
+  near_.places.clear();
+  for (std::size_t place = 0; place < near_.has.size(); ++place) {
+    if (near_.has[place] == 1) near_.places.push_back(static_cast<std::uint32_t>(place));
+  }
   near_.begin.assign(1, 0);
   for (std::size_t piece = 1; piece < begin_.size(); ++piece) {
     const auto end = std::lower_bound(near_.places.begin(), near_.places.end(), begin_[piece]);
@@ -54,8 +57,13 @@ bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks) {
 }
 
 bool BlockConjugateResidual::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
-                                        std::span<double> residual, const Excess& excess) {
+                                        std::span<double> residual, const Excess& excess, Reach& reach) {
   if (!find_near(blocks)) return false;
+  reach.moved = near_.places.size();
+  reach.blocks.clear();
+  for (const auto& places : {near_.places, near_.edge}) {
+    for (const std::size_t place : places) reach.blocks.push_back(at(block_at_[place]));
+  }
   for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
   for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });

@@ -15,6 +15,7 @@ void BlockConjugateResidual::analyse(std::span<const int> sizes, std::span<const
   dots_.assign(begin_.size() - 1, {});
   place_.resize(sizes.size());
   for (std::size_t k = 0; k < sizes.size(); ++k) place_[at(found.order[k])] = k;
+  block_at_ = found.order;
   find_neighbours(pairs);
   place_vectors(sizes, found.order);
   const std::vector<std::size_t> values = place_matrix(pairs);

@@ -49,7 +49,7 @@ class BlockFactor {
   template <int equal, typename OfRow>
   void eliminate(const BlockPattern& pattern, std::size_t j, double* y, const OfRow& of_row);
 
-  std::vector<Number> values_;    ///< as the pattern has them; diagonal blocks are L_jj⁻¹
+  std::vector<Number> values_;       ///< as the pattern has them; diagonal blocks are L_jj⁻¹
   std::vector<std::uint8_t> stale_;  ///< per column: to be factored anew
   std::vector<Number*> target_;      ///< scratch of update_column: row → block of the column at hand
   std::vector<double> solved_, scale_, diagonal_;  ///< scratch of one block

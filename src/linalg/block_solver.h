@@ -92,10 +92,16 @@ class BlockSolver {
                        Residual /*kind*/ = Residual::exact) {}
   /// Whether there is a solve_near().
   [[nodiscard]] virtual bool solves_near() const { return false; }
+  /// What solve_near() reaches.
+  struct Reach {
+    std::vector<std::size_t>
+        blocks;             ///< of which it has x, and then those beside them, of which it knows the residual
+    std::size_t moved = 0;  ///< as many of the first
+  };
   /// As solve() does for these blocks and those near them, where the others lack well less than is asked for: x is zero elsewhere, and
   /// `residual`, which is exact, may be too large there afterwards. False, and nothing is done, where these are so many that solve() is as well.
   virtual bool solve_near(std::span<const std::size_t> /*blocks*/, std::span<double> /*x*/,
-                          std::span<double> /*residual*/, const Excess& /*excess*/) {
+                          std::span<double> /*residual*/, const Excess& /*excess*/, Reach& /*reach*/) {
     return false;
   }
   /// Null where this solver has none.

@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "linalg/partition.h"
 #include "random_problem.h"
@@ -245,14 +246,24 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       problem.fill(*solver);
       ASSERT_TRUE(solver->factor());
       std::vector<double> x = b, residual(b.size());
-      ASSERT_TRUE(solver->solves_near() && solver->solve_near(blocks, x, residual, excess));
+      BlockSolver::Reach reach;
+      ASSERT_TRUE(solver->solves_near() && solver->solve_near(blocks, x, residual, excess, reach));
       EXPECT_TRUE(solver->solved());
       const auto product = problem.product(x);
+      const std::set<std::size_t> reached(reach.blocks.begin(), reach.blocks.end()),
+          moves(reach.blocks.begin(), reach.blocks.begin() + static_cast<std::ptrdiff_t>(reach.moved));
+      EXPECT_EQ(reached.size(), reach.blocks.size());
       std::size_t moved = 0;
       for (std::size_t block = 0; block < problem.sizes.size(); ++block) {
         const std::size_t begin = first[block], end = first[block + 1];
-        for (std::size_t k = begin; k < end; ++k) ASSERT_NEAR(residual[k], b[k] - product[k], 1e-13);
-        moved += largest(std::span(x).subspan(begin, end - begin)) > 0.0 ? 1 : 0;
+        for (std::size_t k = begin; k < end; ++k) {
+          ASSERT_NEAR(residual[k], b[k] - product[k], 1e-13);
+          if (reached.contains(block)) continue;
+          ASSERT_EQ(residual[k], b[k]);
+        }
+        const bool has_x = largest(std::span(x).subspan(begin, end - begin)) > 0.0;
+        EXPECT_EQ(has_x, moves.contains(block));
+        moved += has_x ? 1 : 0;
       }
       EXPECT_GT(moved, 150U);
       EXPECT_LT(moved, 500U);
@@ -269,14 +280,14 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       std::vector<double> little(b.size(), 0.899 * enough);
       std::fill(little.data() + first[7], little.data() + first[8], 1.001 * enough);
       x = little;
-      ASSERT_TRUE(solver->solve_near(std::vector<std::size_t>{7}, x, residual, excess));
+      ASSERT_TRUE(solver->solve_near(std::vector<std::size_t>{7}, x, residual, excess, reach));
       EXPECT_GT(largest(residual), largest(little));
       EXPECT_TRUE(solver->solved());
 
       std::vector<std::size_t> all(problem.sizes.size());
       std::iota(all.begin(), all.end(), std::size_t{0});
       x = b;
-      EXPECT_FALSE(solver->solve_near(all, x, residual, excess)) << "all are as well";
+      EXPECT_FALSE(solver->solve_near(all, x, residual, excess, reach)) << "all are as well";
       EXPECT_EQ(x, b);
     }
   }
@@ -291,11 +302,12 @@ TEST(BlockSolver, GivesUpNearSomeBlocksWhereTheMatrixIsNotPositiveDefinite) {
   ASSERT_TRUE(solver->factor());
   const auto [i, j] = problem.grid.pairs[pair];
   std::vector<double> x(problem.right.size(), 0.0), residual(x.size());
+  BlockSolver::Reach reach;
   std::fill_n(x.data() + 6 * i, 6, 1.0);
   std::fill_n(x.data() + 6 * j, 6, -1.0);
   const std::vector<std::size_t> blocks{static_cast<std::size_t>(i), static_cast<std::size_t>(j)};
-  ASSERT_TRUE(
-      solver->solve_near(blocks, x, residual, [&](std::span<const double> r) { return largest(r) / 1e-5; }));
+  ASSERT_TRUE(solver->solve_near(
+      blocks, x, residual, [&](std::span<const double> r) { return largest(r) / 1e-5; }, reach));
   EXPECT_FALSE(solver->solved());
 }
 

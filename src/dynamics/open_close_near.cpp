@@ -1,0 +1,91 @@
+// Newton steps near some blocks: all that they take is looked at in the contacts and coefficients of these alone.
+#include <numeric>
+#include <span>
+
+#include "core/index.h"
+#include "dynamics/open_close.h"
+
+namespace keyblock::dynamics {
+
+/// Whether what is out of balance at few blocks may be taken off near these. In a static step, which has little inertia, that is everywhere.
+bool OpenClose::solves_near(const StepProblem& problem, const linalg::BlockSolver& solver) {
+  return solver.solves_near() && !problem.is_static();
+}
+
+/// direction_ ← A⁻¹ direction_ near the blocks that are out of balance, where these are few. False, and nothing is done, where not.
+bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough) {
+  constexpr double share =
+      0.5;  // of what is enough, that the others may be out of balance by: the solver looks at all
+  if (!solves_near(problem, solver)) return false;
+  find_all(
+      *team_, problem.blocks(), blocks_worth_threads,
+      [&](std::size_t b) { return problem.residual_ratio(b, gradient_) > share * enough; },
+      out_of_balance_blocks_);
+  for (std::size_t& b : out_of_balance_blocks_) b = at(problem.unknown(b));
+  const std::size_t n = problem.unknowns();
+  if (!solver.solve_near(out_of_balance_blocks_, std::span(direction_).first(n),
+                         std::span(residual_).first(n), excess_over(problem, enough), near_))
+    return false;
+  find_near(problem);
+  return true;
+}
+
+void OpenClose::find_contacts_of_blocks(const StepProblem& problem) {
+  if (!first_contact_.empty()) return;
+  const auto& rows = problem.rows();
+  const auto for_ends = [&](const auto& body) {
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      for (const int unknown : {rows[c].unknown_a, rows[c].unknown_b}) {
+        if (unknown >= 0) body(at(unknown), c);
+      }
+    }
+  };
+  // Counted one place on, so that a second pass, which fills them, leaves each with where it begins.
+  first_contact_.assign(problem.blocks() + 2, 0);
+  for_ends([&](std::size_t block, std::size_t /*contact*/) { ++first_contact_[block + 2]; });
+  std::partial_sum(first_contact_.begin(), first_contact_.end(), first_contact_.begin());
+  contacts_of_block_.resize(first_contact_.back());
+  for_ends([&](std::size_t block, std::size_t contact) {
+    contacts_of_block_[first_contact_[block + 1]++] = static_cast<std::uint32_t>(contact);
+  });
+}
+
+/// What the last solution has reached, by the numbers of the solver. Contacts of two blocks that move come once, with the one that is
+/// found first.
+void OpenClose::find_near(const StepProblem& problem) {
+  find_contacts_of_blocks(problem);
+  is_taken_.assign(problem.blocks(), 0);
+  near_contacts_.clear();
+  for (std::size_t k = 0; k < near_.moved; ++k) {
+    const std::size_t block = near_.blocks[k];
+    for (std::size_t i = first_contact_[block]; i < first_contact_[block + 1]; ++i) {
+      const StepProblem::Row& row = problem.rows()[contacts_of_block_[i]];
+      const int other = at(row.unknown_a) == block ? row.unknown_b : row.unknown_a;
+      if (other < 0 || is_taken_[at(other)] == 0) near_contacts_.push_back(contacts_of_block_[i]);
+    }
+    is_taken_[block] = 1;
+  }
+  for (std::size_t& block : near_.blocks) block = problem.block(block);
+}
+
+/// Blocks beside those that move stand still: displacement_ is that of another direction there.
+void OpenClose::find_direction_near(const StepProblem& problem) {
+  problem.displace(direction_, near_.blocks, near_contacts_, displacement_);
+  for (const std::size_t c : near_contacts_) {
+    const StepProblem::Row& row = problem.rows()[c];
+    const Vec2 r = vec2_of(row.relative(displacement_));
+    springs_->dy[c] = -dot(row.normal, r);
+    springs_->dw[c] = dot(row.tangent(), r);
+  }
+}
+
+OpenClose::Products OpenClose::products_near(const StepProblem& problem) const {
+  Products products;
+  for (const std::size_t b : std::span(near_.blocks).first(near_.moved)) {
+    const auto [first, last] = problem.coefficients(b);
+    for (std::size_t k = first; k < last; ++k) products += products_of(k);
+  }
+  return products;
+}
+
+}  // namespace keyblock::dynamics
