@@ -11,9 +11,9 @@ namespace keyblock::dynamics {
 
 namespace {
 
-using Pair = std::pair<int, int>;  // Block::unknown of two blocks, the smaller first
+using Unknowns = std::pair<int, int>;  // Block::unknown of two blocks, the smaller first
 
-Pair pair_of(const Model& model, int a, int b) {
+Unknowns unknowns_of(const Model& model, int a, int b) {
   return std::minmax(model.blocks[at(a)].unknown, model.blocks[at(b)].unknown);
 }
 
@@ -25,7 +25,7 @@ void Stepper::find_pairs(const State& state) {
   pair_of_candidate_.resize(list.size());
   auto next = state.pattern.begin();
   for (std::size_t k = 0; k < list.size(); ++k) {
-    const Pair pair = pair_of(model_, list[k].block_a, list[k].block_b);
+    const Unknowns pair = unknowns_of(model_, list[k].block_a, list[k].block_b);
     if (pair.first < 0) {
       pair_of_candidate_[k] = StepProblem::of_fixed;
       continue;
@@ -41,14 +41,14 @@ void Stepper::find_pairs(const State& state) {
 /// Room in the matrix for every pair of blocks that has contacts. Pairs that have contacts no more keep theirs until they are many.
 void Stepper::make_room(State& state) {
   constexpr double most_idle = 0.15;
-  std::vector<Pair> used;
+  std::vector<Unknowns> used;
   for (const contact::Contact& c : contacts_) {
-    const Pair pair = pair_of(model_, c.block_a, c.block_b);
+    const Unknowns pair = unknowns_of(model_, c.block_a, c.block_b);
     if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
   }
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<Pair> all;
+  std::vector<Unknowns> all;
   std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
                  std::back_inserter(all));
   const bool idle =
