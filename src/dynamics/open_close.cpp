@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <tuple>
 #include <utility>
 
 #include "dynamics/line_search.h"
@@ -22,9 +21,8 @@ constexpr int most_bond_updates = 20;  // in a step, lest two bonds hand a stren
 constexpr double first_multiplier_share = 0.25, least_multiplier_share = 1e-3;
 
 /// Two sums over the same.
-template <typename Number>
 struct Sums {
-  Number first{}, second{};
+  Lanes first{}, second{};
   Sums& operator+=(const Sums& other) {
     first += other.first;
     second += other.second;
@@ -108,7 +106,7 @@ void OpenClose::find_bends(double alpha) {
   };
   if (is_near_) {
     bends_.clear();
-    std::ranges::copy_if(near_contacts_, std::back_inserter(bends_), bends);
+    std::ranges::copy_if(near_.contacts, std::back_inserter(bends_), bends);
     return;
   }
   find_few<lane_count>(
@@ -139,25 +137,15 @@ double OpenClose::search_line(const StepProblem& problem) {
 
 /// D ← D + αp, and the gradient and springs with it.
 void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d) {
-  const auto go_coefficients = [&](std::size_t begin, std::size_t end) {
+  for_reached_coefficients(problem, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       d[k] += alpha * direction_[k];
       gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
     }
-  };
-  const auto go_springs = [&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); };
-  if (is_near_) {
-    for (const std::size_t b : near_.blocks) std::apply(go_coefficients, problem.coefficients(b));
-  } else {
-    team_->for_range(d.size(), coefficients_worth_threads, go_coefficients);
-  }
+  });
   out_of_balance_.reset();
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
-  if (is_near_) {
-    for (const std::size_t c : near_contacts_) go_springs(c, c + 1);
-  } else {
-    team_->for_range(springs_->size(), contacts_worth_threads, go_springs);
-  }
+  for_reached_contacts([&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); });
   knows_relative_ = false;
   for (const std::size_t c : bends_)
     springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
@@ -252,7 +240,7 @@ void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force befo
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
-  const auto [errors, scales] = sum_of<Sums<Lanes>>(
+  const auto [errors, scales] = sum_of<Sums>(
       *team_, (springs_->size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
       [&](std::size_t group) {
         const std::size_t c = group * lane_count;
@@ -265,7 +253,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
                     change = largest(least(elastic, wanted), -wanted) -
                              largest(least(elastic, bound_now), -bound_now);
         const auto counts = (mu >= zero) & first_lanes(springs_->size() - c);
-        return Sums<Lanes>{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
+        return Sums{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
       });
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
@@ -368,6 +356,23 @@ bool OpenClose::break_bonds(const StepProblem& problem, std::span<contact::Conta
   return any;
 }
 
+/// Forgets what was known within the last step.
+void OpenClose::begin(const StepProblem& problem, linalg::BlockSolver& solver, std::size_t coefficients) {
+  r_.resize(problem.rows().size());
+  gradient_.resize(coefficients);
+  direction_.resize(coefficients);
+  residual_.resize(coefficients, 0.0);
+  out_of_balance_.reset();
+  assembled_ = knows_relative_ = is_near_ = false;
+  misses_ = 0;
+  may_go_whole_way_ = solves_near(problem, solver);
+  first_contact_.clear();
+  bound_steps_.clear();
+  worst_ = HUGE_VAL;
+  stalls_ = 0;
+  multiplier_share_ = first_multiplier_share;
+}
+
 OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contact> contacts,
                                  linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
                                  Profile& profile, std::span<double> d,
@@ -376,25 +381,11 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contac
   contacts_ = contacts;
   profile_ = &profile;
   const Profile::Scope scope(profile, Phase::search);
-  const std::size_t rows = problem.rows().size();
-  r_.resize(rows);
-  gradient_.resize(d.size());
-  direction_.resize(d.size());
-  residual_.resize(d.size(), 0.0);
-  out_of_balance_.reset();
   springs_ = &problem.springs();
-  assembled_ = knows_relative_ = false;
-  misses_ = 0;
-  may_go_whole_way_ = solves_near(problem, solver);
-  is_near_ = false;
-  first_contact_.clear();
-  bound_steps_.clear();
+  begin(problem, solver, d.size());
   try_factor(problem, solver);
   OpenCloseResult result;
   const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
-  worst_ = HUGE_VAL;
-  stalls_ = 0;
-  multiplier_share_ = first_multiplier_share;
   bool warm = false;
   int bond_updates = 0;
   double enough = options.tolerance;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,7 @@ class OpenClose {
   using Shear = SpringArray::Shear;
   using Force = SpringArray::Force;
 
+  void begin(const StepProblem& problem, linalg::BlockSolver& solver, std::size_t coefficients);
   void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
   [[nodiscard]] bool carry_contacts();
@@ -167,6 +169,18 @@ class OpenClose {
     return {gradient_[k] * direction_[k], residual_[k] * direction_[k]};
   }
   [[nodiscard]] Products products_near(const StepProblem& problem) const;
+  /// Calls body(begin, end) for the coefficients that the direction of search moves or whose residual it changes, in parts.
+  template <typename Body>
+  void for_reached_coefficients(const StepProblem& problem, const Body& body) {
+    if (!is_near_) return team_->for_range(direction_.size(), coefficients_worth_threads, body);
+    for (const std::size_t b : near_.blocks) std::apply(body, problem.coefficients(b));
+  }
+  /// Likewise for the contacts.
+  template <typename Body>
+  void for_reached_contacts(const Body& body) {
+    if (!is_near_) return team_->for_range(springs_->size(), contacts_worth_threads, body);
+    for (const std::size_t c : near_.contacts) body(c, c + 1);
+  }
   [[nodiscard]] double search_line(const StepProblem& problem);
   void find_bends(double alpha);
   [[nodiscard]] double slope(double alpha) const;
@@ -244,12 +258,18 @@ class OpenClose {
   std::vector<BoundStep>
       bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
-  std::optional<double> out_of_balance_;    ///< by gradient_, where it is known
-  std::vector<double> residual_;            ///< ρ of the last linear solution: A p = −g − ρ
-  bool is_near_ = false;                    ///< it was of the neighbourhood of some blocks:
-  linalg::BlockSolver::Reach near_;         ///< these, as Block::unknown at first and then by themselves
-  std::vector<std::size_t> near_contacts_;  ///< of those that it moves
-  std::vector<std::uint8_t> is_taken_;      ///< scratch, per unknown block
+  std::optional<double> out_of_balance_;  ///< by gradient_, where it is known
+  std::vector<double> residual_;          ///< ρ of the last linear solution: A p = −g − ρ
+  bool is_near_ = false;                  ///< it was of the neighbourhood of some blocks
+  /// That neighbourhood.
+  struct Near {
+    std::vector<std::size_t> blocks;    ///< that move, and then those beside them
+    std::size_t moved = 0;              ///< how many the former are
+    std::vector<std::size_t> contacts;  ///< of the former
+  };
+  Near near_;
+  linalg::BlockSolver::Reach reach_;    ///< scratch
+  std::vector<std::uint8_t> is_taken_;  ///< scratch, per unknown block
   /// Contacts of each unknown block; empty: not needed in this step yet.
   std::vector<std::size_t> first_contact_;
   std::vector<std::uint32_t> contacts_of_block_;

@@ -24,7 +24,7 @@ bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solv
   for (std::size_t& b : out_of_balance_blocks_) b = at(problem.unknown(b));
   const std::size_t n = problem.unknowns();
   if (!solver.solve_near(out_of_balance_blocks_, std::span(direction_).first(n),
-                         std::span(residual_).first(n), excess_over(problem, enough), near_))
+                         std::span(residual_).first(n), excess_over(problem, enough), reach_))
     return false;
   find_near(problem);
   return true;
@@ -40,7 +40,7 @@ void OpenClose::find_contacts_of_blocks(const StepProblem& problem) {
       }
     }
   };
-  // Counted one place on, so that a second pass, which fills them, leaves each with where it begins.
+  // Counted two places on: in the next one stands where a block begins, until it is filled, and then where the block after it does.
   first_contact_.assign(problem.blocks() + 2, 0);
   for_ends([&](std::size_t block, std::size_t /*contact*/) { ++first_contact_[block + 2]; });
   std::partial_sum(first_contact_.begin(), first_contact_.end(), first_contact_.begin());
@@ -50,28 +50,28 @@ void OpenClose::find_contacts_of_blocks(const StepProblem& problem) {
   });
 }
 
-/// What the last solution has reached, by the numbers of the solver. Contacts of two blocks that move come once, with the one that is
-/// found first.
+/// What the last solution has reached. A contact of two blocks that move comes once, with the first of them.
 void OpenClose::find_near(const StepProblem& problem) {
   find_contacts_of_blocks(problem);
   is_taken_.assign(problem.blocks(), 0);
-  near_contacts_.clear();
-  for (std::size_t k = 0; k < near_.moved; ++k) {
-    const std::size_t block = near_.blocks[k];
+  near_.contacts.clear();
+  for (const std::size_t block : std::span(reach_.blocks).first(reach_.moved)) {
     for (std::size_t i = first_contact_[block]; i < first_contact_[block + 1]; ++i) {
       const StepProblem::Row& row = problem.rows()[contacts_of_block_[i]];
       const int other = at(row.unknown_a) == block ? row.unknown_b : row.unknown_a;
-      if (other < 0 || is_taken_[at(other)] == 0) near_contacts_.push_back(contacts_of_block_[i]);
+      if (other < 0 || is_taken_[at(other)] == 0) near_.contacts.push_back(contacts_of_block_[i]);
     }
     is_taken_[block] = 1;
   }
-  for (std::size_t& block : near_.blocks) block = problem.block(block);
+  near_.moved = reach_.moved;
+  near_.blocks.clear();
+  for (const std::size_t unknown : reach_.blocks) near_.blocks.push_back(problem.block(unknown));
 }
 
 /// Blocks beside those that move stand still: displacement_ is that of another direction there.
 void OpenClose::find_direction_near(const StepProblem& problem) {
-  problem.displace(direction_, near_.blocks, near_contacts_, displacement_);
-  for (const std::size_t c : near_contacts_) {
+  problem.displace(direction_, near_.blocks, near_.contacts, displacement_);
+  for (const std::size_t c : near_.contacts) {
     const StepProblem::Row& row = problem.rows()[c];
     const Vec2 r = vec2_of(row.relative(displacement_));
     springs_->dy[c] = -dot(row.normal, r);

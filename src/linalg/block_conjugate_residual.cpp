@@ -169,16 +169,26 @@ template <typename Layout, typename Some>
   return {sum(rr), sum(rq), sum(qq), sum(qs)};
 }
 
+/// Once through all that is solved: forward(places), then backward(k, places) of each part while a cache has it, and of what lies between
+/// them, which comes first forward and last backward: when y −= U x has been done for the columns of the parts.
+template <typename Layout, typename Forward, typename Backward>
+void BlockConjugateResidual::through(Layout layout, const Forward& forward, const Backward& backward,
+                                     const Vector& x, Vector& y) {
+  with_between(forward);
+  for_parts([&](std::size_t k, auto places) {
+    forward(places);
+    backward(k, places);
+  });
+  subtract_scaled_of_parts(layout, x.data(), y.data());
+  with_between([&](auto places) { backward(std::size_t{0}, places); });
+}
+
 /// The step of the last iteration, and Â r, into t_, for the next.
 BlockConjugateResidual::Dots BlockConjugateResidual::apply(Way way) {
   return with_layout([&](auto layout) {
-    with_between([&](auto places) { go_forward(layout, places, way); });
-    for_parts([&](std::size_t k, auto places) {
-      go_forward(layout, places, way);
-      dots_[k] = go_backward(layout, places);
-    });
-    subtract_scaled_of_parts(layout, q_.data(), q_.data());
-    dots_.front() = with_between([&](auto places) { return go_backward(layout, places); });
+    through(
+        layout, [&](auto places) { go_forward(layout, places, way); },
+        [&](std::size_t k, auto places) { dots_[k] = go_backward(layout, places); }, q_, q_);
     Dots total;
     for (std::size_t k = 0; k < pieces(); ++k) total += dots_[k];
     return total;
@@ -197,9 +207,9 @@ void BlockConjugateResidual::go(Way way) {
 
 /// r ← (1 + U)⁻¹ C⁻¹ x, and everything else to zero.
 void BlockConjugateResidual::start(std::span<const double> x) {
-  rho_ = 0.0;
+  rho_ = ss_ = 0.0;
   with_layout([&](auto layout) {
-    const auto divide = [&](auto places) {
+    const auto divide = [&](std::size_t, auto places) {
       for_each_backward(places, [&](std::size_t j) { subtract_scaled(layout, j, r_.data(), r_.data()); });
     };
     const auto scale = [&](auto places) {
@@ -221,13 +231,7 @@ void BlockConjugateResidual::start(std::span<const double> x) {
         });
       }
     }
-    with_between(scale);
-    for_parts([&](std::size_t, auto places) {
-      scale(places);
-      divide(places);
-    });
-    subtract_scaled_of_parts(layout, r_.data(), r_.data());
-    with_between(divide);
+    through(layout, scale, divide, r_, r_);
   });
 }
 
@@ -254,7 +258,7 @@ void BlockConjugateResidual::find_residual(std::span<double> residual) {
         for_registers(layout, j, [&](std::size_t k) { store(&q_[k], -load(&r_[k])); });
       });
     };
-    const auto multiply_columns = [&](auto places) {
+    const auto multiply_columns = [&](std::size_t, auto places) {
       for_each_backward(places, [&](std::size_t j) {
         subtract_scaled(layout, j, r_.data(), q_.data());
         float* product = &t_[layout.start(j)];
@@ -263,13 +267,7 @@ void BlockConjugateResidual::find_residual(std::span<double> residual) {
         for (int c = 0; c < layout.size(j); ++c) residual[offset_[j] + at(c)] = -product[c];
       });
     };
-    with_between(copy);
-    for_parts([&](std::size_t, auto places) {
-      copy(places);
-      multiply_columns(places);
-    });
-    subtract_scaled_of_parts(layout, r_.data(), q_.data());
-    with_between(multiply_columns);
+    through(layout, copy, multiply_columns, r_, q_);
   });
 }
 

@@ -198,6 +198,8 @@ class BlockConjugateResidual final : public BlockSolver {
   void go_forward(Layout layout, Some places, Way way);
   template <typename Layout, typename Some>
   [[nodiscard]] Dots go_backward(Layout layout, Some places);
+  template <typename Layout, typename Forward, typename Backward>
+  void through(Layout layout, const Forward& forward, const Backward& backward, const Vector& x, Vector& y);
   Dots apply(Way way);
   void go(Way way);
   void start(std::span<const double> x);

@@ -42,7 +42,7 @@ bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks) {
       near_.edge.push_back(place);
     }
   }
-  near_.places.clear();
+  near_.places.clear();  // to have them in order
   for (std::size_t place = 0; place < near_.has.size(); ++place) {
     if (near_.has[place] == 1) near_.places.push_back(static_cast<std::uint32_t>(place));
   }
@@ -61,13 +61,12 @@ bool BlockConjugateResidual::solve_near(std::span<const std::size_t> blocks, std
   if (!find_near(blocks)) return false;
   reach.moved = near_.places.size();
   reach.blocks.clear();
-  for (const auto& places : {near_.places, near_.edge}) {
-    for (const std::size_t place : places) reach.blocks.push_back(at(block_at_[place]));
+  for (const auto* places : {&near_.places, &near_.edge}) {
+    for (const std::size_t place : *places) reach.blocks.push_back(at(block_at_[place]));
   }
   for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
   for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });
-  rho_ = 0.0;
   is_near_ = true;
   lag_.swap(lag_near_);
   solved_ = true;

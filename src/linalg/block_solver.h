@@ -95,8 +95,8 @@ class BlockSolver {
   /// What solve_near() reaches.
   struct Reach {
     std::vector<std::size_t>
-        blocks;             ///< of which it has x, and then those beside them, of which it knows the residual
-    std::size_t moved = 0;  ///< as many of the first
+        blocks;             ///< of which it finds x, and then those beside them, whose residual it changes
+    std::size_t moved = 0;  ///< how many the former are
   };
   /// As solve() does for these blocks and those near them, where the others lack well less than is asked for: x is zero elsewhere, and
   /// `residual`, which is exact, may be too large there afterwards. False, and nothing is done, where these are so many that solve() is as well.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
@@ -291,6 +292,19 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       EXPECT_EQ(x, b);
     }
   }
+}
+
+// Nothing of a system that had no solution is left in the next.
+TEST(BlockSolver, SolvesAfterASystemOfWhatIsNoNumber) {
+  const GridProblem problem({6});
+  const auto expected = problem.solution(*make_iterative());
+  const auto solver = make_iterative();
+  problem.fill(*solver);
+  ASSERT_TRUE(solver->factor());
+  std::vector<double> x(problem.right.size(), std::numeric_limits<double>::quiet_NaN()), residual(x.size());
+  solver->solve(x, residual, [](std::span<const double>) { return 2.0; });
+  EXPECT_FALSE(solver->solved());
+  EXPECT_EQ(problem.factor_and_solve(*solver), expected);
 }
 
 TEST(BlockSolver, GivesUpNearSomeBlocksWhereTheMatrixIsNotPositiveDefinite) {
