@@ -77,6 +77,11 @@ struct CandidateList {
     tracked.resize(contacts);
     memory.resize(contacts);
   }
+  /// Memory k, which is there, is that of this candidate. Several threads may do so at once.
+  void track(std::size_t k, int candidate) {
+    tracked[k] = candidate;
+    if (memory[k].bonded) pairs[static_cast<std::size_t>(candidate)].clearance = 0.0;  // any gap is a contact
+  }
   /// Of the candidates of a pair of blocks.
   [[nodiscard]] std::size_t end_of_pair(std::size_t p) const {
     return p + 1 < block_pairs.size() ? static_cast<std::size_t>(block_pairs[p + 1].first) : pairs.size();

@@ -39,12 +39,13 @@ inline void keep(const LawLanes& law, std::span<Contact> contacts) {
   transpose(lines);
   for (std::size_t i = 0; i < lane_count && i < contacts.size(); ++i) store(&contacts[i].gap, lines[i]);
 }
-inline void keep(const MemoryLanes& m, std::span<Contact> contacts) {
+/// Into as many memories, the first of them memory_of(0).
+template <typename MemoryOf>
+void keep(const MemoryLanes& m, std::size_t count, const MemoryOf& memory_of) {
   Lanes lines[lane_count] = {m.offset,         m.stiffness,  m.shear, m.normal_force,
                              m.bounding_force, m.multiplier, m.drift, m.stored};
   transpose(lines);
-  for (std::size_t i = 0; i < lane_count && i < contacts.size(); ++i)
-    store(&contacts[i].memory.offset, lines[i]);
+  for (std::size_t i = 0; i < lane_count && i < count; ++i) store(&memory_of(i).offset, lines[i]);
 }
 
 /// number(each) of the first of `some`, likewise.

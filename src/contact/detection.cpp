@@ -282,31 +282,30 @@ void Detection::look_at_pairs(const Surface& surface, CandidateList& candidates,
   found.resize(count);
 }
 
-/// Piece by piece of the pairs of blocks, so that the order of what is found is the same whoever finds it.
 void Detection::find(const Surface& surface, const Motion& motion, CandidateList& candidates,
                      ThreadTeam& team, std::vector<Contact>& contacts) {
+  contacts.resize(find_which(surface, motion, candidates, team));
+  describe(surface, candidates, team, contacts);
+}
+
+/// Piece by piece of the pairs of blocks, so that the order of what is found is the same whoever finds it.
+std::size_t Detection::find_which(const Surface& surface, const Motion& motion, CandidateList& candidates,
+                                  ThreadTeam& team) {
   motion_ = motion;
   measure_corners(surface, team);
   const std::size_t pairs = candidates.block_pairs.size(), pieces = (pairs + piece - 1) / piece;
-  const auto for_pieces = [&](const auto& of_piece) {
-    team.for_range(pieces, 2, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) of_piece(p);
-    });
-  };
   found_.resize(pieces);
-  for_pieces([&](std::size_t p) {
-    look_at_pairs(surface, candidates, p * piece, std::min(pairs, (p + 1) * piece), found_[p]);
+  team.for_range(pieces, 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      look_at_pairs(surface, candidates, p * piece, std::min(pairs, (p + 1) * piece), found_[p]);
   });
-  std::vector<std::size_t> first(pieces, 0);  // contact of each piece
+  first_found_.resize(pieces);
   std::size_t total = 0;
   for (std::size_t p = 0; p < pieces; ++p) {
-    first[p] = total;
+    first_found_[p] = total;
     total += found_[p].size();
   }
-  contacts.resize(total);
-  for_pieces([&](std::size_t p) {
-    describe(surface, candidates, found_[p], std::span(contacts).subspan(first[p], found_[p].size()));
-  });
+  return total;
 }
 
 /// m, from a vertex to the nearest edge of the block of edge `of` but this and `except`, without a reflex vertex between the two.

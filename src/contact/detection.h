@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -40,17 +41,13 @@ struct Contact {
   double friction_coefficient = 0.0;
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
   bool fused = false;
-  Memory memory;  ///< of the last step, to be brought up to date at the end of this one
+  Memory memory;  ///< at the start of the step
 
   [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
 };
 
 /// Takes what the contacts of a step remember over into the list. Candidates that were no contacts remember nothing.
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team);
-/// The same in parts, in any order and by several threads, where the list has room for all (make_room): of contacts `first` to
-/// `last`.
-void keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
-                 CandidateList& candidates);
 
 /// Geometry of candidates turned into the contacts of a step.
 ///
@@ -87,9 +84,17 @@ class Detection {
     std::span<const double> way_ahead = {};
     std::span<const Vec2> ahead_at_first = {};  ///< `ahead` of the first look at the step; empty: this is it
   };
-  /// Contacts of the step in the order of the candidates.
+  /// Contacts of the step in the order of the candidates: find_which() and describe().
   void find(const Surface& surface, const Motion& motion, CandidateList& candidates, ThreadTeam& team,
             std::vector<Contact>& contacts);
+  /// Which candidates are contacts. Returns their number.
+  std::size_t find_which(const Surface& surface, const Motion& motion, CandidateList& candidates,
+                         ThreadTeam& team);
+  /// Of contacts [first, last): what is done with them while a cache has them. Threads may do so at once.
+  using OfSome = std::function<void(std::size_t first, std::size_t last)>;
+  /// What find_which() found, into as many contacts. Returns whether these were contacts of the same vertices and edges before.
+  bool describe(const Surface& surface, const CandidateList& candidates, ThreadTeam& team,
+                std::span<Contact> contacts, const OfSome& then = {}) const;
 
  private:
   /// A vertex, and the edge that begins there: eight numbers, to be read at once.
@@ -254,9 +259,7 @@ class Detection {
     return corners_[static_cast<std::size_t>(
         candidates.pairs[static_cast<std::size_t>(rival.candidate)].edge)];
   }
-  void describe(const Surface& surface, const CandidateList& candidates, std::span<const Found> found,
-                std::span<Contact> contacts) const;
-  void describe_some(const Surface& surface, const CandidateList& candidates, std::span<const Found> found,
+  bool describe_some(const Surface& surface, const CandidateList& candidates, std::span<const Found> found,
                      std::span<Contact> contacts) const;
   /// What is computed of as many contacts as there are lanes at once.
   struct Geometry {
@@ -294,7 +297,7 @@ class Detection {
   };
   void find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
                 SpringLaw& of_contact) const;
-  void identify(const Found& found, const Candidate& candidate, Contact& contact) const;
+  bool identify(const Found& found, const Candidate& candidate, Contact& contact) const;
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
@@ -303,8 +306,9 @@ class Detection {
   std::vector<Corner> corners_;  ///< per vertex
   std::vector<Whole> wholes_;    ///< per edge; empty: no edge is divided
   Motion motion_;                ///< in the step
-  std::vector<std::vector<Found>>
-      found_;  ///< by piece of the pairs of blocks, in the order of the candidates
+  /// By piece of the pairs of blocks, in the order of the candidates, and the contact that each piece begins with.
+  std::vector<std::vector<Found>> found_;
+  std::vector<std::size_t> first_found_;
 };
 
 }  // namespace keyblock::contact

@@ -1,6 +1,7 @@
 // What is known of a contact, once it is one.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "contact/contact_lanes.h"
@@ -200,18 +201,20 @@ void Detection::find_law(const Surface& surface, const Contact& contact, const B
   of_contact.tension = bonded ? law.tension : 0.0;
 }
 
-/// Which blocks meet where.
-void Detection::identify(const Found& found, const Candidate& candidate, Contact& contact) const {
+/// Which blocks meet where. Whether that is where the contact was before.
+bool Detection::identify(const Found& found, const Candidate& candidate, Contact& contact) const {
+  const bool same = contact.vertex == candidate.vertex && contact.edge == candidate.edge;
   contact.candidate = found.candidate;
   contact.block_a = candidate.block_a;
   contact.block_b = candidate.block_b;
   contact.vertex = candidate.vertex;
   contact.edge = candidate.edge;
   contact.normal = corners_[at(candidate.edge)].normal();
+  return same;
 }
 
-/// As many as there are lanes, or fewer.
-void Detection::describe_some(const Surface& surface, const CandidateList& candidates,
+/// As many as there are lanes, or fewer. Whether all of them are the same as before.
+bool Detection::describe_some(const Surface& surface, const CandidateList& candidates,
                               std::span<const Found> found, std::span<Contact> contacts) const {
   static constexpr Memory nothing;
   const auto before = [&](const Found& f) -> const Memory& {
@@ -220,13 +223,14 @@ void Detection::describe_some(const Surface& surface, const CandidateList& candi
   const Geometry geometry = wholes_.empty() ? measure<false>(surface, candidates, found)
                                             : measure<true>(surface, candidates, found);
   std::array<SpringLaw, lane_count> laws;
+  bool same = true;
   LawLanes law{};
   law.gap = geometry.gap;
   law.length = geometry.length + geometry.length_beyond;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Candidate& candidate = candidates.pairs[at(found[i].candidate)];
     Contact& contact = contacts[i];
-    identify(found[i], candidate, contact);
+    same = identify(found[i], candidate, contact) && same;
     contact.position = geometry.position[i];
     if (is_curved(surface, contact.edge)) {
       contact.gap = geometry.gap[i];
@@ -259,31 +263,43 @@ void Detection::describe_some(const Surface& surface, const CandidateList& candi
   keep_energy(memory, law.gap, law.normal_stiffness);
   law.depth = -law.gap - memory.offset + memory.multiplier;
   keep(law, contacts);
-  keep(memory, contacts);
+  keep(memory, contacts.size(), [&](std::size_t i) -> Memory& { return contacts[i].memory; });
+  return same;
 }
 
-void Detection::describe(const Surface& surface, const CandidateList& candidates,
-                         std::span<const Found> found, std::span<Contact> contacts) const {
-  for (std::size_t begin = 0; begin < found.size(); begin += lane_count) {
-    const std::size_t count = std::min(found.size() - begin, std::size_t{lane_count});
-    describe_some(surface, candidates, found.subspan(begin, count), contacts.subspan(begin, count));
-  }
-}
-
-void keep_memory(std::span<const Contact> contacts, std::size_t first, std::size_t last,
-                 CandidateList& candidates) {
-  for (std::size_t k = first; k < last; ++k) {
-    const Contact& c = contacts[k];
-    candidates.tracked[k] = c.candidate;
-    candidates.memory[k] = c.memory;
-    if (c.memory.bonded) candidates.pairs[at(c.candidate)].clearance = 0.0;  // any gap is a contact
-  }
+bool Detection::describe(const Surface& surface, const CandidateList& candidates, ThreadTeam& team,
+                         std::span<Contact> contacts, const OfSome& then) const {
+  constexpr std::size_t most = 512;  // contacts that a second-level cache has room for
+  std::atomic<bool> all_same = true;
+  team.for_range(found_.size(), 2, [&](std::size_t first_piece, std::size_t last_piece) {
+    bool same = true;
+    for (std::size_t p = first_piece; p < last_piece; ++p) {
+      const std::span<const Found> found = found_[p];
+      const std::span<Contact> of_piece = contacts.subspan(first_found_[p], found.size());
+      for (std::size_t begin = 0; begin < found.size(); begin += most) {
+        const std::size_t end = std::min(found.size(), begin + most);
+        for (std::size_t first = begin; first < end; first += lane_count) {
+          const std::size_t count = std::min(end - first, std::size_t{lane_count});
+          same = describe_some(surface, candidates, found.subspan(first, count),
+                               of_piece.subspan(first, count)) &&
+                 same;
+        }
+        if (then) then(first_found_[p] + begin, first_found_[p] + end);
+      }
+    }
+    if (!same) all_same = false;
+  });
+  return all_same;
 }
 
 void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team) {
   candidates.make_room(contacts.size());
-  team.for_range(contacts.size(), contacts_worth_threads,
-                 [&](std::size_t begin, std::size_t end) { keep_memory(contacts, begin, end, candidates); });
+  team.for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      candidates.memory[k] = contacts[k].memory;
+      candidates.track(k, contacts[k].candidate);
+    }
+  });
 }
 
 }  // namespace keyblock::contact

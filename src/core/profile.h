@@ -25,8 +25,8 @@ struct PhaseName {
 };
 inline constexpr std::array<PhaseName, 10> phase_names{{
     {"other", "everything else: prediction, checks after a step, progress"},
-    {"detection", "contacts: candidates and their geometry"},
-    {"terms", "inertia, stress and stiffness of blocks; springs of contacts"},
+    {"detection", "candidates of contact, and which of them are contacts"},
+    {"terms", "geometry and springs of contacts; inertia, stress and stiffness of blocks"},
     {"assembly", "of the matrix"},
     {"factorization", "of the matrix, whole or in part"},
     {"solution", "with the factors"},

@@ -373,12 +373,14 @@ void OpenClose::begin(const StepProblem& problem, linalg::BlockSolver& solver, s
   multiplier_share_ = first_multiplier_share;
 }
 
-OpenCloseResult OpenClose::solve(StepProblem& problem, std::span<contact::Contact> contacts,
+OpenCloseResult OpenClose::solve(StepProblem& problem, StepContacts step_contacts,
                                  linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
                                  Profile& profile, std::span<double> d,
                                  const std::function<bool()>& gives_up) {
   team_ = &team;
+  const std::span<contact::Contact> contacts = step_contacts.contacts;
   contacts_ = contacts;
+  contacts_version_ = step_contacts.version;
   profile_ = &profile;
   const Profile::Scope scope(profile, Phase::search);
   springs_ = &problem.springs();

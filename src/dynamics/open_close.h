@@ -16,6 +16,12 @@
 
 namespace keyblock::dynamics {
 
+/// The contacts of a step.
+struct StepContacts {
+  std::span<contact::Contact> contacts;
+  std::uint64_t version = 0;  ///< the same for those of the same vertices and edges; 0: not known
+};
+
 /// What an open-close iteration did.
 struct OpenCloseResult {
   bool converged = false;
@@ -53,9 +59,9 @@ class OpenClose {
   /// d: the increment; a guess, for solvers without a factor to start from, and then the solution. Bonds that break are cleared
   /// in the memory of the contacts (one per row) and in the rows of the problem. gives_up: asked once bounds have to be taken anew,
   /// which is most of the work then; whether the step has to be taken again whatever comes of it.
-  OpenCloseResult solve(StepProblem& problem, std::span<contact::Contact> contacts,
-                        linalg::BlockSolver& solver, const SolverOptions& options, ThreadTeam& team,
-                        Profile& profile, std::span<double> d, const std::function<bool()>& gives_up = {});
+  OpenCloseResult solve(StepProblem& problem, StepContacts step_contacts, linalg::BlockSolver& solver,
+                        const SolverOptions& options, ThreadTeam& team, Profile& profile, std::span<double> d,
+                        const std::function<bool()>& gives_up = {});
 
   /// m, of every vertex of the surface at the solution.
   [[nodiscard]] std::span<const Vec2> displacement() const { return displacement_; }
@@ -78,6 +84,7 @@ class OpenClose {
   void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
   [[nodiscard]] bool carry_contacts();
+  void note_contacts();
   void try_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   void judge_factor(const OpenCloseResult& result);
   void assemble(const StepProblem& problem, linalg::BlockSolver& solver);
@@ -200,10 +207,12 @@ class OpenClose {
   std::vector<Piece> factored_;                 ///< per contact: what the matrix at hand was made with
   bool assembled_ = false;                      ///< in this step
   std::span<const contact::Contact> contacts_;  ///< of this step
+  std::uint64_t contacts_version_ = 0;
   /// What the factor at hand was made for.
   struct Factor {
     const linalg::BlockSolver* solver = nullptr;  ///< that has it; null: there is none
     std::vector<std::pair<int, int>> contacts;    ///< vertex and edge of each
+    std::uint64_t version = 0;                    ///< of these
     std::vector<double> inertia;                  ///< per block
     std::vector<double> normal_stiffness,
         shear_stiffness;  ///< N/m per thickness, per contact: of springs in the matrix; else 0

@@ -30,9 +30,15 @@ void OpenClose::begin_factor(const StepProblem& problem, linalg::BlockSolver& so
   factor_.solver = nullptr;
   if (!solver.serves_later_steps()) return;
   factor_.solver = &solver;
+  note_contacts();
+  factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
+}
+
+/// As those that what is known of the matrix at hand is of.
+void OpenClose::note_contacts() {
   factor_.contacts.resize(contacts_.size());
   std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
-  factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
+  factor_.version = contacts_version_;
 }
 
 /// Whether the factor at hand was made for the inertia of this step.
@@ -45,13 +51,8 @@ bool OpenClose::fits_factor(const StepProblem& problem, const linalg::BlockSolve
 /// went had none. False when one had, or is corrected.
 bool OpenClose::carry_contacts() {
   constexpr std::size_t gone = SIZE_MAX, most_gone = 64;  // in a row
+  if (contacts_version_ != 0 && factor_.version == contacts_version_) return true;
   const std::vector<std::pair<int, int>>& before = factor_.contacts;
-  if (before.size() == contacts_.size()) {
-    const auto is_other = [&](std::size_t c) { return before[c] != key_of(contacts_[c]); };
-    std::vector<std::size_t> others;
-    find_all(*team_, before.size(), contacts_worth_threads, is_other, others);
-    if (others.empty()) return true;
-  }
   std::vector<std::size_t> now(before.size(), gone);
   std::size_t next = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -80,8 +81,7 @@ bool OpenClose::carry_contacts() {
   carry(factor_.normal_stiffness);
   carry(factor_.shear_stiffness);
   carry(factor_.places);
-  factor_.contacts.resize(contacts_.size());
-  std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);
+  note_contacts();
   return true;
 }
 

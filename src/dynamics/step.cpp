@@ -187,9 +187,10 @@ void Stepper::detect_at_rest(State& state) {
   candidates_.update(model_.surface, reach_, state.contacts, team_);
   detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
                   contacts_);
+  ++contacts_version_;
 }
 
-/// Whether the candidates are others.
+/// Which candidates are contacts in the step; build_problem() describes them. Whether the candidates are others.
 bool Stepper::detect(State& state, bool is_static) {
   const Profile::Scope scope(profile_, Phase::detection);
   const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
@@ -199,14 +200,21 @@ bool Stepper::detect(State& state, bool is_static) {
     motion.way_ahead = way_ahead_;
     motion.ahead_at_first = ahead_at_first_;
   }
-  detection_.find(model_.surface, motion, state.contacts, team_, contacts_);
+  const std::size_t before = contacts_.size();
+  contacts_.resize(detection_.find_which(model_.surface, motion, state.contacts, team_));
+  if (contacts_.size() != before) ++contacts_version_;
   if (changed || !knows_pairs_) find_pairs(state);
   return changed;
 }
 
-void Stepper::build_problem(State& state, const Drive& drive) {
+/// Contacts that are not known yet are described on the way, while a cache has them.
+void Stepper::build_problem(State& state, const Drive& drive, bool knows_contacts) {
   const Profile::Scope scope(profile_, Phase::terms);
-  problem_.build(model_, state, drive, model_.surface, contacts_, pair_of_candidate_, team_);
+  const auto describe = [&](const contact::Detection::OfSome& then) {
+    if (!detection_.describe(model_.surface, state.contacts, team_, contacts_, then)) ++contacts_version_;
+  };
+  problem_.build(model_, state, drive, model_.surface, contacts_, pair_of_candidate_, team_,
+                 knows_contacts ? StepProblem::ForContacts{} : describe);
   if (problem_.lacks_room()) {
     make_room(state);
     problem_.set_pairs(contacts_, pair_of_candidate_);
@@ -228,7 +236,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
   for (int look = 1;;) {
     if (!same_contacts && detect(state, drive.is_static)) earlier_look_.forget();
     drive.turned = turned_;
-    build_problem(state, drive);
+    build_problem(state, drive, same_contacts);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     if (look == 1 && turns == 0) {
       // Where there is a factor, only a curve through the last increments is a better beginning than none at all.
@@ -239,8 +247,9 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
       }
     }
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
-    const OpenCloseResult result = open_close_.solve(problem_, contacts_, chosen, model_.solver, team_,
-                                                     profile_, increment_, meets_impacts);
+    const OpenCloseResult result =
+        open_close_.solve(problem_, {contacts_, contacts_version_}, chosen, model_.solver, team_, profile_,
+                          increment_, meets_impacts);
     report.iterations += result.iterations;
     quiet_ = result.bends == 0;
     if (!result.finite)

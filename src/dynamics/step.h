@@ -80,11 +80,13 @@ class Stepper {
   };
   [[nodiscard]] std::span<const Balance> balance() const { return balance_; }
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return contacts_; }
-  /// Normal and shear force of contact k at the end of the last step, N per thickness.
+  /// What a contact did at the end of the last step.
   struct Force {
-    double normal = 0.0, shear = 0.0;
+    double normal = 0.0, shear = 0.0;  ///< N per thickness
+    contact::State state = contact::State::open;
   };
-  [[nodiscard]] std::span<const Force> forces() const { return forces_; }
+  /// Of every contact; of none where no step was taken.
+  [[nodiscard]] std::vector<Force> forces() const;
   /// m, of contact k at the same time, as the law of its joint has it: negative where it is pressed.
   [[nodiscard]] double gap(std::size_t k) const;
 
@@ -109,7 +111,7 @@ class Stepper {
   void place(State& state);
   void prescribe(const State& state, Drive& drive);
   void move_prescribed(State& state, const Drive& drive);
-  void build_problem(State& state, const Drive& drive);
+  void build_problem(State& state, const Drive& drive, bool knows_contacts);
   void predict_reach(const State& state, const Drive& drive);
   void detect_at_rest(State& state);
   bool detect(State& state, bool is_static);
@@ -160,8 +162,10 @@ class Stepper {
     void leave_out_beyond(std::size_t count);
     void enter(EnergyLedger& ledger) const;
   };
-  void remember_contacts(std::size_t first, std::size_t count, const Drive& drive, ContactAccounts& accounts);
-  void remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts);
+  void remember_contacts(std::size_t first, std::size_t count, const Drive& drive,
+                         std::span<contact::Memory> remembered, ContactAccounts& accounts);
+  void remember_multiplier(std::size_t c, std::size_t lane, contact::Memory& memory,
+                           ContactAccounts& accounts);
   void remember(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
@@ -183,6 +187,7 @@ class Stepper {
   Linear direct_, iterative_;
   std::optional<double> products_;  ///< block products of a factorization with the pattern
   std::vector<contact::Contact> contacts_;
+  std::uint64_t contacts_version_ = 1;  ///< StepContacts::version
   std::vector<int> unknown_sizes_;
   double largest_radius_ = 0.0;         ///< m, of the blocks that move
   std::vector<int> pair_of_candidate_;  ///< StepProblem::Row::pair
@@ -207,7 +212,6 @@ class Stepper {
   double impact_speed_;                  ///< m/s
   /// J per thickness, that a contact may do over what turning makes it miss; HUGE_VAL: without gravity there is no such measure.
   double turn_work_ = HUGE_VAL;
-  std::vector<Force> forces_;
   std::vector<ContactAccounts> accounts_;  ///< scratch
   /// J per thickness.
   struct BlockWork {

@@ -22,8 +22,8 @@ Lanes moved_along(std::span<const StepProblem::Row> rows, bool tangent) {
 
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
 void Stepper::remember_contacts(std::size_t first, std::size_t count, const Drive& drive,
-                                ContactAccounts& accounts) {
-  const std::span<contact::Contact> contacts = std::span(contacts_).subspan(first, count);
+                                std::span<contact::Memory> remembered, ContactAccounts& accounts) {
+  const std::span<const contact::Contact> contacts = std::span(contacts_).subspan(first, count);
   const std::span<const StepProblem::Row> rows = std::span(problem_.rows()).subspan(first, count);
   const SpringArray& springs = problem_.springs();
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
@@ -67,20 +67,20 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
   }
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;
-  contact::keep(memory, contacts);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const bool is_closed = closed[i] != 0;
-    contacts[i].memory.state = !is_closed       ? contact::State::open
-                               : locked[i] != 0 ? contact::State::locked
-                                                : contact::State::sliding;
-    forces_[first + i] = {normal[i], is_closed ? shear[i] : 0.0};
+  contact::keep(memory, count, [&](std::size_t i) -> contact::Memory& { return remembered[i]; });
+  for (std::size_t i = 0; i < count; ++i) {
+    remembered[i].state = closed[i] == 0   ? contact::State::open
+                          : locked[i] != 0 ? contact::State::locked
+                                           : contact::State::sliding;
+    remembered[i].bonded = contacts[i].memory.bonded;
+    remembered[i].bond_length = contacts[i].memory.bond_length;
   }
 }
 
 /// What is otherwise with an augmented Lagrangian.
-void Stepper::remember_multiplier(std::size_t c, std::size_t lane, ContactAccounts& accounts) {
+void Stepper::remember_multiplier(std::size_t c, std::size_t lane, contact::Memory& memory,
+                                  ContactAccounts& accounts) {
   const StepProblem::Row& row = problem_.rows()[c];
-  contact::Memory& memory = contacts_[c].memory;
   const contact::Spring s = problem_.spring(contacts_[c], c);
   const double y = problem_.springs().y[c], w = problem_.springs().w[c];
   const Vec2 r = open_close_.relative()[c];
@@ -107,12 +107,27 @@ double Stepper::gap(std::size_t k) const {
   const SpringArray& springs = problem_.springs();
   // n·r; what multipliers have added is in both y₀ and y.
   const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
-  return c.gap + c.memory.offset + normal;
+  const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  return c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
+}
+
+std::vector<Stepper::Force> Stepper::forces() const {
+  const SpringArray& springs = problem_.springs();
+  std::vector<Force> forces;
+  for (std::size_t k = 0; k < std::min(contacts_.size(), springs.size()); ++k) {
+    const SpringArray::Force force = springs.force(k);
+    if (!(springs.y[k] > springs.floor[k])) {
+      forces.push_back({force.normal, 0.0, contact::State::open});
+      continue;
+    }
+    const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
+    forces.push_back({force.normal, force.shear, holds ? contact::State::locked : contact::State::sliding});
+  }
+  return forces;
 }
 
 /// Contact memory for the next step, and where the energy of contacts went.
 void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
-  forces_.resize(contacts_.size());
   // What was stored in contacts that have ended, a vertex that left its edge, is lost.
   state.ledger.numerical += state.contact_energy;
   state.contacts.make_room(contacts_.size());
@@ -124,12 +139,14 @@ void Stepper::remember(State& state, const Drive& drive, StepReport& report) {
       const std::size_t last = std::min(contacts_.size(), (p + 1) * piece);
       for (std::size_t c = p * piece; c < last; c += lane_count) {
         const std::size_t count = std::min<std::size_t>(lane_count, last - c);
+        const std::span<contact::Memory> remembered = std::span(state.contacts.memory).subspan(c, count);
         ContactAccounts accounts;
-        remember_contacts(c, count, drive, accounts);
-        if (model_.solver.contact != ContactMethod::penalty) {
-          for (std::size_t i = 0; i < count; ++i) remember_multiplier(c + i, i, accounts);
+        remember_contacts(c, count, drive, remembered, accounts);
+        for (std::size_t i = 0; i < count; ++i) {
+          if (model_.solver.contact != ContactMethod::penalty)
+            remember_multiplier(c + i, i, remembered[i], accounts);
+          state.contacts.track(c + i, contacts_[c + i].candidate);
         }
-        contact::keep_memory(contacts_, c, c + count, state.contacts);
         accounts_[p].add(accounts);
       }
     }

@@ -24,7 +24,7 @@ constexpr double geometric_floor = 0.05;
 
 void StepProblem::build(const Model& model, const State& state, const Drive& drive,
                         const contact::Surface& surface, std::span<const contact::Contact> contacts,
-                        std::span<const int> pairs, ThreadTeam& team) {
+                        std::span<const int> pairs, ThreadTeam& team, const ForContacts& for_contacts) {
   team_ = &team;
   surface_ = &surface;
   is_static_ = drive.is_static;
@@ -66,7 +66,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   }
   build_blocks(state, drive);
   add_supports(state, drive);
-  build_rows(drive, contacts, pairs);
+  build_rows(drive, contacts, pairs, for_contacts);
 }
 
 /// Blocks of order 2 under so much pressure that the eigenvalues of their geometric stiffness are looked for: as many at once as there

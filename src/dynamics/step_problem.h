@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -79,9 +80,12 @@ class StepProblem {
   };
   static_assert(sizeof(Row) == 64);
 
-  /// pairs: Row::pair of every candidate of contact.
+  /// Calls of_some(first, last) for all contacts, piece by piece, each when what build() reads of it is known; threads may do so at once.
+  using ForContacts = std::function<void(const contact::Detection::OfSome& of_some)>;
+  /// pairs: Row::pair of every candidate of contact. for_contacts: {} where all contacts are known.
   void build(const Model& model, const State& state, const Drive& drive, const contact::Surface& surface,
-             std::span<const contact::Contact> contacts, std::span<const int> pairs, ThreadTeam& team);
+             std::span<const contact::Contact> contacts, std::span<const int> pairs, ThreadTeam& team,
+             const ForContacts& for_contacts = {});
 
   /// Whether there are contacts of pairs of blocks that the solver's pattern does not have; these come with set_pairs.
   [[nodiscard]] bool lacks_room() const { return lacks_room_; }
@@ -95,6 +99,8 @@ class StepProblem {
   [[nodiscard]] bool is_static() const { return is_static_; }
   /// Whether there are bonds that may break in this step.
   [[nodiscard]] bool may_break() const { return may_break_; }
+  /// Whether the vertex of some contact is beyond an end of its edge by more than half of the edge.
+  [[nodiscard]] bool has_distant() const { return has_distant_; }
   /// The spring of contact c, at the start of the step where its `memory` has it.
   [[nodiscard]] contact::Spring spring(const contact::Contact& contact, std::size_t c) const;
   /// Unknowns come first among the coefficients; those of fixed blocks follow.
@@ -330,7 +336,8 @@ class StepProblem {
                                        double spin, double* turn) const;
   void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
-  void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs);
+  void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs,
+                  const ForContacts& for_contacts);
   void build_row(const Drive& drive, const contact::Contact& contact, std::size_t c);
   void find_owners();
   void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
@@ -344,7 +351,7 @@ class StepProblem {
   std::vector<PointOnCurve> on_curves_;   ///< of every row, where there are any
   std::vector<double> shares_on_curves_;  ///< of their vertices, most_vertices_ of every row
   std::size_t most_vertices_ = 0;         ///< of a divided edge; 0: no edge is divided
-  bool is_static_ = false, may_break_ = false, lacks_room_ = false;
+  bool is_static_ = false, may_break_ = false, lacks_room_ = false, has_distant_ = false;
   // Of several threads alone.
   static constexpr std::size_t rows_of_piece = 256;
   std::vector<std::pair<int, int>> unknowns_of_row_;    ///< the two of every row, to look through

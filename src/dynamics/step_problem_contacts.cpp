@@ -11,7 +11,7 @@
 namespace keyblock::dynamics {
 
 void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contact> contacts,
-                             std::span<const int> pairs) {
+                             std::span<const int> pairs, const ForContacts& for_contacts) {
   rows_.resize(contacts.size());
   if (most_vertices_ > 0) {
     on_curves_.resize(contacts.size());
@@ -19,9 +19,9 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
   }
   springs_.resize(contacts.size());
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
-  std::atomic<bool> may_break = false, lacks_room = false;
-  team_->for_range(contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
-    bool any = false, without = false;
+  std::atomic<bool> may_break = false, lacks_room = false, has_distant = false;
+  const auto of_some = [&](std::size_t begin, std::size_t end) {
+    bool any = false, without = false, distant = false;
     for (std::size_t first = begin; first < end; first += lane_count) {
       const std::size_t last = std::min(first + lane_count, end);
       for (std::size_t k = first; k < last; ++k) {
@@ -31,15 +31,23 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
           rows_[k].moved += drive.turned[k].x * rows_[k].normal + drive.turned[k].y * rows_[k].tangent();
         any = any || (contacts[k].memory.bonded && !contacts[k].fused);
         without = without || rows_[k].pair == without_room;
+        distant = distant || std::abs(rows_[k].position - 0.5) > 1.0;
         if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
       }
       build_springs(drive, contacts.subspan(first, last - first), first);
     }
     if (any) may_break = true;
     if (without) lacks_room = true;
-  });
+    if (distant) has_distant = true;
+  };
+  if (for_contacts) {
+    for_contacts(of_some);
+  } else {
+    team_->for_range(contacts.size(), contacts_worth_threads, of_some);
+  }
   may_break_ = may_break;
   lacks_room_ = lacks_room;
+  has_distant_ = has_distant;
   if (team_->size() > 1) find_owners();
 }
 

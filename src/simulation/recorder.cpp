@@ -124,19 +124,20 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   frame.step = state.step;
   const auto contacts = stepper.contacts();
   const contact::Surface& surface = model_.surface;
-  for (std::size_t k = 0; k < contacts.size() && k < stepper.forces().size(); ++k) {
+  const std::vector<dynamics::Stepper::Force> forces = stepper.forces();
+  for (std::size_t k = 0; k < forces.size(); ++k) {
     const contact::Contact& c = contacts[k];
     ContactRecord row;
     row.block_a = c.block_a;
     row.block_b = c.block_b;
-    row.state = static_cast<ContactState>(c.memory.state);
+    row.state = static_cast<ContactState>(forces[k].state);
     row.position = surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
     row.gap = stepper.gap(k);
     row.slip = gauge_.slip(c.vertex, c.edge);
-    row.normal_force = stepper.forces()[k].normal;
-    row.shear_force = stepper.forces()[k].shear;
+    row.normal_force = forces[k].normal;
+    row.shear_force = forces[k].shear;
     row.label = labels_[at(c.edge)];
     frame.contacts.push_back(row);
   }

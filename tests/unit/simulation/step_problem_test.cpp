@@ -239,7 +239,7 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
     OpenClose iteration;
     const OpenCloseResult result =
-        iteration.solve(problem, contacts, *solver, s.model.solver, s.team, s.profile, d);
+        iteration.solve(problem, {contacts}, *solver, s.model.solver, s.team, s.profile, d);
     EXPECT_TRUE(result.converged);
     EXPECT_GT(result.iterations, 1);
     problem.gradient(d, g);
@@ -273,7 +273,7 @@ TEST_P(StepProblemOrder, AnotherLookGoesOnFromTheOneBefore) {
     d.assign(s.model.coefficients, 0.0);
     OpenClose iteration;
     const OpenCloseResult result =
-        iteration.solve(problem, contacts, *solver, s.model.solver, s.team, s.profile, d, gives_up);
+        iteration.solve(problem, {contacts}, *solver, s.model.solver, s.team, s.profile, d, gives_up);
     earlier.keep(contacts, problem.springs());
     return result;
   };
