@@ -46,9 +46,21 @@ SpringArray::Force OpenClose::bend(std::size_t c, double alpha) const {
   return springs_->force_at(c, y, w) - springs_->force_on(c, springs_->piece[c], y, w);
 }
 
+void OpenClose::find_ratios(const StepProblem& problem) {
+  if (std::exchange(knows_ratios_, true)) return;
+  ratios_.resize(problem.blocks());
+  team_->for_range(ratios_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) ratios_[b] = problem.residual_ratio(b, gradient_);
+  });
+}
+
 /// Largest residual ratio of a block by the gradient at hand.
 double OpenClose::out_of_balance(const StepProblem& problem) {
-  if (!out_of_balance_) out_of_balance_ = problem.residual_ratio(gradient_);
+  find_ratios(problem);
+  if (!out_of_balance_) {
+    out_of_balance_ =
+        largest_of(*team_, ratios_.size(), blocks_worth_threads, [&](std::size_t b) { return ratios_[b]; });
+  }
   return *out_of_balance_;
 }
 
@@ -58,7 +70,7 @@ linalg::BlockSolver::Excess OpenClose::excess_over(const StepProblem& problem, d
   };
 }
 
-/// direction_ ← A⁻¹ direction_, but for what is left in residual_. False when it cannot be had.
+/// direction_ ← −A⁻¹ gradient_, but for what is left in residual_. False when it cannot be had.
 bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance,
                              const OpenCloseResult& result) {
   constexpr double calm = 100.0;  // times the tolerance, out of balance
@@ -72,9 +84,12 @@ bool OpenClose::solve_linear(const StepProblem& problem, linalg::BlockSolver& so
   // Where no contact bends and little is out of balance, one system of all blocks is all that is needed.
   const bool is_calm = result.bends == 0 && out_of_balance(problem) <= calm * tolerance;
   is_near_ = !is_calm && solve_near(problem, solver, enough(forcing_near));
-  if (!is_near_)
-    solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough(forcing)),
-                 residual_kind(solver));
+  if (is_near_) return solver.solved();
+  team_->for_range(direction_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
+  });
+  solver.solve(x, std::span(residual_).first(n), excess_over(problem, enough(forcing)),
+               residual_kind(solver));
   return solver.solved();
 }
 
@@ -143,8 +158,13 @@ void OpenClose::go(const StepProblem& problem, double alpha, std::span<double> d
       gradient_[k] = (1.0 - alpha) * gradient_[k] - alpha * residual_[k];
     }
   });
-  out_of_balance_.reset();
   for (const std::size_t c : bends_) add_force(problem, c, bend(c, alpha), 1.0, gradient_);
+  if (is_near_) {
+    for (const std::size_t b : near_.blocks) ratios_[b] = problem.residual_ratio(b, gradient_);
+    out_of_balance_.reset();
+  } else {
+    gradient_changed();
+  }
   for_reached_contacts([&](std::size_t begin, std::size_t end) { springs_->go(alpha, begin, end); });
   knows_relative_ = false;
   for (const std::size_t c : bends_)
@@ -157,9 +177,6 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
                             double enough, std::span<double> d, OpenCloseResult& result) {
   ++result.iterations;
   if (!factor(problem, solver)) return false;
-  team_->for_range(direction_.size(), coefficients_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) direction_[k] = -gradient_[k];
-  });
   const bool was_exact = is_exact(solver);
   if (!solve_linear(problem, solver, tolerance, result)) return false;
   if (was_exact != is_exact(solver)) forget_corrections();  // they are of another factor
@@ -176,13 +193,6 @@ bool OpenClose::newton_step(const StepProblem& problem, linalg::BlockSolver& sol
   go(problem, alpha, d);
   result.bends += bends_.size();
   return true;
-}
-
-/// Contacts that are not on the straight lines of the factored matrix.
-std::size_t OpenClose::bent_contacts() const {
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < springs_->size(); ++c) count += springs_->piece[c] != factored_[c] ? 1 : 0;
-  return count;
 }
 
 /// With corrections where the solver has halves, and Newton's method where they are too many.
@@ -236,7 +246,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
 void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force before) {
   springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
   add_force(problem, c, springs_->force(c) - before, 1.0, gradient_);
-  out_of_balance_.reset();
+  gradient_changed();
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
@@ -362,11 +372,10 @@ void OpenClose::begin(const StepProblem& problem, linalg::BlockSolver& solver, s
   gradient_.resize(coefficients);
   direction_.resize(coefficients);
   residual_.resize(coefficients, 0.0);
-  out_of_balance_.reset();
+  gradient_changed();
   assembled_ = knows_relative_ = is_near_ = false;
   misses_ = 0;
   may_go_whole_way_ = solves_near(problem, solver);
-  first_contact_.clear();
   bound_steps_.clear();
   worst_ = HUGE_VAL;
   stalls_ = 0;

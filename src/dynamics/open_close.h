@@ -95,7 +95,13 @@ class OpenClose {
   [[nodiscard]] static bool solves_near(const StepProblem& problem, const linalg::BlockSolver& solver);
   bool solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough);
   bool improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
+  void find_ratios(const StepProblem& problem);
   [[nodiscard]] double out_of_balance(const StepProblem& problem);
+  /// Of all blocks.
+  void gradient_changed() {
+    out_of_balance_.reset();
+    knows_ratios_ = false;
+  }
   [[nodiscard]] static linalg::BlockSolver::Excess excess_over(const StepProblem& problem, double enough);
   /// Whether what is solved is the matrix of this step, to all the digits that are asked for.
   [[nodiscard]] bool is_exact(linalg::BlockSolver& solver) const {
@@ -267,7 +273,9 @@ class OpenClose {
   std::vector<BoundStep>
       bound_steps_;  ///< per contact, of the last update in this step; empty before the first
   std::vector<double> gradient_, direction_;
-  std::optional<double> out_of_balance_;  ///< by gradient_, where it is known
+  std::vector<double> ratios_;            ///< per block: by how much it is out of balance by gradient_
+  bool knows_ratios_ = false;             ///< these are of the gradient at hand
+  std::optional<double> out_of_balance_;  ///< the largest of them, where it is known
   std::vector<double> residual_;          ///< ρ of the last linear solution: A p = −g − ρ
   bool is_near_ = false;                  ///< it was of the neighbourhood of some blocks
   /// That neighbourhood.
@@ -279,8 +287,9 @@ class OpenClose {
   Near near_;
   linalg::BlockSolver::Reach reach_;    ///< scratch
   std::vector<std::uint8_t> is_taken_;  ///< scratch, per unknown block
-  /// Contacts of each unknown block; empty: not needed in this step yet.
+  /// Contacts of each unknown block; empty: not needed yet.
   std::vector<std::size_t> first_contact_;
+  std::uint64_t near_version_ = 0;  ///< StepContacts::version of these
   std::vector<std::uint32_t> contacts_of_block_;
   std::vector<std::size_t> out_of_balance_blocks_;  ///< scratch: Block::unknown of these
   /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do

@@ -119,7 +119,7 @@ void OpenClose::leave_out(const StepProblem& problem, Corrected spring, double f
 /// they have been corrected to.
 void OpenClose::find_rest(const StepProblem& problem) {
   std::fill(gradient_.begin(), gradient_.end(), 0.0);
-  out_of_balance_.reset();
+  gradient_changed();
   for (const std::size_t c : bends_) add_force(problem, c, bend_from_matrix(c), 1.0, gradient_);
   for (std::size_t k = 0; k < corrected_.size(); ++k) leave_out(problem, corrected_[k], correction_force_[k]);
 }
@@ -134,7 +134,7 @@ void OpenClose::find_gradient(const StepProblem& problem, std::span<const double
   problem.gradient(
       d, [&](std::size_t c) { return problem.rows()[c].gradient(springs_->force(c)); }, vertex_force_,
       gradient_);
-  out_of_balance_.reset();
+  gradient_changed();
 }
 
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.
@@ -143,7 +143,7 @@ void OpenClose::leave_out_bends(const StepProblem& problem) {
     const Force force = bend_from_matrix(spring.contact);
     leave_out(problem, spring, spring.normal ? force.normal : force.shear);
   }
-  if (!wanted_.empty()) out_of_balance_.reset();
+  if (!wanted_.empty()) gradient_changed();
 }
 
 /// Against the gradient, into direction_.

@@ -25,6 +25,13 @@ void OpenClose::assemble(const StepProblem& problem, linalg::BlockSolver& solver
   assembled_ = true;
 }
 
+/// Contacts that are not on the straight lines of the factored matrix.
+std::size_t OpenClose::bent_contacts() const {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < springs_->size(); ++c) count += springs_->piece[c] != factored_[c] ? 1 : 0;
+  return count;
+}
+
 /// Counts what holds the blocks of a contact.
 void OpenClose::hold(const StepProblem& problem, std::size_t c, int count) {
   const StepProblem::Row& row = problem.rows()[c];

@@ -12,26 +12,35 @@ bool OpenClose::solves_near(const StepProblem& problem, const linalg::BlockSolve
   return solver.solves_near() && !problem.is_static();
 }
 
-/// direction_ ← A⁻¹ direction_ near the blocks that are out of balance, where these are few. False, and nothing is done, where not.
+/// direction_ ← −A⁻¹ gradient_ near the blocks that are out of balance, where these are few. False, and nothing is done, where not.
 bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough) {
   constexpr double share =
       0.5;  // of what is enough, that the others may be out of balance by: the solver looks at all
   if (!solves_near(problem, solver)) return false;
+  find_ratios(problem);
   find_all(
-      *team_, problem.blocks(), blocks_worth_threads,
-      [&](std::size_t b) { return problem.residual_ratio(b, gradient_) > share * enough; },
-      out_of_balance_blocks_);
+      *team_, ratios_.size(), blocks_worth_threads,
+      [&](std::size_t b) { return ratios_[b] > share * enough; }, out_of_balance_blocks_);
   for (std::size_t& b : out_of_balance_blocks_) b = at(problem.unknown(b));
-  const std::size_t n = problem.unknowns();
-  if (!solver.solve_near(out_of_balance_blocks_, std::span(direction_).first(n),
-                         std::span(residual_).first(n), excess_over(problem, enough), reach_))
-    return false;
+  if (!solver.find_near(out_of_balance_blocks_, reach_)) return false;
   find_near(problem);
+  for (const std::size_t b : near_.blocks) {
+    const auto [first, last] = problem.coefficients(b);
+    for (std::size_t k = first; k < last; ++k) direction_[k] = -gradient_[k];
+  }
+  const auto excess = [&](std::span<const double> residual) {
+    double largest = 0.0;
+    for (const std::size_t b : near_.blocks) largest = std::max(largest, problem.residual_ratio(b, residual));
+    return largest / enough;
+  };
+  const std::size_t n = problem.unknowns();
+  solver.solve_near(std::span(direction_).first(n), std::span(residual_).first(n), excess);
   return true;
 }
 
 void OpenClose::find_contacts_of_blocks(const StepProblem& problem) {
-  if (!first_contact_.empty()) return;
+  if (!first_contact_.empty() && contacts_version_ != 0 && near_version_ == contacts_version_) return;
+  near_version_ = contacts_version_;
   const auto& rows = problem.rows();
   const auto for_ends = [&](const auto& body) {
     for (std::size_t c = 0; c < rows.size(); ++c) {
@@ -50,7 +59,7 @@ void OpenClose::find_contacts_of_blocks(const StepProblem& problem) {
   });
 }
 
-/// What the last solution has reached. A contact of two blocks that move comes once, with the first of them.
+/// What the next solution reaches. A contact of two blocks that move comes once, with the first of them.
 void OpenClose::find_near(const StepProblem& problem) {
   find_contacts_of_blocks(problem);
   is_taken_.assign(problem.blocks(), 0);

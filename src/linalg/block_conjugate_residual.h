@@ -37,13 +37,17 @@ class BlockConjugateResidual final : public BlockSolver {
   void clear() override;
   double* diagonal(int block) override { return &matrix_[diagonal_[place_[at(block)]]]; }
   BlockSlot slot(int pair) override { return slots_[at(pair)]; }
-  void touch(int block) override { stale_[place_[at(block)]] = 1; }
+  void touch(int block) override {
+    const std::size_t place = place_[at(block)];
+    if (std::exchange(stale_[place], std::uint8_t{1}) == 0)
+      stale_places_.push_back(static_cast<std::uint32_t>(place));
+  }
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   void improve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
   [[nodiscard]] bool solves_near() const override { return true; }
-  bool solve_near(std::span<const std::size_t> blocks, std::span<double> x, std::span<double> residual,
-                  const Excess& excess, Reach& reach) override;
+  bool find_near(std::span<const std::size_t> blocks, Reach& reach) override;
+  void solve_near(std::span<double> x, std::span<double> residual, const Excess& excess) override;
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
 
@@ -106,7 +110,7 @@ class BlockConjugateResidual final : public BlockSolver {
     return Places(neighbours_)
         .subspan(neighbours_start_[place], neighbours_start_[place + 1] - neighbours_start_[place]);
   }
-  bool find_near(std::span<const std::size_t> blocks);
+  bool collect_near(std::span<const std::size_t> blocks);
   std::vector<std::size_t> place_matrix(std::span<const std::pair<int, int>> pairs);
   template <typename Body>
   decltype(auto) with_layout(const Body& body) const;
@@ -215,7 +219,11 @@ class BlockConjugateResidual final : public BlockSolver {
   [[nodiscard]] std::size_t scaled_count(std::size_t i, std::size_t j) const;
   void scale_block(std::size_t i, std::size_t j, const double* a, double* scaled) const;
   void store_scaled(std::size_t i, std::size_t j, const double* scaled, float* above) const;
-  void copy_rows_between();
+  bool scale_diagonal(std::size_t j, WideVector& scratch);
+  void scale_above(std::size_t j, WideVector& scratch);
+  void copy_row_between(std::size_t row);
+  bool factor_all();
+  bool factor_touched();
   /// What iterate() took, and whether the estimate of the residual is small enough.
   struct Iterations {
     int count;
@@ -259,7 +267,11 @@ class BlockConjugateResidual final : public BlockSolver {
   Vector above_;        ///< U, by paired_columns where all blocks have 6 unknowns
   /// That of row_entries_ once more, in their order: where rows gather from above_, they wait for the memory at each block.
   Vector above_by_rows_;
-  std::vector<std::uint8_t> stale_;
+  std::vector<std::uint8_t> stale_;  ///< per place: what belongs to the diagonal block is to be found anew
+  std::vector<std::uint32_t> stale_places_;  ///< these, but where all are
+  bool all_stale_ = true;
+  std::vector<std::uint32_t>
+      touched_;                   ///< scratch: places in whose columns or rows something is to be scaled anew
   int largest_ = 0;               ///< stride of a block
   Vector t_, z_, r_, p_, q_, s_;  ///< padded; between iterations Â r is in t_
   WideVector wide_, product_;     ///< padded: scratch

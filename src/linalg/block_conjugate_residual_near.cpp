@@ -16,7 +16,7 @@ constexpr double most_share = 0.3;
 }  // namespace
 
 /// Some blocks, and those so many layers around them. False where they are so many that all are as well.
-bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks) {
+bool BlockConjugateResidual::collect_near(std::span<const std::size_t> blocks) {
   const auto most = static_cast<std::size_t>(most_share * static_cast<double>(place_.size()));
   if (blocks.size() > most) return false;
   near_.places.clear();
@@ -56,17 +56,25 @@ bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks) {
   return true;
 }
 
-bool BlockConjugateResidual::solve_near(std::span<const std::size_t> blocks, std::span<double> x,
-                                        std::span<double> residual, const Excess& excess, Reach& reach) {
-  if (!find_near(blocks)) return false;
+bool BlockConjugateResidual::find_near(std::span<const std::size_t> blocks, Reach& reach) {
+  if (!collect_near(blocks)) return false;
   reach.moved = near_.places.size();
   reach.blocks.clear();
   for (const auto* places : {&near_.places, &near_.edge}) {
     for (const std::size_t place : *places) reach.blocks.push_back(at(block_at_[place]));
   }
-  for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
+  return true;
+}
+
+void BlockConjugateResidual::solve_near(std::span<double> x, std::span<double> residual,
+                                        const Excess& excess) {
   estimate_.resize(x.size());
-  for_numbers(x.size(), [&](std::size_t k) { estimate_[k] = residual[k]; });
+  for (const auto* places : {&near_.places, &near_.edge}) {
+    for (const std::size_t place : *places) {
+      for (std::size_t k = offset_[place]; k < offset_[place] + at(size_[place]); ++k)
+        estimate_[k] = residual[k] = std::exchange(x[k], 0.0);
+    }
+  }
   is_near_ = true;
   lag_.swap(lag_near_);
   solved_ = true;
@@ -79,7 +87,6 @@ bool BlockConjugateResidual::solve_near(std::span<const std::size_t> blocks, std
   }
   lag_.swap(lag_near_);
   is_near_ = false;
-  return true;
 }
 
 }  // namespace keyblock::linalg

@@ -124,6 +124,8 @@ std::vector<std::size_t> BlockConjugateResidual::place_matrix(std::span<const st
   assign_with_room(above_, scaled + paired_columns::read_beyond, 0.0F);
   assign_with_room(above_by_rows_, copied + paired_columns::read_beyond, 0.0F);
   stale_.assign(n, 1);
+  all_stale_ = true;
+  stale_places_.clear();
   return values;
 }
 

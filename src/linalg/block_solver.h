@@ -92,17 +92,17 @@ class BlockSolver {
                        Residual /*kind*/ = Residual::exact) {}
   /// Whether there is a solve_near().
   [[nodiscard]] virtual bool solves_near() const { return false; }
-  /// What solve_near() reaches.
+  /// What solve_near() reads and changes, of x and residual.
   struct Reach {
     std::vector<std::size_t>
         blocks;             ///< of which it finds x, and then those beside them, whose residual it changes
     std::size_t moved = 0;  ///< how many the former are
   };
-  /// As solve() does for these blocks and those near them, where the others lack well less than is asked for: x is zero elsewhere, and
-  /// `residual`, which is exact, may be too large there afterwards. False, and nothing is done, where these are so many that solve() is as well.
-  virtual bool solve_near(std::span<const std::size_t> /*blocks*/, std::span<double> /*x*/,
-                          std::span<double> /*residual*/, const Excess& /*excess*/, Reach& /*reach*/) {
-    return false;
+  /// Finds what solve_near() then reaches: these blocks and those near them. False where they are so many that solve() is as well.
+  virtual bool find_near(std::span<const std::size_t> /*blocks*/, Reach& /*reach*/) { return false; }
+  /// As solve() does, of what was reached, where all other blocks lack well less than is asked for. `residual`, which is exact, may be
+  /// too large beside the blocks that move afterwards. `excess` need look at no others.
+  virtual void solve_near(std::span<double> /*x*/, std::span<double> /*residual*/, const Excess& /*excess*/) {
   }
   /// Null where this solver has none.
   [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -227,6 +228,37 @@ double largest(std::span<const double> numbers) {
   return found;
 }
 
+// x ← A⁻¹ x near some blocks, zero elsewhere. The solver does not look at what belongs to blocks that it does not reach.
+bool solve_near(BlockSolver& solver, std::span<const std::size_t> first,
+                const std::vector<std::size_t>& blocks, std::vector<double>& x, std::vector<double>& residual,
+                const BlockSolver::Excess& excess, BlockSolver::Reach& reach) {
+  if (!solver.solves_near() || !solver.find_near(blocks, reach)) return false;
+  std::vector<bool> reached(x.size(), false);
+  for (const std::size_t block : reach.blocks) {
+    for (std::size_t k = first[block]; k < first[block + 1]; ++k) reached[k] = true;
+  }
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> right = x;
+  residual.assign(x.size(), unknown);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!reached[k]) x[k] = unknown;
+  }
+  solver.solve_near(x, residual, [&](std::span<const double> r) {
+    std::vector<double> all = right;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (reached[k]) all[k] = r[k];
+    }
+    return excess(all);
+  });
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (reached[k]) continue;
+    EXPECT_TRUE(std::isnan(x[k]) && std::isnan(residual[k])) << k;
+    x[k] = 0.0;
+    residual[k] = right[k];
+  }
+  return true;
+}
+
 // Near some blocks, what is left over is what it says, also where that is beyond; and a system of all that follows knows nothing of it.
 TEST(BlockSolver, SolvesNearSomeBlocks) {
   constexpr double enough = 1e-5, right = 1.0, of_others = 0.3 * enough;
@@ -248,7 +280,7 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       ASSERT_TRUE(solver->factor());
       std::vector<double> x = b, residual(b.size());
       BlockSolver::Reach reach;
-      ASSERT_TRUE(solver->solves_near() && solver->solve_near(blocks, x, residual, excess, reach));
+      ASSERT_TRUE(solve_near(*solver, first, blocks, x, residual, excess, reach));
       EXPECT_TRUE(solver->solved());
       const auto product = problem.product(x);
       const std::set<std::size_t> reached(reach.blocks.begin(), reach.blocks.end()),
@@ -281,15 +313,13 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       std::vector<double> little(b.size(), 0.899 * enough);
       std::fill(little.data() + first[7], little.data() + first[8], 1.001 * enough);
       x = little;
-      ASSERT_TRUE(solver->solve_near(std::vector<std::size_t>{7}, x, residual, excess, reach));
+      ASSERT_TRUE(solve_near(*solver, first, std::vector<std::size_t>{7}, x, residual, excess, reach));
       EXPECT_GT(largest(residual), largest(little));
       EXPECT_TRUE(solver->solved());
 
       std::vector<std::size_t> all(problem.sizes.size());
       std::iota(all.begin(), all.end(), std::size_t{0});
-      x = b;
-      EXPECT_FALSE(solver->solve_near(all, x, residual, excess, reach)) << "all are as well";
-      EXPECT_EQ(x, b);
+      EXPECT_FALSE(solver->find_near(all, reach)) << "all are as well";
     }
   }
 }
@@ -320,8 +350,9 @@ TEST(BlockSolver, GivesUpNearSomeBlocksWhereTheMatrixIsNotPositiveDefinite) {
   std::fill_n(x.data() + 6 * i, 6, 1.0);
   std::fill_n(x.data() + 6 * j, 6, -1.0);
   const std::vector<std::size_t> blocks{static_cast<std::size_t>(i), static_cast<std::size_t>(j)};
-  ASSERT_TRUE(solver->solve_near(
-      blocks, x, residual, [&](std::span<const double> r) { return largest(r) / 1e-5; }, reach));
+  ASSERT_TRUE(solve_near(
+      *solver, problem.first(), blocks, x, residual,
+      [&](std::span<const double> r) { return largest(r) / 1e-5; }, reach));
   EXPECT_FALSE(solver->solved());
 }
 
