@@ -77,9 +77,9 @@ void Candidates::measure_motion(const Surface& surface, std::span<const double> 
 bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list,
                         ThreadTeam& team) {
   const auto blocks = at(surface.blocks());
-  std::vector<std::uint8_t> dirty(blocks, looked_at_.empty());
-  bool any = looked_at_.empty();
-  if (any) {
+  const bool all = looked_at_.empty();
+  Dirty dirty{{}, std::vector<std::uint8_t>(blocks, all)};
+  if (all) {
     looked_at_.assign(surface.position.size(), Vec2{});
     margin_.assign(blocks, 0.0);
     box_.assign(blocks, Box{});
@@ -88,11 +88,9 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     measure_motion(surface, reach, team);
   }
   for (std::size_t b = 0; b < blocks; ++b) {
-    if (!dirty[b]) {
-      if (!surface.present[b] || away_[b] <= margin_[b]) continue;
-      dirty[b] = 1;
-      any = true;
-    }
+    if (!all && (!surface.present[b] || away_[b] <= margin_[b])) continue;
+    dirty.is[b] = 1;
+    dirty.blocks.push_back(static_cast<int>(b));
     away_[b] = reach[b];
     margin_[b] = surface.fixed[b] && reach[b] == 0.0 ? 0.0 : tolerances_.margin + 4.0 * reach[b];
     box_[b] = {};
@@ -103,17 +101,17 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
   bool changed = false;
-  if (any) {
+  if (!dirty.blocks.empty()) {
     std::vector<Candidate> found = collect(surface, dirty);
     add_held(surface, dirty, list, found);
     changed = merge(found, dirty, list);
   }
   if (changed || list.block_pairs.empty()) {
-    find_block_pairs(dirty, list);
+    find_block_pairs(dirty.is, list);
     index_block_pairs(blocks, list);
-  } else if (any) {
-    for (BlockPair& pair : list.block_pairs) {
-      if (dirty[at(pair.block_a)] != 0 || dirty[at(pair.block_b)] != 0) pair.steady = -1.0;
+  } else {
+    for (const int block : dirty.blocks) {
+      for (const int pair : list.pairs_of(block)) list.block_pairs[at(pair)].steady = -1.0;
     }
   }
   return changed;
@@ -224,19 +222,15 @@ class Grid {
 }  // namespace
 
 /// Candidates of the blocks that are looked at anew, in order.
-std::vector<Candidate> Candidates::collect(const Surface& surface,
-                                           std::span<const std::uint8_t> dirty) const {
-  std::vector<int> looking;
-  for (int b = 0; b < surface.blocks(); ++b) {
-    if (dirty[at(b)] && surface.present[at(b)]) looking.push_back(b);
-  }
+std::vector<Candidate> Candidates::collect(const Surface& surface, const Dirty& dirty) const {
   std::vector<Candidate> found;
   std::vector<int> neighbours;
   // A grid over all boxes is worth building for many; a few blocks are compared with all others sooner.
   std::optional<Grid> grid;
-  if (looking.size() > few) grid.emplace(box_, surface.present);
-  for (const int a : looking) {
+  if (dirty.blocks.size() > few) grid.emplace(box_, surface.present);
+  for (const int a : dirty.blocks) {
     const auto ia = at(a);
+    if (!surface.present[ia]) continue;
     if (grid) {
       grid->query(a, neighbours);
     } else {
@@ -248,13 +242,14 @@ std::vector<Candidate> Candidates::collect(const Surface& surface,
     }
     for (const int b : neighbours) {
       const auto ib = at(b);
-      if (dirty[ib] && b < a) continue;  // done from the other side
+      if (dirty.is[ib] && b < a) continue;  // done from the other side
       if (surface.fixed[ia] && surface.fixed[ib]) continue;
       collect_pair(surface, a, b, found);
       collect_pair(surface, b, a, found);
     }
   }
-  std::sort(found.begin(), found.end(), before);
+  // Of all blocks they come in order.
+  if (!std::is_sorted(found.begin(), found.end(), before)) std::sort(found.begin(), found.end(), before);
   return found;
 }
 
@@ -266,50 +261,65 @@ bool Candidates::before(const Candidate& x, const Candidate& y) {
   return key(x) < key(y);
 }
 
-/// Adds contacts that hold, but are too deep or too far apart to be found.
-void Candidates::add_held(const Surface& surface, std::span<const std::uint8_t> dirty,
-                          const CandidateList& list, std::vector<Candidate>& found) {
-  const std::size_t collected = found.size();
-  for (std::size_t k = 0; k < list.tracked.size(); ++k) {
-    const Candidate& c = list.pairs[at(list.tracked[k])];
-    const auto a = at(c.block_a), b = at(c.block_b);
-    if ((dirty[a] == 0 && dirty[b] == 0) || !list.memory[k].holds() || !surface.present[a] ||
-        !surface.present[b])
-      continue;
-    if (!std::binary_search(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(collected), c, before))
-      found.push_back(c);
+/// Calls of_candidate(k, memory) for the candidates in the list that have a block that is looked at anew, and where what they remember
+/// is; −1: nothing. In their order.
+template <typename OfCandidate>
+void Candidates::for_old(const Dirty& dirty, const CandidateList& list, const OfCandidate& of_candidate) {
+  constexpr std::size_t many = 8;  // of which all blocks are as many times as many, or fewer
+  if (list.block_pairs.empty() || many * dirty.blocks.size() > dirty.is.size()) {
+    CandidateList::Finder memory_of(list, 0);
+    for (std::size_t k = 0; k < list.pairs.size(); ++k) {
+      if (dirty.has_one_of(list.pairs[k])) of_candidate(k, memory_of(k));
+    }
+    return;
   }
+  std::vector<int> pairs;
+  for (const int block : dirty.blocks) {
+    const std::span<const int> of_block = list.pairs_of(block);
+    pairs.insert(pairs.end(), of_block.begin(), of_block.end());
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  for (const int p : pairs) {
+    const int first = list.block_pairs[at(p)].first;
+    CandidateList::Finder memory_of(list, first);
+    for (std::size_t k = at(first); k < list.end_of_pair(at(p)); ++k) of_candidate(k, memory_of(k));
+  }
+}
+
+/// Adds contacts that hold, but are too deep or too far apart to be found.
+void Candidates::add_held(const Surface& surface, const Dirty& dirty, const CandidateList& list,
+                          std::vector<Candidate>& found) {
+  const std::size_t collected = found.size();
+  std::size_t next = 0;
+  for_old(dirty, list, [&](std::size_t k, int memory) {
+    const Candidate& c = list.pairs[k];
+    if (memory < 0 || !list.memory[at(memory)].holds() || !surface.present[at(c.block_a)] ||
+        !surface.present[at(c.block_b)])
+      return;
+    while (next < collected && before(found[next], c)) ++next;
+    if (next == collected || before(c, found[next])) found.push_back(c);
+  });
   if (found.size() > collected) std::sort(found.begin(), found.end(), before);
 }
 
 /// Puts what was found into the list, in the place of all candidates of the same blocks.
-bool Candidates::merge(std::span<const Candidate> found, std::span<const std::uint8_t> dirty,
-                       CandidateList& list) {
-  const auto is_old = [&](const Candidate& c) {
-    return dirty[at(c.block_a)] != 0 || dirty[at(c.block_b)] != 0;
-  };
-  CandidateList::Finder memory_of(list, 0);
-  const auto is_held = [&](std::size_t k) {
-    const int memory = memory_of(k);
-    return memory >= 0 && list.memory[at(memory)].holds();
-  };
+bool Candidates::merge(std::span<const Candidate> found, const Dirty& dirty, CandidateList& list) {
   // A block that moves through the air, or shifts a little among its neighbours, leaves the list as it is.
-  std::size_t same = 0;
-  for (std::size_t k = 0; k < list.pairs.size() && same < found.size(); ++k) {
+  std::size_t same = 0, old = 0;
+  for_old(dirty, list, [&](std::size_t k, int memory) {
+    if (same != old++ || same == found.size()) return;
     Candidate& c = list.pairs[k];
-    if (!is_old(c)) continue;
-    if (found[same].vertex != c.vertex || found[same].edge != c.edge) break;
-    c.clearance = is_held(k) ? 0.0 : found[same].clearance;
+    if (found[same].vertex != c.vertex || found[same].edge != c.edge) return;
+    c.clearance = memory >= 0 && list.memory[at(memory)].holds() ? 0.0 : found[same].clearance;
     ++same;
-  }
-  if (same == found.size() &&
-      std::count_if(list.pairs.begin(), list.pairs.end(), is_old) == std::ssize(found))
-    return false;
+  });
+  if (same == found.size() && old == found.size()) return false;
 
   CandidateList merged;
   merged.block_pairs = std::move(list.block_pairs);
   merged.pairs.reserve(list.pairs.size() + found.size());
-  memory_of = CandidateList::Finder(list, 0);
+  CandidateList::Finder memory_of(list, 0);
   const auto add = [&](const Candidate& c, int memory) {
     if (memory >= 0) {
       merged.tracked.push_back(static_cast<int>(merged.pairs.size()));
@@ -321,14 +331,14 @@ bool Candidates::merge(std::span<const Candidate> found, std::span<const std::ui
   std::size_t k = 0;
   for (const Candidate& c : found) {
     for (; k < list.pairs.size() && before(list.pairs[k], c); ++k) {
-      if (!is_old(list.pairs[k])) add(list.pairs[k], memory_of(k));
+      if (!dirty.has_one_of(list.pairs[k])) add(list.pairs[k], memory_of(k));
     }
     const bool known = k < list.pairs.size() && !before(c, list.pairs[k]);
     add(c, known ? memory_of(k) : -1);
     if (known) ++k;
   }
   for (; k < list.pairs.size(); ++k) {
-    if (!is_old(list.pairs[k])) add(list.pairs[k], memory_of(k));
+    if (!dirty.has_one_of(list.pairs[k])) add(list.pairs[k], memory_of(k));
   }
   list = std::move(merged);
   return true;

@@ -151,12 +151,21 @@ class Candidates {
  private:
   void measure_motion(const Surface& surface, std::span<const double> reach, ThreadTeam& team);
   static bool before(const Candidate& x, const Candidate& y);
-  [[nodiscard]] std::vector<Candidate> collect(const Surface& surface,
-                                               std::span<const std::uint8_t> dirty) const;
-  static void add_held(const Surface& surface, std::span<const std::uint8_t> dirty, const CandidateList& list,
+  /// Blocks that are looked at anew: which, ascending, and of each block whether it is one of them.
+  struct Dirty {
+    std::vector<int> blocks;
+    std::vector<std::uint8_t> is;
+    /// Of a candidate or a pair of blocks.
+    [[nodiscard]] bool has_one_of(const auto& two) const {
+      return is[static_cast<std::size_t>(two.block_a)] != 0 || is[static_cast<std::size_t>(two.block_b)] != 0;
+    }
+  };
+  [[nodiscard]] std::vector<Candidate> collect(const Surface& surface, const Dirty& dirty) const;
+  template <typename OfCandidate>
+  static void for_old(const Dirty& dirty, const CandidateList& list, const OfCandidate& of_candidate);
+  static void add_held(const Surface& surface, const Dirty& dirty, const CandidateList& list,
                        std::vector<Candidate>& found);
-  static bool merge(std::span<const Candidate> found, std::span<const std::uint8_t> dirty,
-                    CandidateList& list);
+  static bool merge(std::span<const Candidate> found, const Dirty& dirty, CandidateList& list);
   void collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const;
 
   Tolerances tolerances_;
