@@ -24,14 +24,19 @@ function(keyblock_module name)
 endfunction()
 
 # keyblock_tests(module...): tests/unit/<module>/*.cpp become the executable test_<module>; the target unit_tests
-# builds them all, `ctest -L unit` runs them. Compiled eight files at once, for the headers of the test libraries.
+# builds them all, `ctest -L unit` runs them. Compiled eight files at once, for the headers of the test libraries, and hardly optimized
+# where they do not compute much themselves.
 function(keyblock_tests)
   add_custom_target(unit_tests)
+  set(computing geometry cutting block contact linalg dynamics simulation)
   foreach(module IN LISTS ARGN)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${module}/*.cpp)
     if(sources)
       add_executable(test_${module} ${sources})
       set_target_properties(test_${module} PROPERTIES UNITY_BUILD ON)
+      if(NOT module IN_LIST computing)
+        target_compile_options(test_${module} PRIVATE $<$<NOT:$<CONFIG:Debug>>:${KEYBLOCK_TEST_OPTIMIZATION}>)
+      endif()
       target_link_libraries(test_${module} PRIVATE keyblock_${module} GTest::gtest_main GTest::gmock rapidcheck Eigen3::Eigen)
       target_compile_definitions(test_${module} PRIVATE
         KEYBLOCK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KEYBLOCK_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
