@@ -89,6 +89,65 @@ TEST(Candidates, KeepTheMemoryOfThoseThatStay) {
   expect_kept();
 }
 
+// Where few blocks are looked at anew only their pairs are gone through: with the list that going through all of it gives. Stones far away
+// make the few of the same wall a small share of the blocks.
+TEST(Candidates, OfFewBlocksAreThoseOfGoingThroughAll) {
+  constexpr int bricks = 48, stones = 400;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Surface alone = wall(8, 6), among_stones = alone;
+  for (int k = 0; k < stones; ++k)
+    add_block(among_stones, rectangle(100.0 + 3.0 * k, 0.0, 101.0 + 3.0 * k, 1.0));
+  const Tolerances tolerances(0.7);
+  struct Looked {
+    Candidates candidates;
+    CandidateList list;
+  } all{Candidates(tolerances), {}}, few{Candidates(tolerances), {}};
+  ThreadTeam team(1);
+  int changes = 0, held = 0;
+  for (int step = 0; step < 80; ++step) {
+    const auto update = [&](const Surface& surface, Looked& looked) {
+      const std::vector<double> reach(static_cast<std::size_t>(surface.blocks()), 1e-3);
+      return looked.candidates.update(surface, reach, looked.list, team);
+    };
+    const bool changed = update(alone, all);
+    ASSERT_EQ(update(among_stones, few), changed) << step;
+    changes += changed ? 1 : 0;
+    ASSERT_EQ(few.list.pairs.size(), all.list.pairs.size()) << step;
+    for (std::size_t k = 0; k < all.list.pairs.size(); ++k) {
+      const Candidate &c = few.list.pairs[k], &expected = all.list.pairs[k];
+      EXPECT_TRUE(c.vertex == expected.vertex && c.edge == expected.edge) << step << ' ' << k;
+      EXPECT_EQ(c.clearance, expected.clearance) << step << ' ' << k;
+    }
+    EXPECT_EQ(few.list.tracked, all.list.tracked) << step;
+    ASSERT_EQ(few.list.block_pairs.size(), all.list.block_pairs.size()) << step;
+    for (std::size_t p = 0; p < all.list.block_pairs.size(); ++p)
+      EXPECT_EQ(few.list.block_pairs[p].steady, all.list.block_pairs[p].steady) << step << ' ' << p;
+    for (Looked* looked : {&all, &few}) {
+      // Half of them hold, and stay however far they go.
+      looked->list.make_room(looked->list.pairs.size() / 3);
+      for (std::size_t k = 0; k < looked->list.tracked.size(); ++k) {
+        looked->list.tracked[k] = static_cast<int>(3 * k);
+        looked->list.memory[k].normal_force = k % 2 == 0 ? 1.0 : 0.0;
+      }
+      for (BlockPair& pair : looked->list.block_pairs) pair.steady = 1.0;
+    }
+    held += static_cast<int>(all.list.tracked.size());
+    const double pace = step % 2 == 0 ? 0.03 : 0.003;
+    for (int b = step % 7; b < bricks; b += 7) {
+      const Vec2 motion{pace * uniform(random), pace * uniform(random)};
+      for (Surface* surface : {&alone, &among_stones}) {
+        for (int v = surface->block_begin[static_cast<std::size_t>(b)];
+             v < surface->block_begin[static_cast<std::size_t>(b) + 1]; ++v)
+          surface->position[static_cast<std::size_t>(v)] += motion;
+      }
+    }
+  }
+  EXPECT_GT(changes, 20);
+  EXPECT_LT(changes, 80);
+  EXPECT_GT(held, 80 * 20);
+}
+
 /// bytes, the most that this process has had.
 long most_memory() {
   rusage usage{};

@@ -252,6 +252,38 @@ TEST(Detection, ClearancesAndSteadyPairsHideNoContact) {
   EXPECT_GT(seen.steady, 50'000);          // that they sway together does not count
 }
 
+// As many contacts are not the same ones.
+TEST(Detection, KnowsWhetherContactsAreThoseOfBefore) {
+  Surface surface;
+  for (int k = 0; k < 4; ++k) add_block(surface, rectangle(k, 0.0, k + 1.0, 1.0), true);
+  add_block(surface, rectangle(0.3, 1.0, 1.3, 2.0));
+  const Tolerances tolerances(1.0);
+  const std::vector<double> still(5, 0.0);
+  ThreadTeam alone(1);
+  Detection detection(tolerances, {JointLaw{}}, std::vector<double>(5, 1e9));
+  std::vector<Contact> contacts;
+  const auto find = [&](double shift) {
+    for (std::size_t v = 16; v < 20; ++v) surface.position[v].x += shift;
+    Candidates candidates(tolerances);
+    CandidateList list;
+    candidates.update(surface, still, list, alone);
+    const std::size_t before = contacts.size();
+    contacts.resize(detection.find_which(surface, {still, still, candidates.away(), still}, list, alone));
+    std::size_t described = 0;
+    const bool same =
+        detection.describe(surface, list, alone, contacts, [&](std::size_t first, std::size_t last) {
+          EXPECT_EQ(first, described);
+          for (; described < last; ++described) EXPECT_GT(contacts[described].length, 0.0);
+        });
+    EXPECT_EQ(described, contacts.size());
+    return std::pair(same, contacts.size() == before);
+  };
+  EXPECT_EQ(find(0.0), std::pair(false, false));
+  EXPECT_EQ(find(0.1), std::pair(true, true));
+  EXPECT_EQ(find(1.0), std::pair(false, true));
+  EXPECT_EQ(find(0.0), std::pair(true, true));
+}
+
 TEST(Detection, MemoryMovesOverWhenVertexAndEdgeChangeSides) {
   CandidateList list;
   Contact last;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <set>
 
 #include "block/eigenvalue_floor.h"
 #include "dynamics/earlier_look.h"
@@ -15,19 +16,24 @@
 namespace keyblock::dynamics {
 namespace {
 
-/// Room for the pairs of three blocks.
+/// Room for all pairs that have contacts.
 void analyse(const Model& model, StepProblem& problem, linalg::BlockSolver& solver) {
   std::vector<int> sizes;
   for (const Block& block : model.blocks) {
     if (!block.fixed) sizes.push_back(2 * block.size);
   }
-  const std::vector<std::pair<int, int>> pairs{{0, 1}, {0, 2}, {1, 2}};
-  for (StepProblem::Row& row : problem.rows()) {
-    if (row.unknown_a < 0 || row.unknown_b < 0) continue;
-    const auto pair = std::minmax(row.unknown_a, row.unknown_b);
-    row.pair =
-        static_cast<int>(std::find(pairs.begin(), pairs.end(), std::pair<int, int>(pair)) - pairs.begin());
-  }
+  const auto for_rows = [&](const auto& body) {
+    for (StepProblem::Row& row : problem.rows()) {
+      if (row.unknown_a < 0 || row.unknown_b < 0) continue;
+      body(row, std::pair<int, int>(std::minmax(row.unknown_a, row.unknown_b)));
+    }
+  };
+  std::set<std::pair<int, int>> found;
+  for_rows([&](StepProblem::Row&, std::pair<int, int> pair) { found.insert(pair); });
+  const std::vector<std::pair<int, int>> pairs(found.begin(), found.end());
+  for_rows([&](StepProblem::Row& row, std::pair<int, int> pair) {
+    row.pair = static_cast<int>(std::ranges::lower_bound(pairs, pair) - pairs.begin());
+  });
   solver.analyse(sizes, pairs);
 }
 
@@ -250,6 +256,41 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
       for (std::size_t k = block.first; k < block.first + 2 * static_cast<std::size_t>(block.size); ++k)
         EXPECT_NEAR(g[k], iteration.gradient()[k], 1e-8 * problem.weight(b)) << k;
     }
+  }
+}
+
+// Also where systems are of the neighbourhood of some blocks, and leave something over beside it.
+TEST(StepProblem, EndsInBalanceWhereContactsBendInOnePlace) {
+  constexpr int rows = 3, columns = 150;
+  simulation::Scene scene(1e9, 35.0);
+  scene.rectangle({-2.0, -1.0}, columns + 4.0, 1.0, 0.0, true);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column)
+      scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
+  }
+  simulation::Simulator s(scene);
+  const double tolerance = s.model.solver.tolerance;
+  for (int step = 0; step < 12; ++step) {
+    s.run(0.002, 0.002);
+    // A blow to one brick after the other.
+    const std::size_t struck =
+        s.model.blocks[1 + static_cast<std::size_t>(13 * step % (rows * columns))].first;
+    s.state.velocity[struck] += 1.0;
+    s.state.velocity[struck + 1] += step % 2 == 0 ? 1.0 : -1.0;
+    StepProblem problem;
+    const NextStep next(s);
+    std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
+    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    const auto solver = linalg::make_block_conjugate_residual(&s.team);
+    analyse(s.model, problem, *solver);
+    std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
+    OpenClose iteration;
+    const OpenCloseResult result =
+        iteration.solve(problem, {contacts}, *solver, s.model.solver, s.team, s.profile, d);
+    EXPECT_TRUE(result.converged) << step;
+    EXPECT_GT(result.iterations, 3) << step;
+    problem.gradient(d, g);
+    EXPECT_LE(problem.residual_ratio(g), tolerance) << step;
   }
 }
 
