@@ -147,7 +147,14 @@ def measure_cut(keyblock, name, repeat):
 
 
 def machine():
-    model = next((line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "")
+    """Kinds of processors that share a name differ by family and model."""
+    cpu = {}
+    for line in open("/proc/cpuinfo"):
+        name, _, value = line.partition(":")
+        cpu.setdefault(name.strip(), value.strip())
+    model = cpu.get("model name", "")
+    if "cpu family" in cpu:
+        model += f" (family {cpu['cpu family']}, model {cpu['model']})"
     compiler = subprocess.run(["c++", "--version"], capture_output=True, text=True, check=False).stdout.split("\n")[0]
     return {"processor": model, "cores": os.cpu_count(), "system": f"{platform.system()} {platform.machine()}", "compiler": compiler}
 

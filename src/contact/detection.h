@@ -41,7 +41,7 @@ struct Contact {
   double friction_coefficient = 0.0;
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
   bool fused = false;
-  Memory memory;  ///< at the start of the step
+  Memory memory;  ///< at the start of the step; no bond any more where that breaks in it
 
   [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
 };
