@@ -97,7 +97,7 @@ class OpenClose {
   bool improve_linear(const StepProblem& problem, linalg::BlockSolver& solver, double tolerance);
   void find_ratios(const StepProblem& problem);
   [[nodiscard]] double out_of_balance(const StepProblem& problem);
-  /// Of all blocks.
+  /// That of any block may be another.
   void gradient_changed() {
     out_of_balance_.reset();
     knows_ratios_ = false;

@@ -34,7 +34,7 @@ void OpenClose::begin_factor(const StepProblem& problem, linalg::BlockSolver& so
   factor_.inertia.assign(problem.inertias().begin(), problem.inertias().end());
 }
 
-/// As those that what is known of the matrix at hand is of.
+/// What is known of the matrix at hand, by contact, is of the contacts of this step.
 void OpenClose::note_contacts() {
   factor_.contacts.resize(contacts_.size());
   std::ranges::transform(contacts_, factor_.contacts.begin(), key_of);

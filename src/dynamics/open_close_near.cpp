@@ -14,8 +14,7 @@ bool OpenClose::solves_near(const StepProblem& problem, const linalg::BlockSolve
 
 /// direction_ ← −A⁻¹ gradient_ near the blocks that are out of balance, where these are few. False, and nothing is done, where not.
 bool OpenClose::solve_near(const StepProblem& problem, linalg::BlockSolver& solver, double enough) {
-  constexpr double share =
-      0.5;  // of what is enough, that the others may be out of balance by: the solver looks at all
+  constexpr double share = 0.5;  // of what is enough, that the others may be out of balance by
   if (!solves_near(problem, solver)) return false;
   find_ratios(problem);
   find_all(

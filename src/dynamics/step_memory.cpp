@@ -113,8 +113,10 @@ double Stepper::gap(std::size_t k) const {
 
 std::vector<Stepper::Force> Stepper::forces() const {
   const SpringArray& springs = problem_.springs();
+  const std::size_t count = std::min(contacts_.size(), springs.size());
   std::vector<Force> forces;
-  for (std::size_t k = 0; k < std::min(contacts_.size(), springs.size()); ++k) {
+  forces.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
     const SpringArray::Force force = springs.force(k);
     if (!(springs.y[k] > springs.floor[k])) {
       forces.push_back({force.normal, 0.0, contact::State::open});

@@ -149,11 +149,12 @@ TEST(Column, ContactForceAtDepthIsTheWeightAbove) {
   Simulator s(scene);
   const std::vector<double> scale(6, 1.0);
   for (int k = 0; k < 400; ++k) s.stepper.relax(s.state, 0.05, scale);
+  const std::vector<dynamics::Stepper::Force> forces = s.stepper.forces();
   std::vector<double> force(6, 0.0);
   for (std::size_t c = 0; c < s.stepper.contacts().size(); ++c) {
     const contact::Contact& contact = s.stepper.contacts()[c];
     const int upper = std::max(contact.block_a, contact.block_b);
-    force[static_cast<std::size_t>(upper)] += s.stepper.forces()[c].normal;
+    force[static_cast<std::size_t>(upper)] += forces[c].normal;
   }
   for (int k = 1; k <= 5; ++k)
     EXPECT_NEAR(force[static_cast<std::size_t>(k)] / ((6 - k) * 2600.0 * g), 1.0, 1e-6) << k;
