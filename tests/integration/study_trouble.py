@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Studies in trouble: runs and studies that are killed, wrong input, folders that another process has, full disks."""
 
+import contextlib
 import os
 import resource
 import signal
@@ -10,14 +11,17 @@ import unittest
 from program import PROGRAM, process_of, wait_for
 from study_case import GALLERY, SMALL, Study
 
-# Of two runs of each realization, the second lasts some seconds.
-LONG = '[study]\nrealizations = 2\nkeep = "measures"\n[[study.vary]]\nkey = "stage.after.duration"\nvalues = [0.1, 120.0]\n'
+
+
+def with_durations(short, long):
+    """Two realizations, two runs of each; 100 s of simulated time take about a second."""
+    return GALLERY + f'[study]\nrealizations = 2\nkeep = "measures"\n[[study.vary]]\nkey = "stage.after.duration"\nvalues = [{short}, {long}]\n'
 
 
 class Interruptions(Study):
     def setUp(self):
         super().setUp()
-        self.write("long.toml", GALLERY + LONG)
+        self.write("long.toml", with_durations(0.1, 120.0))
 
     def start(self):
         parent = subprocess.Popen([PROGRAM, "study", "run", "long.toml", "-o", "out", "--workers", "2"], cwd=self.folder,
@@ -30,7 +34,15 @@ class Interruptions(Study):
         return process_of(["study", "task", "out", *map(str, index)], self.folder)
 
     def task(self, index):
-        return wait_for(lambda: self.child(index), f"run {index}")
+        """The process that is at this run, once it holds the run's lock."""
+
+        def holder():
+            child = self.child(index)
+            with contextlib.suppress(FileNotFoundError):
+                text = self.run_file(self.keys()[index]).with_name("lock").read_text()
+                return child if text.startswith(f"process {child} on ") else None
+
+        return wait_for(holder, f"a process at run {index}")
 
     def test_a_run_that_is_killed_costs_that_run_alone(self):
         parent = self.start()
@@ -80,11 +92,11 @@ class Interruptions(Study):
         self.assertIn("4 of 4 runs done\n", self.run_study("long.toml", "--resume").stdout)
 
     def test_two_in_one_folder(self):
+        self.write("long.toml", with_durations(0.1, 1e5))  # still at it when the others come
         parent = self.start()
-        self.task(0)
+        child = self.task(1)
         refused = self.run_study("long.toml", "--resume", expect=1)
         self.assertIn(f"out: found a study that process {parent.pid} on ", refused.stderr)
-        child = self.task(1)
         again = self.study("task", "out", "1", expect=2)
         self.assertIn(f"process {child} on ", again.stderr)
         parent.send_signal(signal.SIGINT)
