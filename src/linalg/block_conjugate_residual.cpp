@@ -128,24 +128,35 @@ void BlockConjugateResidual::store_transposed(Layout layout, std::size_t j, cons
 }
 
 /// The step of the last iteration, of one register, Â r being in t_. Returns r after it.
-inline NarrowLanes BlockConjugateResidual::advance(Way way, std::size_t k) {
-  const NarrowLanes alpha = broadcast(way.alpha), beta = broadcast(way.beta), gamma = broadcast(way.gamma),
-                    r = load(&r_[k]), p = gamma * r + beta * load(&p_[k]),
-                    s = gamma * load(&t_[k]) + beta * load(&s_[k]), after = r - alpha * s;
-  store(&p_[k], p);
+template <BlockConjugateResidual::Of of>
+inline NarrowLanes BlockConjugateResidual::advance(const Ways& ways, std::size_t k) {
+  const Way& last = ways.last;
+  const NarrowLanes alpha = broadcast(last.alpha), beta = broadcast(last.beta), gamma = broadcast(last.gamma),
+                    r = load(&r_[k]), last_s = load(&s_[k]), s = gamma * load(&t_[k]) + beta * last_s,
+                    after = r - alpha * s;
+  if constexpr (of != Of::residual) {
+    NarrowLanes p = load(&p_[k]), z = load(&z_[k]);
+    if constexpr (of == Of::both) {
+      const NarrowLanes last_alpha = broadcast(ways.before.alpha), last_r = r + last_alpha * last_s;
+      p = last_r + broadcast(ways.before.beta) * p;
+      z += last_alpha * p;
+    }
+    p = gamma * r + beta * p;
+    store(&p_[k], p);
+    store(&z_[k], z + alpha * p);
+  }
   store(&s_[k], s);
-  store(&z_[k], load(&z_[k]) + alpha * p);
   store(&r_[k], after);
   return after;
 }
 
 /// The step of the last iteration; then t ← (1 + Uᵀ)⁻¹ r and q ← r − t, of some places. No calls within: they would keep vectors from
 /// staying in registers.
-template <typename Layout, typename Some>
-[[gnu::flatten]] void BlockConjugateResidual::go_forward(Layout layout, Some places, Way way) {
+template <BlockConjugateResidual::Of of, typename Layout, typename Some>
+[[gnu::flatten]] void BlockConjugateResidual::go_forward(Layout layout, Some places, const Ways& ways) {
   for_each(places, [&](std::size_t j) {
     store_transposed(layout, j, t_.data(), q_.data());
-    for_registers(layout, j, [&](std::size_t k) { store(&t_[k], advance(way, k) - load(&q_[k])); });
+    for_registers(layout, j, [&](std::size_t k) { store(&t_[k], advance<of>(ways, k) - load(&q_[k])); });
   });
 }
 
@@ -153,20 +164,19 @@ template <typename Layout, typename Some>
 template <typename Layout, typename Some>
 [[gnu::flatten]] BlockConjugateResidual::Dots BlockConjugateResidual::go_backward(Layout layout,
                                                                                   Some places) {
-  Lanes rr{}, rq{}, qq{}, qs{};
+  Lanes rr{}, rq{}, qq{};
   for_each_backward(places, [&](std::size_t j) {
     subtract_scaled(layout, j, q_.data(), q_.data());
     for_registers(layout, j, [&](std::size_t k) {
       const NarrowLanes t = load(&t_[k]) + load(&q_[k]);
       store(&t_[k], t);
-      const Lanes q = widen(t), r = widen(load(&r_[k])), s = widen(load(&s_[k]));
+      const Lanes q = widen(t), r = widen(load(&r_[k]));
       rr = add_product(r, r, rr);
       rq = add_product(r, q, rq);
       qq = add_product(q, q, qq);
-      qs = add_product(q, s, qs);
     });
   });
-  return {sum(rr), sum(rq), sum(qq), sum(qs)};
+  return {sum(rr), sum(rq), sum(qq)};
 }
 
 /// Once through all that is solved: forward(places), then backward(k, places) of each part while a cache has it, and of what lies between
@@ -183,11 +193,18 @@ void BlockConjugateResidual::through(Layout layout, const Forward& forward, cons
   with_between([&](auto places) { backward(std::size_t{0}, places); });
 }
 
-/// The step of the last iteration, and Â r, into t_, for the next.
-BlockConjugateResidual::Dots BlockConjugateResidual::apply(Way way) {
+/// The step of the last iteration, and Â r, into t_, for the next. Every second time without p and z.
+BlockConjugateResidual::Dots BlockConjugateResidual::apply(const Ways& ways) {
   return with_layout([&](auto layout) {
     through(
-        layout, [&](auto places) { go_forward(layout, places, way); },
+        layout,
+        [&](auto places) {
+          if (ways.pending == 2) {
+            go_forward<Of::both>(layout, places, ways);
+          } else {
+            go_forward<Of::residual>(layout, places, ways);
+          }
+        },
         [&](std::size_t k, auto places) { dots_[k] = go_backward(layout, places); }, q_, q_);
     Dots total;
     for (std::size_t k = 0; k < pieces(); ++k) total += dots_[k];
@@ -195,12 +212,19 @@ BlockConjugateResidual::Dots BlockConjugateResidual::apply(Way way) {
   });
 }
 
-/// The step of an iteration by itself.
-void BlockConjugateResidual::go(Way way) {
+/// The step of an iteration by itself, with what p and z have not gone yet.
+void BlockConjugateResidual::go(const Ways& ways) {
   with_layout([&](auto layout) {
     for_pieces([&](std::size_t, auto places) {
-      for_each(places,
-               [&](std::size_t j) { for_registers(layout, j, [&](std::size_t k) { advance(way, k); }); });
+      for_each(places, [&](std::size_t j) {
+        for_registers(layout, j, [&](std::size_t k) {
+          if (ways.pending == 2) {
+            advance<Of::both>(ways, k);
+          } else {
+            advance<Of::last>(ways, k);
+          }
+        });
+      });
     });
   });
 }
@@ -361,10 +385,10 @@ BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(double too_la
                                                                    int most) {
   const double start = too_large;
   const bool goes_on = rho_ > 0.0;
-  Way way;
+  Ways ways;
   double wanted = 0.0, first_rr = 0.0;
   for (int iterations = 1;; ++iterations) {
-    const Dots dots = apply(way);
+    const Dots dots = apply(ways);
     if (iterations == 1) {
       first_rr = dots.rr;
       const double lag = *std::max_element(lag_.begin(), lag_.end()), three_quarters = std::sqrt(start);
@@ -373,16 +397,21 @@ BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(double too_la
     }
     const double beta = rho_ > 0.0 ? dots.rq / rho_ : 0.0;
     rho_ = dots.rq;
-    ss_ = dots.qq + 2.0 * beta * dots.qs + beta * beta * ss_;
+    ss_ = dots.qq - beta * beta * ss_;
     // Nothing is left of r in single precision, or the matrix is not positive definite.
-    if (!(rho_ > 0.0 && ss_ > 0.0 && dots.rr <= most_growth * most_growth * first_rr))
+    if (!(rho_ > 0.0 && ss_ > 0.0 && dots.rr <= most_growth * most_growth * first_rr)) {
+      if (ways.pending == 1) {
+        ways.take({});
+        go(ways);
+      }
       return {iterations, false};
+    }
     const double alpha = rho_ / ss_;
-    way = {static_cast<float>(alpha), static_cast<float>(beta), 1.0F};
+    ways.take({static_cast<float>(alpha), static_cast<float>(beta), 1.0F});
     const double rr = std::max(0.0, dots.rr - alpha * rho_);
     if (rr > wanted && iterations < most) continue;
-    go(way);
-    way = {};
+    go(ways);
+    ways = {};
     if (iterations == most) return {iterations, false};
     find_residual(estimate_);
     too_large = excess(estimate_);

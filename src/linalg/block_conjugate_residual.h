@@ -92,14 +92,26 @@ class BlockConjugateResidual final : public BlockSolver {
   struct Way {
     float alpha = 0.0F, beta = 1.0F, gamma = 0.0F;
   };
-  /// Dot products of an iteration, with q = Â r and s of the last one; they give s · s and r · r after it too.
+  /// Of the last iteration; and of the one before it where p and z have not gone that: they go two at a time, to be read and written half
+  /// as often. What r was, for the first of the two, follows from what it is and s.
+  struct Ways {
+    Way last, before;
+    int pending = 0;  ///< how many p and z have not gone
+    void take(Way next) {
+      before = last;
+      last = next;
+      pending = pending == 1 ? 2 : 1;
+    }
+  };
+  /// What goes them: r and s, the last one; p and z none, the last, or both.
+  enum class Of { residual, last, both };
+  /// Dot products of an iteration, with q = Â r. They give s · s, as each s is orthogonal to the last one, and r · r after it too.
   struct Dots {
-    double rr = 0.0, rq = 0.0, qq = 0.0, qs = 0.0;
+    double rr = 0.0, rq = 0.0, qq = 0.0;
     Dots& operator+=(const Dots& other) {
       rr += other.rr;
       rq += other.rq;
       qq += other.qq;
-      qs += other.qs;
       return *this;
     }
   };
@@ -197,15 +209,16 @@ class BlockConjugateResidual final : public BlockSolver {
   void subtract_scaled_of_parts(Layout layout, const float* x, float* y) const;
   template <typename Layout>
   void store_transposed(Layout layout, std::size_t j, const float* x, float* y) const;
-  NarrowLanes advance(Way way, std::size_t k);
-  template <typename Layout, typename Some>
-  void go_forward(Layout layout, Some places, Way way);
+  template <Of of>
+  NarrowLanes advance(const Ways& ways, std::size_t k);
+  template <Of of, typename Layout, typename Some>
+  void go_forward(Layout layout, Some places, const Ways& ways);
   template <typename Layout, typename Some>
   [[nodiscard]] Dots go_backward(Layout layout, Some places);
   template <typename Layout, typename Forward, typename Backward>
   void through(Layout layout, const Forward& forward, const Backward& backward, const Vector& x, Vector& y);
-  Dots apply(Way way);
-  void go(Way way);
+  Dots apply(const Ways& ways);
+  void go(const Ways& ways);
   void start(std::span<const double> x);
   template <typename Layout>
   void unscale(Layout layout, std::size_t j, const Vector& v, WideVector& scratch, WideVector& x) const;
