@@ -156,12 +156,13 @@ bool Detection::is_out(const Surface& surface, const BlockPair& pair, const Riva
                                rival.first_half ? surface.previous[edge] : surface.next[edge]);
 }
 
-/// As compete(), but for lines that third blocks are in the way of more than of others.
+/// As compete(), but for lines that third blocks are in the way of more than of others. Of none that holds its vertex: a tip that came into
+/// the mouth of a joint is in there, however little room it has once the joint closes on it.
 Detection::Outcome Detection::compete_in_joints(const Surface& surface, const BlockPair& pair,
                                                 std::span<Rival* const> all,
                                                 const CandidateList& candidates) const {
   Outcome outcome = compete(surface, all, candidates);
-  if (outcome.parallel || outcome.winner == nullptr) return outcome;
+  if (outcome.parallel || outcome.winner == nullptr || holds(*outcome.winner, candidates)) return outcome;
   if (!(third(surface, pair, *outcome.winner, candidates).in_the_way > 0.0)) return outcome;
   std::array<Third, 4> thirds{};
   double least = closed;

@@ -126,7 +126,7 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
     if (winner == nullptr && holder != nullptr && force(*holder) > 0.0) winner = holder;
     // Nor does one leave a face that holds it, and that it is over, by a line that it has long passed without having been held there.
     if (winner != nullptr && holder != nullptr && winner->gap <= -tolerances_.corner_depth &&
-        over(*holder) >= 0.0 && force(*holder) > 0.0 && has_come_in_here(*holder, candidates))
+        holds(*holder, candidates))
       winner = holder;
   }
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the

@@ -155,6 +155,12 @@ class Detection {
     return rival.memory >= 0 &&
            candidates.memory[static_cast<std::size_t>(rival.memory)].offset <= tolerances_.end_zone;
   }
+  /// Whether the vertex is over the face, presses on it, and has come in by it.
+  [[nodiscard]] bool holds(const Rival& rival, const CandidateList& candidates) const {
+    return has_come_in_here(rival, candidates) &&
+           candidates.memory[static_cast<std::size_t>(rival.memory)].normal_force > 0.0 &&
+           inside(rival.along, line(rival, candidates).length) >= 0.0;
+  }
   /// Directions of the edges of the vertex, away from it.
   [[nodiscard]] std::array<Vec2, 2> sides(const Candidate& candidate) const {
     const Corner& vertex = corners_[static_cast<std::size_t>(candidate.vertex)];

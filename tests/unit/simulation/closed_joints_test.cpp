@@ -174,6 +174,33 @@ TEST(ClosedJoint, HoldsTipsInItsMouth) {
   }
 }
 
+// A tip that has come into the mouth of an open joint is pinched as the joint closes: up to 1.2 mm deep where what holds it counted as
+// covered by a closed joint.
+TEST(ClosedJoint, PinchesTipsThatItClosesOn) {
+  for (const double depth : {0.0012, 0.0018, 0.0024, 0.003}) {
+    for (const double closed : {0.0009, 0.0012, 0.0015, 0.0018}) {  // m, as far as the tip lets it
+      for (const double level :
+           {-0.0003, -0.00005, 0.00005, 0.0003}) {  // of the corner of the block that closes it
+        for (const double own : {80.0, 85.0, 89.0}) {
+          for (const double speed : {0.05, 0.2, 0.5, 2.0}) {
+            const double other = std::atan2(depth + level, closed) / degree;
+            if (other > own - 10.0) continue;
+            Scene scene(3e9, 39.0);
+            scene.add({{0.0, 0.0}, 0.5 * direction(110.0), {-0.6, 0.5}, {-0.6, -1.6}, {0.0, -1.6}}, true);
+            const Vec2 tip{0.0, -depth}, corner{closed + 0.0015, level};
+            const int wedge = scene.add({tip, tip + 0.3 * direction(other), tip + 0.3 * direction(own)});
+            const int closing = scene.add({corner, corner + Vec2{0.0, -1.6}, corner + Vec2{0.6, -1.6}});
+            scene.setup.properties[static_cast<std::size_t>(wedge)].velocity = {-0.02, -0.1};
+            scene.setup.properties[static_cast<std::size_t>(closing)].velocity = {-speed, 0.0};
+            EXPECT_LT(largest_overlap_of(scene, 0.002), 0.0004)
+                << depth << " " << closed << " " << level << " " << own << " " << speed;
+          }
+        }
+      }
+    }
+  }
+}
+
 // Tips pressed in deeper than the zone in which corners compete are beyond the end of the wall, and nearer to the sides within the joint.
 TEST(ClosedJoint, KeepsOutTipsThatSoftJointsLetIn) {
   for (const double step : {0.002, 0.0005, 0.0002}) {
