@@ -163,11 +163,12 @@ Detection::Outcome Detection::compete_in_joints(const Surface& surface, const Bl
                                                 const CandidateList& candidates) const {
   Outcome outcome = compete(surface, all, candidates);
   if (outcome.parallel || outcome.winner == nullptr || holds(*outcome.winner, candidates)) return outcome;
-  if (!(third(surface, pair, *outcome.winner, candidates).in_the_way > 0.0)) return outcome;
+  const Third of_winner = third(surface, pair, *outcome.winner, candidates);
+  if (!(of_winner.in_the_way > 0.0)) return outcome;
   std::array<Third, 4> thirds{};
   double least = closed;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    thirds[i] = third(surface, pair, *all[i], candidates);
+    thirds[i] = all[i] == outcome.winner ? of_winner : third(surface, pair, *all[i], candidates);
     least = std::min(least, thirds[i].in_the_way);
   }
   std::array<Rival*, 4> open{};
