@@ -14,7 +14,8 @@
 namespace keyblock::linalg {
 
 /// make_block_conjugate_residual(). Its pattern is found in block_conjugate_residual_pattern.cpp, the matrix made ready in
-/// block_conjugate_residual_factor.cpp; block_conjugate_residual_near.cpp solves near some blocks alone.
+/// block_conjugate_residual_factor.cpp; what iterations are made of is in block_conjugate_residual_passes.cpp;
+/// block_conjugate_residual_near.cpp solves near some blocks alone.
 ///
 /// Blocks are scaled so that those on the diagonal are one: with A_jj = C_j C_jᵀ, the matrix is C (Uᵀ + 1 + U) Cᵀ with
 /// U_ij = C_i⁻¹ A_ij C_j⁻ᵀ strictly above the diagonal. Preconditioned from both sides by (1 + U) it is
