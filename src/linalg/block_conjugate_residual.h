@@ -104,8 +104,8 @@ class BlockConjugateResidual final : public BlockSolver {
       pending = pending == 1 ? 2 : 1;
     }
   };
-  /// What goes them: r and s, the last one; p and z none, the last, or both.
-  enum class Of { residual, last, both };
+  /// What takes steps: r and s alone, the last one; p and z that, too; or p and z both.
+  enum class Vectors { r_and_s, all_by_one, all_by_two };
   /// Dot products of an iteration, with q = Â r. They give s · s, as each s is orthogonal to the last one, and r · r after it too.
   struct Dots {
     double rr = 0.0, rq = 0.0, qq = 0.0;
@@ -210,9 +210,9 @@ class BlockConjugateResidual final : public BlockSolver {
   void subtract_scaled_of_parts(Layout layout, const float* x, float* y) const;
   template <typename Layout>
   void store_transposed(Layout layout, std::size_t j, const float* x, float* y) const;
-  template <Of of>
+  template <Vectors vectors>
   NarrowLanes advance(const Ways& ways, std::size_t k);
-  template <Of of, typename Layout, typename Some>
+  template <Vectors vectors, typename Layout, typename Some>
   void go_forward(Layout layout, Some places, const Ways& ways);
   template <typename Layout, typename Some>
   [[nodiscard]] Dots go_backward(Layout layout, Some places);

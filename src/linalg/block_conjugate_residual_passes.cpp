@@ -120,15 +120,15 @@ void BlockConjugateResidual::store_transposed(Layout layout, std::size_t j, cons
 }
 
 /// The step of the last iteration, of one register, Â r being in t_. Returns r after it.
-template <BlockConjugateResidual::Of of>
+template <BlockConjugateResidual::Vectors vectors>
 inline NarrowLanes BlockConjugateResidual::advance(const Ways& ways, std::size_t k) {
   const Way& last = ways.last;
   const NarrowLanes alpha = broadcast(last.alpha), beta = broadcast(last.beta), gamma = broadcast(last.gamma),
                     r = load(&r_[k]), last_s = load(&s_[k]), s = gamma * load(&t_[k]) + beta * last_s,
                     after = r - alpha * s;
-  if constexpr (of != Of::residual) {
+  if constexpr (vectors != Vectors::r_and_s) {
     NarrowLanes p = load(&p_[k]), z = load(&z_[k]);
-    if constexpr (of == Of::both) {
+    if constexpr (vectors == Vectors::all_by_two) {
       const NarrowLanes last_alpha = broadcast(ways.before.alpha), last_r = r + last_alpha * last_s;
       p = last_r + broadcast(ways.before.beta) * p;
       z += last_alpha * p;
@@ -144,11 +144,11 @@ inline NarrowLanes BlockConjugateResidual::advance(const Ways& ways, std::size_t
 
 /// The step of the last iteration; then t ← (1 + Uᵀ)⁻¹ r and q ← r − t, of some places. No calls within: they would keep vectors from
 /// staying in registers.
-template <BlockConjugateResidual::Of of, typename Layout, typename Some>
+template <BlockConjugateResidual::Vectors vectors, typename Layout, typename Some>
 [[gnu::flatten]] void BlockConjugateResidual::go_forward(Layout layout, Some places, const Ways& ways) {
   for_each(places, [&](std::size_t j) {
     store_transposed(layout, j, t_.data(), q_.data());
-    for_registers(layout, j, [&](std::size_t k) { store(&t_[k], advance<of>(ways, k) - load(&q_[k])); });
+    for_registers(layout, j, [&](std::size_t k) { store(&t_[k], advance<vectors>(ways, k) - load(&q_[k])); });
   });
 }
 
@@ -192,9 +192,9 @@ BlockConjugateResidual::Dots BlockConjugateResidual::apply(const Ways& ways) {
         layout,
         [&](auto places) {
           if (ways.pending == 2) {
-            go_forward<Of::both>(layout, places, ways);
+            go_forward<Vectors::all_by_two>(layout, places, ways);
           } else {
-            go_forward<Of::residual>(layout, places, ways);
+            go_forward<Vectors::r_and_s>(layout, places, ways);
           }
         },
         [&](std::size_t k, auto places) { dots_[k] = go_backward(layout, places); }, q_, q_);
@@ -211,9 +211,9 @@ void BlockConjugateResidual::go(const Ways& ways) {
       for_each(places, [&](std::size_t j) {
         for_registers(layout, j, [&](std::size_t k) {
           if (ways.pending == 2) {
-            advance<Of::both>(ways, k);
+            advance<Vectors::all_by_two>(ways, k);
           } else {
-            advance<Of::last>(ways, k);
+            advance<Vectors::all_by_one>(ways, k);
           }
         });
       });

@@ -12,7 +12,6 @@ from program import PROGRAM, process_of, wait_for
 from study_case import GALLERY, SMALL, Study
 
 
-
 def with_durations(short, long):
     """Two realizations, two runs of each; 100 s of simulated time take about a second."""
     return GALLERY + f'[study]\nrealizations = 2\nkeep = "measures"\n[[study.vary]]\nkey = "stage.after.duration"\nvalues = [{short}, {long}]\n'
