@@ -40,7 +40,7 @@ BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(double too_la
     ss_ = dots.qq - beta * beta * ss_;
     // Nothing is left of r in single precision, or the matrix is not positive definite.
     if (!(rho_ > 0.0 && ss_ > 0.0 && dots.rr <= most_growth * most_growth * first_rr)) {
-      if (ways.pending == 1) {
+      if (ways.pending == 1) {  // r and s have gone that; so do p and z
         ways.take({});
         go(ways);
       }
