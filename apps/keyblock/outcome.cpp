@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "simulation/verdict.h"
 #include "terminal.h"
 
 namespace keyblock::app {
@@ -56,8 +57,7 @@ std::string aligned(const std::vector<Row>& rows) {
 }
 
 std::string moving_text(const StageRecord& stage) {
-  std::string text = fmt::format("{} {} moving (share of the weight that is carried:", stage.moving.size(),
-                                 stage.moving.size() == 1 ? "block keeps" : "blocks keep");
+  std::string text = simulation::verdict_text(stage) + " (share of the weight that is carried:";
   constexpr std::size_t shown = 6;
   for (std::size_t k = 0; k < std::min(shown, stage.moving.size()); ++k) {
     text += fmt::format("{} block {} {:.0f} %", k == 0 ? "" : ",", stage.moving[k].block,
@@ -77,6 +77,9 @@ std::vector<std::string> warnings(const RunRecord& run) {
       texts.push_back(
           fmt::format("stage \"{}\" ended before equilibrium: worst residual {:.1e} of a block's weight",
                       stage.stage.name, stage.worst_residual_ratio));
+    } else if (stage.stage.kind == StageKind::settle &&
+               simulation::verdict_of(stage) == simulation::Verdict::equilibrium_after_moving) {
+      texts.push_back(fmt::format("stage \"{}\" is {}", stage.stage.name, simulation::verdict_text(stage)));
     }
   }
   if (run.open_close.unconverged_steps > 0) {

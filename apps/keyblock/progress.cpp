@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/verdict.h"
+
 namespace keyblock::app {
 namespace {
 
@@ -140,11 +142,8 @@ std::vector<Field> outcome(const StageRecord& record, const Progress& last) {
   std::vector<Field> fields;
   if (record.interrupted) {
     fields.push_back({0, "interrupted"});
-  } else if (record.stage.kind == StageKind::settle && !record.moving.empty()) {
-    fields.push_back({0, fmt::format("{} {} moving", record.moving.size(),
-                                     record.moving.size() == 1 ? "block" : "blocks")});
   } else if (record.stage.kind == StageKind::settle) {
-    fields.push_back({0, record.equilibrium_reached ? "equilibrium" : "no equilibrium"});
+    fields.push_back({0, simulation::verdict_text(record)});
   }
   if (record.stage.kind != StageKind::settle) fields.push_back({2, fmt::format("{:.2f} s", record.duration)});
   fields.push_back({1, fmt::format("{} steps", record.steps)});

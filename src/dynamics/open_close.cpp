@@ -15,8 +15,10 @@ namespace {
 constexpr double forcing = 0.003, forcing_near = 0.03;
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
-constexpr double least_share = 0.25;   // of the way to a new bound
-constexpr int most_bond_updates = 20;  // in a step, lest two bonds hand a strength to and fro
+constexpr double least_share = 0.25;          // of the way to a new bound
+constexpr int undamped_updates = 8;           // of bounds, before all contacts go a smaller share …
+constexpr double least_damping = 1.0 / 64.0;  // … and how small it gets
+constexpr int most_bond_updates = 20;         // in a step, lest two bonds hand a strength to and fro
 // Of the inertia behind a contact, in a step of multipliers: enough for eight contacts that push a rigid block, and the least.
 constexpr double first_multiplier_share = 0.25, least_multiplier_share = 1e-3;
 
@@ -275,6 +277,11 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
   bound_steps_.resize(springs_->size());
+  // More of them may do so in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates have not
+  // settled it, all go half as far whenever the error does not fall by a half.
+  if (++bound_updates_ > undamped_updates && ratio > 0.5 * bound_error_)
+    bound_damping_ = std::max(0.5 * bound_damping_, least_damping);
+  bound_error_ = ratio;
   for (std::size_t c = 0; c < springs_->size(); ++c) {
     if (springs_->friction[c] < 0.0) continue;
     const double missing = bound(c) - springs_->bound[c];
@@ -282,6 +289,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
     double share = 1.0;
     if (!first && bound_steps_[c].taken * gained > 0.0)
       share = std::clamp(bound_steps_[c].taken / gained, least_share, 1.0);
+    share *= bound_damping_;
     bound_steps_[c] = {missing, share * missing};
     const Force before = springs_->force(c);
     springs_->bound[c] += share * missing;
@@ -377,6 +385,9 @@ void OpenClose::begin(const StepProblem& problem, linalg::BlockSolver& solver, s
   misses_ = 0;
   may_go_whole_way_ = solves_near(problem, solver);
   bound_steps_.clear();
+  bound_updates_ = 0;
+  bound_error_ = HUGE_VAL;
+  bound_damping_ = 1.0;
   worst_ = HUGE_VAL;
   stalls_ = 0;
   multiplier_share_ = first_multiplier_share;

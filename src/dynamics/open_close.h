@@ -271,7 +271,10 @@ class OpenClose {
     double missing = 0.0, taken = 0.0;
   };
   std::vector<BoundStep>
-      bound_steps_;  ///< per contact, of the last update in this step; empty before the first
+      bound_steps_;             ///< per contact, of the last update in this step; empty before the first
+  int bound_updates_ = 0;       ///< in this step
+  double bound_error_ = 0.0;    ///< of the last of them, over all bounds
+  double bound_damping_ = 1.0;  ///< share of its way that each contact goes
   std::vector<double> gradient_, direction_;
   std::vector<double> ratios_;            ///< per block: by how much it is out of balance by gradient_
   bool knows_ratios_ = false;             ///< these are of the gradient at hand

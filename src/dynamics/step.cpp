@@ -41,7 +41,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
       prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
       impact_speed_(norm(model.gravity) > 0.0 ? 0.1 * std::sqrt(norm(model.gravity) * model.block_size)
                                               : HUGE_VAL),
-      balance_(model.blocks.size()) {
+      static_ways_(model.blocks.size(), 0.0) {
   double mass = 0.0;
   for (const Block& block : model.blocks) {
     if (block.unknown < 0) continue;
@@ -222,7 +222,7 @@ void Stepper::build_problem(State& state, const Drive& drive, bool knows_contact
   earlier_look_.give(contacts_, problem_.springs());
 }
 
-bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
+bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report) {
   choose_rules(state, drive);
   drive.rule = rule_;
   prescribe(state, drive);
@@ -247,9 +247,8 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
       }
     }
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
-    const OpenCloseResult result =
-        open_close_.solve(problem_, {contacts_, contacts_version_}, chosen, model_.solver, team_, profile_,
-                          increment_, meets_impacts);
+    const OpenCloseResult result = open_close_.solve(problem_, {contacts_, contacts_version_}, chosen,
+                                                     options, team_, profile_, increment_, meets_impacts);
     report.iterations += result.iterations;
     quiet_ = result.bends == 0;
     if (!result.finite)
@@ -260,7 +259,7 @@ bool Stepper::attempt(State& state, Drive& drive, StepReport& report) {
     }
     measure_spin(state);
     if (!result.converged) return false;
-    const Turns turned = look_at_turns(state, drive.is_static);
+    const Turns turned = drive.is_trial ? Turns::are_known : look_at_turns(state, drive.is_static);
     if (turned == Turns::are_too_far) return false;
     const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
     if (!moved && !impact && turned == Turns::are_known) return true;
@@ -287,8 +286,6 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   } else {
     history_.forget();
   }
-  const double g = norm(model_.gravity);
-  const Vec2 down = g > 0.0 ? model_.gravity / g : Vec2{};
   for_blocks([&](std::size_t b) {
     const Block& block = model_.blocks[b];
     const double* d = &increment_[block.first];
@@ -306,13 +303,6 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
         store_first(&state.force[i], end.force, count);
       });
     });
-    if (drive.is_static) {
-      double squared = 0.0;
-      for (int k = 0; k < 2 * block.size; ++k) squared += d[k] * d[k];
-      const double weight = std::max(problem_.weight(b), 1e-300);
-      balance_[b] = {problem_.inertia(b) * std::sqrt(squared) / weight,
-                     problem_.inertia(b) * dot(down, {d[0], d[1]}) / weight};
-    }
     const double w = spin_[b];
     block.pose.update(w, d, &state.position[block.first], v);
     if (state.acceleration.empty()) return;
@@ -340,7 +330,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.end_time = t1;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
-  const bool converged = attempt(state, drive, report);
+  const bool converged = attempt(state, drive, model_.solver, report);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
     report.halvings = std::max(report.halvings, halvings);
@@ -358,30 +348,6 @@ StepReport Stepper::advance(State& state, double dt, const GroundAcceleration* g
   substep(state, state.time, state.time + dt, ground, 0, report);
   report.shortest = std::ldexp(dt, -report.halvings);
   state.time += dt;
-  ++state.step;
-  return report;
-}
-
-StepReport Stepper::relax(State& state, double dt, std::span<const double> inertia_scale) {
-  StepReport report;
-  history_.forget();
-  Drive drive;
-  drive.end_time = state.time;
-  drive.is_static = true;
-  drive.inertia_scale = inertia_scale;
-  drive.step = dt;
-  for (int halvings = 0;; ++halvings) {
-    const bool converged = attempt(state, drive, report);
-    if (converged || halvings >= model_.solver.max_halvings) {
-      report.converged = converged;
-      break;
-    }
-    report.substeps += 1;
-    report.halvings += 1;
-    drive.step *= 0.5;
-  }
-  report.shortest = drive.step;
-  accept(state, drive, report);
   ++state.step;
   return report;
 }

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/earlier_look.h"
+#include "dynamics/force_balance.h"
 #include "dynamics/increment_history.h"
 #include "dynamics/model.h"
 #include "dynamics/open_close.h"
@@ -31,9 +32,24 @@ struct StepReport {
   int halvings = 0;       ///< of the shortest that it was taken in, which need not be equally long
   double shortest = 0.0;  ///< s, length of that one; of a static step, its pseudo time step
   bool converged = true;
+  bool taken = true;              ///< false: a trial, after which everything is where it was
   double penetration = 0.0;       ///< m, largest depth of a contact
   double max_displacement = 0.0;  ///< m, of a vertex
   int closed_contacts = 0;        ///< at the end
+};
+
+/// How a static step is taken.
+struct StaticStep {
+  double step = 0.0;                      ///< s, pseudo time step: what keeps the step small
+  std::span<const double> inertia_scale;  ///< per block, factor on its inertia
+  /// Residual of a block over its weight at which the step has converged, no more than that of the scenario.
+  double tolerance = HUGE_VAL;
+  /// Friction bounds are all that is left to be found, and are taken anew as often as that needs.
+  bool settles_bounds = false;
+  /// A step that is tried: Π is bounded from below, blocks may turn as far as they go, and the step is halved once at most. It is taken
+  /// only if it converges and no vertex goes farther than `farthest`.
+  bool is_trial = false;
+  double farthest = HUGE_VAL;  ///< m
 };
 
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
@@ -68,17 +84,12 @@ class Stepper {
 
   /// One dynamic step of length dt.
   StepReport advance(State& state, double dt, const GroundAcceleration* ground);
-  /// One static step: velocities are zero before and after. inertia_scale: factor on the inertia of each block. What is
-  /// out of balance is in balance().
-  StepReport relax(State& state, double dt, std::span<const double> inertia_scale);
-
-  /// Unbalanced force of each block in the last static step over its weight (all coefficients), and its share that is
-  /// translation along gravity.
-  struct Balance {
-    double ratio = 0.0;
-    double falling = 0.0;
-  };
-  [[nodiscard]] std::span<const Balance> balance() const { return balance_; }
+  /// One static step: velocities are zero before and after. A trial may not be taken (StepReport::taken). Afterwards balance() is known.
+  StepReport relax(State& state, const StaticStep& static_step);
+  /// m, per block: how far its vertices went in the last static step, or would go in one that was not taken.
+  [[nodiscard]] std::span<const double> ways() const { return static_ways_; }
+  /// Forces that nothing balances, at the position that the last static step reached.
+  [[nodiscard]] const ForceBalance& balance() const { return balance_; }
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return contacts_; }
   /// What a contact did at the end of the last step.
   struct Force {
@@ -118,7 +129,7 @@ class Stepper {
   void find_pairs(const State& state);
   void make_room(State& state);
   linalg::BlockSolver& solver(const State& state, bool is_static, bool must_be_direct);
-  bool attempt(State& state, Drive& drive, StepReport& report);
+  bool attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report);
   void forget_pattern() {
     knows_pairs_ = direct_.analysed = iterative_.analysed = false;
     products_.reset();
@@ -167,6 +178,8 @@ class Stepper {
   void remember_multiplier(std::size_t c, std::size_t lane, contact::Memory& memory,
                            ContactAccounts& accounts);
   void remember(State& state, const Drive& drive, StepReport& report);
+  void find_ways();
+  void measure_balance(State& state);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
 
@@ -218,7 +231,8 @@ class Stepper {
     double numerical = 0.0, input = 0.0;
   };
   std::vector<BlockWork> block_work_;  ///< scratch
-  std::vector<Balance> balance_;
+  std::vector<double> static_ways_;    ///< m, per block
+  ForceBalance balance_;
 };
 
 }  // namespace keyblock::dynamics

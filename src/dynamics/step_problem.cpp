@@ -16,10 +16,16 @@
 namespace keyblock::dynamics {
 
 namespace {
-/// The geometric stiffness of a step is kept above this share of its inertia. A block under extreme pressure then keeps a
+/// The geometric stiffness of a dynamic step is kept above this share of its inertia. A block under extreme pressure then keeps a
 /// positive definite step; and a turn w, that the step takes for a stretch of ½ w², cannot draw more energy than
-/// twice this share of the rotation from a stress of impact.
+/// twice this share of the rotation from a stress of impact. A trial of a static step has the same floor. Other static steps have none:
+/// their inertia is small, and a floor would make the tangent of a slender block under pressure wrong. Where a block buckles, the matrix
+/// is not positive definite, and the step is made shorter.
 constexpr double geometric_floor = 0.05;
+
+double floor_of(const Drive& drive, double inertia) {
+  return drive.is_static && !drive.is_trial ? HUGE_VAL : geometric_floor * inertia;
+}
 }  // namespace
 
 void StepProblem::build(const Model& model, const State& state, const Drive& drive,
@@ -107,7 +113,7 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
     b[1] += block.body_force() * acceleration.y;
   };
   const int m = size - 1;
-  const double floor = geometric_floor * inertia_[i];
+  const double floor = floor_of(drive, inertia_[i]);
   if constexpr (std::is_same_v<Size, std::integral_constant<int, 6>>) {
     block::MatrixOfOrder2& geometric = pressed.geometric[pressed.count];
     linearize(geometric.data());
@@ -331,7 +337,8 @@ void StepProblem::solve_alone(std::size_t i, std::span<double> d) const {
   const Block& block = model_->blocks[i];
   const int n = 2 * block.size;
   std::copy_n(&b_[block.first], n, &d[block.first]);
-  linalg::solve_block(n, &h_[h_first_[i]], &d[block.first]);  // H holds inertia, and is positive definite
+  // A block that buckles in a static step stays where it is: its residual then shows that the step has no solution.
+  if (!linalg::solve_block(n, &h_[h_first_[i]], &d[block.first])) std::fill_n(&d[block.first], n, 0.0);
 }
 
 void StepProblem::gradient(std::span<const double> d, std::span<double> g) const {
@@ -344,6 +351,13 @@ void StepProblem::gradient(std::span<const double> d, std::span<double> g) const
         springs_.force_at(c, springs_.y0[c] - dot(row.normal, r), springs_.w0[c] + dot(row.tangent(), r));
     if (!force.is_zero()) add_contact_force(row, row.gradient(force), g);
   }
+}
+
+double StepProblem::largest_stiffness(std::size_t i) const {
+  const int n = 2 * model_->blocks[i].size, stride = linalg::padded_rows(n);
+  double largest = 0.0;
+  for (int k = 0; k < n; ++k) largest = std::max(largest, h_[h_first_[i] + at(k * stride + k)]);
+  return largest - inertia_[i];
 }
 
 double StepProblem::residual_ratio(std::size_t i, std::span<const double> g) const {

@@ -29,6 +29,8 @@ struct Drive {
   bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
   /// Static only: factor on the inertia of each block.
   std::span<const double> inertia_scale;
+  /// Static only: the step is tried, to see how far blocks go. Π is bounded from below whatever its inertia.
+  bool is_trial = false;
   std::span<const Integrator> rule;  ///< of each block
   /// m, of each block: what a fixed block is moved by in the step; empty when none is.
   std::span<const Vec2> prescribed;
@@ -204,6 +206,8 @@ class StepProblem {
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
   /// Whether there is anything to measure residuals by: not without gravity, loads and shaking.
   [[nodiscard]] bool has_weights() const { return !weight_.empty() && weight_.front() > 0.0; }
+  /// N/m per thickness and unit area: largest of a coefficient of the block, without inertia.
+  [[nodiscard]] double largest_stiffness(std::size_t block) const;
   [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
   [[nodiscard]] std::span<const double> inertias() const { return inertia_; }  ///< of all blocks
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by

@@ -5,6 +5,7 @@
 #include "results/json_parts.h"
 #include "results/record_json.h"
 #include "results/summary.h"
+#include "simulation/verdict.h"
 
 namespace keyblock::report {
 
@@ -24,7 +25,11 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"planned_duration", results::or_null(record.planned_duration)},
           {"pga_m_s2", record.pga},
           {"equilibrium_reached", record.equilibrium_reached},
+          {"verdict", record.stage.kind == simulation::StageKind::settle
+                          ? ordered_json(simulation::verdict_text(record))
+                          : ordered_json()},
           {"worst_residual_ratio", record.worst_residual_ratio},
+          {"way_m", record.way},
           {"moving", results::moving_json(record.moving)},
           {"damage", results::damage_json(record.damage)},
           {"wall_time_s", record.wall_time},

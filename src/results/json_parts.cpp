@@ -47,13 +47,18 @@ simulation::Energy read_energy(const ordered_json& json) {
 
 ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving) {
   ordered_json json = ordered_json::array();
-  for (const auto& m : moving) json.push_back({{"block", m.block}, {"carried", m.carried}});
+  for (const auto& m : moving)
+    json.push_back({{"block", m.block}, {"carried", m.carried}, {"group", m.group}});
   return json;
 }
 
 std::vector<simulation::MovingBlock> read_moving(const ordered_json& json) {
   std::vector<simulation::MovingBlock> moving;
-  for (const auto& m : json) moving.push_back({m.at("block").get<int>(), number(m.at("carried"))});
+  for (const auto& m : json) {
+    const int block = m.at("block").get<int>();
+    moving.push_back(
+        {block, number(m.at("carried")), m.value("group", block)});  // no group in files of version 0.1
+  }
   return moving;
 }
 

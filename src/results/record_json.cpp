@@ -142,6 +142,8 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"arias", r.arias},
                           {"equilibrium_reached", r.equilibrium_reached},
                           {"worst_residual_ratio", r.worst_residual_ratio},
+                          {"way", r.way},
+                          {"way_share", r.way_share},
                           {"moving", moving_json(r.moving)},
                           {"blocks_by_order", r.blocks_by_order},
                           {"damage", damage_json(r.damage)},
@@ -177,6 +179,8 @@ StageLine read_stage_json(const std::string& text) {
     if (json.contains("arias")) r.arias = number(json.at("arias"));
     json.at("equilibrium_reached").get_to(r.equilibrium_reached);
     r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
+    if (json.contains("way")) r.way = number(json.at("way"));
+    if (json.contains("way_share")) r.way_share = number(json.at("way_share"));
     r.moving = read_moving(json.at("moving"));
     json.at("blocks_by_order").get_to(r.blocks_by_order);
     r.damage = read_damage(json.at("damage"));

@@ -7,6 +7,7 @@
 #include "core/atomic_file.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
+#include "simulation/verdict.h"
 
 namespace keyblock::results {
 namespace {
@@ -49,12 +50,18 @@ ordered_json cutting(const cutting::CutStatistics& c) {
 // Equilibrium is a question only where the stage seeks it.
 ordered_json equilibrium(const simulation::StageRecord& r) {
   if (r.stage.kind != simulation::StageKind::settle) {
-    return {{"reached", nullptr}, {"worst_residual_ratio", nullptr}, {"moving_blocks", nullptr}};
+    return {{"reached", nullptr},       {"verdict", nullptr},           {"worst_residual_ratio", nullptr},
+            {"largest_way_m", nullptr}, {"largest_way_share", nullptr}, {"moving_blocks", nullptr}};
   }
+  ordered_json moving = moving_json(r.moving);
+  for (std::size_t k = 0; k < r.moving.size(); ++k) moving[k]["movement"] = movement_name(movement_of(r, k));
   return {{"reached", r.equilibrium_reached},
+          {"verdict", verdict_text(r)},
           {"worst_residual_ratio", r.worst_residual_ratio},
+          {"largest_way_m", r.way},
+          {"largest_way_share", r.way_share},
           {"moving_blocks", r.moving.size()},
-          {"moving", moving_json(r.moving)}};
+          {"moving", std::move(moving)}};
 }
 
 ordered_json blocks_by_order(const simulation::StageRecord& r) {

@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000b;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'000c;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -48,6 +48,8 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.arias);
   archive(s.equilibrium_reached);
   archive(s.worst_residual_ratio);
+  archive(s.way);
+  archive(s.way_share);
   archive(s.moving);
   archive(s.blocks_by_order);
   archive(s.damage);
@@ -83,12 +85,22 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.damage.height);
   archive(s.damage.width);
   archive(s.settler.time_step);
+  archive(s.settler.creep);
+  archive(s.settler.steps);
   archive(s.settler.quiet_steps);
   archive(s.settler.first_ratio);
+  archive(s.settler.worst_ratio);
+  archive(s.settler.best_predicted);
+  archive(s.settler.since_best);
+  archive(s.settler.wait);
+  archive(s.settler.trial_acceleration);
   archive(s.settler.inertia_scale);
-  archive(s.settler.travel);
-  archive(s.settler.nearest);
-  archive(s.settler.carried);
+  archive(s.settler.blocks.travel);
+  archive(s.settler.blocks.nearest);
+  archive(s.settler.blocks.carried);
+  archive(s.settler.blocks.astray);
+  archive(s.settler.blocks.state);
+  archive(s.settler.blocks.candidates);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);

@@ -137,6 +137,7 @@ struct Damage {
 struct MovingBlock {
   int block = 0;
   double carried = 0.0;  ///< share of its weight that contacts carry
+  int group = 0;  ///< the same for moving blocks that touch and do not fall: the least of their numbers
 };
 
 struct StageRecord {
@@ -150,6 +151,8 @@ struct StageRecord {
   double arias = 0.0;    ///< m/s, its Arias intensity, sum of both components
   bool equilibrium_reached = false;   ///< settle only
   double worst_residual_ratio = 0.0;  ///< settle only: over blocks that are not moving
+  /// settle only: the largest way of a block that is not moving, while it was out of balance; m, and as a share of the block size
+  double way = 0.0, way_share = 0.0;
   std::vector<MovingBlock> moving;
   std::vector<int> blocks_by_order;  ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;

@@ -293,7 +293,7 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
 void Runner::settle(StageRecord& record) {
   const int limit = record.stage.max_steps.value_or(default_settle_steps);
   settler_.emplace(model_, setup_.time_step, record.stage.tolerance);
-  if (now_.stage_step > 0) settler_->memory() = now_.settler;
+  if (now_.stage_step > 0) settler_->restore(now_.settler);
   // What a change of orders takes out of the rock or puts into it is numerical.
   const auto change_orders = [&](bool (OrderControl::*change)(dynamics::Model&, dynamics::State&)) {
     const double before = total_energy();
@@ -314,14 +314,16 @@ void Runner::settle(StageRecord& record) {
     dynamics::StepReport report;
     done = settler_->step(*stepper_, now_.mechanics, report);
     if (done && change_orders(&OrderControl::adapt)) {
-      settler_->memory().quiet_steps = 0;
+      settler_->begin_again();
       done = false;
     }
     after_step(report, done ? 0 : limit - now_.stage_step - 1, settler_->worst_ratio(), settler_->progress());
   }
   record.equilibrium_reached = done;
   record.worst_residual_ratio = settler_->worst_ratio();
-  record.moving = settler_->moving();
+  record.way = settler_->astray();
+  record.way_share = record.way / model_.block_size;
+  record.moving = settler_->moving(*stepper_);
   settler_.reset();
 }
 

@@ -22,7 +22,7 @@ struct Stage {
   double scale = 1.0;              ///< shake: factor on the accelerations
   std::optional<double> duration;  ///< s; shake: default the motion's
   std::optional<int> max_steps;    ///< settle
-  double tolerance = 0.01;         ///< settle: largest residual of a block over its weight at equilibrium
+  double tolerance = 1e-4;         ///< settle: largest residual of a block over its weight at equilibrium
 };
 
 }  // namespace keyblock::simulation

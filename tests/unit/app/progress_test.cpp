@@ -151,14 +151,15 @@ TEST(FinishedLine, SaysHowTheStageEnded) {
   record.interrupted = false;
   record.stage.kind = StageKind::settle;
   EXPECT_THAT(finished_line(0, 5, record, settling(), terminal(120)),
-              HasSubstr("━  no equilibrium  10000 steps"));
+              HasSubstr("━  not reached  10000 steps"));
   record.equilibrium_reached = true;
   EXPECT_THAT(finished_line(0, 5, record, settling(), terminal(120)),
-              HasSubstr("━  equilibrium  10000 steps"));
-  record.moving.resize(1);
-  EXPECT_THAT(finished_line(0, 5, record, settling(), terminal(120)), HasSubstr("1 block moving"));
-  record.moving.resize(3);
-  EXPECT_THAT(finished_line(0, 5, record, settling(), terminal(120)), HasSubstr("3 blocks moving"));
+              HasSubstr("━  in equilibrium  10000 steps"));
+  record.moving = {{7, 0.0, 7}};
+  EXPECT_THAT(finished_line(0, 5, record, settling(), terminal(120)), HasSubstr("━  1 block falling"));
+  record.moving.resize(3, {8, 1.0, 8});
+  EXPECT_THAT(finished_line(0, 5, record, settling(), terminal(120)),
+              HasSubstr("━  mechanism of 2 blocks, 1 block falling"));
 }
 
 struct Screen {

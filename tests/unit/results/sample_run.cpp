@@ -148,10 +148,12 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
   EXPECT_TRUE(same(a.pgv, b.pgv) && same(a.arias, b.arias));
   EXPECT_EQ(a.equilibrium_reached, b.equilibrium_reached);
   EXPECT_TRUE(same(a.worst_residual_ratio, b.worst_residual_ratio));
+  EXPECT_TRUE(same(a.way, b.way) && same(a.way_share, b.way_share));
   ASSERT_EQ(a.moving.size(), b.moving.size());
   for (std::size_t k = 0; k < a.moving.size(); ++k) {
     EXPECT_EQ(a.moving[k].block, b.moving[k].block);
     EXPECT_TRUE(same(a.moving[k].carried, b.moving[k].carried));
+    EXPECT_EQ(a.moving[k].group, b.moving[k].group);
   }
   EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
   using D = simulation::Damage;
@@ -288,7 +290,8 @@ simulation::StageRecord SampleRun::stage(int index) {
   record.duration = index == 0 ? 0.0 : 20 * step_size;
   record.equilibrium_reached = index == 0;
   record.worst_residual_ratio = index == 0 ? 0.1 / 3.0 : std::nan("");
-  if (index == 0) record.moving = {{2, 0.7}};
+  if (index == 0) record.moving = {{2, 0.7, 1}};
+  if (index == 0) record.way = 0.25, record.way_share = 0.1 / 3.0;
   record.damage = {index, noise(index, 1), 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, -0.7, 1e-17};
   record.wall_time = 1.0 / 3.0;
   return record;

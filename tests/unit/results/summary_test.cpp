@@ -87,6 +87,9 @@ TEST(Summary, NumbersComeBackToTheLastBit) {
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving_blocks"], 1);
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["block"], 2);
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["carried"], 0.7);
+  EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["movement"], "partly held");
+  EXPECT_EQ(summary["stages"][0]["equilibrium"]["verdict"], "1 block moving");
+  EXPECT_EQ(summary["stages"][0]["equilibrium"]["largest_way_m"], 0.25);
   EXPECT_TRUE(summary["stages"][1]["equilibrium"]["reached"].is_null());
   EXPECT_EQ(summary["stages"][1]["kind"], "shake");
 }

@@ -148,7 +148,7 @@ TEST(Column, ContactForceAtDepthIsTheWeightAbove) {
   for (int k = 0; k < 5; ++k) scene.rectangle({0.0, 1.0 * k}, 1.0, 1.0);
   Simulator s(scene);
   const std::vector<double> scale(6, 1.0);
-  for (int k = 0; k < 400; ++k) s.stepper.relax(s.state, 0.05, scale);
+  for (int k = 0; k < 400; ++k) s.stepper.relax(s.state, {.step = 0.05, .inertia_scale = scale});
   const std::vector<dynamics::Stepper::Force> forces = s.stepper.forces();
   std::vector<double> force(6, 0.0);
   for (std::size_t c = 0; c < s.stepper.contacts().size(); ++c) {
@@ -171,7 +171,7 @@ TEST(Bond, CohesionHoldsAndBreaksOnce) {
     scene.rectangle({0.0, 0.0}, 1.0, 1.0);
     Simulator s(scene);
     const std::vector<double> scale(2, 1.0);
-    for (int k = 0; k < 300; ++k) s.stepper.relax(s.state, 0.002, scale);
+    for (int k = 0; k < 300; ++k) s.stepper.relax(s.state, {.step = 0.002, .inertia_scale = scale});
     s.run(0.5, 0.002);
     const double fallen = 0.5 - s.centroid(1).y;
     if (holds) {
