@@ -23,6 +23,8 @@ TEST(Summary, HasEveryFieldOfTheContract) {
                           "version",
                           "seed",
                           "realization",
+                          "warnings",
+                          "closure_is_lower_bound",
                           "blocks",
                           "vertices",
                           "dof",
