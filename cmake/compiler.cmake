@@ -5,7 +5,7 @@ target_compile_options(keyblock_options INTERFACE
   # GCC 12 sees overlapping copies in `"literal" + std::string` that are not there (GCC bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Vector registers are passed between inlined functions only, so their calling convention does not matter.
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>
+  -Wno-psabi
   # The same bits from every build: no fused multiply-add behind our back, and never -ffast-math. GCC 12's vectorizer
   # makes vfmaddsub of x·c ∓ y·s in spite of -ffp-contract=off (tests/integration/instructions.py).
   -ffp-contract=off

@@ -9,6 +9,7 @@
 #include "scenario/inputs.h"
 #include "scenario_arguments.h"
 #include "simulation/build_model.h"
+#include "simulation/feasibility.h"
 #include "study/plan.h"
 
 namespace keyblock::app {
@@ -20,7 +21,11 @@ void check_scenario(const ScenarioArguments& arguments) {
   const scenario::BlockModel blocks = scenario::build_blocks(scenario, arguments.realization);
   if (!scenario.stages.empty()) {  // a scenario without stages can still be cut
     warnings.clear();
-    simulation::build_model(scenario::build_setup(scenario, arguments.realization, blocks, &warnings));
+    const simulation::RunSetup setup =
+        scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
+    simulation::build_model(setup);
+    if (const auto reason = simulation::yields_without_limit(setup))
+      warnings.push_back(*reason + "; a run ends at once");
   } else {
     scenario::add_block_warnings(scenario, blocks, warnings);
   }

@@ -17,7 +17,7 @@ extern "C" void on_signal(int signal) {
     std::raise(signal);
     return;
   }
-  constexpr std::string_view message = "\nstopping after this step; once more ends at once\n";
+  constexpr std::string_view message = "\nstopping; once more ends at once\n";
   static_cast<void>(!::write(STDERR_FILENO, message.data(), message.size()));
 }
 

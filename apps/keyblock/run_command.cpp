@@ -141,7 +141,7 @@ void add_run(CLI::App& app) {
       ->check(CLI::IsMember({"automatic", "block", "iterative", "direct"}).description(""))
       ->type_name("NAME");
   command->footer(
-      "Ctrl-C ends the run after the step at hand, with everything so far readable.\n\n"
+      "Ctrl-C ends the run within the step at hand, with everything so far readable.\n\n"
       "Examples:\n"
       "  keyblock run tunnel.toml -o out/tunnel --threads 2\n"
       "  keyblock run tunnel.toml -o out/tunnel --resume\n"

@@ -105,15 +105,21 @@ inline LaneCondition first_lanes(std::size_t count) {
 }
 
 #if defined(__AVX__)
+/// Where the second half of the first `count` numbers begins; any place will do where it has none, as none is touched. The address of a
+/// number that is not there may not even be formed.
+template <typename Number>
+Number* second_half(Number* p, int count) {
+  return count > 4 ? p + 4 : p;
+}
 inline Lanes load_first(const double* p, int count) {
   const LaneCondition mask = first_lanes(static_cast<std::size_t>(count));
   return {_mm256_maskload_pd(p, reinterpret_cast<__m256i>(mask.low)),
-          _mm256_maskload_pd(p + 4, reinterpret_cast<__m256i>(mask.high))};
+          _mm256_maskload_pd(second_half(p, count), reinterpret_cast<__m256i>(mask.high))};
 }
 inline void store_first(double* p, Lanes v, int count) {
   const LaneCondition mask = first_lanes(static_cast<std::size_t>(count));
   _mm256_maskstore_pd(p, reinterpret_cast<__m256i>(mask.low), v.low);
-  _mm256_maskstore_pd(p + 4, reinterpret_cast<__m256i>(mask.high), v.high);
+  _mm256_maskstore_pd(second_half(p, count), reinterpret_cast<__m256i>(mask.high), v.high);
 }
 inline Lanes square_root(Lanes v) {
   return {_mm256_sqrt_pd(v.low), _mm256_sqrt_pd(v.high)};

@@ -214,6 +214,7 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
     if (!corrects && out_of_balance(problem) <= linear_share * options.tolerance) return true;
   }
   for (int tries = corrects ? most_tries : 0; result.iterations < limit;) {
+    look_at_stop();
     // The first correction has the springs of the last step; later it is worth trying where few springs differ from the matrix.
     if (tries > 0 && (result.iterations == 0 || bent_contacts() <= most_corrected / 3)) {
       --tries;
@@ -404,6 +405,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, StepContacts step_contact
   profile_ = &profile;
   const Profile::Scope scope(profile, Phase::search);
   springs_ = &problem.springs();
+  look_at_stop();
   begin(problem, solver, d.size());
   try_factor(problem, solver);
   OpenCloseResult result;

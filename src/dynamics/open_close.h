@@ -1,5 +1,7 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <span>
@@ -36,6 +38,9 @@ struct OpenCloseResult {
   bool given_up = false;       ///< at the first of them
 };
 
+/// A step was given up between two iterations, as the run was told to stop.
+class Interrupted : public std::exception {};
+
 /// Open-close iteration: a Newton method with an exact line search on the convex, piecewise quadratic Π(D) of a step.
 ///
 ///     1. with a factor: solve with the springs that acted in the last step; if the same springs act at the solution, that is
@@ -56,6 +61,9 @@ struct OpenCloseResult {
 /// the slope that the line search needs.
 class OpenClose {
  public:
+  /// stop, if given, is looked at before every iteration; where it is set, Interrupted is thrown.
+  explicit OpenClose(const std::atomic<bool>* stop = nullptr) : stop_(stop) {}
+
   /// d: the increment; a guess, for solvers without a factor to start from, and then the solution. Bonds that break are cleared
   /// in the memory of the contacts (one per row) and in the rows of the problem. gives_up: asked once bounds have to be taken anew,
   /// which is most of the work then; whether the step has to be taken again whatever comes of it.
@@ -80,6 +88,9 @@ class OpenClose {
   using Shear = SpringArray::Shear;
   using Force = SpringArray::Force;
 
+  void look_at_stop() const {
+    if (stop_ != nullptr && stop_->load(std::memory_order_relaxed)) throw Interrupted();
+  }
   void begin(const StepProblem& problem, linalg::BlockSolver& solver, std::size_t coefficients);
   void begin_factor(const StepProblem& problem, linalg::BlockSolver& solver);
   [[nodiscard]] bool fits_factor(const StepProblem& problem, const linalg::BlockSolver& solver) const;
@@ -207,6 +218,7 @@ class OpenClose {
   bool renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts);
   bool break_bonds(const StepProblem& problem, std::span<contact::Contact> contacts);
 
+  const std::atomic<bool>* stop_;
   ThreadTeam* team_ = nullptr;
   Profile* profile_ = nullptr;
   SpringArray* springs_ = nullptr;              ///< of the problem

@@ -17,13 +17,14 @@ std::vector<double> penalties(const Model& model) {
 }
 }  // namespace
 
-Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile)
+Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::atomic<bool>* stop)
     : model_(model),
       team_(team),
       profile_(profile),
       tolerances_(model.block_size),
       candidates_(tolerances_),
       detection_(tolerances_, model.laws, penalties(model)),
+      open_close_(stop),
       direct_{model.solver.linear == LinearSolver::direct ? linalg::make_cholmod()
                                                           : linalg::make_block_cholesky()},
       iterative_{linalg::make_block_conjugate_residual(&team)},

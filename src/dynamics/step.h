@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -60,7 +61,9 @@ struct StaticStep {
 /// their directions for, the step is cut in two from where it started.
 class Stepper {
  public:
-  Stepper(Model& model, ThreadTeam& team, Profile& profile);
+  /// stop, if given and set, ends a step between two of its iterations: advance() and relax() throw Interrupted then. The state is that
+  /// of a moment within the step.
+  Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::atomic<bool>* stop = nullptr);
 
   /// Brings the surface to the state and finds the contacts of joints in place; once, before the first step.
   void start(State& state);

@@ -83,6 +83,17 @@ ShakingMeasures measure(const GroundMotion& motion, double scale, double duratio
   return m;
 }
 
+double mean_period(const GroundMotion& motion) {
+  const std::vector<double>& t = motion.times();
+  const std::vector<Vec2>& a = motion.accelerations();
+  double area = 0.0, way = 0.0;
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    area += 0.5 * (t[k] - t[k - 1]) * (norm(a[k - 1]) + norm(a[k]));
+    way += norm(a[k] - a[k - 1]);
+  }
+  return way > 0.0 ? 2.0 * std::numbers::pi * area / way : 0.0;
+}
+
 MotionMeasures measure(const MotionComponent& component) {
   const std::vector<double>& a = component.acceleration;
   MotionMeasures m;

@@ -29,6 +29,10 @@ struct ShakingMeasures {
 };
 ShakingMeasures measure(const GroundMotion& motion, double scale, double duration);
 
+/// s, 2π ∫|a| dt / ∫|da|, the period of a motion by the way that its acceleration goes: that of a sine, and in a record that of what is
+/// strong. A jump counts as far as it goes. 0 where nothing changes.
+double mean_period(const GroundMotion& motion);
+
 /// What a file holds, for people: one paragraph per component, then the notes.
 std::string describe_motion(const std::vector<MotionComponent>& components);
 

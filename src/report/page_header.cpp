@@ -61,6 +61,8 @@ ordered_json model_json(const simulation::ModelRecord& model) {
           {"opening_width_m", results::or_null(model.opening_width)},
           {"slip_limit_m", results::or_null(model.slip_limit)},
           {"opening_limit_m", results::or_null(model.opening_limit)},
+          {"warnings", model.warnings},
+          {"closure_is_lower_bound", model.closure_is_lower_bound},
           {"cutting",
            {{"traces", cut.traces},
             {"joints_used", cut.joints_used},

@@ -94,7 +94,9 @@ std::string model_json(const simulation::ModelRecord& model) {
                           {"opening_width", or_null(model.opening_width)},
                           {"slip_limit", or_null(model.slip_limit)},
                           {"opening_limit", or_null(model.opening_limit)},
-                          {"cutting", cutting}};
+                          {"cutting", cutting},
+                          {"warnings", model.warnings},
+                          {"closure_is_lower_bound", model.closure_is_lower_bound}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -118,6 +120,10 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     model.slip_limit = later_number(json, "slip_limit");
     model.opening_limit = later_number(json, "opening_limit");
     visit_cutting(model.cutting, Read{json.at("cutting")});
+    // Files of earlier versions have neither.
+    if (json.contains("warnings")) json.at("warnings").get_to(model.warnings);
+    if (json.contains("closure_is_lower_bound"))
+      json.at("closure_is_lower_bound").get_to(model.closure_is_lower_bound);
     return 0;
   });
 }

@@ -126,6 +126,8 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"seed", model.seed},
       {"realization", model.realization},
       {"interrupted", run.interrupted},
+      {"warnings", model.warnings},
+      {"closure_is_lower_bound", model.closure_is_lower_bound},
       {"blocks", blocks},
       {"vertices", vertices},
       {"dof", run.dof},

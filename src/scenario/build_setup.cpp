@@ -5,10 +5,13 @@
 
 #include "overlap/overlap.h"
 #include "scenario/build.h"
+#include "scenario/closure_bound.h"
 #include "scenario/expected_blocks.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
+#include "scenario/magnitudes.h"
 #include "scenario/polygon_checks.h"
+#include "scenario/shaking_checks.h"
 #include "scenario/stage_steps.h"
 #include "simulation/history_block.h"
 
@@ -235,8 +238,20 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.automatic_order = scenario.automatic;
   setup.solver = scenario.solver;
   add_block_warnings(scenario, blocks, notes);
-  if (warnings != nullptr) warn_of_overlaps(scenario, setup.system, notes);
-  if (warnings != nullptr) warnings->insert(warnings->end(), notes.begin(), notes.end());
+  add_shaking_warnings(scenario, setup.motions, notes);
+  if (const auto reason = closure_is_lower_bound(scenario, setup)) {
+    setup.closure_is_lower_bound = true;
+    if (!scenario.accepted.order_1)
+      notes.push_back(
+          fmt::format("rock.order{}: {}; the closure of the opening and the stress at its wall come out "
+                      "too small; order = \"auto\" or 2 lets blocks bend",
+                      place_text(scenario, "rock.order"), *reason));
+  }
+  if (warnings != nullptr) {
+    warn_of_overlaps(scenario, setup.system, notes);
+    warnings->insert(warnings->end(), notes.begin(), notes.end());
+  }
+  setup.warnings = std::move(notes);
   return setup;
 }
 

@@ -12,6 +12,7 @@
 #include "loading/motion_file.h"
 #include "loading/projection.h"
 #include "rockmass/trace_map.h"
+#include "scenario/shaking_checks.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -197,7 +198,7 @@ std::vector<std::string> check_inputs(const Scenario& scenario) {
     append(mistakes, error);
   }
   try {
-    read_motions(scenario, warnings);
+    add_shaking_warnings(scenario, read_motions(scenario, warnings), warnings);
   } catch (const InputError& error) {
     append(mistakes, error);
   }

@@ -103,16 +103,23 @@ std::string join_index(std::string_view path, std::size_t index) {
 }
 
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t least_letters = 3, many_letters = 9, least_beginning = 4;
+  const std::size_t most_edits = word.size() < least_letters ? 0 : word.size() < many_letters ? 1 : 2;
+  const std::string written = lower_case(word);
   std::string best;
-  std::size_t fewest = std::max<std::size_t>(1, (word.size() + 1) / 3) + 1;
+  std::size_t fewest = most_edits + 1;
+  bool is_only_one = true;
   for (const std::string& candidate : candidates) {
-    const std::size_t edits = edit_distance(lower_case(word), lower_case(candidate));
-    if (edits < fewest && edits < candidate.size()) {
-      fewest = edits;
-      best = candidate;
-    }
+    const std::string known = lower_case(candidate);
+    const bool begins = written.size() >= least_beginning && known.starts_with(written);
+    const std::size_t edits =
+        begins ? std::min(edit_distance(written, known), most_edits) : edit_distance(written, known);
+    if (edits > most_edits || edits > fewest || edits >= known.size() || candidate == best) continue;
+    is_only_one = edits < fewest;
+    fewest = edits;
+    best = candidate;
   }
-  return best;
+  return is_only_one ? best : "";
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {

@@ -21,25 +21,9 @@ struct Reading {
   std::vector<Diagnostic> diagnostics;
 };
 
-// The section to which a key, or one that is written much like it, belongs.
-std::string find_elsewhere(const std::string& key) {
-  std::vector<std::string> keys;
-  std::map<std::string, std::string> section_of;
-  for (const SectionReference& section : key_reference()) {
-    for (const KeyReference& known : section.keys) {
-      if (section.title.starts_with('[') && section_of.emplace(known.key, section.title).second) {
-        keys.push_back(known.key);
-      }
-    }
-  }
-  const std::string best = closest_word(key, keys);
-  return best.empty() ? "" : "'" + best + "' belongs to " + section_of[best];
-}
-
 Reading read_document(const Value& document, const std::filesystem::path& file) {
   ReadContext context;
   context.directory = file.parent_path();
-  context.find_elsewhere = find_elsewhere;
   Reading reading;
   TableReader root(context, &document);
   read_scenario(root, reading.scenario);

@@ -9,6 +9,7 @@
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
+#include "scenario/magnitudes.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -31,12 +32,14 @@ class Plausibility {
   }
 
   std::vector<std::string> warnings() {
+    add_magnitude_warnings(scenario_, warnings_);
     check_distributions();
     check_bonds();
     check_outlines();
     check_automatic_order();
     check_excavated();
     check_in_situ();
+    check_plane_state();
     check_stages();
     check_velocities();
     return std::move(warnings_);
@@ -144,6 +147,24 @@ class Plausibility {
     if (!in_situ.depth && (in_situ.sxx > 0.0 || in_situ.syy > 0.0)) {
       warn("in_situ: a positive stress is tension");
     }
+    if (scenario_.domain && !scenario_.domain->frame && !scenario_.accepted.free_boundary) {
+      warn(
+          "in_situ{}: nothing holds the stress at a free boundary{}, and the rock expands as the run begins; "
+          "boundary = \"frame\" holds it",
+          place_text(scenario_, "in_situ"), place_text(scenario_, "domain.boundary"));
+    }
+  }
+
+  // The rock cannot move along a long tunnel.
+  void check_plane_state() {
+    if (scenario_.excavations.empty() || scenario_.rock.state != PlaneState::plane_stress) return;
+    if (scenario_.accepted.plane_stress) return;
+    warn(
+        "rock.state{}: plane stress{} with an excavation is a thin slab; a long tunnel is in plane strain, "
+        "state = "
+        "\"plane-strain\"",
+        place_text(scenario_, "rock.state"),
+        scenario_.positions.contains("rock.state") ? "" : ", the default,");
   }
 
   void check_density_at_depth() {

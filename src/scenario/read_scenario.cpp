@@ -128,10 +128,50 @@ class Consistency {
   const Scenario& scenario_;
 };
 
+constexpr Word<bool> unit_sets[] = {{"SI", true}, {"other", false}};
+constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
+    {"plane-stress", &AcceptedWarnings::plane_stress},
+    {"order-1", &AcceptedWarnings::order_1},
+    {"free-boundary", &AcceptedWarnings::free_boundary},
+    {"step", &AcceptedWarnings::step}};
+
+void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
+  std::vector<std::string> words;
+  for (const auto& [word, member] : acceptable) words.emplace_back(word);
+  const std::string type = "array of " + list_words(words, ", ");
+  const Value* list =
+      root.any("accept_warnings", type,
+               {.meaning = "Warnings of choices that are meant: they are not given ([which they "
+                           "are](user-guide.md#warnings)).",
+                .fallback = "[]"});
+  if (list == nullptr) return;
+  if (!list->is(Value::Type::array)) {
+    root.fail("accept_warnings", describe(*list), "an " + type,
+              list->is(Value::Type::string) ? "write [" + to_toml(*list) + "]" : "");
+    return;
+  }
+  for (std::size_t k = 0; k < list->items.size(); ++k) {
+    const Value& item = list->items[k];
+    const auto* found = std::find_if(std::begin(acceptable), std::end(acceptable), [&](const auto& known) {
+      return item.is(Value::Type::string) && item.text == known.first;
+    });
+    if (found != std::end(acceptable)) {
+      accepted.*(found->second) = true;
+    } else {
+      root.fail_at(item, join_index("accept_warnings", k), describe(item), list_words(words),
+                   item.is(Value::Type::string) ? suggestion(item.text, words) : "");
+    }
+  }
+}
+
 }  // namespace
 
 void read_scenario(TableReader& root, Scenario& scenario) {
   root.string("title", scenario.title, {.meaning = "Title of the report."});
+  root.word("units", scenario.si_units, unit_sets,
+            {.meaning = "Units of the file. `other`: any other consistent set, or values that are unusual on "
+                        "purpose; no value is then compared with what is usual for rock in SI units."});
+  read_accepted_warnings(root, scenario.accepted);
   root.integer("seed", scenario.seed,
                {.meaning = "Of the random numbers: the same seed and realization give the same joints on any "
                            "machine."});

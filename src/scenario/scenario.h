@@ -122,8 +122,18 @@ struct MotionSpec {
   std::string path;
 };
 
+/// Warnings of choices that are meant, `accept_warnings`.
+struct AcceptedWarnings {
+  bool plane_stress = false;   ///< of an excavation in plane stress
+  bool order_1 = false;        ///< of blocks of order 1 that are too stiff for the closure of an opening
+  bool free_boundary = false;  ///< of stress in rock that nothing holds
+  bool step = false;           ///< of a time step that is long for the motion
+};
+
 struct Scenario {
   std::string title;
+  bool si_units = true;  ///< values may be compared with what is usual
+  AcceptedWarnings accepted;
   std::uint64_t seed = 1;
   Vec2 gravity{0.0, -9.81};  ///< m/s²
   std::optional<double> section_azimuth;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "scenario/key_hints.h"
 #include "scenario/key_path.h"
 
 namespace keyblock::scenario {
@@ -96,8 +97,7 @@ void TableReader::finish() {
   if (table_ == nullptr) return;
   for (const Value& member : table_->items) {
     if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    std::string hint = suggestion(member.key, known_);
-    if (hint.empty() && context_.find_elsewhere) hint = context_.find_elsewhere(member.key);
+    const std::string hint = key_hint(member.key, known_);
     std::string keys;
     for (const std::string& key : known_) keys += (keys.empty() ? "" : ", ") + key;
     context_.diagnostics.push_back(
@@ -226,7 +226,7 @@ std::optional<std::size_t> TableReader::take_word(std::string_view key, const st
     if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
   }
   fail(key, describe(*found), list_words(words),
-       found->is(Value::Type::string) ? suggestion(found->text, words) : "");
+       found->is(Value::Type::string) ? value_hint(found->text, words) : "");
   return std::nullopt;
 }
 

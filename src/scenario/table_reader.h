@@ -44,9 +44,7 @@ struct ReadContext {
   std::vector<Diagnostic> diagnostics;
   std::map<std::string, SourcePosition> positions;                          ///< of every value, by key path
   std::map<std::string, std::vector<std::string>, std::less<>> list_names;  ///< names of elements, by list
-  /// Where else a key that is unknown here is known: `'friction' belongs to [joints]`, or nothing.
-  std::function<std::string(const std::string& key)> find_elsewhere;
-  std::filesystem::path directory;  ///< to which paths are relative
+  std::filesystem::path directory;                                          ///< to which paths are relative
   /// Not null: nothing is read; every key asked for is described here.
   std::vector<SectionReference>* reference = nullptr;
 

@@ -21,9 +21,11 @@ struct ModelRecord {
   std::uint64_t seed = 0;
   int realization = 0;
   int threads = 1;
-  double step_size = 0.0;  ///< s
-  Vec2 origin;             ///< real coordinates of the local origin
-  std::string scenario;    ///< the TOML that was run, with overrides listed as comments at its end
+  double step_size = 0.0;             ///< s
+  Vec2 origin;                        ///< real coordinates of the local origin
+  std::string scenario;               ///< the TOML that was run, with overrides listed as comments at its end
+  std::vector<std::string> warnings;  ///< of input that seems odd
+  bool closure_is_lower_bound = false;  ///< blocks of order 1 are too stiff for it
 
   struct Block {
     std::string name;  ///< empty for cut blocks

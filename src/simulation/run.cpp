@@ -5,18 +5,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/step.h"
-#include "loading/motion_measures.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
 #include "simulation/damage.h"
+#include "simulation/feasibility.h"
 #include "simulation/order_control.h"
 #include "simulation/recorder.h"
 #include "simulation/settle.h"
+#include "simulation/stage_motion.h"
 #include "simulation/step_count.h"
 
 namespace keyblock::simulation {
@@ -29,26 +31,11 @@ constexpr long checkpoint_steps = 2000;     // between places in a stage for a c
 constexpr double shortest_repeat = 0.01;    // of the time of a run so far, that a checkpoint in a stage saves
 constexpr double step_row_interval = 0.02;  // s between rows of step statistics
 constexpr double overlap_interval = 1.0;    // s between measurements of the true overlap
-constexpr std::size_t motion_points = 4000;  // of the applied motion kept for plots
+constexpr long most_unconverged = 100;      // steps in a row
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// The ground motion of a stage, scaled, in the time of the run.
-class StageMotion final : public dynamics::GroundAcceleration {
- public:
-  StageMotion(const loading::GroundMotion& motion, double scale, double start)
-      : motion_(motion), scale_(scale), start_(start) {}
-  [[nodiscard]] Vec2 mean(double t0, double t1) const override {
-    return scale_ * motion_.mean(t0 - start_, t1 - start_);
-  }
-  [[nodiscard]] Vec2 at(double t) const override { return scale_ * motion_.at(t - start_); }
-
- private:
-  const loading::GroundMotion& motion_;
-  double scale_, start_;
-};
 
 class Runner {
  public:
@@ -61,7 +48,7 @@ class Runner {
         gauge_(setup, model_),
         recorder_(setup, model_, gauge_, team_.size()),
         orders_(setup),
-        stepper_(std::in_place, model_, team_, profile_) {}
+        stepper_(std::in_place, model_, team_, profile_, options.stop) {}
 
   RunRecord run();
 
@@ -71,7 +58,7 @@ class Runner {
   void orders_changed();
   void excavate(const Stage& stage);
   void run_stage();
-  void plan_motion(StageRecord& record) const;
+  bool finishes(const std::function<void()>& step);
   void settle(StageRecord& record);
   void shake(StageRecord& record);
   void after_step(const dynamics::StepReport& report, long steps_left, double worst_ratio, double fraction);
@@ -80,9 +67,12 @@ class Runner {
   void check_overlap();
   void check_finite(const Energy& energy) const;
   void check_solved(const StageRecord& record) const;
+  void check_converging() const;
+  [[noreturn]] void give_up(const std::string& reason) const;
   void checkpoint();
   [[nodiscard]] Energy energy() const;
   [[nodiscard]] double total_energy() const;
+  [[nodiscard]] const Stage& stage() const { return setup_.stages[static_cast<std::size_t>(now_.stage)]; }
   [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
   [[nodiscard]] long every(double interval) const {
     constexpr double never = 1e15;
@@ -104,6 +94,7 @@ class Runner {
   Clock::time_point run_start_ = Clock::now(), stage_start_, last_progress_;
   double wall_before_ = 0.0;
   long stage_iterations_ = 0, first_step_of_stage_ = 0;
+  bool is_within_step_ = false;  ///< the run was stopped there: contacts are not those of the state
 };
 
 double Runner::total_energy() const {
@@ -154,7 +145,7 @@ void Runner::resume() {
 }
 
 void Runner::orders_changed() {
-  stepper_.emplace(model_, team_, profile_);
+  stepper_.emplace(model_, team_, profile_, options_.stop);
   stepper_->resume(now_.mechanics);
   recorder_.orders_changed();
 }
@@ -195,11 +186,16 @@ void Runner::check_overlap() {
   now_.record.max_area_change = std::max(now_.record.max_area_change, recorder_.area_change(now_.mechanics));
 }
 
+void Runner::give_up(const std::string& reason) const {
+  std::string text = reason + "; the results up to there are kept";
+  for (const std::string& warning : setup_.warnings) text += "; odd input: " + warning;
+  throw RunError(text);
+}
+
 void Runner::check_finite(const Energy& energy) const {
   if (std::isfinite(energy.residual_ratio)) return;
-  throw RunError(fmt::format(
-      "the energies after step {} of stage '{}' are no finite numbers; the results up to it are kept",
-      now_.stage_step, setup_.stages[static_cast<std::size_t>(now_.stage)].name));
+  give_up(fmt::format("the energies after step {} of stage '{}' are no finite numbers", now_.stage_step,
+                      stage().name));
 }
 
 /// Single steps that do not converge leave a result that can be judged by what is out of balance; a stage without any that
@@ -208,9 +204,15 @@ void Runner::check_solved(const StageRecord& record) const {
   check_finite(energy());
   const long before = now_.mechanics.step - record.steps;
   if (record.steps == 0 || now_.record.open_close.last_converged_step > before) return;
-  throw RunError(fmt::format(
-      "no step of stage '{}' converged, of {} from step {} of the run on; the results up to its end are kept",
-      record.stage.name, record.steps, before + 1));
+  give_up(fmt::format("no step of stage '{}' converged, of {} from step {} of the run on", record.stage.name,
+                      record.steps, before + 1));
+}
+
+/// Nor does a run that goes on without any; each of its steps takes many times as long as others.
+void Runner::check_converging() const {
+  if (now_.mechanics.step - now_.record.open_close.last_converged_step < most_unconverged) return;
+  give_up(fmt::format("{} steps in a row did not converge, the last of them step {} of stage '{}'",
+                      most_unconverged, now_.stage_step, stage().name));
 }
 
 // A place for a checkpoint is one whether it is used or not. In long runs not all are: with each, observers write out what they
@@ -242,13 +244,13 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   statistics.retried_steps += report.substeps > 1;
   statistics.unconverged_steps += !report.converged;
   if (report.converged) statistics.last_converged_step = now_.mechanics.step;
+  check_converging();
   for (const double x : now_.mechanics.position) {
     if (!std::isfinite(x)) {
-      throw RunError(fmt::format("step {} of stage '{}' left no finite state; the results up to it are kept",
-                                 now_.stage_step, setup_.stages[static_cast<std::size_t>(now_.stage)].name));
+      give_up(fmt::format("step {} of stage '{}' left no finite state", now_.stage_step, stage().name));
     }
   }
-  const bool is_static = setup_.stages[static_cast<std::size_t>(now_.stage)].kind == StageKind::settle;
+  const bool is_static = stage().kind == StageKind::settle;
   const long step = now_.stage_step;
   const auto due = [&](double interval) { return step % every(interval) == 0; };
   if (steps_left > 0) {
@@ -272,12 +274,11 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   if (steps_left > 0 && step % checkpoint_steps == 0) checkpoint();
   if (seconds_since(last_progress_) < options_.progress_interval && steps_left > 0) return;
   last_progress_ = Clock::now();
-  const Stage& stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
   Progress progress;
   progress.stage = now_.stage;
   progress.stage_count = static_cast<int>(setup_.stages.size());
-  progress.stage_name = stage.name;
-  progress.kind = stage.kind;
+  progress.stage_name = stage().name;
+  progress.kind = stage().kind;
   progress.step = step;
   progress.fraction = fraction;
   progress.time = is_static ? 0.0 : static_cast<double>(step) * setup_.time_step;
@@ -288,6 +289,16 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
   progress.mean_iterations = static_cast<double>(stage_iterations_) / done;
   progress.worst_residual_ratio = worst_ratio;
   observer_.progress(progress);
+}
+
+/// Whether a step came to its end: one that does not is given up, as the run is to stop.
+bool Runner::finishes(const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const dynamics::Interrupted&) {
+    is_within_step_ = true;
+  }
+  return !is_within_step_;
 }
 
 void Runner::settle(StageRecord& record) {
@@ -312,7 +323,7 @@ void Runner::settle(StageRecord& record) {
   bool done = false;
   while (!done && now_.stage_step < limit && !stopped()) {
     dynamics::StepReport report;
-    done = settler_->step(*stepper_, now_.mechanics, report);
+    if (!finishes([&] { done = settler_->step(*stepper_, now_.mechanics, report); })) break;
     if (done && change_orders(&OrderControl::adapt)) {
       settler_->begin_again();
       done = false;
@@ -327,27 +338,6 @@ void Runner::settle(StageRecord& record) {
   settler_.reset();
 }
 
-/// How long a dynamic stage lasts and what shakes it: known before its first step.
-void Runner::plan_motion(StageRecord& record) const {
-  const Stage& stage = record.stage;
-  if (stage.kind == StageKind::settle) return;
-  double duration = stage.duration.value_or(0.0);
-  if (stage.kind == StageKind::shake) {
-    const loading::GroundMotion& ground = setup_.motions.at(static_cast<std::size_t>(stage.motion));
-    if (!stage.duration) duration = ground.duration();
-    const loading::ShakingMeasures shaking = loading::measure(ground, stage.scale, duration);
-    record.pga = shaking.peak;
-    record.pgv = shaking.peak_velocity;
-    record.arias = shaking.arias_intensity;
-    const std::size_t every_nth = std::max<std::size_t>(1, ground.times().size() / motion_points);
-    for (std::size_t k = 0; k < ground.times().size(); k += every_nth) {
-      record.motion_time.push_back(ground.times()[k]);
-      record.motion.push_back(stage.scale * ground.accelerations()[k]);
-    }
-  }
-  record.planned_duration = step_count(duration, setup_.time_step) * setup_.time_step;
-}
-
 void Runner::shake(StageRecord& record) {
   const Stage& stage = record.stage;
   std::optional<StageMotion> motion;
@@ -356,8 +346,11 @@ void Runner::shake(StageRecord& record) {
   }
   const auto steps = static_cast<long>(step_count(record.planned_duration.value_or(0.0), setup_.time_step));
   while (now_.stage_step < steps && !stopped()) {
-    const dynamics::StepReport report =
-        stepper_->advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
+    dynamics::StepReport report;
+    const auto step = [&] {
+      report = stepper_->advance(now_.mechanics, setup_.time_step, motion ? &*motion : nullptr);
+    };
+    if (!finishes(step)) break;
     const long left = steps - now_.stage_step - 1;
     after_step(report, left, 0.0, static_cast<double>(now_.stage_step + 1) / static_cast<double>(steps));
   }
@@ -369,7 +362,7 @@ void Runner::shake(StageRecord& record) {
 
 void Runner::run_stage() {
   StageRecord record;
-  record.stage = setup_.stages[static_cast<std::size_t>(now_.stage)];
+  record.stage = stage();
   // Not to be found again from the time and the number of steps: the motion is read at times that count from here.
   if (now_.stage_step == 0) now_.stage_start = now_.mechanics.time;
   record.start_time = now_.stage_start;
@@ -377,7 +370,7 @@ void Runner::run_stage() {
   first_step_of_stage_ = now_.stage_step;
   stage_iterations_ = 0;
   record.steps = now_.stage_step;
-  plan_motion(record);
+  plan_motion(setup_, record);
   if (now_.stage_step == 0) {
     excavate(record.stage);
     observer_.stage_begin(now_.stage, record);
@@ -391,7 +384,7 @@ void Runner::run_stage() {
   record.wall_time = seconds_since(stage_start_);
   check_overlap();
   record_frame();
-  record_contacts();
+  if (!is_within_step_) record_contacts();
   record.damage = gauge_.measure(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
@@ -438,6 +431,7 @@ RunRecord Runner::run() {
 }  // namespace
 
 RunRecord run(const RunSetup& setup, const RunOptions& options, RunObserver& observer) {
+  if (const auto reason = yields_without_limit(setup)) throw RunError(*reason);
   return Runner(setup, options, observer).run();
 }
 

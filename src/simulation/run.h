@@ -14,7 +14,7 @@ struct RunOptions {
   /// Go on from the checkpoint in `directory`. The end is the same, bit for bit, as without the interruption.
   bool resume = false;
   double progress_interval = 0.2;  ///< s of wall time between progress reports
-  /// Set by a signal handler: the run ends after the step at hand, with everything so far reported.
+  /// Set by a signal handler: the run ends within the step at hand, with everything so far reported.
   const std::atomic<bool>* stop = nullptr;
 };
 

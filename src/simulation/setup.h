@@ -81,8 +81,10 @@ struct RunSetup {
   std::string version;
   std::uint64_t seed = 0;
   int realization = 0;
-  std::string scenario;          ///< text of the scenario as run
-  std::vector<InputFile> files;  ///< that the scenario names
+  std::string scenario;                 ///< text of the scenario as run
+  std::vector<InputFile> files;         ///< that the scenario names
+  std::vector<std::string> warnings;    ///< of input that seems odd, for the report
+  bool closure_is_lower_bound = false;  ///< blocks of order 1 are too stiff for it
 
   cutting::BlockSystem system;
   std::vector<BlockProperties> properties;  ///< one per block of `system`

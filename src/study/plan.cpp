@@ -243,8 +243,11 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   if (scenario.stages.empty()) {
     throw InputError(Diagnostic{scenario.where("stage"), "stage", "nothing", "at least one [[stage]]", ""});
   }
-  scenario::check_inputs(scenario);
-  if (warnings != nullptr) *warnings = scenario::study_warnings(scenario);
+  std::vector<std::string> notes = scenario::check_inputs(scenario);
+  if (warnings != nullptr) {
+    *warnings = std::move(notes);
+    for (std::string& warning : scenario::study_warnings(scenario)) warnings->push_back(std::move(warning));
+  }
   plan.input = scenario_identity(plan.text, file, overrides);
   plan.title = scenario.title;
   plan.seed = scenario.seed;

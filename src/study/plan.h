@@ -60,7 +60,7 @@ struct Plan {
 /// variant: the first part of a plan is a smaller study. A scenario without [study] is a study of one run. All
 /// combinations see the same joints, as these depend on seed and realization alone.
 ///
-/// `warnings`, if given, receives what seems wrong with the study. Throws InputError with every mistake of the scenario, of its
+/// `warnings`, if given, receives what seems wrong with the scenario, before it is cut, and with the study. Throws InputError with every mistake of the scenario, of its
 /// combinations and of their files, and for more than a million runs.
 Plan make_plan(const std::filesystem::path& scenario, const std::vector<std::string>& overrides,
                const std::string& version, std::vector<std::string>* warnings = nullptr);

@@ -53,6 +53,25 @@ class Check(Scenario):
         self.assertLessEqual({"rock.yuong", "joints.friction"}, {match[1] for match in where})
         self.assertIn("did you mean 'young'?", "\n".join(lines))
 
+    def test_values_that_seem_odd(self):
+        self.write("odd.toml", self.scenario.read_text().replace("density = 2600.0", "density = 2.6"))
+        warning = "odd.toml: warning: rock.density = 2.6 kg/m3 (line 5): usual is 1000 to 4000 kg/m3; was it in t/m3"
+        for words in (("check",), ("run", "-o", "out"), ("study", "run", "-o", "study")):
+            at = 2 if words[0] == "study" else 1
+            self.assertIn(warning, self.keyblock(*words[:at], "odd.toml", *words[at:]).stderr, words)
+        self.assertEqual(len(self.summary("out")["warnings"]), 1)
+        self.assertIn("rock.density = 2.6 kg/m3", (self.folder / "out/report.html").read_text())
+        self.write("other.toml", 'units = "other"\n' + (self.folder / "odd.toml").read_text())
+        self.assertEqual(self.keyblock("check", "other.toml").stderr, "")
+
+    def test_rock_that_is_too_soft(self):
+        soft = ("incline.toml", "--set", "rock.young=8")
+        checked = self.keyblock("check", *soft).stderr
+        self.assertIn("was it in GPa? That is 8e+09 Pa", checked)
+        self.assertIn("the rock is too soft to be computed: young = 8 Pa", checked)
+        ended = self.keyblock("run", *soft, "-o", "out", expect=2).stderr
+        self.assertRegex(ended, r"\nkeyblock: the rock is too soft to be computed: young = 8 Pa of block 'slider', and .* compress it by")
+
     def test_a_file_that_is_not_there(self):
         self.assertIn("gone.toml", self.keyblock("check", "gone.toml", expect=1).stderr)
 

@@ -28,6 +28,7 @@ class Examples(Scenario):
             with self.subTest(path.name):
                 done = self.keyblock("check", path)
                 self.assertIn(": ok", done.stdout)
+                self.assertEqual(done.stderr, "")
 
     def test_run(self):
         for path in EXAMPLES:

@@ -62,6 +62,31 @@ const tests = {
     await close(page);
   },
 
+  async "odd input leaves no green box, and a lower bound is called one"() {
+    const page = await open("odd_input");
+    const quality = await text(page, "#quality");
+    assert.doesNotMatch(quality, /All checks of the computation are passed/);
+    assert.match(quality, /1 of \d checks of the computation needs attention/);
+    assert.match(quality, /Input that seems odd\s+2 warnings, listed above/);
+    const warnings = page.locator("#quality .warnings li");
+    assert.equal(await warnings.count(), 2);
+    assert.match(
+      await warnings.first().innerText(),
+      /^rock\.density = 2\.6 kg\/m3 \(line 14\): usual is 1000 to 4000/,
+    );
+    const damage = await text(page, "#damage");
+    assert.match(damage, /Closure, vertical \(lower bound\)/);
+    assert.match(damage, /Closure, horizontal \(lower bound\)/);
+    assert.match(damage, /Closure is a lower bound: blocks of order 1/);
+    assert.equal(await sidewaysOverflow(page), 0);
+    await shoot(page, "odd-input-1400");
+    await close(page);
+    const other = await open("tunnel");
+    assert.doesNotMatch(await text(other, "#damage"), /lower bound/);
+    assert.equal(await other.locator("#quality .warnings").count(), 0);
+    await close(other);
+  },
+
   async "the slider moves time, blocks and cursors"() {
     const page = await open("tunnel");
     await slideTo(page, 62);

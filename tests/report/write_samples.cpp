@@ -61,6 +61,14 @@ int main(int argc, char** argv) {
   write("short", {.frames_per_stage = 5, .interrupted = true, .shake_duration = 0.08});
   write("no_frames", {.frames = false});
   write("no_excavation", {.excavation = false});
+  keyblock::results::RunData odd = synthetic_run({});
+  odd.model.warnings = {
+      "rock.density = 2.6 kg/m3 (line 14): usual is 1000 to 4000 kg/m3; was it in t/m3 or g/cm3? That is "
+      "2600 kg/m3",
+      "rock.state <default>: plane stress"};
+  odd.model.closure_is_lower_bound = true;
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "odd_input");
+  keyblock::report::write_report(odd, std::filesystem::path(argv[1]) / "odd_input");
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "empty");
   keyblock::report::write_report({}, std::filesystem::path(argv[1]) / "empty");
   // Far from the origin of coordinates, and hardly moving: long and small numbers at the axes.

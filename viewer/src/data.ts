@@ -56,6 +56,10 @@ export interface Header {
     opening_width_m: number | null;
     slip_limit_m: number | null;
     opening_limit_m: number | null;
+    /** Of input that seems odd. */
+    warnings: string[];
+    /** Blocks of order 1 are too stiff for it. */
+    closure_is_lower_bound: boolean;
     cutting: {
       traces: number;
       joints_used: number;

@@ -107,6 +107,7 @@ interface Measure {
   unit: string;
   /** At least so many. */
   decimals: number;
+  isClosure?: boolean;
   of: (d: Damage) => number | null;
 }
 
@@ -126,8 +127,20 @@ const measures: Measure[] = [
   { name: "Mean slip", unit: "mm", decimals: 2, of: (d) => times(1e3, d.slip_mean_m) },
   { name: "Slipped joints", unit: "m", decimals: 1, of: (d) => d.slipped_length_m },
   { name: "Opened joints", unit: "m", decimals: 1, of: (d) => d.opened_length_m },
-  { name: "Closure, vertical", unit: "mm", decimals: 2, of: (d) => times(1e3, d.closure_vertical_m) },
-  { name: "Closure, horizontal", unit: "mm", decimals: 2, of: (d) => times(1e3, d.closure_horizontal_m) },
+  {
+    name: "Closure, vertical",
+    unit: "mm",
+    decimals: 2,
+    isClosure: true,
+    of: (d) => times(1e3, d.closure_vertical_m),
+  },
+  {
+    name: "Closure, horizontal",
+    unit: "mm",
+    decimals: 2,
+    isClosure: true,
+    of: (d) => times(1e3, d.closure_horizontal_m),
+  },
 ];
 
 /** Decimals with which the largest value of a column has two digits. */
@@ -161,7 +174,11 @@ export function damageTable(run: Run): HTMLElement | null {
   const excavated = run.stages.findIndex((s) => s.excavate.length > 0);
   const shown = measures.filter((m) => excavated >= 0 || run.stages.some((s) => (m.of(s.damage) ?? 0) !== 0));
   if (shown.length === 0) return null;
-  const head = [column("At the end of"), ...shown.map((m) => column(m.name, m.unit || "number"))];
+  const isBound = (m: Measure) => m.isClosure && run.header.model.closure_is_lower_bound;
+  const head = [
+    column("At the end of"),
+    ...shown.map((m) => column(isBound(m) ? `${m.name} (lower bound)` : m.name, m.unit || "number")),
+  ];
   const stages = run.stages.slice(Math.max(0, excavated));
   const rows = stages.map((stage, k) => [
     stageCell(stage),
@@ -174,8 +191,11 @@ export function damageTable(run: Run): HTMLElement | null {
     }),
   ]);
   const since = excavated >= 0 ? "the first excavation" : "the start";
+  const bound = shown.some(isBound)
+    ? ". Closure is a lower bound: blocks of order 1 that fit each other are too stiff"
+    : "";
   return tableBox(
-    `Cumulative since ${since}; in small print the difference to the stage before`,
+    `Cumulative since ${since}; in small print the difference to the stage before${bound}`,
     [head],
     rows,
     shown.length < 6 ? "narrow" : "",
@@ -262,10 +282,12 @@ export function qualityTable(run: Run): HTMLElement {
       oc ? `${integer(oc.retried_steps)} of ${integer(steps)}` : "not known",
     ],
   ]);
+  const { warnings } = run.header.model;
   return h(
     "div",
     {},
     verdict,
+    warnings.length > 0 ? h("ul", { class: "warnings" }, ...warnings.map((w) => h("li", {}, w))) : null,
     h("div", { class: "quality" }, tableBox("Checks", [head], rows, "narrow unnamed"), effort),
   );
 }

@@ -175,7 +175,14 @@ export function checks(run: Run): Check[] {
       ? `, of blocks ${at.blocks[0]} and ${at.blocks[1]}, at ${fixed(at.time_s, 2)}\u00a0s in ${quoted(at.stage)}`
       : "";
   const residual = energy.residual_ratio ?? Infinity;
+  const { warnings } = run.header.model;
   const result: Check[] = [
+    {
+      name: "Input that seems odd",
+      limit: "none",
+      value: warnings.length === 0 ? "none" : `${count(warnings.length, "warning")}, listed above`,
+      good: warnings.length === 0,
+    },
     {
       name: "Steps that did not converge",
       limit: "none",

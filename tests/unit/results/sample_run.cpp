@@ -60,6 +60,8 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
   EXPECT_EQ(a.opening_width, b.opening_width);
   EXPECT_EQ(a.slip_limit, b.slip_limit);
   EXPECT_EQ(a.opening_limit, b.opening_limit);
+  EXPECT_EQ(a.warnings, b.warnings);
+  EXPECT_EQ(a.closure_is_lower_bound, b.closure_is_lower_bound);
   EXPECT_EQ(a.cutting.traces, b.cutting.traces);
   EXPECT_EQ(a.cutting.joints_used, b.cutting.joints_used);
   EXPECT_EQ(a.cutting.removed_pieces, b.cutting.removed_pieces);
@@ -202,6 +204,8 @@ SampleRun::SampleRun() {
   model.history_names = {"crown", "a/b, \"c\""};
   model.opening_width = 5.5;
   model.slip_limit = 0.1 / 3.0;
+  model.warnings = {"rock.density = 2.6 kg/m3", "a \"quoted\" one"};
+  model.closure_is_lower_bound = true;
   model.cutting = {10, 7, 12.3, 4.5, 6, 2, 8, 16.0, 1e-5};
 }
 

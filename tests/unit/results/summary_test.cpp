@@ -19,27 +19,14 @@ using nlohmann::json;
 TEST(Summary, HasEveryFieldOfTheContract) {
   SampleRun sample;
   const json summary = json::parse(summary_json(sample.model, sample.run()));
-  for (const char* key : {"title",
-                          "version",
-                          "seed",
-                          "realization",
-                          "blocks",
-                          "vertices",
-                          "dof",
-                          "joints",
-                          "area",
-                          "merged_slivers",
-                          "steps",
-                          "step_size",
-                          "wall_time_s",
-                          "ms_per_step",
-                          "threads",
-                          "state_hash",
-                          "open_close",
-                          "max_overlap_m",
-                          "max_area_change",
-                          "energy",
-                          "stages"}) {
+  for (const char* key : {"title",       "version",       "seed",
+                          "realization", "warnings",      "closure_is_lower_bound",
+                          "blocks",      "vertices",      "dof",
+                          "joints",      "area",          "merged_slivers",
+                          "steps",       "step_size",     "wall_time_s",
+                          "ms_per_step", "threads",       "state_hash",
+                          "open_close",  "max_overlap_m", "max_area_change",
+                          "energy",      "stages"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
   for (const char* key : {"blocks", "excavated", "domain"}) EXPECT_TRUE(summary["area"].contains(key)) << key;

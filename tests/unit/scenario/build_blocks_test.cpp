@@ -169,7 +169,7 @@ TEST(BuildBlocks, WhatIsFixedIsNotExcavated) {
 
 TEST(BuildBlocks, WhatTheCutterRefusesHasItsPlace) {
   EXPECT_THAT(refusal(parse(runnable_domain, {"excavation.tunnel.diameter=1e-300"})),
-              HasSubstr("/test.toml:27:1: excavation.tunnel: found a ring that"));
+              HasSubstr("/test.toml:29:1: excavation.tunnel: found a ring that"));
 }
 
 TEST(BuildBlocks, TracesOfAMapThatIsFarAway) {

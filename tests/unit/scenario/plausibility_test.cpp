@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -22,9 +23,127 @@ std::vector<std::string> warnings_of(const std::string& text,
   return warnings;
 }
 
-TEST(Warnings, TheTunnelHasNone) {
-  EXPECT_THAT(plausibility_warnings(parse_scenario(examples / "01-tunnel.toml")), IsEmpty());
-  EXPECT_THAT(plausibility_warnings(parse_scenario(examples / "02-tunnel-in-situ.toml")), IsEmpty());
+TEST(Warnings, ExamplesHaveNone) {
+  for (const auto& entry : std::filesystem::directory_iterator(examples)) {
+    if (entry.path().extension() != ".toml") continue;
+    std::vector<std::string> warnings;
+    build_setup(parse_scenario(entry.path()), 0, &warnings);
+    EXPECT_THAT(warnings, IsEmpty()) << entry.path();
+  }
+}
+
+TEST(Warnings, OfUnusualValues) {
+  const auto warned = [](const char* override_) { return warnings_of(two_blocks, {override_}); };
+  EXPECT_THAT(warnings_of("units = \"SI\"\n" + two_blocks), IsEmpty());
+  EXPECT_THAT(
+      warned("rock.density=2.6"),
+      UnorderedElementsAre("rock.density = 2.6 kg/m3 (--set): usual is 1000 to 4000 kg/m3; was it in t/m3 or "
+                           "g/cm3? That is 2600 kg/m3"));
+  EXPECT_THAT(warned("rock.density=26"),
+              UnorderedElementsAre(HasSubstr("kN/m3, a weight? That is 2650 kg/m3")));
+  EXPECT_THAT(warned("rock.young=8"), UnorderedElementsAre(HasSubstr("was it in GPa? That is 8e+09 Pa")));
+  EXPECT_THAT(warned("rock.young=8000"), UnorderedElementsAre(HasSubstr("was it in MPa? That is 8e+09 Pa")));
+  EXPECT_THAT(warned("joints.friction=0.55"),
+              UnorderedElementsAre(
+                  HasSubstr("joints.friction = 0.55 degrees (--set): usual is 5 to 75 degrees; was it "
+                            "a coefficient? 0.55 is the tangent of 28.81 degrees")));
+  EXPECT_THAT(warned("joints.cohesion=0.5"),
+              UnorderedElementsAre(HasSubstr("usual is at least 100 Pa; was it in MPa? That is 5e+05 Pa")));
+  EXPECT_THAT(warned("joints.normal_stiffness=10"),
+              UnorderedElementsAre(HasSubstr("in GPa/m? That is 1e+10 Pa/m")));
+  EXPECT_THAT(warned("gravity=[0, -1]"), IsEmpty());
+  EXPECT_THAT(warned("gravity=[0, -981]"),
+              UnorderedElementsAre(HasSubstr("was it in cm/s2? That is 9.81 m/s2")));
+  EXPECT_THAT(warned("in_situ.syy=-5"), UnorderedElementsAre(HasSubstr("was it in MPa? That is -5e+06 Pa")));
+  EXPECT_THAT(warnings_of(two_blocks, {"in_situ.depth=50", "in_situ.k0=70"}),
+              UnorderedElementsAre(
+                  HasSubstr("in_situ.k0 = 70 (--set): usual is at most 5; was it in percent? That is 0.7")));
+  // What is set to nothing is meant, and what is fixed neither weighs nor deforms.
+  for (const char* nothing : {"joints.friction=0", "gravity=[0, 0]", "block.base.density=1",
+                              "block.base.young=1", "joints.cohesion=1e15"})
+    EXPECT_THAT(warned(nothing), IsEmpty()) << nothing;
+  EXPECT_THAT(warned("block.top.density=1"), UnorderedElementsAre(HasSubstr("block.top.density = 1 kg/m3")));
+  // Where it stands in the file.
+  EXPECT_THAT(warnings_of("\n[[region]]\nouter = [[9, 9], [10, 9], [10, 10]]\nyoung = 8.0\n" + two_blocks),
+              UnorderedElementsAre(HasSubstr("region[0].young = 8 Pa (line 4)")));
+}
+
+TEST(Warnings, OfUnusualValuesAreNotOfOtherUnits) {
+  const std::vector<std::string> tonnes{"rock.density=2.6", "rock.young=8e6", "joints.friction=0.55"};
+  EXPECT_EQ(warnings_of(two_blocks, tonnes).size(), 3U);
+  EXPECT_THAT(warnings_of("units = \"other\"\n" + two_blocks, tonnes), IsEmpty());
+  EXPECT_THAT(mistakes("units = \"imperial\"\n" + two_blocks), HasSubstr("expected \"SI\" or \"other\""));
+}
+
+TEST(Warnings, OfPlaneStressWithAnOpening) {
+  const std::vector<std::string> none{"accept_warnings=[]", "rock.order=2"};
+  EXPECT_THAT(warnings_of(runnable_domain, none),
+              UnorderedElementsAre(
+                  HasSubstr("rock.state: plane stress, the default, with an excavation is a thin slab")));
+  EXPECT_THAT(warnings_of(runnable_domain, {none[0], none[1], "rock.state=plane-stress"}),
+              UnorderedElementsAre(HasSubstr("rock.state (--set): plane stress with an excavation")));
+  EXPECT_THAT(warnings_of(runnable_domain, {none[0], none[1], "rock.state=plane-strain"}), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks), IsEmpty());
+}
+
+TEST(Warnings, OfStressAtAFreeBoundary) {
+  const std::vector<std::string> free{"domain.boundary=free", "in_situ.syy=-1e6"};
+  EXPECT_THAT(warnings_of(runnable_domain, free),
+              UnorderedElementsAre(HasSubstr("nothing holds the stress")));
+  EXPECT_THAT(warnings_of(runnable_domain,
+                          {free[0], free[1], "accept_warnings=['plane-stress', 'order-1', 'free-boundary']"}),
+              UnorderedElementsAre());
+  EXPECT_THAT(warnings_of(runnable_domain, {free[0]}), IsEmpty());
+  EXPECT_THAT(warnings_of(runnable_domain, {free[1]}), IsEmpty());
+}
+
+TEST(Warnings, ThatAreAcceptedAreNamed) {
+  EXPECT_THAT(
+      mistakes(two_blocks, {"accept_warnings=['plane-stres']"}),
+      HasSubstr(
+          "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
+          "\"free-boundary\" or \"step\"; did you mean 'plane-stress'?"));
+  EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
+}
+
+// Blocks of half a metre around an opening of six metres, or of one.
+TEST(Warnings, OfBlocksOfOrder1AroundAnOpening) {
+  const std::vector<std::string> near{"accept_warnings=['plane-stress']"};
+  const auto of_order =
+      HasSubstr("% of the rock within one width of excavation.tunnel is in blocks of order 1 larger than");
+  const auto warned = [&](std::vector<std::string> overrides) {
+    overrides.push_back(near[0]);
+    return warnings_of(runnable_domain, overrides);
+  };
+  EXPECT_THAT(warned({}), UnorderedElementsAre(of_order));
+  EXPECT_THAT(warned({"rock.order=2"}), IsEmpty());
+  EXPECT_THAT(warned({"rock.order=auto"}), IsEmpty());
+  EXPECT_THAT(warned({"stage.settled.excavate=[]"}),
+              UnorderedElementsAre(HasSubstr("no stage excavates it")));
+  const std::vector<std::string> wide{
+      "domain.x=[-10, 10]",
+      "domain.y=[-10, 10]",
+      "excavation.tunnel.diameter=6",
+      "joint_set.bedding.gap=0",
+      "joint_set.bedding.length=40",
+      "joint_set=[{name='a', dip=20, dip_direction=90, spacing=0.5, length=60, gap=0}, "
+      "{name='b', dip=70, dip_direction=270, spacing=0.5, length=60, gap=0}]"};
+  EXPECT_THAT(warned({wide[0], wide[1], wide[2], wide[5]}), IsEmpty());
+  const auto stiff = HasSubstr("the joints are 5 times as stiff as the default, 2e+10 Pa/m");
+  EXPECT_THAT(warned({wide[0], wide[1], wide[2], wide[5], "joints.normal_stiffness=1e11"}),
+              UnorderedElementsAre(stiff));
+  EXPECT_THAT(warned({wide[0], wide[1], wide[2], wide[5], "solver.penalty=100"}),
+              UnorderedElementsAre(stiff));
+  EXPECT_THAT(warned({wide[0], wide[1], wide[2], wide[5], "joints.normal_stiffness=2e10"}), IsEmpty());
+  // Closure is a lower bound whether or not that is accepted.
+  EXPECT_TRUE(build_setup(parse(runnable_domain), 0).closure_is_lower_bound);
+  EXPECT_FALSE(build_setup(parse(runnable_domain, {"rock.order=2"}), 0).closure_is_lower_bound);
+  EXPECT_FALSE(build_setup(parse(two_blocks), 0).closure_is_lower_bound);
+}
+
+TEST(Warnings, AreInTheSetupOfARun) {
+  EXPECT_THAT(build_setup(parse(two_blocks, {"rock.density=2.6"}), 0).warnings,
+              UnorderedElementsAre(HasSubstr("rock.density = 2.6")));
 }
 
 TEST(Warnings, OfStress) {
@@ -73,6 +192,52 @@ TEST(Warnings, OfStages) {
   EXPECT_THAT(warnings_of(shaken, {"stage.settled.excavate=[]", "stage.shaken.excavate=['tunnel']"}),
               UnorderedElementsAre(HasSubstr("shakes before the rock has settled")));
   EXPECT_THAT(plausibility_warnings(parse(jointed_domain)), UnorderedElementsAre(HasSubstr("no [[stage]]")));
+}
+
+TEST(Warnings, OfStepsThatAreLongForTheMotion) {
+  const std::string shaken = two_blocks + shaking;  // 1 Hz
+  EXPECT_THAT(warnings_of(shaken, {"time.step=0.05"}), IsEmpty());
+  EXPECT_THAT(warnings_of(shaken, {"time.step=0.1"}),
+              UnorderedElementsAre(
+                  HasSubstr("time.step = 0.1 s (--set): motion.sine swings with a period of about 1 s, "
+                            "which is 10 steps; usual is at least 20 steps, 0.05 s")));
+  EXPECT_THAT(warnings_of(shaken, {"time.step=0.1", "accept_warnings=['step']"}), IsEmpty());
+  // A ramp does not swing.
+  EXPECT_THAT(warnings_of(shaken, {"motion.sine.x=[[0, 0], [0.001, 1], [5, 1]]"}), IsEmpty());
+  // A record has a step of its own.
+  const std::filesystem::path record = std::filesystem::path(testing::TempDir()) / "slow.csv";
+  std::ofstream file(record);
+  file << "time s,acceleration m/s2\n";
+  for (int k = 0; k <= 400; ++k) file << 0.01 * k << "," << std::sin(k * 0.01) << "\n";
+  file.close();
+  const std::string recorded = "section.azimuth = 90\n" + two_blocks + R"(
+[[motion]]
+name = "slow"
+components = [{ azimuth = 90, file = ")" +
+                               record.string() + R"(" }]
+[[stage]]
+name = "shaken"
+kind = "shake"
+motion = "slow"
+)";
+  EXPECT_THAT(warnings_of(recorded), IsEmpty());
+  EXPECT_THAT(warnings_of(recorded, {"time.step=0.02"}),
+              UnorderedElementsAre(
+                  HasSubstr("longer than the step of the record of motion.slow, 0.01 s; what is faster "
+                            "than 0.04 s is lost")));
+}
+
+TEST(Warnings, OfPeaksThatNoEarthquakeHas) {
+  const std::string shaken = two_blocks + shaking;
+  EXPECT_THAT(warnings_of(shaken, {"stage.shaken.scale=25"}), IsEmpty());
+  EXPECT_THAT(warnings_of(shaken, {"stage.shaken.scale=35"}),
+              UnorderedElementsAre(
+                  HasSubstr("stage.shaken: the peak acceleration of motion.sine is 35 m/s2, 3.57 g, with "
+                            "scale = 35; usual is 0.0001 to 3 g; is the record in cm/s2")));
+  EXPECT_THAT(warnings_of(shaken, {"stage.shaken.scale=1e-4"}),
+              UnorderedElementsAre(HasSubstr("is the record in g")));
+  EXPECT_THAT(warnings_of(shaken, {"stage.shaken.scale=0"}), IsEmpty());
+  EXPECT_THAT(warnings_of("units = \"other\"\n" + shaken, {"stage.shaken.scale=35"}), IsEmpty());
 }
 
 TEST(Warnings, OfShakingRockThatNeverSettled) {

@@ -38,7 +38,9 @@ duration = 1.0
 )";
 
 /// A scenario that is right: a domain with one joint set.
-inline const std::string jointed_domain = R"([section]
+inline const std::string jointed_domain = R"(accept_warnings = ["plane-stress", "order-1"]
+
+[section]
 azimuth = 90.0
 
 [domain]

@@ -402,7 +402,7 @@ TEST(Run, EndsWithAStageOfWhichNoStepConverges) {
   setup.stages.push_back(stage("turn", StageKind::rest, 0.002));
   LastRecord last;
   EXPECT_EQ(failure_of(setup, last),
-            "no step of stage 'turn' converged, of 1 from step 1 of the run on; the results up to its end "
+            "no step of stage 'turn' converged, of 1 from step 1 of the run on; the results up to there "
             "are kept");
   EXPECT_EQ(last.record.stages.size(), 1U);
   setup.solver.max_halvings = 8;
@@ -431,7 +431,7 @@ TEST(Run, EndsWhereEnergiesAreNoNumbers) {
   setup.stages = {stage("rest", StageKind::rest, 0.04)};
   EXPECT_EQ(
       failure_of(setup, last),
-      "the energies after step 10 of stage 'rest' are no finite numbers; the results up to it are kept");
+      "the energies after step 10 of stage 'rest' are no finite numbers; the results up to there are kept");
   EXPECT_EQ(last.record.steps, 10);
 }
 

@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+
+namespace keyblock::scenario {
+
+/// Where a value stands, for a warning: ` (line 14)`, ` (--set)`, or nothing where it is not in the file.
+std::string place_text(const Scenario& scenario, const std::string& key);
+
+/// Values far from what is usual for rock in SI units, added to `warnings`, each with the unit in which it was probably
+/// meant. None where the units are others.
+void add_magnitude_warnings(const Scenario& scenario, std::vector<std::string>& warnings);
+
+}  // namespace keyblock::scenario

@@ -1,0 +1,84 @@
+#include "scenario/shaking_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "loading/motion_measures.h"
+#include "scenario/key_path.h"
+#include "scenario/magnitudes.h"
+#include "simulation/stage.h"
+
+namespace keyblock::scenario {
+namespace {
+
+constexpr double least_steps = 20.0;  // of the time integration in a period that it has to follow
+constexpr double least_peak = 1e-4, most_peak = 3.0;  // g
+constexpr double chords = 0.02;  // that a period falls short by, as accelerations go straight between samples
+constexpr double rounding = 1e-6;  // of times in files
+
+using loading::GroundMotion;
+using simulation::Stage;
+
+/// s between the samples of a record, in the median; 0 where there are none.
+double sampling_step(const GroundMotion& motion) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < motion.times().size(); ++k) {
+    const double step = motion.times()[k] - motion.times()[k - 1];
+    if (step > 0.0) steps.push_back(step);
+  }
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+void warn_of_step(const Scenario& scenario, const MotionSpec& spec, const GroundMotion& motion,
+                  std::vector<std::string>& warnings) {
+  const double step = scenario.time_step, period = loading::mean_period(motion);
+  const std::string head = fmt::format("time.step = {:.4g} s{}: ", step, place_text(scenario, "time.step"));
+  if (const double sampling = spec.components.empty() ? 0.0 : sampling_step(motion);
+      sampling > 0.0 && step > (1.0 + rounding) * sampling) {
+    warnings.push_back(fmt::format(
+        "{}longer than the step of the record of {}, {:.4g} s; what is faster than {:.4g} s is lost", head,
+        spec.path, sampling, 2.0 * step));
+  }
+  if (period > 0.0 && period < (1.0 - chords) * least_steps * step) {
+    warnings.push_back(
+        fmt::format("{}{} swings with a period of about {:.3g} s, which is {:.2g} steps; usual is at "
+                    "least {} steps, {:.2g} s",
+                    head, spec.path, period, period / step, least_steps, period / least_steps));
+  }
+}
+
+void warn_of_peak(const Stage& stage, const MotionSpec& spec, const GroundMotion& motion,
+                  std::vector<std::string>& warnings) {
+  if (stage.scale == 0.0) return;
+  const double duration = stage.duration.value_or(motion.duration()),
+               peak = loading::measure(motion, stage.scale, duration).peak,
+               in_g = peak / loading::standard_gravity;
+  if (in_g >= least_peak && in_g <= most_peak) return;
+  warnings.push_back(
+      fmt::format("{}: the peak acceleration of {} is {:.4g} m/s2, {:.3g} g, with scale = {:.4g}; usual is "
+                  "{} to {} g; {}",
+                  join_path("stage", stage.name), spec.path, peak, in_g, stage.scale, least_peak, most_peak,
+                  in_g > most_peak ? "is the record in cm/s2, and was read as m/s2 or g?"
+                                   : "is the record in g, and was read as m/s2 or cm/s2?"));
+}
+
+}  // namespace
+
+void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMotion>& motions,
+                          std::vector<std::string>& warnings) {
+  std::vector<bool> seen(motions.size(), false);
+  for (const Stage& stage : scenario.stages) {
+    if (stage.kind != simulation::StageKind::shake) continue;
+    const auto k = static_cast<std::size_t>(stage.motion);
+    if (!scenario.accepted.step && !seen[k])
+      warn_of_step(scenario, scenario.motions[k], motions[k], warnings);
+    seen[k] = true;
+    if (scenario.si_units) warn_of_peak(stage, scenario.motions[k], motions[k], warnings);
+  }
+}
+
+}  // namespace keyblock::scenario

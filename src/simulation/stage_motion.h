@@ -1,0 +1,27 @@
+#pragma once
+#include "dynamics/step.h"
+#include "loading/ground_motion.h"
+#include "simulation/record.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// The ground motion of a stage, scaled, in the time of the run.
+class StageMotion final : public dynamics::GroundAcceleration {
+ public:
+  StageMotion(const loading::GroundMotion& motion, double scale, double start)
+      : motion_(motion), scale_(scale), start_(start) {}
+  [[nodiscard]] Vec2 mean(double t0, double t1) const override {
+    return scale_ * motion_.mean(t0 - start_, t1 - start_);
+  }
+  [[nodiscard]] Vec2 at(double t) const override { return scale_ * motion_.at(t - start_); }
+
+ private:
+  const loading::GroundMotion& motion_;
+  double scale_, start_;
+};
+
+/// How long a dynamic stage lasts and what shakes it: known before its first step.
+void plan_motion(const RunSetup& setup, StageRecord& record);
+
+}  // namespace keyblock::simulation

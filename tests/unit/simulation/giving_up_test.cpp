@@ -1,0 +1,116 @@
+// Runs that end before their time: stopped from outside, or because there is nothing to compute.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "core/error.h"
+#include "scene.h"
+#include "simulation/feasibility.h"
+
+namespace keyblock::simulation {
+namespace {
+
+using testing::HasSubstr;
+
+/// A block on the ground.
+RunSetup block_on_ground(double young = 1e9) {
+  Scene scene(young, 30.0);
+  scene.rectangle({-2.0, -1.0}, 5.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5);
+  RunSetup setup = scene.setup;
+  setup.time_step = 0.002;
+  setup.stages.push_back(stage("rest", StageKind::rest, 0.02));
+  return setup;
+}
+
+std::string failure_of(const RunSetup& setup) {
+  RunObserver nobody;
+  try {
+    run(setup, {}, nobody);
+  } catch (const RunError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+// No part of the step converges, and it is cut into more parts than there is time for.
+TEST(GivingUp, AStepThatIsStoppedWithinIsNoStep) {
+  struct Records final : RunObserver {
+    int frames = 0, contacts_seen = 0;
+    void frame(const Frame&) override { ++frames; }
+    void contacts(const ContactFrame&) override { ++contacts_seen; }
+  };
+  RunSetup setup = block_on_ground();
+  setup.solver.max_iterations = 0;
+  setup.solver.max_halvings = 40;
+  std::atomic<bool> stop = false;
+  RunOptions options;
+  options.stop = &stop;
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop = true;
+  });
+  Records records;
+  const RunRecord record = run(setup, options, records);
+  other.join();
+  EXPECT_TRUE(record.interrupted);
+  EXPECT_EQ(record.steps, 0);
+  ASSERT_EQ(record.stages.size(), 1U);
+  EXPECT_TRUE(record.stages[0].interrupted);
+  EXPECT_EQ(records.frames, 2);
+  EXPECT_EQ(records.contacts_seen, 0);  // those at hand are of the step that was given up
+}
+
+TEST(GivingUp, AStopThatWasAskedForBeforeEndsTheStep) {
+  const RunSetup setup = block_on_ground();
+  dynamics::Model model = build_model(setup);
+  dynamics::State state = initial_state(setup, model);
+  ThreadTeam team(1);
+  Profile profile;
+  std::atomic<bool> stop = true;
+  dynamics::Stepper stepper(model, team, profile, &stop);
+  stepper.start(state);
+  EXPECT_THROW(stepper.advance(state, 0.002, nullptr), dynamics::Interrupted);
+  EXPECT_THROW(stepper.relax(state, 0.002, std::vector<double>(2, 1.0)), dynamics::Interrupted);
+  EXPECT_EQ(state.step, 0);
+  stop = false;
+  EXPECT_NO_THROW(stepper.advance(state, 0.002, nullptr));
+  EXPECT_EQ(state.step, 1);
+}
+
+TEST(GivingUp, RockThatItsWeightCompressesToNothing) {
+  EXPECT_THAT(
+      failure_of(block_on_ground(8.0)),
+      HasSubstr("the rock is too soft to be computed: young = 8 Pa of block 'b1', and weight and stress of "
+                "3.83e+04 Pa compress it by 4.8e+03 times its size (density 2600 kg/m3, height 1.5 m)"));
+  EXPECT_EQ(failure_of(block_on_ground(1e9)), "");
+  RunSetup weightless = block_on_ground(8.0);
+  weightless.gravity = {};
+  EXPECT_FALSE(yields_without_limit(weightless));
+  weightless.in_situ.emplace();
+  weightless.in_situ->sxy = -10.0;
+  EXPECT_TRUE(yields_without_limit(weightless));
+  weightless.properties[1].material.young = 11.0;
+  EXPECT_FALSE(yields_without_limit(weightless));
+  weightless.properties[0].material.young = 1.0;  // fixed
+  EXPECT_FALSE(yields_without_limit(weightless));
+}
+
+// No step converges: the run does not go on to the end of its stage, and says what is odd in the input.
+TEST(GivingUp, ARunOfWhichNoStepConverges) {
+  RunSetup setup = block_on_ground();
+  setup.properties[1].spin = 1e4;
+  setup.solver.max_halvings = 0;
+  setup.solver.max_iterations = 0;
+  setup.stages[0].duration = 2.0;
+  setup.warnings = {"rock.density = 2.6 kg/m3"};
+  EXPECT_EQ(failure_of(setup),
+            "100 steps in a row did not converge, the last of them step 100 of stage 'rest'; the results up "
+            "to there "
+            "are kept; odd input: rock.density = 2.6 kg/m3");
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
