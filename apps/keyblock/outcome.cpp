@@ -35,7 +35,7 @@ Row row(const StageRecord& stage) {
           fmt::format("{:.2f}", d.fallen_area),
           fmt::format("{:.2f}", d.loosened_area),
           fmt::format("{:.1f}", 100.0 * d.opening_filled_ratio),
-          fmt::format("{:.2f}", 1000.0 * d.slip_max)};
+          fmt::format("{:.2f}", 1000.0 * d.slip_max_ever)};
 }
 
 /// First column to the left, numbers to the right.

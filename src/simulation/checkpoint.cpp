@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000b;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'000c;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -77,11 +77,11 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
-  archive(s.damage.open);
-  archive(s.damage.start);
+  archive(s.damage.reference.open);
+  archive(s.damage.reference.start);
+  archive(s.damage.reference.height);
+  archive(s.damage.reference.width);
   archive(s.damage.pieces);
-  archive(s.damage.height);
-  archive(s.damage.width);
   archive(s.settler.time_step);
   archive(s.settler.quiet_steps);
   archive(s.settler.first_ratio);

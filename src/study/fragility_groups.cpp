@@ -74,8 +74,9 @@ std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summa
         for (const std::size_t c : group.combinations) {
           for (const std::size_t r : summary.combinations[c].runs) {
             const Measured m = measured(study, study.runs[r]);
-            runs.push_back({m.intensity[i], measures()[*measure].of(*m.damage) > study.levels[l].threshold,
-                            study.runs[r].realization});
+            const double value = measures()[*measure].of(*m.damage);
+            if (std::isnan(value)) continue;
+            runs.push_back({m.intensity[i], value > study.levels[l].threshold, study.runs[r].realization});
           }
         }
         FragilityGroup made{l, i, group.values, group.combinations, {}, {}};

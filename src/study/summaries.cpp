@@ -42,24 +42,31 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
   std::vector<std::size_t> order = c.runs;
   const auto rank = [&](std::size_t r) {
     const simulation::Damage d = *measured(study, study.runs[r]).damage;
-    return std::tuple(d.fallen_area, d.loosened_area, d.slip_max, -study.runs[r].realization);
+    return std::tuple(d.fallen_area, d.loosened_area, d.slip_max_ever, -study.runs[r].realization);
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   c.worst = order.back();
   c.median = order[(order.size() - 1) / 2];
 }
 
+/// Of the runs of a combination that have it, in their order.
+std::vector<double> values_of(const StudyData& study, const Combination& c, const Measure& measure) {
+  std::vector<double> values;
+  for (const std::size_t r : c.runs) {
+    const double value = measure.of(*measured(study, study.runs[r]).damage);
+    if (!std::isnan(value)) values.push_back(value);
+  }
+  return values;
+}
+
 void describe_measures(const StudyData& study, ResampleStore& store, Combination& c) {
-  const statistics::Resamples& resamples = store.of(c.runs.size());
-  std::vector<simulation::Damage> damages;
-  for (const std::size_t r : c.runs) damages.push_back(*measured(study, study.runs[r]).damage);
   for (const Measure& measure : measures()) {
-    std::vector<double> values;
-    for (const simulation::Damage& d : damages) values.push_back(measure.of(d));
+    std::vector<double> values = values_of(study, c, measure);
     MeasureSummary summary;
     summary.running = statistics::running_mean(values, study.confidence);
     std::sort(values.begin(), values.end());
-    summary.description = statistics::describe(values, summary_quantiles, resamples, study.confidence);
+    summary.description =
+        statistics::describe(values, summary_quantiles, store.of(values.size()), study.confidence);
     summary.exceedance = statistics::exceedance_curve(values, study.confidence);
     c.measures.push_back(std::move(summary));
   }
@@ -71,10 +78,10 @@ void count_levels(const StudyData& study, Combination& c) {
     const auto measure = find_measure(level.measure);
     std::size_t n = 0;
     if (measure) {
-      n = c.runs.size();
-      for (const std::size_t r : c.runs)
-        if (measures()[*measure].of(*measured(study, study.runs[r]).damage) > level.threshold)
-          ++summary.exceeded;
+      const std::vector<double> values = values_of(study, c, measures()[*measure]);
+      n = values.size();
+      for (const double value : values)
+        if (value > level.threshold) ++summary.exceeded;
     }
     summary.probability = statistics::proportion(summary.exceeded, n, study.confidence);
     c.levels.push_back(summary);

@@ -121,7 +121,7 @@ const tests = {
       /^scale of first earthquake 0\.4, order 2: 60 realizations/,
     );
     await select(page, "measure", "slip_max_m");
-    assert.match(await drawing(page, "distribution", 0), /largest slip \(mm\)/);
+    assert.match(await drawing(page, "distribution", 0), /largest slip in place \(mm\)/);
     // A click on a combination chooses it.
     await page.locator("#measures button.link").first().click();
     assert.match(await text(page, "#map .chosen"), /earthquake 0\.2, order 1/);

@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   }
   for (auto& stage : far.run.stages) {
     stage.damage = {};
-    stage.damage.slip_max = 1.26e-5;
+    stage.damage.slip_max = stage.damage.slip_max_ever = 1.26e-5;
     stage.damage.slip_mean = 7.2e-7;
   }
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "far_and_still");

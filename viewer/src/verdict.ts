@@ -98,19 +98,23 @@ function damageFindings(run: Run, excavated: number): Finding[] {
 }
 
 function slipFindings(run: Run): Finding[] {
-  const k = lastKnown(run, (d) => d.slip_max_m);
+  const k = lastKnown(run, (d) => d.slip_max_ever_m);
   const end = run.stages[k]?.damage;
-  if (!end || !((end.slip_max_m ?? 0) > 0)) return [];
+  if (!end || !((end.slip_max_ever_m ?? 0) > 0)) return [];
   const { slip_limit_m: slip, opening_limit_m: opening } = run.header.model;
   const beyond = (limit: number | null) =>
     limit === null ? " beyond the limit" : ` by more than ${length(limit)}`;
-  const slipped = `${significant(end.slipped_length_m, 3)}\u00a0m of joint slipped${beyond(slip)} and ${significant(end.opened_length_m, 3)}\u00a0m opened${beyond(opening)}`;
+  const slipped = `${significant(end.slipped_length_ever_m, 3)}\u00a0m of joint slipped${beyond(slip)} and ${significant(end.opened_length_ever_m, 3)}\u00a0m opened${beyond(opening)}`;
   const when =
     k < run.stages.length - 1 ? `By the end of ${quoted(run.stages[k].name)} joints had` : "Joints";
+  const left =
+    end.fallen_blocks > 0
+      ? ` In place at the end: up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}).`
+      : ` In the end the mean is ${length(end.slip_mean_m)}.`;
   return [
     {
       grade: "plain",
-      text: `${when} slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${slipped}.`,
+      text: `${when} slipped by up to ${length(end.slip_max_ever_m)}; ${slipped}.${left}`,
     },
   ];
 }

@@ -32,7 +32,7 @@ RunRecord settled_and_shaken() {
   shaken.pga = 1.25;
   shaken.damage.fallen_blocks = 12;
   shaken.damage.fallen_area = 3.5;
-  shaken.damage.slip_max = 0.0125;
+  shaken.damage.slip_max_ever = 0.0125;
   shaken.damage.opening_filled_ratio = 0.147;
   run.stages = {settled, shaken};
   return run;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -64,6 +65,7 @@ TEST_F(Outputs, RunsCsvHasARowPerRun) {
   study.runs[0].values[1] = "\"stiff, soft\"";
   study.runs[1].error = "line one\nand \"two\"";
   study.runs[0].stages[1].damage.fallen_area = 0.1 + 0.2;
+  study.runs[0].stages[1].damage.closure_vertical = std::nan("");
   const auto rows = parse_csv(runs_csv(study, summarize(study)));
   ASSERT_EQ(rows.size(), study.runs.size() + 1);
   const auto& header = rows[0];
@@ -88,12 +90,13 @@ TEST_F(Outputs, RunsCsvHasARowPerRun) {
   ASSERT_GE(header.size(), first.size());
   EXPECT_EQ(std::vector<std::string>(header.begin(), header.begin() + static_cast<long>(first.size())),
             first);
-  EXPECT_EQ(header.size(), 14U + 3U * 13U);
+  EXPECT_EQ(header.size(), 14U + 3U * (3U + measures().size()));
   for (const auto& row : rows) EXPECT_EQ(row.size(), header.size());
   EXPECT_EQ(rows[1][column(header, "rock.order")], "stiff, soft");
   EXPECT_EQ(rows[2][column(header, "error")], "line one\nand \"two\"");
   EXPECT_EQ(rows[2][column(header, "status")], "failed");
   EXPECT_EQ(rows[1][column(header, "first earthquake.fallen_area_m2")], "0.30000000000000004");
+  EXPECT_EQ(rows[1][column(header, "first earthquake.closure_vertical_m")], "");
   const std::size_t failed = column(header, "status");
   for (std::size_t r = 1; r < rows.size(); ++r) {
     if (rows[r][failed] == "failed" && study.runs[r - 1].stages.empty()) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "simulation/damage_fields.h"
 #include "statistics/proportion.h"
 #include "synthetic_study.h"
 
@@ -283,10 +284,32 @@ TEST(Summaries, CombinationsFollowTheAxes) {
   EXPECT_GT(mean(6), mean(7));
 }
 
+// A wall point on a fallen block: of that run closure is not known.
+TEST(Summarize, RunsWithoutAMeasureAreNoPartOfItsSample) {
+  StudyData study = made_up::synthetic_study({.realizations = 8});
+  study.levels = {{"closed", "closure_vertical_m", 0.0}};
+  const std::size_t m = *find_measure("closure_vertical_m");
+  const Summary before = summarize(study);
+  study.runs[0].stages.back().damage.closure_vertical = std::nan("");
+  const Summary summary = summarize(study);
+  const Combination& c = summary.combinations[static_cast<std::size_t>(summary.combination_of[0])];
+  const Combination& whole = before.combinations[static_cast<std::size_t>(summary.combination_of[0])];
+  EXPECT_EQ(c.measures[m].description.n, whole.measures[m].description.n - 1);
+  EXPECT_TRUE(std::isfinite(c.measures[m].description.mean.value));
+  EXPECT_EQ(c.measures[m].running.n.back(), whole.measures[m].running.n.back() - 1);
+  EXPECT_EQ(c.measures[0].description.n, whole.measures[0].description.n);
+  EXPECT_EQ(c.levels[0].exceeded, whole.levels[0].exceeded - 1);
+  EXPECT_EQ(c.levels[0].probability.value, 1.0);
+  double points = 0.0, points_before = 0.0;
+  for (const auto& stripe : summary.fragility[0].curve.stripes) points += stripe.runs;
+  for (const auto& stripe : before.fragility[0].curve.stripes) points_before += stripe.runs;
+  EXPECT_EQ(points, points_before - 1.0);
+}
+
 TEST(Measures, AreThoseOfTheSummary) {
-  ASSERT_EQ(measures().size(), 10U);
+  ASSERT_EQ(measures().size(), simulation::damage_names().size());
   EXPECT_EQ(measures()[0].name, "fallen_blocks");
-  EXPECT_EQ(find_measure("closure_horizontal_m"), 9U);
+  EXPECT_EQ(find_measure("closure_horizontal_m"), measures().size() - 1);
   EXPECT_FALSE(find_measure("fallen").has_value());
 }
 
