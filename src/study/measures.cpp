@@ -43,9 +43,9 @@ double difference(double a, double b) {
 }
 
 const std::array<Intensity, 3> all_intensities{
-    {{"pga_m_s2", "PGA", "m/s²", &StageMeasures::pga},
-     {"pgv_m_s", "PGV", "m/s", &StageMeasures::pgv},
-     {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias}}};
+    {{"pga_m_s2", "PGA", "m/s²", &StageMeasures::pga, 1},
+     {"pgv_m_s", "PGV", "m/s", &StageMeasures::pgv, 1},
+     {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias, 2}}};
 
 }  // namespace
 

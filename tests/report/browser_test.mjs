@@ -49,7 +49,7 @@ const tests = {
     );
     assert.match(
       await text(page, ".verdict"),
-      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen; the opening \(tunnel\) is [\d.]+\s% filled/,
+      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen, all by the shaking; the opening \(tunnel\) is [\d.]+\s% filled/,
     );
     assert.equal(await page.locator("#verdict .attention").count(), 0);
     assert.equal(await page.locator("#quality td.attention").count(), 0);
@@ -293,6 +293,10 @@ const tests = {
 
   async "a marginal case says so and lists its moving blocks"() {
     const page = await open("marginal");
+    assert.match(
+      await text(page, ".verdict"),
+      /^5 blocks \(2\.55\sm²\) have fallen: 2 blocks \(0\.75\sm²\) before the shaking, and the shaking added 3 blocks \(1\.8\sm²\); the opening/,
+    );
     const findings = await text(page, "#verdict .findings");
     assert.match(
       findings,

@@ -1,6 +1,6 @@
 import type { Damage, Stage } from "./data";
 import type { Finding } from "./findings";
-import { count, fixed, integer, length, list, significant } from "./format";
+import { capital, count, fixed, integer, length, list, significant } from "./format";
 import { stageTime } from "./labels";
 import type { Run } from "./run";
 
@@ -63,6 +63,25 @@ function lastKnown(run: Run, measure: (damage: Damage) => number | null): number
   return k;
 }
 
+/** The last stage before the first shaking of the opening; −1 where nothing shakes it. See last_before_shaking in src/simulation. */
+function lastBeforeShaking(run: Run, excavated: number): number {
+  const first = run.stages.findIndex((s, k) => k >= excavated && s.kind === "shake");
+  return first <= 0 ? -1 : first - 1;
+}
+
+/** What came down before the shaking, and what the shaking added: ": 9 blocks (3 m²) before the shaking; …". */
+function splitAtShaking(run: Run, excavated: number, last: number): string {
+  const before = lastBeforeShaking(run, excavated);
+  if (before < 0 || before >= last) return "";
+  const [early, end] = [run.stages[before].damage, run.stages[last].damage];
+  if (end.fallen_blocks === 0) return ", neither before the shaking nor by it";
+  const blocks = end.fallen_blocks - early.fallen_blocks;
+  const area = (end.fallen_area_m2 ?? 0) - (early.fallen_area_m2 ?? 0);
+  if (early.fallen_blocks === 0) return ", all by the shaking";
+  if (blocks === 0) return ", all before the shaking, which added nothing";
+  return `: ${fallen(early.fallen_blocks, early.fallen_area_m2)} before the shaking, and the shaking added ${fallen(blocks, area)}`;
+}
+
 function damageFindings(run: Run, excavated: number): Finding[] {
   const { stages } = run;
   const openings = list(run.header.model.excavations);
@@ -73,14 +92,15 @@ function damageFindings(run: Run, excavated: number): Finding[] {
   const loosenedArea = end.loosened_area_m2 ?? 0;
   const loosened =
     loosenedArea > 0 ? `${significant(loosenedArea, 3)} m² more are loosened` : "nothing more is loosened";
+  const split = splitAtShaking(run, excavated, last);
   const filled =
     end.opening_filled_ratio === null
-      ? ` since the excavation (${openings})`
-      : `; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled`;
+      ? ` since the excavation (${openings})${split}`
+      : `${split}; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled`;
   const verdict =
     end.fallen_blocks > 0
       ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen${filled}; ${loosened}.`
-      : `No block has fallen since the excavation (${openings}); ${loosened.replace(" more", "")}.`;
+      : `No block has fallen since the excavation (${openings})${split}; ${loosened.replace(" more", "")}.`;
   const result: Finding[] = [{ grade: "plain", text: verdict }];
   const parts: string[] = [];
   for (let k = excavated; k <= last; k++) {
@@ -236,8 +256,4 @@ function leftOver(stage: Stage): string {
     ...(stage.equilibrium_reached ? [] : ["no equilibrium"]),
     ...(moving > 0 ? [`${count(moving, "block")} still moving`] : []),
   ].join(", ");
-}
-
-function capital(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -49,6 +49,18 @@ TEST(OutcomeText, OneAlignedRowPerStage) {
   EXPECT_THAT(text, Not(HasSubstr("note:")));
 }
 
+TEST(OutcomeText, GravityIsNotTheEarthquake) {
+  RunRecord run = settled_and_shaken();
+  run.stages[0].stage.excavate = {0};
+  run.stages[0].damage.fallen_blocks = 1;
+  run.stages[0].damage.fallen_area = 0.75;
+  EXPECT_THAT(
+      outcome_text(run, 9),
+      HasSubstr("fallen before the shaking: 1 block (0.75 m2); the shaking added 11 blocks (2.75 m2)\n"));
+  run.stages[1].stage.kind = StageKind::rest;
+  EXPECT_THAT(outcome_text(run, 9), Not(HasSubstr("before the shaking")));
+}
+
 TEST(OutcomeText, SaysWhatToBeWaryOf) {
   RunRecord run = settled_and_shaken();
   run.stages[0].equilibrium_reached = false;

@@ -130,6 +130,11 @@ TEST_F(Outputs, StudyJsonSaysWhatTheStatisticsAre) {
   const auto& curve = json["fragility"][0];
   EXPECT_EQ(curve["values"], (nlohmann::json{nullptr, "1"}));
   EXPECT_EQ(curve["status"], "fitted");
+  EXPECT_EQ(curve["why"], nullptr);
+  EXPECT_EQ(json["before"], "excavated");
+  EXPECT_EQ(json["at_shaking"], true);
+  EXPECT_EQ(c["before"]["levels"][0]["exceeded"], summary.combinations[6].before->levels[0].exceeded);
+  EXPECT_EQ(c["added"]["measures"]["fallen_area_m2"]["n"], c["n"]);
   EXPECT_EQ(curve["points"]["n"].size(), 4U);
   EXPECT_EQ(curve["curve"]["low"].size(), curve["curve"]["intensity"].size());
   EXPECT_FALSE(json["failed"].empty());
@@ -149,7 +154,26 @@ TEST_F(Outputs, StudyJsonKeepsCoordinatesWholeAndTheRestShort) {
   EXPECT_EQ(json["fragility"][0]["status"], "always_exceeded");
   EXPECT_EQ(json["fragility"][0]["theta"]["value"], nullptr);
   EXPECT_EQ(json["fragility"][0]["points"]["realizations"][0], 6);
+  EXPECT_TRUE(json["fragility"][0]["curve"]["intensity"].empty());
+  EXPECT_EQ(json["fragility"][0]["why"], "every run exceeds the level");
   EXPECT_EQ(json["precision"]["reached"], true);
+}
+
+// Four realizations have a fit, but no interval of it: neither the curve nor its parameters are told.
+TEST_F(Outputs, StudyJsonHasNoParametersWithoutACurve) {
+  const StudyData study = made_up::synthetic_study({.realizations = 4, .variants = false, .failures = false});
+  const Summary summary = summarize(study);
+  const auto json = nlohmann::json::parse(study_json(study, summary));
+  const auto refused = std::find_if(summary.fragility.begin(), summary.fragility.end(), [](const auto& g) {
+    return g.curve.status == statistics::FragilityStatus::too_few_clusters;
+  });
+  ASSERT_NE(refused, summary.fragility.end());
+  EXPECT_FALSE(std::isnan(refused->curve.theta.value));
+  const auto& curve = json["fragility"][static_cast<std::size_t>(refused - summary.fragility.begin())];
+  EXPECT_EQ(curve["status"], "too_few_realizations");
+  EXPECT_EQ(curve["theta"]["value"], nullptr);
+  EXPECT_EQ(curve["beta"]["value"], nullptr);
+  EXPECT_EQ(curve["points"]["probability"].size(), 4U);
 }
 
 TEST_F(Outputs, SameStudySameBytes) {

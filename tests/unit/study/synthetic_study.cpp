@@ -101,6 +101,8 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
   study.version = "0.1.0";
   study.axes = {{"stage.'first earthquake'.scale", options.scales}, {"rock.order", options.orders}};
   study.stage = "after";
+  study.before = "excavated";
+  study.at_shaking = true;
   if (options.since) study.since = "excavated";
   if (options.levels)
     study.levels = {{"light", "fallen_area_m2", 0.25},
