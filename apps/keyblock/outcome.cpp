@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "simulation/before_shaking.h"
 #include "simulation/verdict.h"
 #include "terminal.h"
 
@@ -36,7 +37,7 @@ Row row(const StageRecord& stage) {
           fmt::format("{:.2f}", d.fallen_area),
           fmt::format("{:.2f}", d.loosened_area),
           fmt::format("{:.1f}", 100.0 * d.opening_filled_ratio),
-          fmt::format("{:.2f}", 1000.0 * d.slip_max)};
+          fmt::format("{:.2f}", 1000.0 * d.slip_max_ever)};
 }
 
 /// First column to the left, numbers to the right.
@@ -64,6 +65,26 @@ std::string moving_text(const StageRecord& stage) {
                         100.0 * stage.moving[k].carried);
   }
   return text + (stage.moving.size() > shown ? ", ...)" : ")");
+}
+
+std::string fallen_text(int blocks, double area) {
+  return fmt::format("{} {} ({:.2f} m2)", blocks, blocks == 1 ? "block" : "blocks", area);
+}
+
+/// What came down before the shaking and what the shaking added; empty where nothing can come down, or nothing was shaken.
+std::string split_at_shaking(const RunRecord& run) {
+  std::vector<simulation::Stage> stages;
+  for (const StageRecord& stage : run.stages) stages.push_back(stage.stage);
+  const auto last = simulation::last_before_shaking(stages);
+  if (!last) return "";
+  const simulation::Damage &before = run.stages[*last].damage, &end = run.stages.back().damage;
+  const bool open = std::any_of(stages.begin(), stages.end(),
+                                [](const simulation::Stage& s) { return !s.excavate.empty(); });
+  if (!open && end.fallen_blocks == 0) return "";
+  return fmt::format(
+      "fallen before the shaking: {}; the shaking added {}\n",
+      fallen_text(before.fallen_blocks, before.fallen_area),
+      fallen_text(end.fallen_blocks - before.fallen_blocks, end.fallen_area - before.fallen_area));
 }
 
 std::vector<std::string> warnings(const RunRecord& run) {
@@ -108,6 +129,7 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
       block_count, run.dof, run.steps, run.wall_time, per_step, run.open_close.mean_iterations,
       1000.0 * run.max_overlap.depth, 100.0 * run.energy.residual_ratio, run.state_hash);
   text += aligned(rows);
+  text += split_at_shaking(run);
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
   return text;
 }

@@ -26,7 +26,8 @@
 namespace keyblock::app {
 namespace {
 
-constexpr std::size_t most_named = 20;  // runs that are named one by one
+constexpr std::size_t most_named = 20;     // runs that are named one by one
+constexpr std::size_t most_findings = 40;  // lines
 
 void list(const std::vector<std::string>& lines, const char* what) {
   for (std::size_t k = 0; k < std::min(lines.size(), most_named); ++k)
@@ -35,6 +36,10 @@ void list(const std::vector<std::string>& lines, const char* what) {
 }
 
 void tell(const study::CollectReport& report, const std::string& folder) {
+  for (std::size_t k = 0; k < std::min(report.findings.size(), most_findings); ++k)
+    std::cout << report.findings[k] << "\n";
+  if (report.findings.size() > most_findings)
+    std::cout << "and " << report.findings.size() - most_findings << " lines more: see the report\n";
   list(report.failed, "failed");
   list(report.damaged, "damaged");
   list(report.missing, "missing");

@@ -29,7 +29,9 @@ ordered_json damage_json(const simulation::Damage& damage) {
 simulation::Damage read_damage(const ordered_json& json) {
   simulation::Damage damage;
   json.at("fallen_blocks").get_to(damage.fallen_blocks);
-  for (const auto& [name, member] : damage_fields) damage.*member = number(json.at(name));
+  // Files of earlier versions have fewer.
+  for (const auto& [name, member] : damage_fields)
+    damage.*member = json.contains(name) ? number(json.at(name)) : std::nan("");
   return damage;
 }
 

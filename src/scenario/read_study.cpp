@@ -147,12 +147,16 @@ void read_keys_of_study(TableReader& t, StudySpec& study) {
            [](TableReader& v, VarySpec& vary) { read_vary(v, vary); });
   t.reference("stage", study.stage, "stage",
               {.meaning = "At whose end the measures are compared.", .fallback = "the last stage"});
-  t.reference(
-      "since", study.since, "stage",
-      {.meaning =
-           "An earlier one, at whose end the measures begin: what an earthquake adds to what gravity alone "
-           "brought down.",
-       .fallback = "the first excavation"});
+  t.reference("since", study.since, "stage",
+              {.meaning = "An earlier one, at whose end the measures begin: what comes down before it is "
+                          "taken off. \"start\": "
+                          "nothing is taken off; measures begin at the first excavation. The default counts "
+                          "what the shaking "
+                          "adds to what gravity brought down; where nothing shakes, or no stage is before "
+                          "the shaking, it is "
+                          "\"start\".",
+               .fallback = "the last stage before the first shaking of the opening"},
+              from_the_start);
   t.number("confidence", study.confidence,
            {.meaning = "Confidence level of all intervals.", .above = 0.0, .below = 1.0});
   t.table("until",

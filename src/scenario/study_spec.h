@@ -37,11 +37,15 @@ struct MarginalSpec {
 /// What stays in the folder of a run beside its measures.
 enum class Keep { all, report, measures };
 
+/// StudySpec::since that asks for all that happened since the first excavation.
+inline constexpr const char* from_the_start = "start";
+
 struct StudySpec {
   int realizations = 1;
   std::vector<VarySpec> vary;
   std::string stage;  ///< at whose end measures are compared; empty: the last
-  std::string since;  ///< an earlier stage, at whose end they begin; empty: the first excavation
+  /// An earlier stage, at whose end they begin, or from_the_start; empty: the last one before the shaking.
+  std::string since;
   double confidence = 0.95;
   std::optional<UntilSpec> until;
   std::vector<LevelSpec> levels;  ///< empty: defaults, see study::damage_levels

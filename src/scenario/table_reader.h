@@ -100,8 +100,10 @@ class TableReader {
   bool file(std::string_view key, std::filesystem::path& value, const Rule& rule);
   /// The name of this element of `list`: not empty and not used before. References to it can then be read.
   bool name(std::string_view key, std::string& value, std::string_view list, const Rule& rule);
-  /// Name of an element of `list`, which must have been read before.
-  bool reference(std::string_view key, std::string& value, std::string_view list, const Rule& rule);
+  /// Name of an element of `list`, which must have been read before; or `word`, if one is given, where no element may have it
+  /// as its name.
+  bool reference(std::string_view key, std::string& value, std::string_view list, const Rule& rule,
+                 std::string_view word = {});
   /// Names of elements of `list`, as indices.
   bool references(std::string_view key, std::vector<int>& value, std::string_view list, const Rule& rule);
 
@@ -153,7 +155,8 @@ class TableReader {
   std::optional<std::vector<Vec2>> to_points(const Value& value, const std::string& path,
                                              std::size_t at_least);
   std::optional<Ring> to_ring(const Value& value, const std::string& path);
-  bool find_name(const Value& value, const std::string& path, std::string_view list, std::string& name);
+  bool find_name(const Value& value, const std::string& path, std::string_view list, std::string_view word,
+                 std::string& name);
   [[nodiscard]] std::string path_of(std::string_view key) const;
 
   ReadContext& context_;

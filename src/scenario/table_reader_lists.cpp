@@ -191,21 +191,31 @@ bool TableReader::name(std::string_view key, std::string& value, std::string_vie
 }
 
 bool TableReader::find_name(const Value& value, const std::string& path, std::string_view list,
-                            std::string& name) {
+                            std::string_view word, std::string& name) {
   const auto entry = context_.list_names.find(list);
   static const std::vector<std::string> nobody;
   const std::vector<std::string>& names = entry == context_.list_names.end() ? nobody : entry->second;
+  const std::string or_word = word.empty() ? "" : fmt::format("\"{}\" or ", word);
   if (!value.is(Value::Type::string)) {
-    fail_at(value, path, describe(value), fmt::format("the name of a [[{}]]", list));
+    fail_at(value, path, describe(value), fmt::format("{}the name of a [[{}]]", or_word, list));
     return false;
   }
-  if (value.text.empty() || std::find(names.begin(), names.end(), value.text) == names.end()) {
+  const bool named = std::find(names.begin(), names.end(), value.text) != names.end();
+  if (!word.empty() && value.text == word) {
+    if (named)
+      fail_at(
+          value, path, describe(value) + fmt::format(", which is the name of a [[{}]] as well", list),
+          fmt::format("another name for that [[{}]], as \"{}\" has a meaning of its own here", list, word));
+    name = word;
+    return !named;
+  }
+  if (value.text.empty() || !named) {
     std::vector<std::string> known;
     std::copy_if(names.begin(), names.end(), std::back_inserter(known),
                  [](const auto& n) { return !n.empty(); });
     fail_at(value, path, describe(value),
-            known.empty() ? fmt::format("the name of a [[{}]] (there is none)", list)
-                          : fmt::format("the name of a [[{}]]: {}", list, list_words(known)),
+            known.empty() ? fmt::format("{}the name of a [[{}]] (there is none)", or_word, list)
+                          : fmt::format("{}the name of a [[{}]]: {}", or_word, list, list_words(known)),
             suggestion(value.text, known));
     return false;
   }
@@ -213,10 +223,11 @@ bool TableReader::find_name(const Value& value, const std::string& path, std::st
   return true;
 }
 
-bool TableReader::reference(std::string_view key, std::string& value, std::string_view list,
-                            const Rule& rule) {
-  const Value* found = take(key, rule, fmt::format("name of a [[{}]]", list), "");
-  return found != nullptr && find_name(*found, path_of(key), list, value);
+bool TableReader::reference(std::string_view key, std::string& value, std::string_view list, const Rule& rule,
+                            std::string_view word) {
+  const std::string or_word = word.empty() ? "" : fmt::format(" or \"{}\"", word);
+  const Value* found = take(key, rule, fmt::format("name of a [[{}]]{}", list, or_word), "");
+  return found != nullptr && find_name(*found, path_of(key), list, word, value);
 }
 
 bool TableReader::references(std::string_view key, std::vector<int>& value, std::string_view list,
@@ -233,7 +244,7 @@ bool TableReader::references(std::string_view key, std::vector<int>& value, std:
   for (std::size_t k = 0; k < found->items.size(); ++k) {
     const std::string path = join_index(path_of(key), k);
     std::string name;
-    if (!find_name(found->items[k], path, list, name)) {
+    if (!find_name(found->items[k], path, list, "", name)) {
       valid = false;
       continue;
     }

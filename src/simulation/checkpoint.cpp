@@ -79,11 +79,11 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
-  archive(s.damage.open);
-  archive(s.damage.start);
+  archive(s.damage.reference.open);
+  archive(s.damage.reference.start);
+  archive(s.damage.reference.height);
+  archive(s.damage.reference.width);
   archive(s.damage.pieces);
-  archive(s.damage.height);
-  archive(s.damage.width);
   archive(s.settler.time_step);
   archive(s.settler.creep);
   archive(s.settler.steps);

@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 struct RunState {
   dynamics::State mechanics;
   std::vector<std::uint8_t> present;  ///< per block
-  DamageGauge::Reference damage;
+  DamageGauge::Memory damage;
   OrderControl::Memory orders;
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   int stage = 0;

@@ -17,9 +17,14 @@ inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
     {"opening_filled_ratio", &Damage::opening_filled_ratio},
     {"loosened_area_m2", &Damage::loosened_area},
     {"slip_max_m", &Damage::slip_max},
+    {"slip_max_ever_m", &Damage::slip_max_ever},
     {"slip_mean_m", &Damage::slip_mean},
     {"slipped_length_m", &Damage::slipped_length},
+    {"slipped_length_ever_m", &Damage::slipped_length_ever},
+    {"opening_max_m", &Damage::opening_max},
+    {"opening_max_ever_m", &Damage::opening_max_ever},
     {"opened_length_m", &Damage::opened_length},
+    {"opened_length_ever_m", &Damage::opened_length_ever},
     {"closure_vertical_m", &Damage::closure_vertical},
     {"closure_horizontal_m", &Damage::closure_horizontal}};
 // The count of fallen blocks takes the room of one more.

@@ -125,14 +125,16 @@ struct StepRow {
   Energy energy;
 };
 
-/// Measures as defined in the user guide; cumulative since the first excavation.
+/// Measures as defined in the user guide; cumulative since the first excavation. NaN: there is no such number.
 struct Damage {
   int fallen_blocks = 0;
   double fallen_area = 0.0;  ///< m²
   double opening_filled_ratio = 0.0;
-  double loosened_area = 0.0;                               ///< m²
-  double slip_max = 0.0, slip_mean = 0.0;                   ///< m
-  double slipped_length = 0.0, opened_length = 0.0;         ///< m
+  double loosened_area = 0.0;                                 ///< m²
+  double slip_max = 0.0, slip_mean = 0.0, opening_max = 0.0;  ///< m, of joints in place
+  double slipped_length = 0.0, opened_length = 0.0;           ///< m, likewise
+  /// m, of these and of joints beside blocks that have fallen: the largest up to now.
+  double slip_max_ever = 0.0, opening_max_ever = 0.0, slipped_length_ever = 0.0, opened_length_ever = 0.0;
   double closure_vertical = 0.0, closure_horizontal = 0.0;  ///< m
 };
 

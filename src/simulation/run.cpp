@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr long checkpoint_steps = 2000;     // between places in a stage for a checkpoint
 constexpr double shortest_repeat = 0.01;    // of the time of a run so far, that a checkpoint in a stage saves
-constexpr double step_row_interval = 0.02;  // s between rows of step statistics
+constexpr double step_row_interval = 0.02;  // s between rows of step statistics and looks of the damage gauge
 constexpr double overlap_interval = 1.0;    // s between measurements of the true overlap
 constexpr long most_unconverged = 100;      // steps in a row
 
@@ -131,7 +131,6 @@ void Runner::begin() {
   // All potentials count from the start, as gravity does.
   now_.initial_energy = total_energy();
   if (setup_.excavations.empty()) gauge_.start(now_.mechanics, stepper_->find_contacts(now_.mechanics));
-  now_.damage = gauge_.reference();
 }
 
 void Runner::resume() {
@@ -140,7 +139,7 @@ void Runner::resume() {
   orders_.restore(model_);
   model_.surface.present = now_.present;
   orders_changed();
-  gauge_.restore(now_.damage);
+  gauge_.restore(std::move(now_.damage));
   wall_before_ = now_.wall_time;
 }
 
@@ -162,7 +161,6 @@ void Runner::excavate(const Stage& stage) {
     if (removed) model_.surface.present[b] = 0;
   }
   if (!gauge_.started()) gauge_.start(now_.mechanics, stepper_->find_contacts(now_.mechanics));
-  now_.damage = gauge_.reference();
   now_.present = model_.surface.present;
   stepper_->remove_absent(now_.mechanics);
   now_.mechanics.ledger.input += total_energy() - before;
@@ -224,6 +222,7 @@ void Runner::checkpoint() {
   if (within_stage && elapsed - now_.wall_time < shortest_repeat * elapsed) return;
   if (options_.directory.empty()) return;
   if (settler_) now_.settler = settler_->memory();
+  now_.damage = gauge_.memory();
   now_.orders = orders_.memory();
   now_.wall_time = elapsed;
   now_.reported.stages = now_.stage;
@@ -264,6 +263,7 @@ void Runner::after_step(const dynamics::StepReport& report, long steps_left, dou
     ++now_.reported.histories;
   }
   if (due(step_row_interval)) {
+    gauge_.watch(now_.mechanics);
     const Energy energies = energy();
     observer_.step({now_.mechanics.time, now_.mechanics.step, now_.stage, report.iterations, report.shortest,
                     report.penetration, report.max_displacement, report.closed_contacts, energies});

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "core/random.h"
 #include "statistics/distributions.h"
@@ -137,6 +138,14 @@ const char* name_of(FragilityStatus status) {
       return "separated";
     case FragilityStatus::not_increasing:
       return "not_increasing";
+    case FragilityStatus::exceeded_at_rest:
+      return "exceeded_at_rest";
+    case FragilityStatus::too_few_clusters:
+      return "too_few_realizations";
+    case FragilityStatus::wide_theta:
+      return "wide_theta";
+    case FragilityStatus::wide_beta:
+      return "wide_beta";
   }
   return "";
 }
@@ -180,6 +189,8 @@ FragilityFit fit_from(std::span<const Stripe> stripes, const FragilityFit* start
     return fit;
   }
   fit.status = FragilityStatus::not_increasing;
+  fit.theta = fit.share < 0.5 ? infinity : fit.share > 0.5 ? 0.0 : not_a_number;
+  fit.beta = infinity;
   if (ends.last_exceeded <= ends.first_spared) return fit;
 
   const double centre = 0.5 * (std::log(ends.first) + std::log(ends.last));
@@ -198,7 +209,7 @@ FragilityFit fit_from(std::span<const Stripe> stripes, const FragilityFit* start
   return fit;
 }
 
-/// The runs as a table: stripes, and for each cluster what it adds to them.
+/// The runs as a table: stripes, and for each cluster what it adds to them. `at_rest`: those without shaking.
 struct Table {
   struct Part {
     std::size_t stripe;
@@ -206,18 +217,28 @@ struct Table {
   };
   std::vector<Stripe> stripes;
   std::vector<std::vector<Part>> clusters;
-  std::size_t left_out = 0;
+  Stripe at_rest;
 };
+
+Stripe runs_at_rest(std::span<const Observation> runs) {
+  Stripe stripe;
+  std::set<int> clusters;
+  for (const Observation& run : runs) {
+    if (run.intensity > 0.0) continue;
+    stripe.runs += 1.0;
+    stripe.exceeded += run.exceeded ? 1.0 : 0.0;
+    clusters.insert(run.cluster);
+  }
+  stripe.clusters = static_cast<double>(clusters.size());
+  return stripe;
+}
 
 Table tabulate(std::span<const Observation> runs) {
   Table table;
+  table.at_rest = runs_at_rest(runs);
   std::vector<double> intensities;
-  for (const Observation& run : runs) {
-    if (run.intensity > 0.0)
-      intensities.push_back(run.intensity);
-    else
-      ++table.left_out;
-  }
+  for (const Observation& run : runs)
+    if (run.intensity > 0.0) intensities.push_back(run.intensity);
   std::sort(intensities.begin(), intensities.end());
   for (const double x : intensities)
     if (table.stripes.empty() || x > table.stripes.back().intensity * (1.0 + same_intensity))
@@ -247,32 +268,23 @@ Estimate with_interval(double value, std::vector<double>& replicates, double con
   return {value, interval.low, interval.high};
 }
 
-}  // namespace
+/// θ, β and P at the intensities asked for, of every resample.
+struct Replicates {
+  std::vector<double> theta, beta;
+  std::vector<std::vector<double>> probability;
+  std::size_t fitted = 0;
+};
 
-FragilityFit fit_fragility(std::span<const Stripe> stripes) {
-  return fit_from(stripes, nullptr, step_tolerance);
+/// A replicate that is no number knows nothing.
+void add_known(std::vector<double>& replicates, double x) {
+  if (!std::isnan(x)) replicates.push_back(x);
 }
 
-FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
-                               double confidence, std::size_t resamples) {
-  const Table table = tabulate(runs);
-  FragilityCurve curve;
-  curve.stripes = table.stripes;
-  curve.clusters = table.clusters.size();
-  curve.left_out = table.left_out;
-  curve.fit = fit_fragility(table.stripes);
-  if (curve.fit.status == FragilityStatus::fitted || curve.fit.status == FragilityStatus::separated)
-    curve.theta.value = curve.fit.theta;
-  curve.beta.value = curve.fit.beta;
-  curve.intensity.assign(at.begin(), at.end());
-  for (const double x : at)
-    curve.probability.push_back({curve.fit.probability(x), not_a_number, not_a_number});
-  if (table.clusters.size() < smallest_bootstrap_sample || curve.fit.status != FragilityStatus::fitted)
-    return curve;
-
+Replicates replicated(const Table& table, const FragilityFit& fit, std::span<const double> at,
+                      std::size_t resamples) {
   const Resamples draws(table.clusters.size(), resamples);
-  std::vector<double> theta, beta;
-  std::vector<std::vector<double>> probability(at.size());
+  Replicates found;
+  found.probability.resize(at.size());
   std::vector<Stripe> stripes = table.stripes;
   for (std::size_t r = 0; r < resamples; ++r) {
     for (Stripe& s : stripes) s.runs = s.exceeded = 0.0;
@@ -282,21 +294,64 @@ FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<cons
         stripes[part.stripe].exceeded += part.exceeded;
       }
     }
-    const FragilityFit fit = fit_from(stripes, &curve.fit, replicate_tolerance);
-    if (fit.status == FragilityStatus::fitted) {
-      ++curve.resamples_fitted;
-      theta.push_back(fit.theta);
-      beta.push_back(fit.beta);
-    }
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      const double p = fit.probability(at[k]);
-      if (!std::isnan(p)) probability[k].push_back(p);
+    const FragilityFit again = fit_from(stripes, &fit, replicate_tolerance);
+    if (again.status == FragilityStatus::fitted) ++found.fitted;
+    add_known(found.theta, again.theta);
+    add_known(found.beta, again.beta);
+    for (std::size_t k = 0; k < at.size(); ++k) add_known(found.probability[k], again.probability(at[k]));
+  }
+  return found;
+}
+
+bool spans_more(const Estimate& e, double factor) {
+  return !(e.low > 0.0 && e.high <= factor * e.low);
+}
+
+/// Whether the fit is a curve to be shown; its intervals are there by now.
+FragilityStatus judged(const FragilityCurve& curve, const FragilityLimits& limits) {
+  const FragilityStatus status = curve.fit.status;
+  const bool one_curve = status == FragilityStatus::fitted || status == FragilityStatus::separated ||
+                         status == FragilityStatus::not_increasing;
+  if (one_curve && curve.at_rest.exceeded > limits.share_at_rest * curve.at_rest.runs)
+    return FragilityStatus::exceeded_at_rest;
+  if (status != FragilityStatus::fitted) return status;
+  if (curve.clusters < smallest_bootstrap_sample) return FragilityStatus::too_few_clusters;
+  if (spans_more(curve.theta, limits.widest_theta)) return FragilityStatus::wide_theta;
+  if (spans_more(curve.beta, limits.widest_beta)) return FragilityStatus::wide_beta;
+  return status;
+}
+
+}  // namespace
+
+FragilityFit fit_fragility(std::span<const Stripe> stripes) {
+  return fit_from(stripes, nullptr, step_tolerance);
+}
+
+FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
+                               double confidence, const FragilityLimits& limits, std::size_t resamples) {
+  const Table table = tabulate(runs);
+  FragilityCurve curve;
+  curve.stripes = table.stripes;
+  curve.clusters = table.clusters.size();
+  curve.at_rest = table.at_rest;
+  curve.fit = fit_fragility(table.stripes);
+  Replicates found;
+  if (curve.fit.status == FragilityStatus::fitted) {
+    curve.theta.value = curve.fit.theta;
+    curve.beta.value = curve.fit.beta;
+    if (curve.clusters >= smallest_bootstrap_sample) {
+      found = replicated(table, curve.fit, at, resamples);
+      curve.resamples_fitted = found.fitted;
+      curve.theta = with_interval(curve.fit.theta, found.theta, confidence);
+      curve.beta = with_interval(curve.fit.beta, found.beta, confidence);
     }
   }
-  curve.theta = with_interval(curve.fit.theta, theta, confidence);
-  curve.beta = with_interval(curve.fit.beta, beta, confidence);
+  curve.status = judged(curve, limits);
+  if (curve.status != FragilityStatus::fitted) return curve;
+  curve.intensity.assign(at.begin(), at.end());
   for (std::size_t k = 0; k < at.size(); ++k)
-    curve.probability[k] = with_interval(curve.probability[k].value, probability[k], confidence);
+    curve.probability.push_back(
+        with_interval(curve.fit.probability(at[k]), found.probability[k], confidence));
   return curve;
 }
 

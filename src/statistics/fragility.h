@@ -35,15 +35,21 @@ enum class FragilityStatus {
   separated,  ///< at most one intensity has a share other than 0 and 1, with none exceeded below it and all above: L goes
   ///< to its bound as β → 0, with θ at that intensity, or anywhere between the last of none and the first of all
   not_increasing,  ///< more shaking does not go with more damage: the likeliest curve is flat or falls
+  /// The fit stands, or does not matter, but it is no curve to be shown (FragilityLimits):
+  exceeded_at_rest,  ///< too many exceed the level without shaking, where P(0) = 0
+  too_few_clusters,  ///< fewer than smallest_bootstrap_sample: nobody knows how sure θ and β are
+  wide_theta,        ///< the interval of θ spans too much
+  wide_beta,         ///< the interval of β does
 };
 
 const char* name_of(FragilityStatus status);
 
 struct FragilityFit {
   FragilityStatus status = FragilityStatus::no_data;
-  double theta =
-      not_a_number;  ///< fitted; separated: geometric mean of its bounds; ∞ never, 0 always exceeded
-  double beta = not_a_number;   ///< fitted; separated: 0
+  /// fitted; separated: geometric mean of its bounds; ∞ never, 0 always exceeded; not_increasing: ∞ where fewer than half
+  /// exceed the level, 0 where more do.
+  double theta = not_a_number;
+  double beta = not_a_number;   ///< fitted; separated: 0; not_increasing: ∞
   double share = not_a_number;  ///< Σ z / Σ n
   /// The likeliest curve that does not fall: for what is not fitted, a step or a constant. Not a number without data
   /// or at one intensity.
@@ -61,22 +67,32 @@ struct Observation {
   int cluster = 0;  ///< the realization: the same rock at all intensities, hence not independent
 };
 
+/// Beyond these a fit is no curve to be shown. Why so: docs/study-report.md.
+struct FragilityLimits {
+  double widest_theta = 4.0;    ///< upper over lower end of the interval of θ
+  double widest_beta = 4.0;     ///< the same of β
+  double share_at_rest = 0.05;  ///< of the runs without shaking that exceed the level
+};
+
 /// The fit with its band. The bootstrap draws whole clusters, so that what the runs of one realization have in common
-/// does not make the band too narrow. Resamples without a fit enter the band with their step or constant, and are left
-/// out of the intervals of θ and β. Where all runs together give no
-/// fit, or with fewer than smallest_bootstrap_sample clusters, there is neither band nor interval.
+/// does not make the band too narrow. Resamples without a fit enter the band with their step or constant, and the intervals of
+/// θ and β with the limits that they go to (FragilityFit). Where all runs together give no fit, or with fewer than
+/// smallest_bootstrap_sample clusters, there is neither band nor interval.
 struct FragilityCurve {
   FragilityFit fit;
-  Estimate theta, beta;  ///< fitted and separated; otherwise not a number
+  FragilityStatus status =
+      FragilityStatus::no_data;  ///< that of the fit, or why this is no curve to be shown
+  Estimate theta, beta;          ///< of the fit, where its status is fitted; otherwise not a number
   std::vector<Stripe> stripes;
-  std::vector<double> intensity;      ///< as asked for
-  std::vector<Estimate> probability;  ///< there, pointwise band; not a number where there is no curve
+  Stripe at_rest;                     ///< the runs without shaking: ln 0 is no place on the curve
+  std::vector<double> intensity;      ///< as asked for; empty unless `status` is fitted
+  std::vector<Estimate> probability;  ///< there, pointwise band
   std::size_t clusters = 0;
-  std::size_t left_out = 0;          ///< runs without shaking: ln 0 is no place on the curve
   std::size_t resamples_fitted = 0;  ///< of all resamples
 };
 
 FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,
-                               double confidence, std::size_t resamples = usual_resamples);
+                               double confidence, const FragilityLimits& limits = {},
+                               std::size_t resamples = usual_resamples);
 
 }  // namespace keyblock::statistics

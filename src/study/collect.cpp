@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "study/findings.h"
 #include "study/outputs.h"
 #include "study/plan_json.h"
 #include "study/until.h"
@@ -94,6 +95,8 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   }
   study.stage = plan.stage;
   study.since = plan.since;
+  study.before = plan.since.empty() ? plan.before_shaking : plan.since;
+  study.at_shaking = !study.before.empty() && study.before == plan.before_shaking;
   study.levels = plan.levels;
   study.marginal = plan.marginal;
   study.confidence = plan.confidence;
@@ -142,7 +145,8 @@ CollectReport gather(const fs::path& directory, const Plan& plan, StudyFiles fil
     }
   }
   if (!files.enough) report.lacking = lacking_precision(plan, known_results(files));
-  write_outputs(directory, study_data(plan, std::move(files)));
+  const StudyData study = study_data(plan, std::move(files));
+  report.findings = findings(study, write_outputs(directory, study));
   return report;
 }
 

@@ -41,6 +41,7 @@ struct CollectReport {
   std::optional<int> enough;
   std::string
       lacking;  ///< of the precision that was asked for, where all runs have ended without it (until.h)
+  std::vector<std::string> findings;  ///< what the study found (findings.h)
 };
 
 /// What readers need, by realization, then combination, then variant. Runs that failed are in it, with their error.

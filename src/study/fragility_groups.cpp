@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "statistics/proportion.h"
 #include "study/summaries.h"
@@ -55,7 +56,41 @@ std::vector<double> curve_grid(const std::vector<statistics::Observation>& runs)
   return grid;
 }
 
+using Observations = std::vector<statistics::Observation>;
+
+/// The runs of a group as a curve sees them, by intensity: those that have the measure. Where measures begin at the first excavation, a realization that has
+/// no run without shaking is seen without it as well: as it was before the shaking.
+Observations observed(const StudyData& study, const Summary& summary, const Group& group, std::size_t level,
+                      std::size_t intensity) {
+  const Measure& measure = measures()[*find_measure(study.levels[level].measure)];
+  const double threshold = study.levels[level].threshold;
+  const bool all_counts = study.since.empty() && !study.before.empty();
+  Observations runs;
+  std::set<int> seen;
+  const auto add = [&](double x, const simulation::Damage& damage, int realization) {
+    const double value = measure.of(damage);
+    if (!std::isnan(value)) runs.push_back({x, value > threshold, realization});
+  };
+  for (const std::size_t c : group.combinations) {
+    for (const std::size_t r : summary.combinations[c].runs) {
+      const RunResult& run = study.runs[r];
+      const Measured m = measured(study, run);
+      const double x = m.intensity[intensity];
+      add(x, *m.damage, run.realization);
+      if (!all_counts || !seen.insert(run.realization).second || x == 0.0) continue;
+      if (const auto before = damage_between(run, "", study.before)) add(0.0, *before, run.realization);
+    }
+  }
+  return runs;
+}
+
 }  // namespace
+
+statistics::FragilityLimits fragility_limits(const Intensity& intensity) {
+  statistics::FragilityLimits limits;
+  limits.widest_theta = std::pow(limits.widest_theta, intensity.power);
+  return limits;
+}
 
 std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summary& summary) {
   std::vector<FragilityGroup> result;
@@ -63,23 +98,16 @@ std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summa
     return result;
   std::vector<Group> groups = grouped(summary);
   for (std::size_t l = 0; l < study.levels.size(); ++l) {
-    const auto measure = find_measure(study.levels[l].measure);
-    if (!measure) continue;
+    if (!find_measure(study.levels[l].measure)) continue;
     for (std::size_t i = 0; i < intensities().size(); ++i) {
       for (Group& group : groups) {
         std::stable_sort(
             group.combinations.begin(), group.combinations.end(),
             [&](std::size_t a, std::size_t b) { return strength(summary, a, i) < strength(summary, b, i); });
-        std::vector<statistics::Observation> runs;
-        for (const std::size_t c : group.combinations) {
-          for (const std::size_t r : summary.combinations[c].runs) {
-            const Measured m = measured(study, study.runs[r]);
-            runs.push_back({m.intensity[i], measures()[*measure].of(*m.damage) > study.levels[l].threshold,
-                            study.runs[r].realization});
-          }
-        }
+        const Observations runs = observed(study, summary, group, l, i);
         FragilityGroup made{l, i, group.values, group.combinations, {}, {}};
-        made.curve = statistics::fragility_curve(runs, curve_grid(runs), study.confidence);
+        made.curve = statistics::fragility_curve(runs, curve_grid(runs), study.confidence,
+                                                 fragility_limits(intensities()[i]));
         // Rock that is shaken twice at one intensity is not two independent pieces of rock.
         for (const statistics::Stripe& s : made.curve.stripes)
           made.points.push_back(

@@ -14,11 +14,21 @@ namespace keyblock::study {
 namespace {
 
 /// Titles and units, in the order of the names.
-constexpr std::pair<const char*, const char*> titles[] = {
-    {"fallen blocks", ""},      {"fallen area", "m²"},  {"filled share of the opening", ""},
-    {"loosened area", "m²"},    {"largest slip", "m"},  {"mean slip", "m"},
-    {"slipped length", "m"},    {"opened length", "m"}, {"vertical closure", "m"},
-    {"horizontal closure", "m"}};
+constexpr std::pair<const char*, const char*> titles[] = {{"fallen blocks", ""},
+                                                          {"fallen area", "m²"},
+                                                          {"filled share of the opening", ""},
+                                                          {"loosened area", "m²"},
+                                                          {"largest slip in place", "m"},
+                                                          {"largest slip ever", "m"},
+                                                          {"mean slip in place", "m"},
+                                                          {"slipped length in place", "m"},
+                                                          {"slipped length ever", "m"},
+                                                          {"largest opening in place", "m"},
+                                                          {"largest opening ever", "m"},
+                                                          {"opened length in place", "m"},
+                                                          {"opened length ever", "m"},
+                                                          {"vertical closure", "m"},
+                                                          {"horizontal closure", "m"}};
 static_assert(std::size(titles) == 1 + std::size(simulation::damage_fields),
               "a measure of the damage is missing");
 
@@ -33,9 +43,9 @@ double difference(double a, double b) {
 }
 
 const std::array<Intensity, 3> all_intensities{
-    {{"pga_m_s2", "PGA", "m/s²", &StageMeasures::pga},
-     {"pgv_m_s", "PGV", "m/s", &StageMeasures::pgv},
-     {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias}}};
+    {{"pga_m_s2", "PGA", "m/s²", &StageMeasures::pga, 1},
+     {"pgv_m_s", "PGV", "m/s", &StageMeasures::pgv, 1},
+     {"arias_m_s", "Arias intensity", "m/s", &StageMeasures::arias, 2}}};
 
 }  // namespace
 

@@ -34,6 +34,7 @@ struct Intensity {
   std::string title;  ///< "PGA"
   std::string unit;   ///< "m/s²"
   double StageMeasures::*of;
+  int power;  ///< it goes with this power of the amplitude of a motion
 };
 std::span<const Intensity> intensities();
 

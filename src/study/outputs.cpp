@@ -6,12 +6,13 @@
 
 namespace keyblock::study {
 
-void write_outputs(const std::filesystem::path& directory, const StudyData& study) {
-  const Summary summary = summarize(study);
+Summary write_outputs(const std::filesystem::path& directory, const StudyData& study) {
+  Summary summary = summarize(study);
   const std::string json = study_json(study, summary);
   write_file_atomically(directory / "runs.csv", runs_csv(study, summary));
   write_file_atomically(directory / "study.json", json);
   write_file_atomically(directory / "report.html", study_page(directory, study, summary, json));
+  return summary;
 }
 
 }  // namespace keyblock::study

@@ -13,6 +13,7 @@
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/sections.h"
+#include "simulation/before_shaking.h"
 #include "study/variant.h"
 
 namespace keyblock::study {
@@ -112,6 +113,29 @@ Box box_of_model(const Scenario& scenario) {
   }
   for (const scenario::BlockSpec& block : scenario.blocks) box.add(bounds(block.polygon));
   return box;
+}
+
+/// The last stage before the shaking, where that is before the stage `measured`.
+std::string stage_before_shaking(const Scenario& scenario, const std::string& measured) {
+  const auto last = simulation::last_before_shaking(scenario.stages);
+  if (!last) return {};
+  for (std::size_t k = 0; k <= *last; ++k) {
+    if (scenario.stages[k].name == measured) return {};
+  }
+  return scenario.stages[*last].name;
+}
+
+/// As Plan has it, which knows no default and has no word for the first excavation.
+std::string planned_since(const std::string& asked, const std::string& before_shaking) {
+  if (asked.empty()) return before_shaking;
+  return asked == scenario::from_the_start ? "" : asked;
+}
+
+std::string no_release_warning(const Plan& plan) {
+  return fmt::format(
+      "study.marginal: no variant \"released\", as it leaves out the stage \"{}\", at whose end the measures "
+      "begin; with study.since = \"{}\" there is one",
+      plan.since, scenario::from_the_start);
 }
 
 /// Measures can only begin before they end.
@@ -256,7 +280,8 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   plan.realizations = study.until ? study.until->maximum : study.realizations;
   plan.axes = study.vary;
   plan.stage = study.stage.empty() ? scenario.stages.back().name : study.stage;
-  plan.since = study.since;
+  plan.before_shaking = stage_before_shaking(scenario, plan.stage);
+  plan.since = planned_since(study.since, plan.before_shaking);
   check_order(scenario, plan);
   plan.levels = damage_levels(scenario);
   if (study.marginal) plan.marginal = MarginalCheck{study.marginal->friction, study.marginal->share};
@@ -266,6 +291,8 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   for (const auto& spec : scenario.excavations) plan.outlines.push_back(scenario::excavation_outline(spec));
   const std::vector<std::string> variants =
       plan.marginal ? variants_of(scenario, {plan.stage, plan.since}) : std::vector<std::string>{""};
+  if (warnings != nullptr && plan.marginal && variants.size() < variants_of(scenario, {plan.stage}).size())
+    warnings->push_back(no_release_warning(plan));
   check_count(plan, scenario, variants.size());
   plan.files = files_of(plan, scenario);
   list_runs(plan, variants);

@@ -76,6 +76,7 @@ ordered_json description_json(const Plan& plan) {
       {"title", plan.title}, {"seed", plan.seed}, {"realizations", plan.realizations}, {"axes", axes},
       {"stage", plan.stage}, {"levels", levels},  {"confidence", plan.confidence}};
   if (!plan.since.empty()) json["since"] = plan.since;
+  if (!plan.before_shaking.empty()) json["before_shaking"] = plan.before_shaking;
   if (plan.until) json["until"] = until_json(*plan.until);
   if (plan.marginal)
     json["marginal"] = {{"friction", plan.marginal->friction}, {"share", plan.marginal->share}};
@@ -101,6 +102,7 @@ void read_description(const ordered_json& json, Plan& plan) {
   }
   json.at("stage").get_to(plan.stage);
   if (json.contains("since")) json.at("since").get_to(plan.since);
+  if (json.contains("before_shaking")) json.at("before_shaking").get_to(plan.before_shaking);
   for (const auto& level : json.at("levels")) {
     plan.levels.push_back({level.at("name").get<std::string>(), level.at("measure").get<std::string>(),
                            level.at("threshold").get<double>()});

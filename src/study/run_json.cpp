@@ -16,7 +16,7 @@ using results::number;
 using simulation::BlockStatus;
 using simulation::StageKind;
 
-constexpr int run_format = 1;
+constexpr int run_format = 2;
 const std::string checksum_mark = ",\"checksum\":\"";
 
 ordered_json stage_json(const StageMeasures& stage) {

@@ -96,6 +96,10 @@ struct StudyData {
   std::vector<Axis> axes;
   std::string stage;  ///< at whose end the measures are compared: by default the last
   std::string since;  ///< what they were at the end of this stage is taken off; empty: nothing is
+  /// At the end of which stage damage counts as there before: `since`, or else the last one before the shaking. Empty: none.
+  std::string before;
+  bool at_shaking =
+      false;  ///< `before` is the last stage before the shaking: the shaking adds what comes after
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;  ///< given when variants are run
   std::vector<std::string> variants;      ///< that are run of every case, without ""

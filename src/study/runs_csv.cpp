@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "results/csv.h"
@@ -54,6 +55,14 @@ class Table {
     fmt::format_to(std::back_inserter(out_), "{}", x);
   }
 
+  /// Empty where there is no number.
+  void known(double x) {
+    if (std::isnan(x))
+      out_ += ',';
+    else
+      value(x);
+  }
+
   void header() {
     for (const char* name : {"key", "realization"}) field(name);
     for (const Axis& axis : study_.axes) field(axis.key);
@@ -101,7 +110,7 @@ class Table {
       return;
     }
     for (const Intensity& i : intensities()) value(found->*(i.of));
-    for (const Measure& m : measures()) value(m.of(found->damage));
+    for (const Measure& m : measures()) known(m.of(found->damage));
   }
 
   const StudyData& study_;

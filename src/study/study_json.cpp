@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "study/fragility_words.h"
+
 namespace keyblock::study {
 
 namespace {
@@ -40,26 +42,30 @@ void add_band(ordered_json& json, const char* name, const std::vector<Estimate>&
   json["high"] = column(estimates, [](const Estimate& e) { return e.high; });
 }
 
-ordered_json measure_json(const MeasureSummary& m) {
-  const statistics::Description& d = m.description;
+ordered_json description_json(const statistics::Description& d) {
   ordered_json quantiles = ordered_json::array();
   for (std::size_t q = 0; q < summary_quantiles.size(); ++q) {
     ordered_json row{{"p", summary_quantiles[q]}};
     row.update(estimate(d.quantiles[q]));
     quantiles.push_back(row);
   }
-  ordered_json running{{"n", m.running.n}};
-  add_band(running, "mean", m.running.mean);
-  ordered_json exceedance{{"value", column(m.exceedance.value, [](double v) { return v; })}};
-  add_band(exceedance, "probability", m.exceedance.above);
   return {{"n", d.n},
           {"mean", estimate(d.mean)},
           {"std", estimate(d.standard_deviation)},
           {"min", number(d.min)},
           {"max", number(d.max)},
-          {"quantiles", quantiles},
-          {"running_mean", running},
-          {"exceedance", exceedance}};
+          {"quantiles", quantiles}};
+}
+
+ordered_json measure_json(const MeasureSummary& m) {
+  ordered_json running{{"n", m.running.n}};
+  add_band(running, "mean", m.running.mean);
+  ordered_json exceedance{{"value", column(m.exceedance.value, [](double v) { return v; })}};
+  add_band(exceedance, "probability", m.exceedance.above);
+  ordered_json json = description_json(m.description);
+  json["running_mean"] = running;
+  json["exceedance"] = exceedance;
+  return json;
 }
 
 ordered_json texts(const std::vector<std::string>& values) {
@@ -72,6 +78,28 @@ ordered_json key_of(const StudyData& study, const std::optional<std::size_t>& ru
   return run ? ordered_json(study.runs[*run].key) : ordered_json(nullptr);
 }
 
+ordered_json levels_json(const StudyData& study, const std::vector<LevelSummary>& levels) {
+  ordered_json rows = ordered_json::array();
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const Estimate& p = levels[l].probability;
+    rows.push_back({{"name", study.levels[l].name},
+                    {"n", levels[l].n},
+                    {"exceeded", levels[l].exceeded},
+                    {"probability", number(p.value)},
+                    {"low", number(p.low)},
+                    {"high", number(p.high)}});
+  }
+  return rows;
+}
+
+ordered_json part_json(const StudyData& study, const std::optional<DamagePart>& part) {
+  if (!part) return nullptr;
+  ordered_json all = ordered_json::object();
+  for (std::size_t m = 0; m < part->measures.size(); ++m)
+    all[measures()[m].name] = description_json(part->measures[m]);
+  return {{"levels", levels_json(study, part->levels)}, {"measures", all}};
+}
+
 ordered_json combination_json(const StudyData& study, const Combination& c) {
   ordered_json json{{"values", texts(c.values)}, {"n", c.runs.size()}, {"failed", c.failed}};
   for (std::size_t k = 0; k < intensities().size(); ++k) json[intensities()[k].name] = number(c.intensity[k]);
@@ -79,19 +107,12 @@ ordered_json combination_json(const StudyData& study, const Combination& c) {
   json["median"] = key_of(study, c.median);
   json["checked"] = c.checked;
   json["marginal"] = c.marginal;
-  ordered_json levels = ordered_json::array();
-  for (std::size_t l = 0; l < c.levels.size(); ++l) {
-    ordered_json row{{"name", study.levels[l].name}, {"exceeded", c.levels[l].exceeded}};
-    const Estimate& p = c.levels[l].probability;
-    row["probability"] = number(p.value);
-    row["low"] = number(p.low);
-    row["high"] = number(p.high);
-    levels.push_back(row);
-  }
-  json["levels"] = levels;
+  json["levels"] = levels_json(study, c.levels);
   ordered_json all = ordered_json::object();
   for (std::size_t m = 0; m < c.measures.size(); ++m) all[measures()[m].name] = measure_json(c.measures[m]);
   json["measures"] = all;
+  json["before"] = part_json(study, c.before);
+  json["added"] = part_json(study, c.added);
   json["map"] = {{"n", c.mapped}, {"fallen", c.fallen}, {"fallen_or_loosened", c.disturbed}};
   return json;
 }
@@ -103,6 +124,8 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
     values.push_back(shaking ? ordered_json(nullptr) : ordered_json(plain_value(group.values[a])));
   }
   const auto& curve = group.curve;
+  const std::string why = why_no_curve(study, group);
+  const auto shown = [&](const Estimate& e) { return why.empty() ? e : Estimate{}; };
   ordered_json points{
       {"intensity", column(curve.stripes, [](const statistics::Stripe& s) { return s.intensity; })},
       {"n", column(curve.stripes, [](const statistics::Stripe& s) { return s.runs; })},
@@ -115,11 +138,13 @@ ordered_json fragility_json(const StudyData& study, const Summary& summary, cons
           {"intensity", intensities()[group.intensity].name},
           {"values", values},
           {"combinations", group.combinations},
-          {"status", statistics::name_of(curve.fit.status)},
-          {"theta", estimate(curve.theta)},
-          {"beta", estimate(curve.beta)},
+          {"status", statistics::name_of(curve.status)},
+          {"why", why.empty() ? ordered_json() : ordered_json(why)},
+          {"theta", estimate(shown(curve.theta))},
+          {"beta", estimate(shown(curve.beta))},
           {"realizations", curve.clusters},
-          {"without_shaking", curve.left_out},
+          {"without_shaking", number(curve.at_rest.runs)},
+          {"exceeded_without_shaking", number(curve.at_rest.exceeded)},
           {"resamples_fitted", curve.resamples_fitted},
           {"points", points},
           {"curve", band}};
@@ -175,6 +200,8 @@ ordered_json head(const StudyData& study, const Summary& summary) {
       {"runs", {{"planned", study.planned}, {"done", summary.done}, {"failed", summary.failed}}},
       {"stage", study.stage},
       {"since", study.since.empty() ? ordered_json() : ordered_json(study.since)},
+      {"before", study.before.empty() ? ordered_json() : ordered_json(study.before)},
+      {"at_shaking", study.at_shaking},
       {"confidence", study.confidence},
       {"bootstrap_resamples", statistics::usual_resamples},
       {"axes", axes},

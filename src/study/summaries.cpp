@@ -42,43 +42,85 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
   std::vector<std::size_t> order = c.runs;
   const auto rank = [&](std::size_t r) {
     const simulation::Damage d = *measured(study, study.runs[r]).damage;
-    return std::tuple(d.fallen_area, d.loosened_area, d.slip_max, -study.runs[r].realization);
+    return std::tuple(d.fallen_area, d.loosened_area, d.slip_max_ever, -study.runs[r].realization);
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   c.worst = order.back();
   c.median = order[(order.size() - 1) / 2];
 }
 
+using Damages = std::vector<simulation::Damage>;
+
+/// Of those that have the measure, in their order.
+std::vector<double> values_of(const Measure& measure, const Damages& damages) {
+  std::vector<double> values;
+  for (const simulation::Damage& d : damages) {
+    const double value = measure.of(d);
+    if (!std::isnan(value)) values.push_back(value);
+  }
+  return values;
+}
+
+std::vector<LevelSummary> counted_levels(const StudyData& study, const Damages& damages) {
+  std::vector<LevelSummary> levels;
+  for (const DamageLevel& level : study.levels) {
+    LevelSummary& summary = levels.emplace_back();
+    if (const auto measure = find_measure(level.measure)) {
+      const std::vector<double> values = values_of(measures()[*measure], damages);
+      summary.n = values.size();
+      for (const double value : values)
+        if (value > level.threshold) ++summary.exceeded;
+    }
+    summary.probability = statistics::proportion(summary.exceeded, summary.n, study.confidence);
+  }
+  return levels;
+}
+
+/// What happened to the runs of a combination between the ends of two stages.
+Damages damages_between(const StudyData& study, const Combination& c, std::string_view since,
+                        std::string_view stage) {
+  Damages damages;
+  for (const std::size_t r : c.runs)
+    if (const auto damage = damage_between(study.runs[r], since, stage)) damages.push_back(*damage);
+  return damages;
+}
+
 void describe_measures(const StudyData& study, ResampleStore& store, Combination& c) {
-  const statistics::Resamples& resamples = store.of(c.runs.size());
-  std::vector<simulation::Damage> damages;
-  for (const std::size_t r : c.runs) damages.push_back(*measured(study, study.runs[r]).damage);
+  const Damages damages = damages_between(study, c, study.since, study.stage);
   for (const Measure& measure : measures()) {
-    std::vector<double> values;
-    for (const simulation::Damage& d : damages) values.push_back(measure.of(d));
+    std::vector<double> values = values_of(measure, damages);
     MeasureSummary summary;
     summary.running = statistics::running_mean(values, study.confidence);
     std::sort(values.begin(), values.end());
-    summary.description = statistics::describe(values, summary_quantiles, resamples, study.confidence);
+    summary.description =
+        statistics::describe(values, summary_quantiles, store.of(values.size()), study.confidence);
     summary.exceedance = statistics::exceedance_curve(values, study.confidence);
     c.measures.push_back(std::move(summary));
   }
+  c.levels = counted_levels(study, damages);
 }
 
-void count_levels(const StudyData& study, Combination& c) {
-  for (const DamageLevel& level : study.levels) {
-    LevelSummary summary;
-    const auto measure = find_measure(level.measure);
-    std::size_t n = 0;
-    if (measure) {
-      n = c.runs.size();
-      for (const std::size_t r : c.runs)
-        if (measures()[*measure].of(*measured(study, study.runs[r]).damage) > level.threshold)
-          ++summary.exceeded;
-    }
-    summary.probability = statistics::proportion(summary.exceeded, n, study.confidence);
-    c.levels.push_back(summary);
+DamagePart described_part(const StudyData& study, const Damages& damages, ResampleStore& store) {
+  DamagePart part;
+  for (const Measure& measure : measures()) {
+    std::vector<double> values = values_of(measure, damages);
+    std::sort(values.begin(), values.end());
+    part.measures.push_back(
+        statistics::describe(values, summary_quantiles, store.of(values.size()), study.confidence));
   }
+  part.levels = counted_levels(study, damages);
+  return part;
+}
+
+void part_at_shaking(const StudyData& study, ResampleStore& store, Combination& c) {
+  if (study.before.empty()) return;
+  c.before = described_part(study, damages_between(study, c, "", study.before), store);
+  if (study.before != study.since) {
+    c.added = described_part(study, damages_between(study, c, study.before, study.stage), store);
+    return;
+  }
+  c.added.emplace().levels = c.levels;
+  for (const MeasureSummary& m : c.measures) c.added->measures.push_back(m.description);
 }
 
 void count_cells(const StudyData& study, Combination& c) {
@@ -224,7 +266,7 @@ Summary summarize(const StudyData& study) {
     average_intensity(study, c);
     choose_worst_and_median(study, c);
     describe_measures(study, store, c);
-    count_levels(study, c);
+    part_at_shaking(study, store, c);
     count_cells(study, c);
     summary.combinations.push_back(std::move(c));
   }

@@ -35,8 +35,15 @@ struct MeasureSummary {
 };
 
 struct LevelSummary {
+  std::size_t n = 0;  ///< runs that have the measure
   std::size_t exceeded = 0;
   statistics::Estimate probability;
+};
+
+/// Damage until the end of StudyData::before, or after it.
+struct DamagePart {
+  std::vector<statistics::Description> measures;  ///< as measures(); quantiles: summary_quantiles
+  std::vector<LevelSummary> levels;               ///< as StudyData::levels
 };
 
 /// All runs with the same value on every axis, variant "".
@@ -49,7 +56,9 @@ struct Combination {
   std::size_t checked = 0, marginal = 0;  ///< runs of which it is known, and those of them that are marginal
   std::vector<MeasureSummary> measures;   ///< as measures()
   std::vector<LevelSummary> levels;       ///< as StudyData::levels
-  std::size_t mapped = 0;                 ///< runs with a map
+  /// Of the same runs, until the end of StudyData::before and from there on; none without such a stage.
+  std::optional<DamagePart> before, added;
+  std::size_t mapped = 0;  ///< runs with a map
   /// By cell of the grid: in how many of them its rock has fallen, and has fallen or loosened; −1 where all excavate it.
   std::vector<int> fallen, disturbed;
 };
@@ -81,6 +90,8 @@ Summary summarize(const StudyData& study);
 
 /// Parts of it. `groups` of fragility, and whether runs are marginal.
 std::vector<FragilityGroup> fragility_groups(const StudyData& study, const Summary& summary);
+/// Those of statistics, where the interval of θ is one of amplitudes.
+statistics::FragilityLimits fragility_limits(const Intensity& intensity);
 std::vector<Marginal> marginal_runs(const StudyData& study);
 
 }  // namespace keyblock::study

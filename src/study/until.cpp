@@ -56,11 +56,12 @@ double excess(const std::optional<MeanInterval>& interval, const scenario::Until
   return least;
 }
 
-// The measure as it is compared; nothing when the run did not come to it.
+// The measure as it is compared; nothing when the run did not come to it or does not have it.
 std::optional<double> measured(const Plan& plan, const RunResult& run) {
   const auto damage = damage_between(run, plan.since, plan.stage);
   if (!damage) return std::nullopt;
-  return simulation::damage_value(*damage, plan.until->measure);
+  const double value = simulation::damage_value(*damage, plan.until->measure);
+  return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
 using AxisValues = std::vector<std::vector<std::string>>;

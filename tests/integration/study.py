@@ -91,7 +91,7 @@ class Runs(Study):
             self.assertIn("two.toml: warning: study.realizations = 2: nothing is random", self.keyblock(*words).stderr)
 
     def test_variants_of_the_check_for_marginal_results(self):
-        self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nmarginal = {}\n')
+        self.write("marginal.toml", GALLERY + '[study]\nkeep = "measures"\nsince = "start"\nmarginal = {}\n')
         self.run_study("marginal.toml")
         runs = [self.result(key) for key in self.keys()]
         self.assertEqual([run["variant"] for run in runs], ["", "friction-", "friction+", "released"])
@@ -100,6 +100,26 @@ class Runs(Study):
         # The same by hand.
         self.keyblock("run", "marginal.toml", "-o", "by-hand", "--set", "joints.friction=27", "--set", "joint_set.flat.friction=22")
         self.assertEqual(self.summary("by-hand")["state_hash"], runs[1]["state_hash"])
+
+    def test_gravity_is_not_the_earthquake(self):
+        said = self.run_study("small.toml").stdout
+        study = json.loads((self.out / "study.json").read_text())
+        self.assertEqual((study["since"], study["before"], study["at_shaking"]), ("excavated", "excavated", True))
+        added = study["combinations"][1]["measures"]["slip_max_m"]["max"]
+        results = [self.result(key)["stages"] for key in self.keys()[1::2]]
+        slips = [stages[3]["damage"]["slip_max_m"] - stages[1]["damage"]["slip_max_m"] for stages in results]
+        self.assertAlmostEqual(added, max(slips), places=6)
+        self.assertRegex(said, r"light: fallen_area_m2 > [\d.]+; stage\.shaken\.scale = 1\.0: \d of 3 .* before the shaking, \d of 3 ")
+        self.assertRegex(said, r"curve of light over PGA: none, as ")
+        # All of it, with the same runs, when it is asked for.
+        before = self.done()
+        self.write("small.toml", GALLERY + SMALL.replace("[study]", '[study]\nsince = "start"'))
+        self.run_study("small.toml", "--resume")
+        self.assertEqual(self.done(), before)
+        study = json.loads((self.out / "study.json").read_text())
+        self.assertEqual((study["since"], study["before"], study["at_shaking"]), (None, "excavated", True))
+        self.assertAlmostEqual(study["combinations"][1]["measures"]["slip_max_m"]["max"],
+                               max(stages[3]["damage"]["slip_max_m"] for stages in results), places=6)  # fmt: skip
 
     def test_until_an_interval_is_narrow(self):
         until = 'until = { measure = "slipped_length_m", width = 6.0, minimum = 3, maximum = 12 }\n'

@@ -49,7 +49,7 @@ const tests = {
     );
     assert.match(
       await text(page, ".verdict"),
-      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen; the opening \(tunnel\) is [\d.]+\s% filled/,
+      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen, all by the shaking; the opening \(tunnel\) is [\d.]+\s% filled/,
     );
     assert.equal(await page.locator("#verdict .attention").count(), 0);
     assert.equal(await page.locator("#quality td.attention").count(), 0);
@@ -318,6 +318,10 @@ const tests = {
 
   async "a marginal case says so and lists its moving blocks"() {
     const page = await open("marginal");
+    assert.match(
+      await text(page, ".verdict"),
+      /^5 blocks \(2\.55\sm²\) have fallen: 2 blocks \(0\.75\sm²\) before the shaking, and the shaking added 3 blocks \(1\.8\sm²\); the opening/,
+    );
     const findings = await text(page, "#verdict .findings");
     assert.match(
       findings,
@@ -357,12 +361,25 @@ const tests = {
       await text(page, "#verdict .findings"),
       /31\.7\sm of joint slipped by more than 1 mm and 11\.2\sm opened by more than 1 mm\./,
     );
+    assert.match(
+      await text(page, "#verdict .findings"),
+      /slipped by up to 73\.1 mm;[^]*In place at the end: up to 19\.6 mm/,
+    );
+    // The wall point in the crown is on a fallen block.
+    const columns = await page.$$eval("#damage thead th", (all) =>
+      all.map((e) => e.firstChild.textContent),
+    );
+    const last = await page.$$eval("#damage tbody tr:last-child > *", (all) =>
+      all.map((e) => e.innerText.trim()),
+    );
+    assert.equal(last[columns.indexOf("Closure, vertical")], "–");
+    assert.match(last[columns.indexOf("Largest slip ever")], /^73\.1/);
     await close(page);
     const still = await open("far_and_still");
     const row = await still.$$eval("#damage tbody tr:first-child td", (all) =>
       all.map((e) => e.firstChild.textContent),
     );
-    assert.deepEqual(row.slice(4, 6), ["0.013", "0.00072"]);
+    assert.deepEqual(row.slice(4, 7), ["0.013", "0.013", "0.00072"]);
     await close(still);
   },
 
@@ -385,7 +402,11 @@ const tests = {
     const columns = await page.$$eval("#damage thead th", (all) =>
       all.map((e) => e.firstChild.textContent),
     );
-    assert.deepEqual(columns, ["At the end of", "Largest slip"]);
+    assert.deepEqual(columns, [
+      "At the end of",
+      "Largest slip in place",
+      "Largest slip ever",
+    ]);
     assert.equal(await page.locator("#damage tbody tr").count(), 4);
     assert.match(
       await text(page, ".verdict"),

@@ -64,7 +64,7 @@ const tests = {
     const page = await open("killed");
     assert.match(
       await text(page, ".verdict"),
-      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen since the excavation \(tunnel\); [\d.]+ m² more are loosened\.$/,
+      /^\d+ blocks? \([\d.]+\sm²\) ha(s|ve) fallen since the excavation \(tunnel\), all by the shaking; [\d.]+ m² more are loosened\.$/,
     );
     const findings = await text(page, "#verdict .findings");
     assert.match(

@@ -52,7 +52,7 @@ const tests = {
     assert.equal(await page.title(), "Tunnel <synthetic> & shaken");
     const verdict = await text(page, ".verdict");
     const found =
-      /^With scale of first earthquake 1\.0, order 1, (\d+) of (\d+) realizations lose more than ([\d.]+)\sm² of rock \((\d+)\u2060–\u2060(\d+)\s%\)\.$/.exec(
+      /^With scale of first earthquake 1\.0, order 1, (\d+) of (\d+) realizations lose more than ([\d.]+)\sm² of rock \((\d+)\u2060–\u2060(\d+)\s%\): (\d+) of \d+ had lost more than that before the shaking, under gravity alone \(.*\), and (\d+) lose more than that by the shaking \(.*\)\.$/.exec(
         verdict,
       );
     assert.ok(found, verdict);
@@ -62,6 +62,8 @@ const tests = {
     assert.equal(Number(found[1]), own.levels[level].exceeded);
     assert.equal(Number(found[2]), own.n);
     assert.equal(Number(found[4]), Math.round(100 * own.levels[level].low));
+    assert.equal(Number(found[6]), own.before.levels[level].exceeded);
+    assert.equal(Number(found[7]), own.added.levels[level].exceeded);
     const all = await text(page, "#verdict");
     assert.match(all, /Not enough realizations: \d+ of 8 combinations/);
     assert.match(all, /13 runs failed and 2 runs of 960 are missing/);
@@ -93,8 +95,27 @@ const tests = {
     // Nothing is that severe: points, no curve, and the table says why.
     assert.equal(await count("path.curve"), 0);
     assert.equal(await count("g.point"), 8);
-    assert.match(await text(page, "#fragility table"), /never exceeded/);
+    assert.match(
+      await text(page, "#fragility table"),
+      /no curve: no run exceeds the level/,
+    );
     await close(page);
+  },
+
+  async "where there is no curve, neither the page nor its headline gives a median"() {
+    const page = await open("study_since");
+    assert.equal(await page.locator("#fragility path.curve").count(), 0);
+    assert.equal(await page.locator("#fragility g.point").count(), 2);
+    const findings = await text(page, "#verdict .findings");
+    assert.match(findings, /No fragility curve of “\w+” over PGA: /);
+    assert.doesNotMatch(findings, /Half of the realizations/);
+    await close(page);
+    const fitted = await open("study");
+    assert.match(
+      await text(fitted, "#verdict .findings"),
+      /Half of the realizations exceed “\w+” at a PGA of [\d.]+ m\/s² \([\d.]+ … [\d.]+\), order 1; β of the fragility curve is [\d.]+ \(/,
+    );
+    await close(fitted);
   },
 
   async "the selection changes curves, maps, tables and pictures"() {
@@ -121,7 +142,7 @@ const tests = {
       /^scale of first earthquake 0\.4, order 2: 60 realizations/,
     );
     await select(page, "measure", "slip_max_m");
-    assert.match(await drawing(page, "distribution", 0), /largest slip \(mm\)/);
+    assert.match(await drawing(page, "distribution", 0), /largest slip in place \(mm\)/);
     // A click on a combination chooses it.
     await page.locator("#measures button.link").first().click();
     assert.match(await text(page, "#map .chosen"), /earthquake 0\.2, order 1/);
@@ -200,7 +221,7 @@ const tests = {
     assert.equal(await page.locator("#fragility, #map, #gallery").count(), 0);
     assert.match(
       await text(page, ".verdict"),
-      /of rock falls on average of 2 realizations\.$/,
+      /^[\d.]+\sm² of rock falls on average of 2 realizations: [\d.]+\sm² before the shaking, [\d.]+\sm² by it\.$/,
     );
     assert.equal(await page.locator("#runs tbody tr").count(), 2);
     await shoot(page, "study_small-1400");
@@ -219,7 +240,7 @@ const tests = {
     );
     assert.ok(numbers.length >= 2, numbers.join());
     assert.ok(numbers[0] < at[0] && at[0] < numbers.at(-1), numbers.join());
-    assert.match(await text(page, "#fragility table"), /no curve: always/);
+    assert.match(await text(page, "#fragility table"), /no curve: every run/);
     await shoot(page, "study_one_intensity-1400");
     await close(page);
   },
@@ -228,12 +249,12 @@ const tests = {
     const page = await open("study_since");
     assert.match(
       await text(page, ".verdict"),
-      /of rock after “excavated” \(\d/,
+      /of rock by the shaking \(\d.*\); \d of 3 had lost more than that before it, under gravity alone \(\d/,
     );
     for (const id of ["map", "extremes", "gallery"])
       assert.match(
         await text(page, `#${id} .hint`),
-        /since the first excavation, not only what came after “excavated”/,
+        /since the first excavation: what gravity brought down before the shaking, too/,
       );
     assert.match(
       await text(page, "#map"),
@@ -241,12 +262,12 @@ const tests = {
     );
     assert.match(
       await text(page, "#gallery figcaption"),
-      /m² fallen after “excavated”/,
+      /m² fallen by the shaking/,
     );
     for (const id of ["distribution", "measures", "runs"])
       assert.match(
         await text(page, `#${id} .hint`),
-        /Measures are differences: .* less what was there at the end of “excavated”/,
+        /Measures are differences: .* less what was there at the end of “excavated”, the last stage before the shaking/,
       );
     assert.match(
       await text(page, "#measures caption"),

@@ -1,6 +1,9 @@
 /** What report.html carries: facts as JSON and numbers as packed arrays (src/report/page_data.h says how). */
 
-/** null: not known, as the run left no record of the end of the stage. */
+/**
+ * null: not known, as the run left no record of the end of the stage; or there is no such number, as closure while a wall point is on
+ * a fallen block. "max" and "length" are of joints in place, "ever" of those beside fallen blocks, too: the largest up to then.
+ */
 export interface Damage {
   /** Holds where the area of the fallen blocks is known. */
   fallen_blocks: number;
@@ -8,9 +11,14 @@ export interface Damage {
   opening_filled_ratio: number | null;
   loosened_area_m2: number | null;
   slip_max_m: number | null;
+  slip_max_ever_m: number | null;
   slip_mean_m: number | null;
   slipped_length_m: number | null;
+  slipped_length_ever_m: number | null;
+  opening_max_m: number | null;
+  opening_max_ever_m: number | null;
   opened_length_m: number | null;
+  opened_length_ever_m: number | null;
   closure_vertical_m: number | null;
   closure_horizontal_m: number | null;
 }

@@ -88,6 +88,10 @@ export function count(n: number, singular: string, plural = `${singular}s`): str
   return `${integer(n)} ${n === 1 ? singular : plural}`;
 }
 
+export function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
 /** "a", "a and b", "a, b and c". */
 export function list(items: readonly string[]): string {
   if (items.length < 2) return items.join("");

@@ -123,8 +123,11 @@ const measures: Measure[] = [
   { name: "Fallen area", unit: "m²", decimals: 2, of: (d) => d.fallen_area_m2 },
   { name: "Opening filled", unit: "%", decimals: 1, of: (d) => times(100, d.opening_filled_ratio) },
   { name: "Loosened area", unit: "m²", decimals: 2, of: (d) => d.loosened_area_m2 },
-  { name: "Largest slip", unit: "mm", decimals: 1, of: (d) => times(1e3, d.slip_max_m) },
+  { name: "Largest slip in place", unit: "mm", decimals: 1, of: (d) => times(1e3, d.slip_max_m) },
+  { name: "Largest slip ever", unit: "mm", decimals: 1, of: (d) => times(1e3, d.slip_max_ever_m) },
   { name: "Mean slip", unit: "mm", decimals: 2, of: (d) => times(1e3, d.slip_mean_m) },
+  { name: "Largest opening in place", unit: "mm", decimals: 1, of: (d) => times(1e3, d.opening_max_m) },
+  { name: "Largest opening ever", unit: "mm", decimals: 1, of: (d) => times(1e3, d.opening_max_ever_m) },
   { name: "Slipped joints", unit: "m", decimals: 1, of: (d) => d.slipped_length_m },
   { name: "Opened joints", unit: "m", decimals: 1, of: (d) => d.opened_length_m },
   {

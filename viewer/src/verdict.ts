@@ -1,6 +1,6 @@
 import type { Damage, Stage } from "./data";
 import type { Finding } from "./findings";
-import { count, fixed, integer, length, list, significant } from "./format";
+import { capital, count, fixed, integer, length, list, significant } from "./format";
 import { stageTime } from "./labels";
 import type { Run } from "./run";
 
@@ -63,6 +63,25 @@ function lastKnown(run: Run, measure: (damage: Damage) => number | null): number
   return k;
 }
 
+/** The last stage before the first shaking of the opening; −1 where nothing shakes it. See last_before_shaking in src/simulation. */
+function lastBeforeShaking(run: Run, excavated: number): number {
+  const first = run.stages.findIndex((s, k) => k >= excavated && s.kind === "shake");
+  return first <= 0 ? -1 : first - 1;
+}
+
+/** What came down before the shaking, and what the shaking added: ": 9 blocks (3 m²) before the shaking; …". */
+function splitAtShaking(run: Run, excavated: number, last: number): string {
+  const before = lastBeforeShaking(run, excavated);
+  if (before < 0 || before >= last) return "";
+  const [early, end] = [run.stages[before].damage, run.stages[last].damage];
+  if (end.fallen_blocks === 0) return ", neither before the shaking nor by it";
+  const blocks = end.fallen_blocks - early.fallen_blocks;
+  const area = (end.fallen_area_m2 ?? 0) - (early.fallen_area_m2 ?? 0);
+  if (early.fallen_blocks === 0) return ", all by the shaking";
+  if (blocks === 0) return ", all before the shaking, which added nothing";
+  return `: ${fallen(early.fallen_blocks, early.fallen_area_m2)} before the shaking, and the shaking added ${fallen(blocks, area)}`;
+}
+
 function damageFindings(run: Run, excavated: number): Finding[] {
   const { stages } = run;
   const openings = list(run.header.model.excavations);
@@ -73,14 +92,15 @@ function damageFindings(run: Run, excavated: number): Finding[] {
   const loosenedArea = end.loosened_area_m2 ?? 0;
   const loosened =
     loosenedArea > 0 ? `${significant(loosenedArea, 3)} m² more are loosened` : "nothing more is loosened";
+  const split = splitAtShaking(run, excavated, last);
   const filled =
     end.opening_filled_ratio === null
-      ? ` since the excavation (${openings})`
-      : `; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled`;
+      ? ` since the excavation (${openings})${split}`
+      : `${split}; the opening (${openings}) is ${fixed(100 * end.opening_filled_ratio, 1)}\u00a0% filled`;
   const verdict =
     end.fallen_blocks > 0
       ? `${fallen(end.fallen_blocks, end.fallen_area_m2)} ${end.fallen_blocks === 1 ? "has" : "have"} fallen${filled}; ${loosened}.`
-      : `No block has fallen since the excavation (${openings}); ${loosened.replace(" more", "")}.`;
+      : `No block has fallen since the excavation (${openings})${split}; ${loosened.replace(" more", "")}.`;
   const result: Finding[] = [{ grade: "plain", text: verdict }];
   const parts: string[] = [];
   for (let k = excavated; k <= last; k++) {
@@ -98,19 +118,23 @@ function damageFindings(run: Run, excavated: number): Finding[] {
 }
 
 function slipFindings(run: Run): Finding[] {
-  const k = lastKnown(run, (d) => d.slip_max_m);
+  const k = lastKnown(run, (d) => d.slip_max_ever_m);
   const end = run.stages[k]?.damage;
-  if (!end || !((end.slip_max_m ?? 0) > 0)) return [];
+  if (!end || !((end.slip_max_ever_m ?? 0) > 0)) return [];
   const { slip_limit_m: slip, opening_limit_m: opening } = run.header.model;
   const beyond = (limit: number | null) =>
     limit === null ? " beyond the limit" : ` by more than ${length(limit)}`;
-  const slipped = `${significant(end.slipped_length_m, 3)}\u00a0m of joint slipped${beyond(slip)} and ${significant(end.opened_length_m, 3)}\u00a0m opened${beyond(opening)}`;
+  const slipped = `${significant(end.slipped_length_ever_m, 3)}\u00a0m of joint slipped${beyond(slip)} and ${significant(end.opened_length_ever_m, 3)}\u00a0m opened${beyond(opening)}`;
   const when =
     k < run.stages.length - 1 ? `By the end of ${quoted(run.stages[k].name)} joints had` : "Joints";
+  const left =
+    end.fallen_blocks > 0
+      ? ` In place at the end: up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}).`
+      : ` In the end the mean is ${length(end.slip_mean_m)}.`;
   return [
     {
       grade: "plain",
-      text: `${when} slipped by up to ${length(end.slip_max_m)} (mean ${length(end.slip_mean_m)}); ${slipped}.`,
+      text: `${when} slipped by up to ${length(end.slip_max_ever_m)}; ${slipped}.${left}`,
     },
   ];
 }
@@ -239,8 +263,4 @@ function leftOver(stage: Stage): string {
     ...(stage.equilibrium_reached ? [] : ["no equilibrium"]),
     ...(moving > 0 ? [`${count(moving, "block")} still moving`] : []),
   ].join(", ");
-}
-
-function capital(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
 }

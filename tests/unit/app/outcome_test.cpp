@@ -32,7 +32,7 @@ RunRecord settled_and_shaken() {
   shaken.pga = 1.25;
   shaken.damage.fallen_blocks = 12;
   shaken.damage.fallen_area = 3.5;
-  shaken.damage.slip_max = 0.0125;
+  shaken.damage.slip_max_ever = 0.0125;
   shaken.damage.opening_filled_ratio = 0.147;
   run.stages = {settled, shaken};
   return run;
@@ -47,6 +47,18 @@ TEST(OutcomeText, OneAlignedRowPerStage) {
   EXPECT_THAT(text, HasSubstr("\nfirst earthquake   1880    3.76      1.25      12       3.50"));
   EXPECT_THAT(text, HasSubstr("      14.7    12.50\n"));
   EXPECT_THAT(text, Not(HasSubstr("note:")));
+}
+
+TEST(OutcomeText, GravityIsNotTheEarthquake) {
+  RunRecord run = settled_and_shaken();
+  run.stages[0].stage.excavate = {0};
+  run.stages[0].damage.fallen_blocks = 1;
+  run.stages[0].damage.fallen_area = 0.75;
+  EXPECT_THAT(
+      outcome_text(run, 9),
+      HasSubstr("fallen before the shaking: 1 block (0.75 m2); the shaking added 11 blocks (2.75 m2)\n"));
+  run.stages[1].stage.kind = StageKind::rest;
+  EXPECT_THAT(outcome_text(run, 9), Not(HasSubstr("before the shaking")));
 }
 
 TEST(OutcomeText, SaysWhatToBeWaryOf) {

@@ -319,7 +319,7 @@ class Wall {
       if (options_.excavation)
         stage.damage = damage_at(k);
       else
-        stage.damage.slip_max = 1e-3 * static_cast<double>(k);
+        stage.damage.slip_max = stage.damage.slip_max_ever = 1e-3 * static_cast<double>(k);
       if (plan.kind == StageKind::shake) add_motion(stage);
       record.steps += stage.steps;
       record.wall_time += stage.wall_time;
@@ -337,7 +337,7 @@ class Wall {
   [[nodiscard]] simulation::Damage damage_at(std::size_t stage) const {
     simulation::Damage damage;
     if (stage >= 1) {
-      damage.slip_max = 4.0e-4;
+      damage.slip_max = damage.slip_max_ever = 4.0e-4;
       damage.slip_mean = 2.1e-5;
       damage.closure_vertical = 1.2e-3;
       damage.closure_horizontal = 6.0e-4;
@@ -352,11 +352,17 @@ class Wall {
       if (s == BlockStatus::loosened) damage.loosened_area += run_.model.blocks[b].area;
     }
     damage.opening_filled_ratio = damage.fallen_area / (opening_.size().x * opening_.size().y);
+    // Blocks fell, and the crown with them.
     damage.slip_max = 0.0196;
+    damage.slip_max_ever = 0.0731;
     damage.slip_mean = 0.0021;
-    damage.slipped_length = 31.7;
-    damage.opened_length = 9.4 + 0.6 * static_cast<double>(stage);
-    damage.closure_vertical = 14.3e-3;
+    damage.slipped_length = 27.3;
+    damage.slipped_length_ever = 31.7;
+    damage.opening_max = 0.0052;
+    damage.opening_max_ever = 0.0384;
+    damage.opened_length = 6.1;
+    damage.opened_length_ever = 9.4 + 0.6 * static_cast<double>(stage);
+    damage.closure_vertical = std::nan("");
     damage.closure_horizontal = -2.1e-3;
     return damage;
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simulation/damage_fields.h"
+
 namespace keyblock::results {
 namespace {
 
@@ -158,12 +160,8 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
     EXPECT_EQ(a.moving[k].group, b.moving[k].group);
   }
   EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
-  using D = simulation::Damage;
-  for (const auto member :
-       {&D::fallen_area, &D::opening_filled_ratio, &D::loosened_area, &D::slip_max, &D::slip_mean,
-        &D::slipped_length, &D::opened_length, &D::closure_vertical, &D::closure_horizontal}) {
-    EXPECT_TRUE(same(a.damage.*member, b.damage.*member));
-  }
+  for (const auto& [name, member] : simulation::damage_fields)
+    EXPECT_TRUE(same(a.damage.*member, b.damage.*member)) << name;
   EXPECT_TRUE(same(a.wall_time, b.wall_time));
   EXPECT_EQ(a.interrupted, b.interrupted);
   EXPECT_EQ(a.motion_time, b.motion_time);
@@ -296,7 +294,10 @@ simulation::StageRecord SampleRun::stage(int index) {
   record.worst_residual_ratio = index == 0 ? 0.1 / 3.0 : std::nan("");
   if (index == 0) record.moving = {{2, 0.7, 1}};
   if (index == 0) record.way = 0.25, record.way_share = 0.1 / 3.0;
-  record.damage = {index, noise(index, 1), 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, -0.7, 1e-17};
+  record.damage.fallen_blocks = index;
+  double value = noise(index, 1);
+  for (const auto& [name, member] : simulation::damage_fields) record.damage.*member = value *= -0.7;
+  record.damage.closure_horizontal = 1e-17;
   record.wall_time = 1.0 / 3.0;
   return record;
 }

@@ -47,8 +47,9 @@ TEST(Summary, HasEveryFieldOfTheContract) {
       EXPECT_TRUE(stage["equilibrium"].contains(key)) << key;
     }
     for (const char* key : {"fallen_blocks", "fallen_area_m2", "opening_filled_ratio", "loosened_area_m2",
-                            "slip_max_m", "slip_mean_m", "slipped_length_m", "opened_length_m",
-                            "closure_vertical_m", "closure_horizontal_m"}) {
+                            "slip_max_m", "slip_max_ever_m", "slip_mean_m", "slipped_length_m",
+                            "slipped_length_ever_m", "opening_max_m", "opening_max_ever_m", "opened_length_m",
+                            "opened_length_ever_m", "closure_vertical_m", "closure_horizontal_m"}) {
       EXPECT_TRUE(stage["damage"].contains(key)) << key;
     }
   }

@@ -106,6 +106,33 @@ TEST(Damage, ClosureStaysWhereAWallIsExcavated) {
   EXPECT_EQ(gauge.measure(simulator.state).closure_horizontal, 0.0);  // no walls at the sides
 }
 
+// The crown of a heading falls: where its wall was, nobody knows.
+TEST(Damage, NoClosureOnAFallenBlock) {
+  Scene scene(1e9, 30.0);
+  scene.setup.excavations = {{"heading", {{0.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {0.0, 2.0}}},
+                             {"bench", {{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}}};
+  scene.rectangle({0.0, 0.0}, 2.0, 1.0);
+  scene.rectangle({0.0, 2.0}, 2.0, 1.0);
+  Simulator simulator(scene);
+  DamageGauge gauge(scene.setup, simulator.model);
+  const auto sink_crown = [&](double by) {
+    const dynamics::Block& crown = simulator.model.blocks[1];
+    simulator.state.position[crown.first + 1] -= by * std::sqrt(crown.area);
+  };
+  const std::vector<int> heading{0}, bench{1};
+  gauge.open(heading, simulator.state);
+  gauge.start(simulator.state, {});
+  sink_crown(0.09);  // a fall begins at 0.1 m
+  EXPECT_NEAR(gauge.measure(simulator.state).closure_vertical, 0.09, 1e-12);
+  sink_crown(0.02);
+  ASSERT_EQ(gauge.measure(simulator.state).fallen_blocks, 1);
+  EXPECT_TRUE(std::isnan(gauge.measure(simulator.state).closure_vertical));
+  gauge.open(bench, simulator.state);
+  simulator.model.surface.present[0] = 0;
+  EXPECT_TRUE(std::isnan(gauge.measure(simulator.state).closure_vertical));
+  EXPECT_EQ(gauge.measure(simulator.state).closure_horizontal, 0.0);
+}
+
 // Down is where gravity pulls, as on a slope that is given by a gravity that leans.
 TEST(Damage, BlocksFallAlongGravity) {
   for (const Vec2 gravity : {Vec2{0.0, -g}, Vec2{g, 0.0}, Vec2{-g, g}, Vec2{}}) {

@@ -171,7 +171,7 @@ TEST(Run, ResumesBeforeAnythingIsExcavated) {
   options.directory = folder;
   options.stop = &stopper.stop;
   ASSERT_TRUE(run(setup, options, stopper).interrupted);
-  ASSERT_TRUE(read_checkpoint(folder, setup).damage.start.empty());
+  ASSERT_TRUE(read_checkpoint(folder, setup).damage.reference.start.empty());
   options.stop = nullptr;
   options.resume = true;
   EXPECT_EQ(run(setup, options, nobody).state_hash, whole.state_hash);

@@ -101,7 +101,7 @@ TEST(Fragility, UnitsOfIntensityDoNotMatter) {
 
 TEST(Fragility, RecoversWhatDataWereMadeFrom) {
   const std::vector<Observation> runs = made_up(5, 2000, scales, 1.5, 0.5, 0.5);
-  const FragilityCurve curve = fragility_curve(runs, scales, 0.95, 200);
+  const FragilityCurve curve = fragility_curve(runs, scales, 0.95, {}, 200);
   EXPECT_NEAR(curve.theta.value, 1.5, 0.05);
   EXPECT_NEAR(curve.beta.value, 0.5, 0.05);
   EXPECT_LT(curve.theta.low, curve.theta.value);
@@ -124,12 +124,12 @@ TEST(Fragility, BootstrapOverRealizationsCovers) {
   for (int t = 0; t < trials; ++t) {
     std::vector<Observation> runs =
         made_up(static_cast<std::uint64_t>(100 + t), 50, scales, theta, beta, 0.15);
-    const FragilityCurve curve = fragility_curve(runs, {}, 0.9, 150);
+    const FragilityCurve curve = fragility_curve(runs, {}, 0.9, {}, 150);
     covered += curve.theta.low <= theta && theta <= curve.theta.high ? 1 : 0;
     width += curve.theta.high - curve.theta.low;
     int cluster = 0;
     for (Observation& run : runs) run.cluster = cluster++;
-    const FragilityCurve naive = fragility_curve(runs, {}, 0.9, 150);
+    const FragilityCurve naive = fragility_curve(runs, {}, 0.9, {}, 150);
     naive_width += naive.theta.high - naive.theta.low;
   }
   EXPECT_GT(covered, 0.82 * trials);
@@ -163,21 +163,99 @@ TEST(Fragility, SaysWhyThereIsNoCurve) {
   EXPECT_EQ(fit_fragility(Stripes{{1, 10, 8}, {2, 10, 3}}).probability(7.0), 0.55);
 }
 
-TEST(Fragility, NoBandWhereThereIsNoFitOrOneRealization) {
-  const std::vector<double> at{1.0, 2.0};
-  std::vector<Observation> runs{{1.0, false, 1}, {2.0, false, 1}, {1.0, false, 2}, {2.0, false, 2}};
-  const FragilityCurve never = fragility_curve(runs, at, 0.95);
-  EXPECT_EQ(never.fit.status, FragilityStatus::never_exceeded);
-  EXPECT_EQ(never.probability[0].value, 0.0);
-  EXPECT_TRUE(std::isnan(never.probability[0].high));
-  EXPECT_TRUE(std::isnan(never.theta.low));
+/// Realizations that exceed the level at so many of the strongest intensities: counts[k] of them at k of these.
+std::vector<Observation> exceeding(const std::vector<int>& counts, const std::vector<double>& intensities) {
+  std::vector<Observation> runs;
+  int realization = 0;
+  for (std::size_t often = 0; often < counts.size(); ++often) {
+    for (int k = 0; k < counts[often]; ++k, ++realization) {
+      for (std::size_t i = 0; i < intensities.size(); ++i)
+        runs.push_back({intensities[i], i + often >= intensities.size(), realization});
+    }
+  }
+  return runs;
+}
+
+const std::vector<double> three{3.5, 6.9, 10.3};
+
+FragilityCurve curve_of(const std::vector<Observation>& runs) {
+  return fragility_curve(runs, three, 0.95);
+}
+
+void expect_no_curve(const FragilityCurve& curve, FragilityStatus why) {
+  EXPECT_EQ(curve.status, why);
+  EXPECT_TRUE(curve.intensity.empty());
+  EXPECT_TRUE(curve.probability.empty());
+  EXPECT_EQ(curve.stripes.size(), 3U);  // the points are there
+}
+
+TEST(Fragility, NothingIsDrawnWhereThereIsNoFit) {
+  const FragilityCurve never = curve_of(exceeding({20}, three));
+  expect_no_curve(never, FragilityStatus::never_exceeded);
   EXPECT_TRUE(std::isnan(never.theta.value));
-  for (Observation& run : runs) run.exceeded = true;
-  const FragilityCurve always = fragility_curve(runs, at, 0.95);
-  EXPECT_EQ(always.fit.status, FragilityStatus::always_exceeded);
+  EXPECT_TRUE(std::isnan(never.theta.low));
+  const FragilityCurve always = curve_of(exceeding({0, 0, 0, 20}, three));
+  expect_no_curve(always, FragilityStatus::always_exceeded);
   EXPECT_TRUE(std::isnan(always.theta.value));
-  EXPECT_EQ(fragility_curve({}, at, 0.95).fit.status, FragilityStatus::no_data);
-  EXPECT_TRUE(std::isnan(fragility_curve({}, at, 0.95).probability[0].value));
+  EXPECT_EQ(fragility_curve({}, three, 0.95).status, FragilityStatus::no_data);
+}
+
+// One failure in sixty runs: no step to 1, no median.
+TEST(Fragility, OneFailureIsNoCurve) {
+  const FragilityCurve curve = curve_of(exceeding({19, 1}, three));
+  expect_no_curve(curve, FragilityStatus::separated);
+  EXPECT_TRUE(std::isnan(curve.theta.value));
+  EXPECT_TRUE(std::isnan(curve.beta.value));
+  EXPECT_EQ(curve.stripes[2].exceeded, 1.0);
+}
+
+// Nine of twenty fall by gravity at any shaking, three more by the shaking: θ and β could be anything.
+TEST(Fragility, AnIntervalThatSpansTooMuchIsNoCurve) {
+  const FragilityCurve gravity = curve_of(exceeding({8, 2, 1, 9}, three));
+  EXPECT_EQ(gravity.fit.status, FragilityStatus::fitted);
+  expect_no_curve(gravity, FragilityStatus::wide_theta);
+  EXPECT_GT(gravity.theta.high, 4.0 * gravity.theta.low);
+  const FragilityCurve shaking = curve_of(exceeding({10, 6, 4}, three));
+  EXPECT_LE(shaking.theta.high, 4.0 * shaking.theta.low);
+  // With more realizations of the same rock it is a curve.
+  const std::vector<Observation> runs = exceeding({100, 60, 30, 10}, three);
+  const FragilityCurve many = curve_of(runs);
+  EXPECT_EQ(many.status, FragilityStatus::fitted);
+  EXPECT_EQ(many.probability.size(), 3U);
+  FragilityLimits strict;
+  strict.widest_theta = (1.0 - 1e-9) * many.theta.high / many.theta.low;
+  EXPECT_EQ(fragility_curve(runs, three, 0.95, strict).status, FragilityStatus::wide_theta);
+  strict.widest_theta *= 1.0 + 1e-6;
+  EXPECT_EQ(fragility_curve(runs, three, 0.95, strict).status, FragilityStatus::fitted);
+  strict.widest_beta = (1.0 - 1e-9) * many.beta.high / many.beta.low;
+  EXPECT_EQ(fragility_curve(runs, three, 0.95, strict).status, FragilityStatus::wide_beta);
+}
+
+// A resample without a fit is not left out: nearly every second one of these is a step, so that β may be 0.
+TEST(Fragility, ResamplesWithoutAFitCount) {
+  const FragilityCurve steep = curve_of(exceeding({1, 0, 18, 1}, three));
+  EXPECT_EQ(steep.fit.status, FragilityStatus::fitted);
+  EXPECT_LT(steep.resamples_fitted, 800U);
+  EXPECT_EQ(steep.beta.low, 0.0);
+  expect_no_curve(steep, FragilityStatus::wide_beta);
+}
+
+TEST(Fragility, FewerRealizationsThanABootstrapNeedsAreNoCurve) {
+  expect_no_curve(curve_of(exceeding({1, 1, 1, 1}, three)), FragilityStatus::too_few_clusters);
+}
+
+// P(0) = 0: what falls without shaking is not on such a curve.
+TEST(Fragility, AShareWithoutShakingIsNoCurve) {
+  const auto with_rest = [](int exceeded, int n) {
+    std::vector<Observation> runs = exceeding({100, 60, 30, 10}, three);
+    for (int k = 0; k < n; ++k) runs.push_back({0.0, k < exceeded, k});
+    return curve_of(runs);
+  };
+  EXPECT_EQ(with_rest(0, 20).status, FragilityStatus::fitted);
+  EXPECT_EQ(with_rest(1, 20).status, FragilityStatus::fitted);
+  expect_no_curve(with_rest(2, 20), FragilityStatus::exceeded_at_rest);
+  EXPECT_EQ(with_rest(2, 20).at_rest.exceeded, 2.0);
+  EXPECT_EQ(with_rest(2, 20).at_rest.runs, 20.0);
 }
 
 TEST(Fragility, StripesKnowTheirClusters) {
@@ -191,10 +269,12 @@ TEST(Fragility, StripesKnowTheirClusters) {
 
 TEST(Fragility, RunsWithoutShakingAreLeftOutAndCounted) {
   std::vector<Observation> runs = made_up(9, 30, scales, 1.3, 0.6, 0.6);
-  const FragilityCurve without = fragility_curve(runs, {}, 0.95, 50);
-  runs.push_back({0.0, true, 3});
-  const FragilityCurve with = fragility_curve(runs, {}, 0.95, 50);
-  EXPECT_EQ(with.left_out, 1U);
+  const FragilityCurve without = fragility_curve(runs, {}, 0.95, {}, 50);
+  runs.push_back({0.0, false, 3});
+  runs.push_back({0.0, false, 3});
+  const FragilityCurve with = fragility_curve(runs, {}, 0.95, {}, 50);
+  EXPECT_EQ(with.at_rest.runs, 2.0);
+  EXPECT_EQ(with.at_rest.clusters, 1.0);
   EXPECT_EQ(with.theta.value, without.theta.value);
   EXPECT_EQ(with.theta.low, without.theta.low);
 }

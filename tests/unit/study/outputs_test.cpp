@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -64,6 +65,7 @@ TEST_F(Outputs, RunsCsvHasARowPerRun) {
   study.runs[0].values[1] = "\"stiff, soft\"";
   study.runs[1].error = "line one\nand \"two\"";
   study.runs[0].stages[1].damage.fallen_area = 0.1 + 0.2;
+  study.runs[0].stages[1].damage.closure_vertical = std::nan("");
   const auto rows = parse_csv(runs_csv(study, summarize(study)));
   ASSERT_EQ(rows.size(), study.runs.size() + 1);
   const auto& header = rows[0];
@@ -88,12 +90,13 @@ TEST_F(Outputs, RunsCsvHasARowPerRun) {
   ASSERT_GE(header.size(), first.size());
   EXPECT_EQ(std::vector<std::string>(header.begin(), header.begin() + static_cast<long>(first.size())),
             first);
-  EXPECT_EQ(header.size(), 14U + 3U * 13U);
+  EXPECT_EQ(header.size(), 14U + 3U * (3U + measures().size()));
   for (const auto& row : rows) EXPECT_EQ(row.size(), header.size());
   EXPECT_EQ(rows[1][column(header, "rock.order")], "stiff, soft");
   EXPECT_EQ(rows[2][column(header, "error")], "line one\nand \"two\"");
   EXPECT_EQ(rows[2][column(header, "status")], "failed");
   EXPECT_EQ(rows[1][column(header, "first earthquake.fallen_area_m2")], "0.30000000000000004");
+  EXPECT_EQ(rows[1][column(header, "first earthquake.closure_vertical_m")], "");
   const std::size_t failed = column(header, "status");
   for (std::size_t r = 1; r < rows.size(); ++r) {
     if (rows[r][failed] == "failed" && study.runs[r - 1].stages.empty()) {
@@ -127,6 +130,11 @@ TEST_F(Outputs, StudyJsonSaysWhatTheStatisticsAre) {
   const auto& curve = json["fragility"][0];
   EXPECT_EQ(curve["values"], (nlohmann::json{nullptr, "1"}));
   EXPECT_EQ(curve["status"], "fitted");
+  EXPECT_EQ(curve["why"], nullptr);
+  EXPECT_EQ(json["before"], "excavated");
+  EXPECT_EQ(json["at_shaking"], true);
+  EXPECT_EQ(c["before"]["levels"][0]["exceeded"], summary.combinations[6].before->levels[0].exceeded);
+  EXPECT_EQ(c["added"]["measures"]["fallen_area_m2"]["n"], c["n"]);
   EXPECT_EQ(curve["points"]["n"].size(), 4U);
   EXPECT_EQ(curve["curve"]["low"].size(), curve["curve"]["intensity"].size());
   EXPECT_FALSE(json["failed"].empty());
@@ -146,7 +154,26 @@ TEST_F(Outputs, StudyJsonKeepsCoordinatesWholeAndTheRestShort) {
   EXPECT_EQ(json["fragility"][0]["status"], "always_exceeded");
   EXPECT_EQ(json["fragility"][0]["theta"]["value"], nullptr);
   EXPECT_EQ(json["fragility"][0]["points"]["realizations"][0], 6);
+  EXPECT_TRUE(json["fragility"][0]["curve"]["intensity"].empty());
+  EXPECT_EQ(json["fragility"][0]["why"], "every run exceeds the level");
   EXPECT_EQ(json["precision"]["reached"], true);
+}
+
+// Four realizations have a fit, but no interval of it: neither the curve nor its parameters are told.
+TEST_F(Outputs, StudyJsonHasNoParametersWithoutACurve) {
+  const StudyData study = made_up::synthetic_study({.realizations = 4, .variants = false, .failures = false});
+  const Summary summary = summarize(study);
+  const auto json = nlohmann::json::parse(study_json(study, summary));
+  const auto refused = std::find_if(summary.fragility.begin(), summary.fragility.end(), [](const auto& g) {
+    return g.curve.status == statistics::FragilityStatus::too_few_clusters;
+  });
+  ASSERT_NE(refused, summary.fragility.end());
+  EXPECT_FALSE(std::isnan(refused->curve.theta.value));
+  const auto& curve = json["fragility"][static_cast<std::size_t>(refused - summary.fragility.begin())];
+  EXPECT_EQ(curve["status"], "too_few_realizations");
+  EXPECT_EQ(curve["theta"]["value"], nullptr);
+  EXPECT_EQ(curve["beta"]["value"], nullptr);
+  EXPECT_EQ(curve["points"]["probability"].size(), 4U);
 }
 
 TEST_F(Outputs, SameStudySameBytes) {

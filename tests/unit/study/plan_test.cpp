@@ -92,6 +92,38 @@ TEST(Plan, KeepsPlaces) {
   }
 }
 
+// Without a word of the user, what gravity alone brought down is not counted as brought down by the shaking.
+TEST(Plan, MeasuresBeginBeforeTheShaking) {
+  EXPECT_EQ(plan_of().since, "excavated");
+  EXPECT_EQ(plan_of({"study.since=start"}).since, "");
+  EXPECT_EQ(plan_of({"study.since=start"}).before_shaking, "excavated");
+  EXPECT_EQ(plan_of({"study.since='in situ'"}).since, "in situ");
+  // Nothing to begin after: the measured stage is before the shaking, or there is no shaking.
+  EXPECT_EQ(plan_of({"study.stage=excavated"}).since, "");
+  EXPECT_EQ(plan_of({"study.stage=excavated"}).before_shaking, "");
+  const Plan still = plan_of({"stage.shaken={name='shaken', kind='rest', duration=0.1}", "study.vary=[]"});
+  EXPECT_EQ(still.since, "");
+}
+
+TEST(Plan, AStageThatIsNamedLikeTheWordForTheStart) {
+  const auto since = [](const std::string& name) {
+    return plan_of({"stage.'in situ'.name='start'", "study.since='" + name + "'"}).since;
+  };
+  EXPECT_EQ(since("excavated"), "excavated");
+  try {
+    since("start");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("\"start\", which is the name of a [[stage]] as well"));
+  }
+  try {
+    plan_of({"study.since=nowhere"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("\"start\" or the name of a [[stage]]: \"in situ\""));
+  }
+}
+
 TEST(Plan, MeasuresBeginBeforeTheyEnd) {
   EXPECT_EQ(plan_of({"study.since=excavated"}).since, "excavated");
   EXPECT_THROW(plan_of({"study.since=after"}), InputError);
@@ -104,12 +136,23 @@ TEST(Plan, TooManyRuns) {
 }
 
 TEST(Plan, VariantsMultiplyTheRuns) {
-  const Plan plan = plan_of({"study.marginal={}"});
+  const Plan plan = plan_of({"study.marginal={}", "study.since=start"});
   ASSERT_EQ(plan.runs.size(), 3U * 2U * 4U);
   EXPECT_EQ(plan.runs[3].variant, "released");
   EXPECT_EQ(keys_of(plan)[0], keys_of(plan_of())[0]);  // the run itself is the same
   EXPECT_NE(keys_of(plan)[1], keys_of(plan_of({"study.marginal.friction=5"}))[1]);
-  EXPECT_EQ(keys_of(plan)[3], keys_of(plan_of({"study.marginal.friction=5"}))[3]);
+  EXPECT_EQ(keys_of(plan)[3], keys_of(plan_of({"study.marginal.friction=5", "study.since=start"}))[3]);
+}
+
+// An immediate release leaves out the stage at whose end measures begin.
+TEST(Plan, SaysThatThereIsNoRelease) {
+  std::vector<std::string> warnings;
+  const Plan plan = make_plan(gallery_file, {"study.marginal={}"}, "1.2.3", &warnings);
+  EXPECT_EQ(plan.runs.size(), 3U * 2U * 3U);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("no variant \"released\", as it leaves out the stage \"excavated\""));
+  make_plan(gallery_file, {"study.marginal={}", "study.since=start"}, "1.2.3", &warnings);
+  EXPECT_TRUE(warnings.empty());
 }
 
 TEST(Plan, IsReadAsItWasWritten) {

@@ -4,29 +4,13 @@
 
 #include <cmath>
 
+#include "made_run.h"
+#include "simulation/damage_fields.h"
 #include "statistics/proportion.h"
 #include "synthetic_study.h"
 
 namespace keyblock::study {
 namespace {
-
-/// A run of one combination with one shaken stage.
-RunResult made_run(int realization, std::vector<std::string> values, double pga, double fallen,
-                   std::string variant = "") {
-  RunResult run;
-  run.key = "r" + std::to_string(realization) + values[0] + variant;
-  run.realization = realization;
-  run.values = std::move(values);
-  run.variant = std::move(variant);
-  StageMeasures quiet, shake;
-  quiet.name = "excavated";
-  shake.name = "quake";
-  shake.kind = simulation::StageKind::shake;
-  shake.pga = pga;
-  shake.damage.fallen_area = fallen;
-  run.stages = {quiet, shake};
-  return run;
-}
 
 StudyData small() {
   StudyData study;
@@ -110,32 +94,23 @@ TEST(Summaries, MeasuresMayBeginLater) {
   EXPECT_FALSE(measured(study, run).damage);
 }
 
-// An axis is one of shaking by what it does, not only by its name; curves go through all others apart.
-TEST(Summaries, FragilityGroupsDifferInShakingAlone) {
-  StudyData study;
-  study.axes = {{"joints.friction", {"30", "40"}}, {"motion.m.window", {"[0, 1]", "[0, 2]", "[0, 3]"}}};
-  study.levels = {{"any", "fallen_area_m2", 0.1}, {"unknown", "no_such_measure", 0.1}};
-  for (int r = 0; r < 40; ++r)
-    for (const char* friction : {"30", "40"})
-      for (int w = 0; w < 3; ++w)
-        study.runs.push_back(made_run(r, {friction, study.axes[1].values[static_cast<std::size_t>(w)]},
-                                      1.0 + w,
-                                      (r * 7 % 40) < 8 + 10 * w + (friction[0] == '3' ? 5 : 0) ? 1.0 : 0.0));
-  const Summary summary = summarize(study);
-  EXPECT_EQ(summary.shaking_axis, (std::vector<bool>{false, true}));
-  ASSERT_EQ(summary.fragility.size(), 6U);  // 1 level, 3 intensities, 2 groups
-  const FragilityGroup& weak = summary.fragility[0];
-  EXPECT_EQ(weak.values, (std::vector<std::string>{"30", ""}));
-  EXPECT_EQ(weak.combinations, (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_EQ(weak.curve.fit.status, statistics::FragilityStatus::fitted);
-  EXPECT_EQ(weak.curve.clusters, 40U);
-  ASSERT_EQ(weak.points.size(), 3U);
-  EXPECT_DOUBLE_EQ(weak.points[0].value, 13.0 / 40.0);
-  EXPECT_LT(weak.curve.theta.value, summary.fragility[1].curve.theta.value);
-  EXPECT_FALSE(weak.curve.intensity.empty());
-  // PGV was zero everywhere: no curve, and it says why.
-  EXPECT_EQ(summary.fragility[2].curve.fit.status, statistics::FragilityStatus::no_data);
-  EXPECT_EQ(summary.fragility[2].curve.left_out, 120U);
+TEST(Summaries, WhatTheShakingAddsIsToldFromWhatWasThereBefore) {
+  StudyData study = shaken({3.0, 2.0, 0.0, 0.0}, {{0, 0, 0}, {0, 0, 1.5}, {0, 1.5, 2}, {0.4, 0.5, 0.6}});
+  for (const char* since : {"excavated", ""}) {
+    study.since = since;
+    const Summary summary = summarize(study);
+    const Combination& c = summary.combinations[2];
+    ASSERT_TRUE(c.before && c.added);
+    EXPECT_EQ(c.before->levels[0].exceeded, 2U);
+    EXPECT_EQ(c.added->levels[0].exceeded, 2U);
+    EXPECT_EQ(c.levels[0].exceeded, study.since.empty() ? 3U : 2U);
+    EXPECT_EQ(c.before->levels[0].probability.high, statistics::proportion(2, 4, 0.95).high);
+    const std::size_t area = *find_measure("fallen_area_m2");
+    EXPECT_DOUBLE_EQ(c.before->measures[area].mean.value, 1.25);
+    EXPECT_DOUBLE_EQ(c.added->measures[area].mean.value, 4.1 / 4.0);
+  }
+  study.since = study.before = "";
+  EXPECT_FALSE(summarize(study).combinations[2].before);
 }
 
 TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {
@@ -191,50 +166,6 @@ TEST(Summaries, NotMarginalOnlyWhenAllVariantsWereMeasured) {
   EXPECT_EQ(summary.combinations[0].checked, 2U);
 }
 
-// A curve goes through shakings of one rock: what changes both is no axis of shaking.
-TEST(Summaries, AnAxisThatChangesTheRockIsNoneOfShaking) {
-  const auto shaking = [](Axis axis) {
-    StudyData study;
-    study.axes = {std::move(axis)};
-    study.levels = {{"any", "fallen_area_m2", 0.1}};
-    for (int r = 0; r < 4; ++r) {
-      study.runs.push_back(made_run(r, {"1"}, 1.0, 0.0));
-      study.runs.push_back(made_run(r, {"2"}, 2.0, 1.0));
-    }
-    const Summary summary = summarize(study);
-    EXPECT_EQ(summary.fragility.empty(), !summary.shaking_axis[0]);
-    return static_cast<bool>(summary.shaking_axis[0]);
-  };
-  EXPECT_TRUE(shaking({"stage.quake.duration", {"1", "2"}}));
-  EXPECT_TRUE(shaking({"motion.'m'.x.amplitude", {"1", "2"}}));
-  EXPECT_TRUE(shaking({"stage[1].scale", {"1", "2"}}));
-  EXPECT_FALSE(shaking({"section.azimuth", {"1", "2"}}));
-  EXPECT_FALSE(shaking({"stages.scale", {"1", "2"}}));
-  EXPECT_TRUE(shaking({"stage.a.scale + stage.b.scale", {"1", "2"}, {"stage.a.scale", "stage.b.scale"}}));
-  EXPECT_FALSE(shaking({"rock.order + stage.a.scale", {"1", "2"}, {"rock.order", "stage.a.scale"}}));
-}
-
-// Shaken twice at the same intensity, ten realizations are still ten.
-TEST(Summaries, PointsCountRealizationsNotRuns) {
-  StudyData study;
-  study.axes = {{"stage.quake.motion", {"'a'", "'b'", "'c'"}}};
-  study.levels = {{"any", "fallen_area_m2", 0.1}};
-  for (int r = 0; r < 10; ++r) {
-    study.runs.push_back(made_run(r, {"'a'"}, 1.0, r < 5 ? 1.0 : 0.0));
-    study.runs.push_back(made_run(r, {"'b'"}, 1.0, r < 5 ? 1.0 : 0.0));
-    study.runs.push_back(made_run(r, {"'c'"}, 2.0, r < 8 ? 1.0 : 0.0));
-  }
-  const Summary summary = summarize(study);
-  const FragilityGroup& group = summary.fragility.at(0);
-  ASSERT_EQ(group.points.size(), 2U);
-  EXPECT_EQ(group.curve.stripes[0].runs, 20.0);
-  const statistics::Estimate ten = statistics::proportion(5, 10, study.confidence);
-  EXPECT_DOUBLE_EQ(group.points[0].value, 0.5);
-  EXPECT_DOUBLE_EQ(group.points[0].low, ten.low);
-  EXPECT_DOUBLE_EQ(group.points[0].high, ten.high);
-  EXPECT_DOUBLE_EQ(group.points[1].low, statistics::proportion(8, 10, study.confidence).low);
-}
-
 // What is taken off leaves no noise: equal gains are equal, and have no spread.
 TEST(Summaries, EqualDifferencesAreOneValue) {
   StudyData study;
@@ -283,10 +214,32 @@ TEST(Summaries, CombinationsFollowTheAxes) {
   EXPECT_GT(mean(6), mean(7));
 }
 
+// A wall point on a fallen block: of that run closure is not known.
+TEST(Summarize, RunsWithoutAMeasureAreNoPartOfItsSample) {
+  StudyData study = made_up::synthetic_study({.realizations = 8});
+  study.levels = {{"closed", "closure_vertical_m", 0.0}};
+  const std::size_t m = *find_measure("closure_vertical_m");
+  const Summary before = summarize(study);
+  study.runs[0].stages.back().damage.closure_vertical = std::nan("");
+  const Summary summary = summarize(study);
+  const Combination& c = summary.combinations[static_cast<std::size_t>(summary.combination_of[0])];
+  const Combination& whole = before.combinations[static_cast<std::size_t>(summary.combination_of[0])];
+  EXPECT_EQ(c.measures[m].description.n, whole.measures[m].description.n - 1);
+  EXPECT_TRUE(std::isfinite(c.measures[m].description.mean.value));
+  EXPECT_EQ(c.measures[m].running.n.back(), whole.measures[m].running.n.back() - 1);
+  EXPECT_EQ(c.measures[0].description.n, whole.measures[0].description.n);
+  EXPECT_EQ(c.levels[0].exceeded, whole.levels[0].exceeded - 1);
+  EXPECT_EQ(c.levels[0].probability.value, 1.0);
+  double points = 0.0, points_before = 0.0;
+  for (const auto& stripe : summary.fragility[0].curve.stripes) points += stripe.runs;
+  for (const auto& stripe : before.fragility[0].curve.stripes) points_before += stripe.runs;
+  EXPECT_EQ(points, points_before - 1.0);
+}
+
 TEST(Measures, AreThoseOfTheSummary) {
-  ASSERT_EQ(measures().size(), 10U);
+  ASSERT_EQ(measures().size(), simulation::damage_names().size());
   EXPECT_EQ(measures()[0].name, "fallen_blocks");
-  EXPECT_EQ(find_measure("closure_horizontal_m"), 9U);
+  EXPECT_EQ(find_measure("closure_horizontal_m"), measures().size() - 1);
   EXPECT_FALSE(find_measure("fallen").has_value());
 }
 

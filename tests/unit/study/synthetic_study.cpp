@@ -68,7 +68,7 @@ void add_stages(study::RunResult& run, double scale, double severity) {
     s.damage.fallen_blocks = static_cast<int>(s.damage.fallen_area / 0.2);
     s.damage.opening_filled_ratio = s.damage.fallen_area / 23.8;
     s.damage.loosened_area = 3.0 * std::sqrt(x);
-    s.damage.slip_max = 0.4 * std::sqrt(x);
+    s.damage.slip_max = s.damage.slip_max_ever = 0.4 * std::sqrt(x);
     s.damage.slip_mean = 0.004 * x;
     s.damage.slipped_length = 60.0 * x;
     s.damage.opened_length = 25.0 * x;
@@ -101,6 +101,8 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
   study.version = "0.1.0";
   study.axes = {{"stage.'first earthquake'.scale", options.scales}, {"rock.order", options.orders}};
   study.stage = "after";
+  study.before = "excavated";
+  study.at_shaking = true;
   if (options.since) study.since = "excavated";
   if (options.levels)
     study.levels = {{"light", "fallen_area_m2", 0.25},

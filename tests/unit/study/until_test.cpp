@@ -57,6 +57,18 @@ TEST(EnoughRealizations, FollowsTheIntervalOfTheMean) {
   EXPECT_EQ(s.enough(), found + 3);
 }
 
+// A run without the measure is no value.
+TEST(EnoughRealizations, RunsWithoutTheMeasureDoNotCount) {
+  Sample s = sample();
+  for (int k = 0; k < 60; ++k) s.add(k, "1", 5.0 + (k % 2 == 0 ? 1.0 : -1.0));
+  const auto whole = s.enough();
+  ASSERT_TRUE(whole);
+  s.runs[3].stages.back().damage.fallen_area = std::nan("");
+  ASSERT_TRUE(s.enough());
+  EXPECT_GE(*s.enough(), *whole);
+  EXPECT_LE(*s.enough(), *whole + 3);
+}
+
 TEST(EnoughRealizations, EveryCombinationMustBeNarrow) {
   Sample s = sample();
   for (int k = 0; k < 20; ++k) {

@@ -15,15 +15,34 @@ export interface Band {
   high: Maybe[];
 }
 
-export interface MeasureSummary {
+export interface Description {
   n: number;
   mean: Estimate;
   std: Estimate;
   min: Maybe;
   max: Maybe;
   quantiles: (Estimate & { p: number })[];
+}
+
+export interface MeasureSummary extends Description {
   running_mean: Band & { n: number[]; mean: Maybe[] };
   exceedance: Band & { value: number[]; probability: number[] };
+}
+
+export interface LevelShare {
+  name: string;
+  /** Realizations that have the measure. */
+  n: number;
+  exceeded: number;
+  probability: Maybe;
+  low: number;
+  high: number;
+}
+
+/** Damage until the end of `before`, or what came after it. */
+export interface DamagePart {
+  levels: LevelShare[];
+  measures: Record<string, Description>;
 }
 
 export interface Combination {
@@ -37,8 +56,10 @@ export interface Combination {
   median: string | null;
   checked: number;
   marginal: number;
-  levels: ({ name: string; exceeded: number; probability: Maybe } & { low: number; high: number })[];
+  levels: LevelShare[];
   measures: Record<string, MeasureSummary>;
+  before: DamagePart | null;
+  added: DamagePart | null;
   map: { n: number; fallen: number[]; fallen_or_loosened: number[] };
 }
 
@@ -50,10 +71,13 @@ export interface Fragility {
   values: (string | null)[];
   combinations: number[];
   status: string;
+  /** Why there is no curve. */
+  why: string | null;
   theta: Estimate;
   beta: Estimate;
   realizations: number;
   without_shaking: number;
+  exceeded_without_shaking: number;
   resamples_fitted: number;
   points: Band & { intensity: number[]; n: number[]; exceeded: number[]; probability: Maybe[] };
   curve: Band & { intensity: number[]; probability: Maybe[] };
@@ -72,6 +96,10 @@ export interface StudyJson {
   runs: { planned: number; done: number; failed: number };
   stage: string;
   since: string | null;
+  /** At the end of which stage damage counts as there before: since, or the last one before the shaking. */
+  before: string | null;
+  /** That is the last stage before the shaking. */
+  at_shaking: boolean;
   confidence: number;
   bootstrap_resamples: number;
   axes: { key: string; values: string[]; shaking: boolean }[];
@@ -159,6 +187,10 @@ export class Study {
     return key === null ? undefined : this.runOfKey.get(key);
   }
 
+  hasVariant(name: string): boolean {
+    return this.variants.includes(name);
+  }
+
   variantOf(run: number): string {
     return this.variants[this.variant[run]];
   }
@@ -187,9 +219,11 @@ export class Study {
     return parts.join(", ") || "all runs";
   }
 
-  /** From when on measures count: " after “excavated”"; nothing where they count from the first excavation on. */
+  /** What measures count: " by the shaking", " after “excavated”"; nothing where they count from the first excavation on. */
   after(): string {
-    return this.json.since ? ` after “${this.json.since}”` : "";
+    const { since, at_shaking } = this.json;
+    if (!since) return "";
+    return at_shaking ? " by the shaking" : ` after “${since}”`;
   }
 
   /** The run's picture as an address for an img element; none where the page has none. */

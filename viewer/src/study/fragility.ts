@@ -4,14 +4,8 @@ import { Chart, curveColors, type ChartSeries } from "./chart";
 import type { Fragility, IntensityName, Study } from "./data";
 import { percent, shownAs, withUnit } from "./quantities";
 
-const reasons: Record<string, string> = {
-  no_data: "no curve: no run was shaken",
-  one_intensity: "no curve: all runs at the same intensity",
-  never_exceeded: "no curve: never exceeded",
-  always_exceeded: "no curve: always exceeded",
-  separated: "no curve: at most one intensity with a share other than 0 and 100 %",
-  not_increasing: "no curve: no more damage with more shaking",
-};
+/** By what factor the axis goes on beyond the points: further than the curves do (src/study/fragility_groups.cpp). */
+const room = 2;
 
 /** Probability of a level of damage over the intensity of the shaking. */
 export class FragilityView {
@@ -70,9 +64,8 @@ export class FragilityView {
     const groups = this.groups();
     const { intensities } = this.study.json;
     const kind = intensities.find((i) => i.name === this.intensity)!;
-    const all = groups.flatMap((g) => [...g.points.intensity, ...g.curve.intensity]).filter((x) => x > 0);
+    const all = groups.flatMap((g) => g.points.intensity).filter((x) => x > 0);
     const [min, max] = all.length > 0 ? [Math.min(...all), Math.max(...all)] : [0.1, 10];
-    const room = Math.max(1.05, Math.sqrt((1.3 * min) / max));
     const series: ChartSeries[] = groups.flatMap((g, k) => {
       const color = curveColors[k % curveColors.length];
       const name = this.study.combinationName(g.values);
@@ -81,7 +74,7 @@ export class FragilityView {
         color,
         kind: "line",
         x: g.curve.intensity,
-        y: g.curve.probability.map((p) => (g.status === "fitted" ? p : null)),
+        y: g.curve.probability,
         low: g.curve.low,
         high: g.curve.high,
       };
@@ -106,6 +99,7 @@ export class FragilityView {
       y: { min: 0, max: 1, logarithmic: false },
       percent: true,
       series,
+      marks: groups.flatMap((g) => withoutShaking(g)),
       height: 320,
     });
     this.table.replaceChildren(this.parameters(groups, kind.unit));
@@ -118,8 +112,7 @@ export class FragilityView {
     const rows = groups.map((g) => {
       const name = h("th", { scope: "row", class: "text" }, this.study.combinationName(g.values));
       const n = h("td", {}, integer(g.realizations));
-      if (g.status !== "fitted")
-        return [name, n, h("td", { class: "text", colspan: 2 }, reasons[g.status] ?? g.status)];
+      if (g.why !== null) return [name, n, h("td", { class: "text wrap", colspan: 2 }, `no curve: ${g.why}`)];
       return [
         name,
         n,
@@ -134,6 +127,13 @@ export class FragilityView {
       "narrow",
     );
   }
+}
+
+/** The share that exceeds the level without any shaking, which has no place on the axis. */
+function withoutShaking(g: Fragility): { y: number; text: string }[] {
+  if (g.exceeded_without_shaking === 0) return [];
+  const share = g.exceeded_without_shaking / g.without_shaking;
+  return [{ y: share, text: `without shaking: ${percent(share)}` }];
 }
 
 /** Probability of every level in every combination: the points of all curves as numbers. */

@@ -40,20 +40,24 @@ function chosenName(study: Study, selection: Selection): HTMLElement {
 
 /** Maps and pictures have no beginning but the excavation, unlike the numbers beside them. */
 function wholeHistory(study: Study): HTMLElement | null {
-  return study.json.since
-    ? h("p", { class: "hint" }, `Everything since the first excavation, not only what came${study.after()}.`)
-    : null;
+  const { since, at_shaking } = study.json;
+  if (!since) return null;
+  const text = at_shaking
+    ? "Everything since the first excavation: what gravity brought down before the shaking, too."
+    : `Everything since the first excavation, not only what came after “${since}”.`;
+  return h("p", { class: "hint" }, text);
 }
 
 /** Numbers that are differences, where the study measures from a later stage on. */
 function onlyLater(study: Study): HTMLElement | null {
-  const { stage, since } = study.json;
+  const { stage, since, at_shaking } = study.json;
   if (!since) return null;
+  const last = at_shaking ? ", the last stage before the shaking" : "";
   const end = stage ? `“${stage}”` : "the last stage";
   return h(
     "p",
     { class: "hint" },
-    `Measures are differences: what was there at the end of ${end} less what was there at the end of “${since}”.`,
+    `Measures are differences: what was there at the end of ${end} less what was there at the end of “${since}”${last}.`,
   );
 }
 

@@ -5,7 +5,10 @@ import type { Estimate, Quantity } from "./data";
 const shown: Record<string, { factor: number; unit: string }> = {
   opening_filled_ratio: { factor: 100, unit: "%" },
   slip_max_m: { factor: 1e3, unit: "mm" },
+  slip_max_ever_m: { factor: 1e3, unit: "mm" },
   slip_mean_m: { factor: 1e3, unit: "mm" },
+  opening_max_m: { factor: 1e3, unit: "mm" },
+  opening_max_ever_m: { factor: 1e3, unit: "mm" },
   closure_vertical_m: { factor: 1e3, unit: "mm" },
   closure_horizontal_m: { factor: 1e3, unit: "mm" },
 };

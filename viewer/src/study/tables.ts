@@ -237,7 +237,14 @@ export function howComputed(study: Study): HTMLElement {
     ["Measured by combination", range[0] === range[1] ? integer(range[0]) : `${range[0]} to ${range[1]}`],
     ["Runs", `${integer(json.runs.done)} of ${integer(json.runs.planned)} done`],
     ["Measured at the end of", json.stage ? `“${json.stage}”` : "the last stage"],
-    ...(json.since ? [["Less what was there at the end of", `“${json.since}”`] as [string, string]] : []),
+    ...(json.since
+      ? [
+          [
+            "Less what was there at the end of",
+            `“${json.since}”${json.at_shaking ? ", the last stage before the shaking" : ""}`,
+          ] as [string, string],
+        ]
+      : []),
     ["Confidence", percent(json.confidence)],
     ["Bootstrap resamples", integer(json.bootstrap_resamples)],
     ["Seed of the joints", study.header.seed],

@@ -1,77 +1,15 @@
 import type { Finding } from "../findings";
-import { count, integer, list, significant } from "../format";
+import { capital, count, integer, list, significant } from "../format";
 import type { Combination, Estimate, Study } from "./data";
-import { percent, percentRange, relativeHalfWidth, shownAs, withUnit, type Shown } from "./quantities";
+import { headlineFindings } from "./headline";
+import { percent, relativeHalfWidth, shownAs, withUnit, type Shown } from "./quantities";
 import { headline } from "./selection";
-
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
-
-/** Combinations with the strongest shaking, which differ in the other axes. */
-function strongest(study: Study): number[] {
-  const { axes, combinations } = study.json;
-  const first = combinations[headline(study)];
-  if (!first) return [];
-  return combinations.flatMap((c, k) =>
-    c.n > 0 && c.values.every((v, a) => !axes[a]?.shaking || v === first.values[a]) ? [k] : [],
-  );
-}
-
-/** The level that tells most here: the one whose probability is nearest to one half. */
-function tellingLevel(c: Combination): number {
-  let best = 0;
-  c.levels.forEach((level, l) => {
-    if (Math.abs((level.probability ?? 0) - 0.5) < Math.abs((c.levels[best].probability ?? 0) - 0.5))
-      best = l;
-  });
-  return best;
-}
-
-function exceeding(study: Study, l: number, plural: boolean): string {
-  const { measure, threshold } = study.json.levels[l];
-  const q = shownAs(study.measure(measure));
-  const [lose, have] = plural ? ["lose", "have"] : ["loses", "has"];
-  const after = study.after();
-  if (measure === "fallen_area_m2") return `${lose} more than ${withUnit(q, threshold)} of rock${after}`;
-  if (measure === "fallen_blocks") return `${lose} more than ${count(threshold, "block")}${after}`;
-  return `${have} ${q.title} above ${withUnit(q, threshold)}${after}`;
-}
-
-function probabilitySentence(study: Study, k: number, l: number): string {
-  const c = study.json.combinations[k];
-  const name = study.combinationName(c.values);
-  const level = c.levels[l];
-  const start = name === "all runs" ? "" : `With ${name}, `;
-  const text = `${start}${integer(level.exceeded)} of ${count(c.n, "realization")} ${exceeding(study, l, level.exceeded !== 1)} (${percentRange(level.low, level.high)})`;
-  return `${capital(text)}.`;
-}
-
-function meanSentence(study: Study, k: number): string {
-  const c = study.json.combinations[k];
-  const q = shownAs(study.measure("fallen_area_m2"));
-  const mean = c.measures["fallen_area_m2"]?.mean;
-  const name = study.combinationName(c.values);
-  const range =
-    mean?.low === null || mean?.low === undefined
-      ? ""
-      : ` (${withUnit(q, mean.low)} to ${withUnit(q, mean.high)})`;
-  return `${name === "all runs" ? "" : `With ${name}, `}${withUnit(q, mean?.value ?? null)}${range} of rock falls${study.after()} on average of ${count(c.n, "realization")}.`;
-}
 
 /** What the study says, in sentences. The first is the verdict. */
 export function studyFindings(study: Study): Finding[] {
-  const { combinations, levels, confidence } = study.json;
-  const shaken = strongest(study);
-  if (shaken.length === 0)
+  const found = headlineFindings(study);
+  if (found.length === 0)
     return [{ grade: "attention", text: "No run has ended: there is nothing to tell yet." }, ...gaps(study)];
-  const found: Finding[] = [];
-  const l = levels.length > 0 ? tellingLevel(combinations[shaken[0]]) : -1;
-  for (const k of shaken.slice(0, 6))
-    found.push({ grade: "plain", text: l >= 0 ? probabilitySentence(study, k, l) : meanSentence(study, k) });
-  if (l >= 0)
-    found.push({
-      grade: "plain",
-      text: `That is the level “${levels[l].name}”. In brackets: ${percent(confidence)} confidence interval of the probability.`,
-    });
   return [...found, ...precisionFindings(study), ...gaps(study), ...marginalFindings(study)];
 }
 
@@ -204,10 +142,11 @@ function marginalFindings(study: Study): Finding[] {
   const checked = combinations.reduce((sum, c) => sum + c.checked, 0);
   const found = combinations.reduce((sum, c) => sum + c.marginal, 0);
   if (checked === 0) return [];
+  const release = study.hasVariant("released") ? " or an immediate release" : "";
   return [
     {
       grade: found > 0 ? "attention" : "good",
-      text: `${integer(found)} of ${count(checked, "checked run")} ${found === 1 ? "is" : "are"} marginal: friction ± ${significant(marginal.friction_degrees)}° or an immediate release changes the fallen area by more than ${percent(marginal.share)} of the larger.`,
+      text: `${integer(found)} of ${count(checked, "checked run")} ${found === 1 ? "is" : "are"} marginal: friction ± ${significant(marginal.friction_degrees)}°${release} changes the fallen area by more than ${percent(marginal.share)} of the larger.`,
     },
   ];
 }

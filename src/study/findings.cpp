@@ -1,0 +1,65 @@
+#include "study/findings.h"
+
+#include <fmt/format.h>
+
+#include "study/fragility_words.h"
+
+namespace keyblock::study {
+
+namespace {
+
+/// "stage.shaken.scale = 0.5, rock.order = 2"; empty texts are passed over.
+std::string name_of(const StudyData& study, const std::vector<std::string>& values) {
+  std::string text;
+  for (std::size_t a = 0; a < std::min(values.size(), study.axes.size()); ++a)
+    if (!values[a].empty())
+      text += (text.empty() ? "" : ", ") + study.axes[a].key + " = " + plain_value(values[a]);
+  return text;
+}
+
+std::string share(const LevelSummary& level) {
+  return fmt::format("{} of {} ({:.0f} … {:.0f} %)", level.exceeded, level.n, 100.0 * level.probability.low,
+                     100.0 * level.probability.high);
+}
+
+std::string level_line(const StudyData& study, const Combination& c, std::size_t l) {
+  const DamageLevel& level = study.levels[l];
+  const std::string name = name_of(study, c.values);
+  std::string text = fmt::format("{}: {} > {:.3g}{}{}: ", level.name, level.measure, level.threshold,
+                                 name.empty() ? "" : "; ", name);
+  if (!c.before) return text + share(c.levels[l]) + " realizations";
+  if (study.since.empty()) text += share(c.levels[l]) + " realizations in all, ";
+  const std::string until =
+      study.at_shaking ? "before the shaking" : "until the end of \"" + study.before + '"';
+  return text + share(c.before->levels[l]) + (study.since.empty() ? " " : " realizations ") + until + ", " +
+         share(c.added->levels[l]) +
+         (study.at_shaking ? " by what the shaking adds" : " by what comes after");
+}
+
+std::string curve_line(const StudyData& study, const FragilityGroup& group) {
+  const Intensity& intensity = intensities()[group.intensity];
+  const std::string name = name_of(study, group.values);
+  const std::string text = fmt::format("curve of {} over {}{}{}: ", study.levels[group.level].name,
+                                       intensity.title, name.empty() ? "" : ", ", name);
+  const std::string why = why_no_curve(study, group);
+  if (!why.empty()) return text + "none, as " + why;
+  const auto interval = [](const statistics::Estimate& e) {
+    return fmt::format("{:.3g} ({:.3g} … {:.3g})", e.value, e.low, e.high);
+  };
+  return text + fmt::format("median θ {} {}, β {}", interval(group.curve.theta), intensity.unit,
+                            interval(group.curve.beta));
+}
+
+}  // namespace
+
+std::vector<std::string> findings(const StudyData& study, const Summary& summary) {
+  std::vector<std::string> lines;
+  for (std::size_t l = 0; l < study.levels.size(); ++l)
+    for (const Combination& c : summary.combinations)
+      if (!c.runs.empty()) lines.push_back(level_line(study, c, l));
+  for (const FragilityGroup& group : summary.fragility)
+    if (group.intensity == 0) lines.push_back(curve_line(study, group));
+  return lines;
+}
+
+}  // namespace keyblock::study
