@@ -10,6 +10,7 @@
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/sections.h"
+#include "simulation/base.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -39,6 +40,7 @@ class Plausibility {
     check_in_situ();
     check_stages();
     check_velocities();
+    check_base();
     return std::move(warnings_);
   }
 
@@ -56,6 +58,16 @@ class Plausibility {
       warn("{}.{}: is lost, as the first stage settles", block.path,
            block.velocity == Vec2{} ? "spin" : "velocity");
     }
+  }
+
+  void check_base() {
+    const loading::TimeTable still;
+    std::vector<simulation::FixedMotion> fixed;
+    if (scenario_.domain && scenario_.domain->frame) fixed.push_back({still, still});
+    for (const BlockSpec& block : scenario_.blocks)
+      if (block.fixed) fixed.push_back({block.motion_x, block.motion_y});
+    if (!simulation::move_alike(fixed))
+      warn("block: fixed blocks move differently; damage is counted in space, not against one of them");
   }
 
   void check_distributions() {

@@ -79,6 +79,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.orders.lowered);
   archive(s.damage.reference.open);
   archive(s.damage.reference.start);
+  archive(s.damage.reference.base);
   archive(s.damage.reference.height);
   archive(s.damage.reference.width);
   archive(s.damage.pieces);

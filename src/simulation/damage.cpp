@@ -46,6 +46,7 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block) {
 void DamageGauge::start(const dynamics::State& state, std::span<const contact::Contact> contacts) {
   reference_.start.clear();
   for (const dynamics::Block& block : model_.blocks) reference_.start.push_back(centroid_now(block, state));
+  reference_.base = base_.displacement(state);
   joints_.start(contacts);
   if (setup_.excavations.empty()) return;
   const Ring& outline = setup_.excavations.front().outline;
@@ -90,20 +91,30 @@ double DamageGauge::area_inside_openings(const Polygon& block) const {
   return sum;
 }
 
+Polygon DamageGauge::polygon_on_base(std::size_t block, const dynamics::State& state) const {
+  Polygon polygon = deformed_polygon(model_, block);
+  const Vec2 base = base_.displacement(state);
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    for (Vec2& p : polygon.ring(r)) p -= base;
+  }
+  return polygon;
+}
+
 std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const {
   std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
   const std::optional<double> width = opening_width();
   const double fall = setup_.damage.fall_distance.value_or(0.05 * width.value_or(0.0));
+  const Vec2 base = base_.displacement(state) - reference_.base;
   const Vec2 down = model_.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model_.gravity);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
     if (!started() || !model_.moves(b)) continue;
     const dynamics::Block& block = model_.blocks[b];
-    const Vec2 moved = centroid_now(block, state) - reference_.start[b];
+    const Vec2 moved = centroid_now(block, state) - reference_.start[b] - base;
     if (norm(moved) <= setup_.damage.loosened_distance) continue;
     status[b] = BlockStatus::loosened;
     if (fall <= 0.0 || norm(moved) <= fall) continue;
-    if (dot(moved, down) > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area)
+    if (dot(moved, down) > fall || area_inside_openings(polygon_on_base(b, state)) > 0.5 * block.area)
       status[b] = BlockStatus::fallen;
   }
   return status;
@@ -125,7 +136,7 @@ Damage DamageGauge::measure(const dynamics::State& state) {
       damage.fallen_area += model_.blocks[b].area;
     }
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
-    if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(deformed_polygon(model_, b));
+    if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(polygon_on_base(b, state));
   }
   for (const Polygon& opening : openings_) openings += area(opening);
   if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
