@@ -51,6 +51,7 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.moving);
   archive(s.blocks_by_order);
   archive(s.damage);
+  archive(s.fallen);
   archive(s.wall_time);
   archive(s.interrupted);
   archive(s.motion_time);

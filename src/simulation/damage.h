@@ -11,6 +11,7 @@
 #include "simulation/base.h"
 #include "simulation/closure.h"
 #include "simulation/joint_gauge.h"
+#include "simulation/openings.h"
 #include "simulation/record.h"
 #include "simulation/setup.h"
 
@@ -40,6 +41,8 @@ class DamageGauge {
   /// A look, and all measures.
   [[nodiscard]] Damage measure(const dynamics::State& state);
   [[nodiscard]] std::vector<BlockStatus> status(const dynamics::State& state) const;
+  /// The blocks of this status that have fallen.
+  [[nodiscard]] std::vector<FallenBlock> fallen(std::span<const BlockStatus> status) const;
   [[nodiscard]] const JointGauge& joints() const { return joints_; }
   [[nodiscard]] std::optional<double> opening_width() const;
 
@@ -58,17 +61,16 @@ class DamageGauge {
   void restore(Memory memory);
 
  private:
-  void unite_openings();
   /// Where the outline of a block would be now if the base had not moved.
   [[nodiscard]] Polygon polygon_on_base(std::size_t block, const dynamics::State& state) const;
-  [[nodiscard]] double area_inside_openings(const Polygon& block) const;
+  [[nodiscard]] Vec2 down() const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
   Base base_;
   JointGauge joints_;
   Reference reference_;
-  std::vector<Polygon> openings_;  ///< what the outlines of open excavations cover together
+  Openings openings_;
 };
 
 }  // namespace keyblock::simulation

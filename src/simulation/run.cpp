@@ -391,6 +391,7 @@ void Runner::run_stage() {
   record_frame();
   record_contacts();
   record.damage = gauge_.measure(now_.mechanics);
+  record.fallen = gauge_.fallen(gauge_.status(now_.mechanics));
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
   if (record.interrupted) {

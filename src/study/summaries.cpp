@@ -49,19 +49,27 @@ void choose_worst_and_median(const StudyData& study, Combination& c) {
   c.median = order[(order.size() - 1) / 2];
 }
 
-/// Of the runs of a combination that have it, in their order.
-std::vector<double> values_of(const StudyData& study, const Combination& c, const Measure& measure) {
+/// Of the runs of a combination.
+std::vector<simulation::Damage> damages_of(const StudyData& study, const Combination& c) {
+  std::vector<simulation::Damage> damages;
+  for (const std::size_t r : c.runs) damages.push_back(*measured(study, study.runs[r]).damage);
+  return damages;
+}
+
+/// Of the runs that have the measure, in their order.
+std::vector<double> known_values(const std::vector<simulation::Damage>& damages, const Measure& measure) {
   std::vector<double> values;
-  for (const std::size_t r : c.runs) {
-    const double value = measure.of(*measured(study, study.runs[r]).damage);
+  for (const simulation::Damage& damage : damages) {
+    const double value = measure.of(damage);
     if (!std::isnan(value)) values.push_back(value);
   }
   return values;
 }
 
 void describe_measures(const StudyData& study, ResampleStore& store, Combination& c) {
+  const std::vector<simulation::Damage> damages = damages_of(study, c);
   for (const Measure& measure : measures()) {
-    std::vector<double> values = values_of(study, c, measure);
+    std::vector<double> values = known_values(damages, measure);
     MeasureSummary summary;
     summary.running = statistics::running_mean(values, study.confidence);
     std::sort(values.begin(), values.end());
@@ -73,12 +81,13 @@ void describe_measures(const StudyData& study, ResampleStore& store, Combination
 }
 
 void count_levels(const StudyData& study, Combination& c) {
+  const std::vector<simulation::Damage> damages = damages_of(study, c);
   for (const DamageLevel& level : study.levels) {
     LevelSummary summary;
     const auto measure = find_measure(level.measure);
     std::size_t n = 0;
     if (measure) {
-      const std::vector<double> values = values_of(study, c, measures()[*measure]);
+      const std::vector<double> values = known_values(damages, measures()[*measure]);
       n = values.size();
       for (const double value : values)
         if (value > level.threshold) ++summary.exceeded;
