@@ -32,6 +32,7 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"way_m", record.way},
           {"moving", results::moving_json(record.moving)},
           {"damage", results::damage_json(record.damage)},
+          {"fallen", results::fallen_json(record.fallen)},
           {"wall_time_s", record.wall_time},
           {"interrupted", record.interrupted}};
 }

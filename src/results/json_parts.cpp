@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/record_fields.h"
+#include "simulation/fallen.h"
 
 namespace keyblock::results {
 
@@ -33,6 +34,31 @@ simulation::Damage read_damage(const ordered_json& json) {
   for (const auto& [name, member] : damage_fields)
     damage.*member = json.contains(name) ? number(json.at(name)) : std::nan("");
   return damage;
+}
+
+ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen) {
+  ordered_json json = ordered_json::array();
+  for (const auto& f : fallen) {
+    const char* part = simulation::wall_part_name(f.part);
+    json.push_back({{"block", f.block},
+                    {"area_m2", f.area},
+                    {"weight_n_m", f.weight},
+                    {"depth_m", f.depth},
+                    {"wall", part == nullptr ? ordered_json() : ordered_json(part)}});
+  }
+  return json;
+}
+
+std::vector<simulation::FallenBlock> read_fallen(const ordered_json& json) {
+  std::vector<simulation::FallenBlock> fallen;
+  for (const auto& f : json) {
+    const ordered_json& part = f.at("wall");
+    fallen.push_back(
+        {f.at("block").get<int>(), number(f.at("area_m2")), number(f.at("weight_n_m")),
+         number(f.at("depth_m")),
+         part.is_null() ? simulation::WallPart::none : simulation::wall_part_of(part.get<std::string>())});
+  }
+  return fallen;
 }
 
 ordered_json energy_json(const simulation::Energy& energy) {

@@ -11,6 +11,7 @@
 namespace keyblock::results {
 
 nlohmann::ordered_json damage_json(const simulation::Damage& damage);
+nlohmann::ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
 nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics);
@@ -19,6 +20,7 @@ nlohmann::ordered_json overlap_place_json(const simulation::OverlapRecord& overl
 nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, y], …]
 
 simulation::Damage read_damage(const nlohmann::ordered_json& json);
+std::vector<simulation::FallenBlock> read_fallen(const nlohmann::ordered_json& json);
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
 std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
 simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);

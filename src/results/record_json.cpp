@@ -153,6 +153,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"moving", moving_json(r.moving)},
                           {"blocks_by_order", r.blocks_by_order},
                           {"damage", damage_json(r.damage)},
+                          {"fallen", fallen_json(r.fallen)},
                           {"wall_time", r.wall_time},
                           {"interrupted", r.interrupted},
                           {"motion_time", r.motion_time},
@@ -190,6 +191,7 @@ StageLine read_stage_json(const std::string& text) {
     r.moving = read_moving(json.at("moving"));
     json.at("blocks_by_order").get_to(r.blocks_by_order);
     r.damage = read_damage(json.at("damage"));
+    if (json.contains("fallen")) r.fallen = read_fallen(json.at("fallen"));  // not in files of version 0.1
     r.wall_time = number(json.at("wall_time"));
     json.at("interrupted").get_to(r.interrupted);
     for (const auto& t : json.at("motion_time")) r.motion_time.push_back(number(t));

@@ -86,7 +86,8 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"interrupted", r.interrupted},
           {"equilibrium", equilibrium(r)},
           {"blocks_by_order", blocks_by_order(r)},
-          {"damage", damage_json(r.damage)}};
+          {"damage", damage_json(r.damage)},
+          {"fallen", fallen_json(r.fallen)}};
 }
 
 ordered_json profile(const simulation::RunRecord& run) {

@@ -11,6 +11,7 @@
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "scenario/sections.h"
+#include "simulation/base.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -42,6 +43,7 @@ class Plausibility {
     check_plane_state();
     check_stages();
     check_velocities();
+    check_base();
     return std::move(warnings_);
   }
 
@@ -59,6 +61,16 @@ class Plausibility {
       warn("{}.{}: is lost, as the first stage settles", block.path,
            block.velocity == Vec2{} ? "spin" : "velocity");
     }
+  }
+
+  void check_base() {
+    const loading::TimeTable still;
+    std::vector<simulation::FixedMotion> fixed;
+    if (scenario_.domain && scenario_.domain->frame) fixed.push_back({still, still});
+    for (const BlockSpec& block : scenario_.blocks)
+      if (block.fixed) fixed.push_back({block.motion_x, block.motion_y});
+    if (!simulation::move_alike(fixed))
+      warn("block: fixed blocks move differently; damage is counted in space, not against one of them");
   }
 
   void check_distributions() {

@@ -53,6 +53,7 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.moving);
   archive(s.blocks_by_order);
   archive(s.damage);
+  archive(s.fallen);
   archive(s.wall_time);
   archive(s.interrupted);
   archive(s.motion_time);
@@ -81,6 +82,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.orders.lowered);
   archive(s.damage.reference.open);
   archive(s.damage.reference.start);
+  archive(s.damage.reference.base);
   archive(s.damage.reference.height);
   archive(s.damage.reference.width);
   archive(s.damage.pieces);

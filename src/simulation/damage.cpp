@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/index.h"
-#include "overlap/overlap.h"
-#include "simulation/build_model.h"
+#include "simulation/fallen.h"
 
 namespace keyblock::simulation {
 
 namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
   return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
@@ -46,6 +48,7 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block) {
 void DamageGauge::start(const dynamics::State& state, std::span<const contact::Contact> contacts) {
   reference_.start.clear();
   for (const dynamics::Block& block : model_.blocks) reference_.start.push_back(centroid_now(block, state));
+  reference_.base = base_.displacement(state);
   joints_.start(contacts);
   if (setup_.excavations.empty()) return;
   const Ring& outline = setup_.excavations.front().outline;
@@ -63,47 +66,42 @@ void DamageGauge::open(std::span<const int> excavations, const dynamics::State& 
   for (Diameter* d : {&reference_.height, &reference_.width})
     d->closure = closure(*d, model_, state, status_now);  // 0 before the start
   for (const int e : excavations) reference_.open[at(e)] = 1;
-  unite_openings();
+  openings_.unite(setup_.excavations, reference_.open);
 }
 
 void DamageGauge::restore(Memory memory) {
   reference_ = std::move(memory.reference);
   joints_.restore(std::move(memory.pieces));
-  unite_openings();
+  openings_.unite(setup_.excavations, reference_.open);
 }
 
-void DamageGauge::unite_openings() {
-  std::vector<Polygon> outlines;
-  for (std::size_t e = 0; e < setup_.excavations.size(); ++e) {
-    if (reference_.open[e] != 0) outlines.push_back({setup_.excavations[e].outline, {}});
+Polygon DamageGauge::polygon_on_base(std::size_t block, const dynamics::State& state) const {
+  Polygon polygon = deformed_polygon(model_, block);
+  const Vec2 base = base_.displacement(state);
+  for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
+    for (Vec2& p : polygon.ring(r)) p -= base;
   }
-  openings_ = overlap::union_of(outlines);
+  return polygon;
 }
 
-double DamageGauge::area_inside_openings(const Polygon& block) const {
-  double sum = 0.0;
-  for (const Polygon& opening : openings_) {
-    if (!bounds(opening).overlaps(bounds(block))) continue;
-    const Polygon pair[] = {block, opening};
-    for (const overlap::Overlap& piece : overlap::all_overlaps(pair, 0.0)) sum += piece.area;
-  }
-  return sum;
+Vec2 DamageGauge::down() const {
+  return model_.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model_.gravity);
 }
 
 std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const {
   std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
   const std::optional<double> width = opening_width();
   const double fall = setup_.damage.fall_distance.value_or(0.05 * width.value_or(0.0));
-  const Vec2 down = model_.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model_.gravity);
+  const Vec2 base = base_.displacement(state) - reference_.base;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
     if (!started() || !model_.moves(b)) continue;
     const dynamics::Block& block = model_.blocks[b];
-    const Vec2 moved = centroid_now(block, state) - reference_.start[b];
+    const Vec2 moved = centroid_now(block, state) - reference_.start[b] - base;
     if (norm(moved) <= setup_.damage.loosened_distance) continue;
     status[b] = BlockStatus::loosened;
     if (fall <= 0.0 || norm(moved) <= fall) continue;
-    if (dot(moved, down) > fall || area_inside_openings(deformed_polygon(model_, b)) > 0.5 * block.area)
+    if (dot(moved, down()) > fall || openings_.area_inside(polygon_on_base(b, state)) > 0.5 * block.area)
       status[b] = BlockStatus::fallen;
   }
   return status;
@@ -113,22 +111,42 @@ void DamageGauge::watch(const dynamics::State& state) {
   if (started()) joints_.watch(status(state));
 }
 
+std::vector<FallenBlock> DamageGauge::fallen(std::span<const BlockStatus> status) const {
+  std::vector<FallenBlock> fallen;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (status[b] != BlockStatus::fallen) continue;
+    const dynamics::Block& block = model_.blocks[b];
+    const Openings::Place place = openings_.behind_walls(block.reference, down());
+    fallen.push_back({static_cast<int>(b), block.area, block.mass() * norm(model_.gravity),
+                      place.part == WallPart::none ? not_a_number : place.depth, place.part});
+  }
+  return fallen;
+}
+
 Damage DamageGauge::measure(const dynamics::State& state) {
   Damage damage;
   if (!started()) return damage;
   const std::vector<BlockStatus> status_now = status(state);
-  double inside = 0.0, openings = 0.0;
+  double inside = 0.0;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
-    if (status_now[b] == BlockStatus::fallen) {
-      ++damage.fallen_blocks;
-      damage.fallen_area += model_.blocks[b].area;
-    }
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
-    if (status_now[b] != BlockStatus::in_place) inside += area_inside_openings(deformed_polygon(model_, b));
+    if (status_now[b] != BlockStatus::in_place) inside += openings_.area_inside(polygon_on_base(b, state));
   }
-  for (const Polygon& opening : openings_) openings += area(opening);
-  if (openings > 0.0) damage.opening_filled_ratio = inside / openings;
+  const double openings = openings_.area();
+  if (openings > 0.0)
+    damage.opening_filled_ratio = inside / openings;
+  else
+    damage.fallen_depth = damage.fallen_depth_crown = damage.fallen_depth_left = damage.fallen_depth_right =
+        damage.fallen_depth_invert = not_a_number;
+  const std::vector<FallenBlock> fallen_now = fallen(status_now);
+  for (const FallenBlock& block : fallen_now) {
+    ++damage.fallen_blocks;
+    damage.fallen_area += block.area;
+    damage.fallen_weight += block.weight;
+  }
+  set_extremes(fallen_now, damage);
+  damage.equivalent_pressure = openings > 0.0 ? damage.fallen_weight / openings_.width() : not_a_number;
   joints_.watch(status_now);
   joints_.measure(status_now, damage);
   damage.closure_vertical = closure(reference_.height, model_, state, status_now);

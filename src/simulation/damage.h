@@ -8,8 +8,10 @@
 #include "contact/detection.h"
 #include "dynamics/model.h"
 #include "dynamics/state.h"
+#include "simulation/base.h"
 #include "simulation/closure.h"
 #include "simulation/joint_gauge.h"
+#include "simulation/openings.h"
 #include "simulation/record.h"
 #include "simulation/setup.h"
 
@@ -18,11 +20,12 @@ namespace keyblock::simulation {
 /// Position of block b's outline now: the polygon of its contact vertices.
 Polygon deformed_polygon(const dynamics::Model& model, std::size_t block);
 
-/// Measures what has happened since the first excavation, as the user guide defines it.
+/// Measures what has happened since the first excavation, as the user guide defines it. Blocks move against the base (base.h), and
+/// openings move with it.
 class DamageGauge {
  public:
   DamageGauge(const RunSetup& setup, const dynamics::Model& model)
-      : setup_(setup), model_(model), joints_(setup, model) {
+      : setup_(setup), model_(model), base_(setup, model), joints_(setup, model) {
     reference_.open.resize(setup.excavations.size());
   }
 
@@ -38,12 +41,15 @@ class DamageGauge {
   /// A look, and all measures.
   [[nodiscard]] Damage measure(const dynamics::State& state);
   [[nodiscard]] std::vector<BlockStatus> status(const dynamics::State& state) const;
+  /// The blocks of this status that have fallen.
+  [[nodiscard]] std::vector<FallenBlock> fallen(std::span<const BlockStatus> status) const;
   [[nodiscard]] const JointGauge& joints() const { return joints_; }
   [[nodiscard]] std::optional<double> opening_width() const;
 
   struct Reference {
     std::vector<std::uint8_t> open;  ///< per excavation
     std::vector<Vec2> start;         ///< centroids, per block
+    Vec2 base;                       ///< m, displacement of the base
     Diameter height, width;          ///< of the first excavation
   };
   /// All that is remembered, for checkpoints.
@@ -55,14 +61,16 @@ class DamageGauge {
   void restore(Memory memory);
 
  private:
-  void unite_openings();
-  [[nodiscard]] double area_inside_openings(const Polygon& block) const;
+  /// Where the outline of a block would be now if the base had not moved.
+  [[nodiscard]] Polygon polygon_on_base(std::size_t block, const dynamics::State& state) const;
+  [[nodiscard]] Vec2 down() const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
+  Base base_;
   JointGauge joints_;
   Reference reference_;
-  std::vector<Polygon> openings_;  ///< what the outlines of open excavations cover together
+  Openings openings_;
 };
 
 }  // namespace keyblock::simulation

@@ -14,6 +14,15 @@ namespace keyblock::simulation {
 /// In SI units; `fallen_blocks` stands beside them.
 inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
     {"fallen_area_m2", &Damage::fallen_area},
+    {"fallen_weight_n_m", &Damage::fallen_weight},
+    {"equivalent_pressure_pa", &Damage::equivalent_pressure},
+    {"largest_fallen_area_m2", &Damage::largest_fallen_area},
+    {"largest_fallen_weight_n_m", &Damage::largest_fallen_weight},
+    {"fallen_depth_m", &Damage::fallen_depth},
+    {"fallen_depth_crown_m", &Damage::fallen_depth_crown},
+    {"fallen_depth_left_m", &Damage::fallen_depth_left},
+    {"fallen_depth_right_m", &Damage::fallen_depth_right},
+    {"fallen_depth_invert_m", &Damage::fallen_depth_invert},
     {"opening_filled_ratio", &Damage::opening_filled_ratio},
     {"loosened_area_m2", &Damage::loosened_area},
     {"slip_max_m", &Damage::slip_max},

@@ -125,10 +125,28 @@ struct StepRow {
   Energy energy;
 };
 
+/// What of the outlines of openings a place lies behind, as seen along gravity.
+enum class WallPart : std::uint8_t { none = 0, crown = 1, left = 2, right = 3, invert = 4 };
+
+struct FallenBlock {
+  int block = 0;
+  double area = 0.0;    ///< m²
+  double weight = 0.0;  ///< N per metre of tunnel
+  /// m, of the farthest corner of its place behind the outlines of openings. NaN without an opening.
+  double depth = 0.0;
+  WallPart part = WallPart::none;  ///< that this corner is behind
+};
+
 /// Measures as defined in the user guide; cumulative since the first excavation. NaN: there is no such number.
 struct Damage {
   int fallen_blocks = 0;
-  double fallen_area = 0.0;  ///< m²
+  double fallen_area = 0.0;                                       ///< m²
+  double fallen_weight = 0.0;                                     ///< N per metre of tunnel
+  double equivalent_pressure = 0.0;                               ///< Pa; NaN without an opening
+  double largest_fallen_area = 0.0, largest_fallen_weight = 0.0;  ///< m², N per metre; of one block
+  /// m, behind the outlines of openings, where there are any, else NaN.
+  double fallen_depth = 0.0, fallen_depth_crown = 0.0, fallen_depth_left = 0.0, fallen_depth_right = 0.0,
+         fallen_depth_invert = 0.0;
   double opening_filled_ratio = 0.0;
   double loosened_area = 0.0;                                 ///< m²
   double slip_max = 0.0, slip_mean = 0.0, opening_max = 0.0;  ///< m, of joints in place
@@ -160,7 +178,8 @@ struct StageRecord {
   std::vector<MovingBlock> moving;
   std::vector<int> blocks_by_order;  ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;
-  double wall_time = 0.0;  ///< s
+  std::vector<FallenBlock> fallen;  ///< at its end, ascending
+  double wall_time = 0.0;           ///< s
   bool interrupted = false;
   /// The motion as applied, thinned to what a plot needs: time in the stage (s), acceleration (m/s²).
   std::vector<double> motion_time;

@@ -66,11 +66,11 @@ void MeasureObserver::stage_end(int index, const simulation::StageRecord& stage)
   if (stage.interrupted) return;
   result_.stages.push_back(
       {stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias, stage.damage});
-  for (std::size_t b = 0; b < blocks_; ++b) {
-    const bool fallen = b < last_.status.size() && last_.status[b] == BlockStatus::fallen;
-    if (!fallen) fell_[b] = -1;
-    if (fallen && fell_[b] < 0) fell_[b] = index;
-  }
+  fallen_ = stage.fallen;
+  std::vector<int> fell(blocks_, -1);
+  for (const simulation::FallenBlock& block : fallen_)
+    fell[at(block.block)] = fell_[at(block.block)] < 0 ? index : fell_[at(block.block)];
+  fell_ = std::move(fell);
 }
 
 void MeasureObserver::end(const simulation::RunRecord& run) {
@@ -80,11 +80,10 @@ void MeasureObserver::end(const simulation::RunRecord& run) {
   result_.unconverged_steps = run.open_close.unconverged_steps;
   result_.max_overlap = run.max_overlap.depth;
   result_.energy_residual_ratio = run.energy.residual_ratio;
-  for (std::size_t b = 0; b < blocks_; ++b) {
-    if (fell_[b] < 0) continue;
-    const auto& block = model_.blocks[b];
-    result_.fallen.push_back(
-        {static_cast<int>(b), block.name, fell_[b], block.centroid + model_.origin, block.area});
+  for (const simulation::FallenBlock& f : fallen_) {
+    const auto& block = model_.blocks[at(f.block)];
+    result_.fallen.push_back({f.block, block.name, fell_[at(f.block)], block.centroid + model_.origin, f.area,
+                              f.weight, f.depth, f.part});
   }
   for (const int b : blocks_of_cells(grid_, model_, blocks_)) {
     const auto k = at(b);

@@ -29,7 +29,8 @@ class MeasureObserver : public simulation::RunObserver {
   std::size_t blocks_;
   simulation::ModelRecord model_;
   simulation::Frame last_;
-  std::vector<int> fell_;  ///< stage of every block; −1: has not fallen
+  std::vector<int> fell_;                        ///< stage of every block; −1: has not fallen
+  std::vector<simulation::FallenBlock> fallen_;  ///< at the end of the last stage
 };
 
 /// Of every cell of the grid, row by row from the lower left, the index of the block in whose reference outline its centre

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simulation/damage_fields.h"
+#include "simulation/fallen.h"
 
 namespace keyblock::study {
 
@@ -16,6 +17,15 @@ namespace {
 /// Titles and units, in the order of the names.
 constexpr std::pair<const char*, const char*> titles[] = {{"fallen blocks", ""},
                                                           {"fallen area", "m²"},
+                                                          {"weight of fallen rock", "N/m"},
+                                                          {"equivalent pressure", "Pa"},
+                                                          {"area of the largest fallen block", "m²"},
+                                                          {"weight of the largest fallen block", "N/m"},
+                                                          {"depth of fallen rock behind the wall", "m"},
+                                                          {"depth of fallen rock behind the crown", "m"},
+                                                          {"depth of fallen rock behind the left wall", "m"},
+                                                          {"depth of fallen rock behind the right wall", "m"},
+                                                          {"depth of fallen rock behind the invert", "m"},
                                                           {"filled share of the opening", ""},
                                                           {"loosened area", "m²"},
                                                           {"largest slip in place", "m"},
@@ -87,6 +97,13 @@ std::optional<simulation::Damage> damage_between(const RunResult& run, std::stri
   damage.fallen_blocks -= start->damage.fallen_blocks;
   for (const auto& [name, member] : simulation::damage_fields)
     damage.*member = difference(damage.*member, start->damage.*member);
+  // What fell between: the difference of two extremes would be of no block.
+  std::vector<simulation::FallenBlock> fallen;
+  for (const FallenBlock& f : run.fallen) {
+    if (f.stage > start - run.stages.begin() && f.stage <= end - run.stages.begin())
+      fallen.push_back({f.block, f.area, f.weight, f.depth, f.part});
+  }
+  simulation::set_extremes(fallen, damage);
   return damage;
 }
 

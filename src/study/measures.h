@@ -24,7 +24,8 @@ std::span<const Measure> measures();
 std::optional<std::size_t> find_measure(std::string_view name);
 
 /// What happened to a run until the end of `stage` (empty: its last), less what had happened by the end of `since` (empty:
-/// nothing). Differences are rounded to 1e-9 m², m or shares. None when the run failed or did not get there.
+/// nothing). Differences are rounded to 1e-9 m², m or shares. The largest fallen block and the depths of fallen rock are those of the blocks
+/// that fell between. None when the run failed or did not get there.
 std::optional<simulation::Damage> damage_between(const RunResult& run, std::string_view since,
                                                  std::string_view stage);
 

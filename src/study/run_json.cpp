@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
+#include "simulation/fallen.h"
 #include "study/plan.h"
 #include "study/refusal.h"
 
@@ -74,11 +75,15 @@ RunResult read_result(const ordered_json& json) {
   for (const auto& stage : json.at("stages")) run.stages.push_back(read_stage(stage));
   for (const auto& block : json.at("fallen")) {
     const auto& centroid = block.at("centroid");
+    const auto& wall = block.at("wall");
     run.fallen.push_back({block.at("block").get<int>(),
                           block.at("name").get<std::string>(),
                           block.at("stage").get<int>(),
                           {number(centroid.at(0)), number(centroid.at(1))},
-                          number(block.at("area_m2"))});
+                          number(block.at("area_m2")),
+                          number(block.at("weight_n_m")),
+                          number(block.at("depth_m")),
+                          simulation::wall_part_of(wall.is_null() ? "" : wall.get<std::string>())});
   }
   run.map = read_map(json.at("map"));
   return run;
@@ -90,11 +95,15 @@ std::string run_json(const RunResult& run, const std::string& input) {
   ordered_json stages = ordered_json::array(), fallen = ordered_json::array();
   for (const StageMeasures& stage : run.stages) stages.push_back(stage_json(stage));
   for (const FallenBlock& block : run.fallen) {
+    const char* wall = simulation::wall_part_name(block.part);
     fallen.push_back({{"block", block.block},
                       {"name", block.name},
                       {"stage", block.stage},
                       {"centroid", {block.centroid.x, block.centroid.y}},
-                      {"area_m2", block.area}});
+                      {"area_m2", block.area},
+                      {"weight_n_m", block.weight},
+                      {"depth_m", block.depth},
+                      {"wall", wall == nullptr ? ordered_json() : ordered_json(wall)}});
   }
   const ordered_json json{{"format", run_format},
                           {"input", input},

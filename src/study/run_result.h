@@ -29,10 +29,12 @@ struct StageMeasures {
 
 struct FallenBlock {
   int block = 0;
-  std::string name;   ///< empty for cut blocks
-  int stage = 0;      ///< in which it fell
-  Vec2 centroid;      ///< where it lay, real coordinates, m
-  double area = 0.0;  ///< m²
+  std::string name;                  ///< empty for cut blocks
+  int stage = 0;                     ///< in which it fell
+  Vec2 centroid;                     ///< where it lay, real coordinates, m
+  double area = 0.0;                 ///< m²
+  double weight = 0.0, depth = 0.0;  ///< N per metre of tunnel, m behind the wall: simulation::FallenBlock
+  simulation::WallPart part = simulation::WallPart::none;
 };
 
 /// One realization × one combination × one variant, when it has ended.

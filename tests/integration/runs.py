@@ -17,7 +17,9 @@ SUMMARY_FIELDS = {
 STAGE_FIELDS = {
     "": "name kind steps duration pga_m_s2 pgv_m_s arias_m_s equilibrium damage",
     "equilibrium": "reached verdict worst_residual_ratio largest_way_m largest_way_share moving_blocks",
-    "damage": "fallen_blocks fallen_area_m2 opening_filled_ratio loosened_area_m2 slip_max_m slip_max_ever_m "
+    "damage": "fallen_blocks fallen_area_m2 fallen_weight_n_m equivalent_pressure_pa largest_fallen_area_m2 "
+    "largest_fallen_weight_n_m fallen_depth_m fallen_depth_crown_m fallen_depth_left_m fallen_depth_right_m "
+    "fallen_depth_invert_m opening_filled_ratio loosened_area_m2 slip_max_m slip_max_ever_m "
     "slip_mean_m slipped_length_m slipped_length_ever_m opening_max_m opening_max_ever_m opened_length_m opened_length_ever_m "
     "closure_vertical_m closure_horizontal_m",
 }

@@ -8,6 +8,15 @@ export interface Damage {
   /** Holds where the area of the fallen blocks is known. */
   fallen_blocks: number;
   fallen_area_m2: number | null;
+  fallen_weight_n_m: number | null;
+  equivalent_pressure_pa: number | null;
+  largest_fallen_area_m2: number | null;
+  largest_fallen_weight_n_m: number | null;
+  fallen_depth_m: number | null;
+  fallen_depth_crown_m: number | null;
+  fallen_depth_left_m: number | null;
+  fallen_depth_right_m: number | null;
+  fallen_depth_invert_m: number | null;
   opening_filled_ratio: number | null;
   loosened_area_m2: number | null;
   slip_max_m: number | null;
@@ -39,6 +48,14 @@ export interface Stage {
   worst_residual_ratio: number | null;
   moving: { block: number; carried: number | null }[];
   damage: Damage;
+  /** Blocks that have fallen by its end; `wall`: the part of the outline behind which the deepest corner lay. */
+  fallen: {
+    block: number;
+    area_m2: number;
+    weight_n_m: number;
+    depth_m: number | null;
+    wall: "crown" | "left" | "right" | "invert" | null;
+  }[];
   wall_time_s: number | null;
   interrupted: boolean;
 }

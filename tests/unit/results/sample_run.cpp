@@ -162,6 +162,13 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
   EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
   for (const auto& [name, member] : simulation::damage_fields)
     EXPECT_TRUE(same(a.damage.*member, b.damage.*member)) << name;
+  ASSERT_EQ(a.fallen.size(), b.fallen.size());
+  for (std::size_t k = 0; k < a.fallen.size(); ++k) {
+    EXPECT_EQ(a.fallen[k].block, b.fallen[k].block);
+    EXPECT_EQ(a.fallen[k].part, b.fallen[k].part);
+    EXPECT_TRUE(same(a.fallen[k].area, b.fallen[k].area) && same(a.fallen[k].weight, b.fallen[k].weight) &&
+                same(a.fallen[k].depth, b.fallen[k].depth));
+  }
   EXPECT_TRUE(same(a.wall_time, b.wall_time));
   EXPECT_EQ(a.interrupted, b.interrupted);
   EXPECT_EQ(a.motion_time, b.motion_time);
@@ -298,6 +305,8 @@ simulation::StageRecord SampleRun::stage(int index) {
   double value = noise(index, 1);
   for (const auto& [name, member] : simulation::damage_fields) record.damage.*member = value *= -0.7;
   record.damage.closure_horizontal = 1e-17;
+  record.fallen = {{0, noise(index, 2), noise(index, 3), noise(index, 4), simulation::WallPart::invert},
+                   {2, 0.1, 0.0, std::numeric_limits<double>::quiet_NaN(), simulation::WallPart::none}};
   record.wall_time = 1.0 / 3.0;
   return record;
 }

@@ -46,10 +46,21 @@ TEST(Summary, HasEveryFieldOfTheContract) {
     for (const char* key : {"reached", "worst_residual_ratio", "moving_blocks"}) {
       EXPECT_TRUE(stage["equilibrium"].contains(key)) << key;
     }
-    for (const char* key : {"fallen_blocks", "fallen_area_m2", "opening_filled_ratio", "loosened_area_m2",
-                            "slip_max_m", "slip_max_ever_m", "slip_mean_m", "slipped_length_m",
-                            "slipped_length_ever_m", "opening_max_m", "opening_max_ever_m", "opened_length_m",
-                            "opened_length_ever_m", "closure_vertical_m", "closure_horizontal_m"}) {
+    for (const char* key : {"area_m2", "weight_n_m", "depth_m", "wall"}) {
+      EXPECT_TRUE(stage["fallen"][0].contains(key)) << key;
+    }
+    for (const char* key : {"fallen_blocks",          "fallen_area_m2",
+                            "fallen_weight_n_m",      "equivalent_pressure_pa",
+                            "largest_fallen_area_m2", "largest_fallen_weight_n_m",
+                            "fallen_depth_m",         "fallen_depth_crown_m",
+                            "fallen_depth_left_m",    "fallen_depth_right_m",
+                            "fallen_depth_invert_m",  "opening_filled_ratio",
+                            "loosened_area_m2",       "slip_max_m",
+                            "slip_max_ever_m",        "slip_mean_m",
+                            "slipped_length_m",       "slipped_length_ever_m",
+                            "opening_max_m",          "opening_max_ever_m",
+                            "opened_length_m",        "opened_length_ever_m",
+                            "closure_vertical_m",     "closure_horizontal_m"}) {
       EXPECT_TRUE(stage["damage"].contains(key)) << key;
     }
   }

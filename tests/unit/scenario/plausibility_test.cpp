@@ -262,6 +262,16 @@ TEST(Warnings, OfVelocitiesThatSettlingTakesAway) {
   EXPECT_THAT(warnings_of(two_blocks, first), UnorderedElementsAre(HasSubstr("block.top.spin: is lost")));
 }
 
+TEST(Warnings, OfFixedBlocksThatMoveDifferently) {
+  const std::string motion = "motion={x=[[0, 0], [1, 0.1]]}";
+  EXPECT_THAT(warnings_of(two_blocks, {"block.base." + motion}), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"block.base." + motion, "block.top.fixed=true"}),
+              UnorderedElementsAre(HasSubstr("fixed blocks move differently; damage is counted in space")));
+  EXPECT_THAT(
+      warnings_of(two_blocks, {"block.base." + motion, "block.top.fixed=true", "block.top." + motion}),
+      IsEmpty());
+}
+
 TEST(Warnings, OfStagesThatAreNoWholeSteps) {
   EXPECT_THAT(warnings_of(two_blocks, {"time.step=0.07", "stage.quiet.duration=0.1"}),
               UnorderedElementsAre(HasSubstr("the stage takes 1 step, 0.07 s")));

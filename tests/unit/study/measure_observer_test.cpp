@@ -75,6 +75,10 @@ TEST(MeasureObserver, TheStageInWhichABlockFell) {
     frame.status = {a, b, BlockStatus::in_place};
     observer.frame(frame);
     simulation::StageRecord record = stage("s" + std::to_string(index));
+    for (int k = 0; k < 2; ++k) {
+      if ((k == 0 ? a : b) == BlockStatus::fallen)
+        record.fallen.push_back({k, 2.0, 500.0, 0.5 + k, simulation::WallPart::left});
+    }
     record.interrupted = interrupted;
     record.pgv = 0.25 * index;
     observer.stage_end(index, record);
@@ -91,6 +95,10 @@ TEST(MeasureObserver, TheStageInWhichABlockFell) {
   ASSERT_EQ(result.fallen.size(), 2U);
   EXPECT_EQ(result.fallen[0].stage, 1);
   EXPECT_EQ(result.fallen[1].stage, 2);
+  EXPECT_EQ(result.fallen[1].area, 2.0);
+  EXPECT_EQ(result.fallen[1].weight, 500.0);
+  EXPECT_EQ(result.fallen[1].depth, 1.5);
+  EXPECT_EQ(result.fallen[1].part, simulation::WallPart::left);
   EXPECT_EQ(result.fallen[0].centroid, (Vec2{100.25, 50.5}));
   EXPECT_EQ(result.blocks, 2);
   EXPECT_EQ(result.steps, 99);

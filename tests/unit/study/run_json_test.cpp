@@ -35,7 +35,8 @@ RunResult sample_run() {
   double value = 0.1;
   for (const auto& [name, member] : simulation::damage_fields) stage.damage.*member = value += 1.0 / 7.0;
   run.stages = {stage, {"rest", StageKind::rest, 0.0, 0.0, 0.0, {}}};
-  run.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7}};
+  run.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7, 1.0 / 7.0, 0.9, simulation::WallPart::right},
+                {4, "", 1, {0.1, -0.2}, 0.7, 0.1, std::nan(""), simulation::WallPart::none}};
   run.map = {BlockStatus::in_place,  BlockStatus::in_place,  BlockStatus::fallen,
              BlockStatus::excavated, BlockStatus::excavated, BlockStatus::loosened};
   return run;
@@ -52,6 +53,9 @@ TEST(RunJson, IsReadToTheLastBit) {
   EXPECT_EQ(read.stages[0].kind, StageKind::shake);
   EXPECT_EQ(read.stages[0].damage.closure_horizontal, run.stages[0].damage.closure_horizontal);
   EXPECT_EQ(read.fallen[0].centroid, run.fallen[0].centroid);
+  EXPECT_EQ(read.fallen[0].weight, run.fallen[0].weight);
+  EXPECT_EQ(read.fallen[0].part, run.fallen[0].part);
+  EXPECT_TRUE(std::isnan(read.fallen[1].depth));
   EXPECT_EQ(read.map, run.map);
   EXPECT_EQ(read.error, run.error);
 }

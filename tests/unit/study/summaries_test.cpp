@@ -113,6 +113,30 @@ TEST(Summaries, WhatTheShakingAddsIsToldFromWhatWasThereBefore) {
   EXPECT_FALSE(summarize(study).combinations[2].before);
 }
 
+// The largest block fell before the quake, from the left; a smaller one in it, from the crown; another later.
+TEST(Summaries, ExtremesAreOfWhatFellBetween) {
+  using simulation::WallPart;
+  StudyData study = small();
+  RunResult& run = study.runs[0];
+  run.stages.push_back(run.stages.back());
+  run.stages.back().name = "after";
+  run.fallen = {{4, "", 0, {}, 3.0, 75e3, 1.5, WallPart::left},
+                {5, "", 1, {}, 0.4, 10e3, 0.9, WallPart::crown},
+                {6, "", 2, {}, 2.0, 50e3, 2.5, WallPart::crown}};
+  run.stages[0].damage.fallen_weight = 75e3;
+  run.stages[1].damage.fallen_weight = 85e3;
+  for (StageMeasures& stage : run.stages) stage.damage.largest_fallen_area = 3.0;
+  study.since = "excavated";
+  study.stage = "quake";
+  const simulation::Damage damage = *measured(study, run).damage;
+  EXPECT_DOUBLE_EQ(damage.fallen_weight, 10e3);
+  EXPECT_DOUBLE_EQ(damage.largest_fallen_area, 0.4);
+  EXPECT_DOUBLE_EQ(damage.largest_fallen_weight, 10e3);
+  EXPECT_DOUBLE_EQ(damage.fallen_depth, 0.9);
+  EXPECT_DOUBLE_EQ(damage.fallen_depth_crown, 0.9);
+  EXPECT_EQ(damage.fallen_depth_left, 0.0);
+}
+
 TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {
   StudyData study;
   study.axes = {{"rock.order", {"1"}}};

@@ -1,0 +1,39 @@
+#pragma once
+#include <optional>
+#include <span>
+
+#include "dynamics/model.h"
+#include "dynamics/state.h"
+#include "loading/time_table.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// Displacement over time of a fixed block; empty tables: none.
+struct FixedMotion {
+  const loading::TimeTable& x;
+  const loading::TimeTable& y;
+};
+
+/// Whether all fixed blocks make one motion: the same displacement at all times. True where there are none.
+bool move_alike(std::span<const FixedMotion> fixed);
+
+/// What damage is counted against: the fixed blocks, where all of them make one motion. Where they do not, there is no common base, and
+/// damage is counted in space. So it is without fixed blocks.
+class Base {
+ public:
+  Base(const RunSetup& setup, const dynamics::Model& model);
+
+  /// m, since the start of the run.
+  [[nodiscard]] Vec2 displacement(const dynamics::State& state) const;
+  /// m/s.
+  [[nodiscard]] Vec2 velocity(const dynamics::State& state) const;
+
+ private:
+  [[nodiscard]] Vec2 of_block(const std::vector<double>& coefficients) const;
+
+  const dynamics::Model& model_;
+  std::optional<std::size_t> block_;  ///< one of those that make the motion; empty: nothing moves
+};
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,54 @@
+#include "simulation/fallen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace keyblock::simulation {
+namespace {
+
+struct Part {
+  WallPart part;
+  const char* name;
+  double Damage::*depth;
+};
+constexpr Part parts[] = {{WallPart::crown, "crown", &Damage::fallen_depth_crown},
+                          {WallPart::left, "left", &Damage::fallen_depth_left},
+                          {WallPart::right, "right", &Damage::fallen_depth_right},
+                          {WallPart::invert, "invert", &Damage::fallen_depth_invert}};
+
+}  // namespace
+
+const char* wall_part_name(WallPart part) {
+  const auto found =
+      std::find_if(std::begin(parts), std::end(parts), [&](const Part& p) { return p.part == part; });
+  return found == std::end(parts) ? nullptr : found->name;
+}
+
+WallPart wall_part_of(std::string_view name) {
+  const auto found =
+      std::find_if(std::begin(parts), std::end(parts), [&](const Part& p) { return p.name == name; });
+  return found == std::end(parts) ? WallPart::none : found->part;
+}
+
+void set_extremes(std::span<const FallenBlock> fallen, Damage& damage) {
+  const FallenBlock none;
+  const FallenBlock* largest = &none;
+  for (const FallenBlock& block : fallen) {
+    if (block.area > largest->area) largest = &block;
+  }
+  damage.largest_fallen_area = largest->area;
+  damage.largest_fallen_weight = largest->weight;
+  if (std::isnan(damage.fallen_depth)) return;
+  damage.fallen_depth = 0.0;
+  for (const Part& p : parts) {
+    double& depth = damage.*p.depth;
+    depth = 0.0;
+    for (const FallenBlock& block : fallen)
+      if (block.part == p.part) depth = std::max(depth, block.depth);
+    damage.fallen_depth = std::max(damage.fallen_depth, depth);
+  }
+}
+
+}  // namespace keyblock::simulation
