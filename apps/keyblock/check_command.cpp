@@ -25,7 +25,7 @@ void check_scenario(const ScenarioArguments& arguments) {
         scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
     simulation::build_model(setup);
     if (const auto reason = simulation::yields_without_limit(setup))
-      warnings.push_back(*reason + "; a run ends at once");
+      warnings.push_back("a run ends at once: " + *reason);
   } else {
     scenario::add_block_warnings(scenario, blocks, warnings);
   }

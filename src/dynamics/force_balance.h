@@ -28,7 +28,8 @@ class ForceBalance {
   };
   /// Whether a block balances to a tolerance, as far as numbers have digits.
   [[nodiscard]] bool balances(std::size_t block, double tolerance) const {
-    return of_[block].ratio <= std::max(tolerance, of_[block].rounding);
+    const OfBlock& of = of_[block];
+    return of.ratio <= tolerance || (of.ratio <= of.rounding && of.predicted <= tolerance);
   }
   [[nodiscard]] const OfBlock& operator[](std::size_t block) const { return of_[block]; }
   /// N/kg: the largest acceleration that the forces out of balance would give a block, of those for which counts(block).

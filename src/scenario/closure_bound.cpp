@@ -43,7 +43,7 @@ RockNear rock_near(const simulation::RunSetup& setup, const Ring& outline) {
   return rock;
 }
 
-/// Pa/m over what joints have that give none; 0 where none gives any.
+/// Of the stiffest joint, over the default.
 double stiffest_joint(const Scenario& scenario) {
   double most = scenario.solver.penalty / standard_stiffness;
   const double standard = standard_stiffness * *scenario.rock.young;

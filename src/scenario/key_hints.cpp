@@ -66,6 +66,8 @@ class Places {
  public:
   Places() {
     for (const SectionReference& section : key_reference()) {
+      if (section.title.empty())
+        for (const KeyReference& known : section.keys) top_.push_back(known.key);
       if (!section.title.starts_with('[')) continue;
       const std::size_t begin = section.title.find_first_not_of('[');
       titles_[section.title.substr(begin, section.title.find(']') - begin)] = section.title;
@@ -80,6 +82,7 @@ class Places {
   [[nodiscard]] std::string hint(const std::string& key) const {
     if (const auto table = titles_.find(key); table != titles_.end())
       return table->second + " is the table for that";
+    if (has(top_, key)) return "'" + key + "' belongs to the top of the file";
     const auto sections = sections_.find(key);
     if (sections == sections_.end() || sections->second.size() > most_sections) return {};
     std::string text;
@@ -88,12 +91,14 @@ class Places {
   }
 
   [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
-  [[nodiscard]] bool has_key(const std::string& key) const { return sections_.contains(key); }
+  [[nodiscard]] bool has_key(const std::string& key) const {
+    return sections_.contains(key) || has(top_, key);
+  }
 
  private:
   std::map<std::string, std::string> titles_;
   std::map<std::string, std::vector<std::string>> sections_;
-  std::vector<std::string> keys_;
+  std::vector<std::string> top_, keys_;
 };
 
 std::string hint_elsewhere(const std::string& written, const std::string& word) {

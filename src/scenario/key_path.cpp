@@ -51,16 +51,20 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+// What a slip of the keyboard costs: a letter that is replaced is a letter less that was meant.
+constexpr std::size_t left_out = 4, put_in = 4, swapped = 4, replaced = 5;
+
 // Edits between two words, a swap of neighbours counting once (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = left_out * j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
+    row[0] = put_in * i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      row[j] = std::min(
+          {last[j] + put_in, row[j - 1] + left_out, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : replaced)});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        row[j] = std::min(row[j], before[j - 2] + 1);
+        row[j] = std::min(row[j], before[j - 2] + swapped);
       }
     }
     before = last;
@@ -104,19 +108,20 @@ std::string join_index(std::string_view path, std::size_t index) {
 
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t least_letters = 3, many_letters = 9, least_beginning = 4;
-  const std::size_t most_edits = word.size() < least_letters ? 0 : word.size() < many_letters ? 1 : 2;
+  const std::size_t slips = word.size() < least_letters ? 0 : word.size() < many_letters ? 1 : 2;
+  const std::size_t most = slips * replaced;
   const std::string written = lower_case(word);
   std::string best;
-  std::size_t fewest = most_edits + 1;
+  std::size_t least = most + 1;
   bool is_only_one = true;
   for (const std::string& candidate : candidates) {
     const std::string known = lower_case(candidate);
     const bool begins = written.size() >= least_beginning && known.starts_with(written);
-    const std::size_t edits =
-        begins ? std::min(edit_distance(written, known), most_edits) : edit_distance(written, known);
-    if (edits > most_edits || edits > fewest || edits >= known.size() || candidate == best) continue;
-    is_only_one = edits < fewest;
-    fewest = edits;
+    std::size_t distance = edit_distance(written, known);
+    if (begins) distance = std::min(distance, most);
+    if (distance > most || distance > least || candidate == best) continue;
+    is_only_one = distance < least;
+    least = distance;
     best = candidate;
   }
   return is_only_one ? best : "";

@@ -27,8 +27,8 @@ std::string join_path(std::string_view path, std::string_view key);
 std::string join_index(std::string_view path, std::size_t index);
 
 /// The candidate that `word` was probably meant to be: the only one that begins with it (four letters or more), or that differs least, by
-/// one letter put in, left out, replaced or swapped with its neighbour, two in words of nine letters and more; capitals do not count.
-/// Empty when there is none, or two are as near.
+/// one letter left out, put in, swapped with its neighbour or, which counts a little more, replaced; two in words of nine letters and more.
+/// Capitals do not count. Empty when there is none, or two are as near.
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 /// `did you mean 'friction'?`, or nothing.

@@ -289,7 +289,8 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
             .below = 0.5,
             .fallback = inherited});
   t.word("state", rock.state, plane_states,
-         {.meaning = "No stress, or no strain, normal to the section. A long tunnel is in plane strain.", .fallback = inherited});
+         {.meaning = "No stress, or no strain, normal to the section. A long tunnel is in plane strain.",
+          .fallback = inherited});
   static const std::string order_text =
       fmt::format("an integer from 1 to {}, or \"auto\"", block::highest_order);
   const Value* order =

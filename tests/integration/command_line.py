@@ -70,7 +70,7 @@ class Check(Scenario):
         self.assertIn("was it in GPa? That is 8e+09 Pa", checked)
         self.assertIn("the rock is too soft to be computed: young = 8 Pa", checked)
         ended = self.keyblock("run", *soft, "-o", "out", expect=2).stderr
-        self.assertRegex(ended, r"\nkeyblock: the rock is too soft to be computed: young = 8 Pa of block 'slider', and .* compress it by")
+        self.assertRegex(ended, r"\nkeyblock: the rock is too soft to be computed: young = 8 Pa of block 'slider', and .* deform it by")
 
     def test_a_file_that_is_not_there(self):
         self.assertIn("gone.toml", self.keyblock("check", "gone.toml", expect=1).stderr)

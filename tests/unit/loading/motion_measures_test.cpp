@@ -99,6 +99,21 @@ TEST(ShakingMeasures, VelocityPeaksWithinAStretchThatItTurnsRoundIn) {
   EXPECT_NEAR(measure(motion, -2.0, 0.601).peak_velocity, 0.803, 1e-9);
 }
 
+TEST(MeanPeriod, IsThatOfASineAndOfASwingThatJumps) {
+  std::vector<double> time;
+  std::vector<Vec2> sine;
+  for (int k = 0; k <= 4000; ++k) {
+    time.push_back(k / 1000.0);
+    const double a = std::sin(2.0 * std::numbers::pi * time.back() / 0.8);
+    sine.push_back({3.0 * a, -4.0 * a});
+  }
+  EXPECT_NEAR(mean_period({"sine", time, sine}), 0.8, 1e-4);
+  // A ramp of a thousandth of a second to a constant acceleration is no swing of that period.
+  EXPECT_NEAR(mean_period({"ramp", {0.0, 0.001, 10.0}, {{}, {1.0, 0.0}, {1.0, 0.0}}}),
+              2.0 * std::numbers::pi * 10.0, 0.01);
+  EXPECT_EQ(mean_period({"none", {0.0, 1.0}, {{}, {}}}), 0.0);
+}
+
 TEST(MotionDescription, NamesWhatAnEngineerAsks) {
   MotionComponent c = sine_record(3.0, 2.0, 10, 100);
   c.azimuth = 270.0;

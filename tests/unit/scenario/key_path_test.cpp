@@ -59,6 +59,22 @@ TEST(Suggestion, SlipsOfThePen) {
   EXPECT_EQ(suggestion("friktion", words), "did you mean 'friction'?");
 }
 
+TEST(Suggestion, LettersThatWereMeantAreThere) {
+  EXPECT_EQ(closest_word("sqt", {"set", "sqrt"}), "sqrt");
+  EXPECT_EQ(closest_word("sxz", {"sxx", "sxy"}), "") << "two are as near";
+  EXPECT_EQ(closest_word("fallen_area", {"fallen_area_m2", "fallen_blocks"}), "fallen_area_m2");
+  EXPECT_EQ(closest_word("closure", {"closure_vertical_m", "closure_horizontal_m"}), "") << "two begin so";
+  EXPECT_EQ(closest_word("normalstifness", {"normal_stiffness", "shear_stiffness"}), "normal_stiffness");
+}
+
+// Each of them was a hint once.
+TEST(Suggestion, NoGuessThatIsFar) {
+  EXPECT_EQ(closest_word("units", {"until"}), "");
+  EXPECT_EQ(closest_word("kn", {"k0"}), "");
+  EXPECT_EQ(closest_word("water", {"outer"}), "");
+  EXPECT_EQ(closest_word("excavation", {"excavate"}), "");
+}
+
 TEST(Suggestion, NoneForOtherWords) {
   const std::vector<std::string> words{"friction", "cohesion", "x", "y"};
   EXPECT_EQ(closest_word("stiffness", words), "");
