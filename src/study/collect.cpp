@@ -107,6 +107,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
   }
   study.grid = plan.grid;
   study.outlines = plan.outlines;
+  for (const scenario::GroundFact& fact : plan.ground) study.ground.emplace_back(fact.name, fact.value);
   for (const std::size_t k : sorted_places(plan)) {
     if (!files.asked(plan.runs[k])) continue;
     ++study.planned;

@@ -51,15 +51,18 @@ void add_files(const Scenario& scenario, std::map<fs::path, std::string>& files)
   }
 }
 
-// Reads every run of one realization, so that what it would refuse is refused now, and lists the files of all of them.
-std::vector<InputFile> files_of(const Plan& plan, const Scenario& base) {
+// Reads every run of one realization, so that what it would refuse is refused now, and lists the files and the ground of all of
+// them.
+void read_all(const Scenario& base, Plan& plan) {
   std::map<fs::path, std::string> files;
+  scenario::GroundFacts ground;
   add_files(base, files);
-  scenario::read_combinations(plan.text, plan.scenario, plan.overrides,
-                              [&](const Scenario& scenario) { add_files(scenario, files); });
-  std::vector<InputFile> list;
-  for (const auto& [path, hash] : files) list.push_back({input_name(plan.scenario, path), hash});
-  return list;
+  scenario::read_combinations(plan.text, plan.scenario, plan.overrides, [&](const Scenario& scenario) {
+    add_files(scenario, files);
+    ground.add(scenario::ground_facts(scenario));
+  });
+  for (const auto& [path, hash] : files) plan.files.push_back({input_name(plan.scenario, path), hash});
+  plan.ground = ground.merged();
 }
 
 void check_count(const Plan& plan, const Scenario& scenario, std::size_t variants) {
@@ -294,7 +297,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
   if (warnings != nullptr && plan.marginal && variants.size() < variants_of(scenario, {plan.stage}).size())
     warnings->push_back(no_release_warning(plan));
   check_count(plan, scenario, variants.size());
-  plan.files = files_of(plan, scenario);
+  read_all(scenario, plan);
   list_runs(plan, variants);
   return plan;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/polygon.h"
+#include "scenario/ground_facts.h"
 #include "scenario/scenario.h"
 #include "study/run_result.h"
 
@@ -52,6 +53,7 @@ struct Plan {
   scenario::Keep keep = scenario::Keep::report;
   MapGrid grid;
   std::vector<Ring> outlines;
+  std::vector<scenario::GroundFact> ground;  ///< of all combinations
 
   std::vector<PlannedRun> runs;
 

@@ -88,6 +88,9 @@ ordered_json description_json(const Plan& plan) {
                  {"columns", plan.grid.columns},
                  {"rows", plan.grid.rows}};
   json["outlines"] = outlines;
+  ordered_json ground = ordered_json::array();
+  for (const auto& fact : plan.ground) ground.push_back({fact.name, fact.value});
+  json["ground"] = std::move(ground);
   return json;
 }
 
@@ -125,6 +128,9 @@ void read_description(const ordered_json& json, Plan& plan) {
     Ring& outline = plan.outlines.emplace_back();
     for (const auto& p : points) outline.push_back({p.at(0).get<double>(), p.at(1).get<double>()});
   }
+  if (!json.contains("ground")) return;
+  for (const auto& fact : json.at("ground"))
+    plan.ground.push_back({fact.at(0).get<std::string>(), fact.at(1).get<std::string>()});
 }
 
 // What is run must be what the results go by.

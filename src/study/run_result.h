@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec2.h"
@@ -109,8 +110,10 @@ struct StudyData {
   std::optional<Precision> precision;  ///< given when realizations are added until it is reached
   MapGrid grid;
   std::vector<std::vector<Vec2>> outlines;  ///< of the excavations, real coordinates
-  std::vector<RunResult> runs;              ///< by realization, then combination, then variant
-  std::size_t planned = 0;                  ///< runs of the whole plan
+  /// What stands on the first screen of ground and loads: names and values (scenario/ground_facts.h).
+  std::vector<std::pair<std::string, std::string>> ground;
+  std::vector<RunResult> runs;  ///< by realization, then combination, then variant
+  std::size_t planned = 0;      ///< runs of the whole plan
 };
 
 }  // namespace keyblock::study

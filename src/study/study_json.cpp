@@ -78,16 +78,20 @@ ordered_json key_of(const StudyData& study, const std::optional<std::size_t>& ru
   return run ? ordered_json(study.runs[*run].key) : ordered_json(nullptr);
 }
 
+ordered_json share_json(const LevelSummary& share) {
+  const Estimate& p = share.probability;
+  return {{"n", share.n},
+          {"exceeded", share.exceeded},
+          {"probability", number(p.value)},
+          {"low", number(p.low)},
+          {"high", number(p.high)}};
+}
+
 ordered_json levels_json(const StudyData& study, const std::vector<LevelSummary>& levels) {
   ordered_json rows = ordered_json::array();
   for (std::size_t l = 0; l < levels.size(); ++l) {
-    const Estimate& p = levels[l].probability;
-    rows.push_back({{"name", study.levels[l].name},
-                    {"n", levels[l].n},
-                    {"exceeded", levels[l].exceeded},
-                    {"probability", number(p.value)},
-                    {"low", number(p.low)},
-                    {"high", number(p.high)}});
+    rows.push_back({{"name", study.levels[l].name}});
+    rows.back().update(share_json(levels[l]));
   }
   return rows;
 }
@@ -97,7 +101,9 @@ ordered_json part_json(const StudyData& study, const std::optional<DamagePart>& 
   ordered_json all = ordered_json::object();
   for (std::size_t m = 0; m < part->measures.size(); ++m)
     all[measures()[m].name] = description_json(part->measures[m]);
-  return {{"levels", levels_json(study, part->levels)}, {"measures", all}};
+  return {{"falls", share_json(part->falls)},
+          {"levels", levels_json(study, part->levels)},
+          {"measures", all}};
 }
 
 ordered_json combination_json(const StudyData& study, const Combination& c) {
@@ -107,6 +113,7 @@ ordered_json combination_json(const StudyData& study, const Combination& c) {
   json["median"] = key_of(study, c.median);
   json["checked"] = c.checked;
   json["marginal"] = c.marginal;
+  json["falls"] = share_json(c.falls);
   json["levels"] = levels_json(study, c.levels);
   ordered_json all = ordered_json::object();
   for (std::size_t m = 0; m < c.measures.size(); ++m) all[measures()[m].name] = measure_json(c.measures[m]);
@@ -246,6 +253,9 @@ std::string study_json(const StudyData& study, const Summary& summary) {
   ordered_json outlines = ordered_json::array();
   for (const auto& outline : study.outlines) outlines.push_back(points(outline));
   json["outlines"] = std::move(outlines);
+  ordered_json ground = ordered_json::array();
+  for (const auto& [name, value] : study.ground) ground.push_back({{"name", name}, {"value", value}});
+  json["ground"] = std::move(ground);
   json["failed"] = failed_json(study);
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -61,18 +61,25 @@ std::vector<double> values_of(const Measure& measure, const Damages& damages) {
   return values;
 }
 
+LevelSummary counted(const DamageLevel& level, const Damages& damages, double confidence) {
+  LevelSummary summary;
+  if (const auto measure = find_measure(level.measure)) {
+    const std::vector<double> values = values_of(measures()[*measure], damages);
+    summary.n = values.size();
+    for (const double value : values)
+      if (value > level.threshold) ++summary.exceeded;
+  }
+  summary.probability = statistics::proportion(summary.exceeded, summary.n, confidence);
+  return summary;
+}
+
+LevelSummary counted_falls(const Damages& damages, double confidence) {
+  return counted({"", "fallen_blocks", 0.0}, damages, confidence);
+}
+
 std::vector<LevelSummary> counted_levels(const StudyData& study, const Damages& damages) {
   std::vector<LevelSummary> levels;
-  for (const DamageLevel& level : study.levels) {
-    LevelSummary& summary = levels.emplace_back();
-    if (const auto measure = find_measure(level.measure)) {
-      const std::vector<double> values = values_of(measures()[*measure], damages);
-      summary.n = values.size();
-      for (const double value : values)
-        if (value > level.threshold) ++summary.exceeded;
-    }
-    summary.probability = statistics::proportion(summary.exceeded, summary.n, study.confidence);
-  }
+  for (const DamageLevel& level : study.levels) levels.push_back(counted(level, damages, study.confidence));
   return levels;
 }
 
@@ -98,6 +105,7 @@ void describe_measures(const StudyData& study, ResampleStore& store, Combination
     c.measures.push_back(std::move(summary));
   }
   c.levels = counted_levels(study, damages);
+  c.falls = counted_falls(damages, study.confidence);
 }
 
 DamagePart described_part(const StudyData& study, const Damages& damages, ResampleStore& store) {
@@ -109,6 +117,7 @@ DamagePart described_part(const StudyData& study, const Damages& damages, Resamp
         statistics::describe(values, summary_quantiles, store.of(values.size()), study.confidence));
   }
   part.levels = counted_levels(study, damages);
+  part.falls = counted_falls(damages, study.confidence);
   return part;
 }
 
@@ -119,7 +128,9 @@ void part_at_shaking(const StudyData& study, ResampleStore& store, Combination& 
     c.added = described_part(study, damages_between(study, c, study.before, study.stage), store);
     return;
   }
-  c.added.emplace().levels = c.levels;
+  c.added.emplace();
+  c.added->levels = c.levels;
+  c.added->falls = c.falls;
   for (const MeasureSummary& m : c.measures) c.added->measures.push_back(m.description);
 }
 

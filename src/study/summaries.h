@@ -44,6 +44,7 @@ struct LevelSummary {
 struct DamagePart {
   std::vector<statistics::Description> measures;  ///< as measures(); quantiles: summary_quantiles
   std::vector<LevelSummary> levels;               ///< as StudyData::levels
+  LevelSummary falls;                             ///< a block has fallen
 };
 
 /// All runs with the same value on every axis, variant "".
@@ -56,6 +57,7 @@ struct Combination {
   std::size_t checked = 0, marginal = 0;  ///< runs of which it is known, and those of them that are marginal
   std::vector<MeasureSummary> measures;   ///< as measures()
   std::vector<LevelSummary> levels;       ///< as StudyData::levels
+  LevelSummary falls;                     ///< a block has fallen
   /// Of the same runs, until the end of StudyData::before and from there on; none without such a stage.
   std::optional<DamagePart> before, added;
   std::size_t mapped = 0;  ///< runs with a map

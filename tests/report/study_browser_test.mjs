@@ -21,8 +21,9 @@ const drawing = (page, id, k = 0) =>
     (all, n) => all[n]?.outerHTML ?? "",
     k,
   );
+/** Of the first screen (0) and of the maps below. */
 const pixels = (page, k) =>
-  page.$$eval("#map canvas", (all, n) => all[n].toDataURL(), k);
+  page.$$eval(":is(#verdict, #map) canvas", (all, n) => all[n].toDataURL(), k);
 const select = (page, label, value) =>
   page
     .locator(".selection label", { hasText: label })
@@ -37,6 +38,7 @@ const tests = {
     );
     assert.deepEqual(headings, [
       "Result",
+      "Ground and loads",
       "Fragility",
       "Probability of damage",
       "How much, and how sure",
@@ -52,18 +54,23 @@ const tests = {
     assert.equal(await page.title(), "Tunnel <synthetic> & shaken");
     const verdict = await text(page, ".verdict");
     const found =
-      /^With scale of first earthquake 1\.0, order 1, (\d+) of (\d+) realizations lose more than ([\d.]+)\sm² of rock \((\d+)\u2060–\u2060(\d+)\s%\): (\d+) of \d+ had lost more than that before the shaking, under gravity alone \(.*\), and (\d+) lose more than that by the shaking \(.*\)\.$/.exec(
+      /^With scale of first earthquake 1\.0, order 1, rock falls in (\d+) of (\d+) realizations \((\d+)\u2060–\u2060(\d+)\s%\)\. The shaking brings rock down in (\d+) of \d+ realizations \(.*\)\. Before it, under gravity alone, rock had fallen in (\d+) of \d+ \(.*\)\.$/.exec(
         verdict,
       );
     assert.ok(found, verdict);
-    const { combinations, levels } = study("study");
-    const level = levels.findIndex((l) => l.threshold === Number(found[3]));
-    const own = combinations.find((c) => c.values.join() === "1.0,1");
-    assert.equal(Number(found[1]), own.levels[level].exceeded);
-    assert.equal(Number(found[2]), own.n);
-    assert.equal(Number(found[4]), Math.round(100 * own.levels[level].low));
-    assert.equal(Number(found[6]), own.before.levels[level].exceeded);
-    assert.equal(Number(found[7]), own.added.levels[level].exceeded);
+    const own = study("study").combinations.find(
+      (c) => c.values.join() === "1.0,1",
+    );
+    assert.deepEqual(
+      [1, 2, 3, 5, 6].map((k) => Number(found[k])),
+      [
+        own.falls.exceeded,
+        own.n,
+        Math.round(100 * own.falls.low),
+        own.added.falls.exceeded,
+        own.before.falls.exceeded,
+      ],
+    );
     const all = await text(page, "#verdict");
     assert.match(all, /Not enough realizations: \d+ of 8 combinations/);
     assert.match(all, /13 runs failed and 2 runs of 960 are missing/);
@@ -118,13 +125,64 @@ const tests = {
     await close(fitted);
   },
 
+  async "the first screen of a laptop has the map, the answer, and what falls"() {
+    const page = await open("study", { width: 1366, height: 768 });
+    for (const selector of [
+      "#verdict .verdict",
+      "#verdict canvas",
+      "#verdict table",
+      "#verdict .where .legend",
+    ]) {
+      const box = await page.locator(selector).boundingBox();
+      assert.ok(box.y >= 0 && box.y + box.height <= 768, selector);
+    }
+    const rows = await page.$$eval("#verdict tbody tr", (all) =>
+      all.map((r) => [...r.children].map((e) => e.firstChild.textContent)),
+    );
+    const c = study("study").combinations.find(
+      (x) => x.values.join() === "1.0,1",
+    );
+    const parts = [c.before, c.added, c];
+    assert.deepEqual(rows[0], [
+      "Rock falls in",
+      ...parts.map((p) => `${p.falls.exceeded} of ${p.falls.n}`),
+    ]);
+    assert.deepEqual(rows[2], [
+      "More than 0.8\u00a0m² (moderate)",
+      ...parts.map((p) => `${p.levels[1].exceeded} of ${p.levels[1].n}`),
+    ]);
+    const area = rows.find((r) => r[0] === "Fallen area (m²)").slice(1);
+    const wanted = parts.flatMap((p) =>
+      [0.5, 0.95].map(
+        (q) => p.measures.fallen_area_m2.quantiles.find((x) => x.p === q).value,
+      ),
+    );
+    area.forEach((x, k) => {
+      assert.ok(Math.abs(Number(x) - wanted[k]) <= 0.05 * wanted[k], x);
+    });
+    const facts = await text(page, "#ground");
+    assert.match(facts, /Joints: friction φ\s+30°/);
+    assert.match(facts, /PGA\s+0\.214 … 1\.07\sm\/s² \(0\.02 … 0\.11\sg\)/);
+    await page.screenshot({
+      path: join(samples, "screenshots", "study-first-screen.png"),
+    });
+    // The selection changes both.
+    const row = await text(page, "#verdict tbody tr:first-child");
+    const before = await pixels(page, 0);
+    await select(page, "scale", "0.4");
+    await settle(page);
+    assert.notEqual(await pixels(page, 0), before);
+    assert.notEqual(await text(page, "#verdict tbody tr:first-child"), row);
+    await close(page);
+  },
+
   async "the selection changes curves, maps, tables and pictures"() {
     const page = await open("study");
     const state = async () => [
       await drawing(page, "distribution", 0),
       await drawing(page, "distribution", 1),
-      await pixels(page, 0),
       await pixels(page, 1),
+      await pixels(page, 2),
       await text(page, "#measures tbody"),
       await text(page, "#extremes"),
       await text(page, "#gallery"),
@@ -142,7 +200,10 @@ const tests = {
       /^scale of first earthquake 0\.4, order 2: 60 realizations/,
     );
     await select(page, "measure", "slip_max_m");
-    assert.match(await drawing(page, "distribution", 0), /largest slip in place \(mm\)/);
+    assert.match(
+      await drawing(page, "distribution", 0),
+      /largest slip in place \(mm\)/,
+    );
     // A click on a combination chooses it.
     await page.locator("#measures button.link").first().click();
     assert.match(await text(page, "#map .chosen"), /earthquake 0\.2, order 1/);
@@ -221,7 +282,11 @@ const tests = {
     assert.equal(await page.locator("#fragility, #map, #gallery").count(), 0);
     assert.match(
       await text(page, ".verdict"),
-      /^[\d.]+\sm² of rock falls on average of 2 realizations: [\d.]+\sm² before the shaking, [\d.]+\sm² by it\.$/,
+      /^Rock falls in 2 of 2 realizations \(.*\)\. The shaking brings rock down in 2 of 2/,
+    );
+    assert.match(
+      await text(page, "#verdict .findings"),
+      /^[\d.]+\sm² of rock falls on average of 2 realizations: [\d.]+\sm² before the shaking, [\d.]+\sm² by it\.\n/,
     );
     assert.equal(await page.locator("#runs tbody tr").count(), 2);
     await shoot(page, "study_small-1400");
@@ -249,7 +314,7 @@ const tests = {
     const page = await open("study_since");
     assert.match(
       await text(page, ".verdict"),
-      /of rock by the shaking \(\d.*\); \d of 3 had lost more than that before it, under gravity alone \(\d/,
+      /the shaking brings rock down in \d of 3 realizations \(.*\)\. Before it, under gravity alone, (rock|nothing) had fallen/,
     );
     for (const id of ["map", "extremes", "gallery"])
       assert.match(

@@ -131,6 +131,18 @@ TEST(Plan, MeasuresBeginBeforeTheyEnd) {
   EXPECT_THROW(plan_of({"study.since=nowhere"}), InputError);
 }
 
+TEST(Plan, KnowsTheGroundOfAllCombinations) {
+  const auto value = [](const Plan& plan, const std::string& name) -> std::string {
+    for (const scenario::GroundFact& fact : plan.ground)
+      if (fact.name == name) return fact.value;
+    return "none";
+  };
+  EXPECT_EQ(value(plan_of(), "joints: friction φ"), "30°");
+  const Plan varied = plan_of({"study.vary[0]={key='joints.friction', values=[20, 30.5]}"});
+  EXPECT_EQ(value(varied, "joints: friction φ"), "20° · 30.5°");
+  EXPECT_EQ(value(varied, "Young's modulus E"), "2 GPa");
+}
+
 TEST(Plan, TooManyRuns) {
   EXPECT_THROW(plan_of({"study.realizations=2000000"}), InputError);
 }

@@ -94,25 +94,6 @@ TEST(Summaries, MeasuresMayBeginLater) {
   EXPECT_FALSE(measured(study, run).damage);
 }
 
-TEST(Summaries, WhatTheShakingAddsIsToldFromWhatWasThereBefore) {
-  StudyData study = shaken({3.0, 2.0, 0.0, 0.0}, {{0, 0, 0}, {0, 0, 1.5}, {0, 1.5, 2}, {0.4, 0.5, 0.6}});
-  for (const char* since : {"excavated", ""}) {
-    study.since = since;
-    const Summary summary = summarize(study);
-    const Combination& c = summary.combinations[2];
-    ASSERT_TRUE(c.before && c.added);
-    EXPECT_EQ(c.before->levels[0].exceeded, 2U);
-    EXPECT_EQ(c.added->levels[0].exceeded, 2U);
-    EXPECT_EQ(c.levels[0].exceeded, study.since.empty() ? 3U : 2U);
-    EXPECT_EQ(c.before->levels[0].probability.high, statistics::proportion(2, 4, 0.95).high);
-    const std::size_t area = *find_measure("fallen_area_m2");
-    EXPECT_DOUBLE_EQ(c.before->measures[area].mean.value, 1.25);
-    EXPECT_DOUBLE_EQ(c.added->measures[area].mean.value, 4.1 / 4.0);
-  }
-  study.since = study.before = "";
-  EXPECT_FALSE(summarize(study).combinations[2].before);
-}
-
 // The largest block fell before the quake, from the left; a smaller one in it, from the crown; another later.
 TEST(Summaries, ExtremesAreOfWhatFellBetween) {
   using simulation::WallPart;
@@ -135,6 +116,33 @@ TEST(Summaries, ExtremesAreOfWhatFellBetween) {
   EXPECT_DOUBLE_EQ(damage.fallen_depth, 0.9);
   EXPECT_DOUBLE_EQ(damage.fallen_depth_crown, 0.9);
   EXPECT_EQ(damage.fallen_depth_left, 0.0);
+}
+
+TEST(Summaries, WhatTheShakingAddsIsToldFromWhatWasThereBefore) {
+  StudyData study = shaken({3.0, 2.0, 0.0, 0.0}, {{0, 0, 0}, {0, 0, 1.5}, {0, 1.5, 2}, {0.4, 0.5, 0.6}});
+  for (const char* since : {"excavated", ""}) {
+    study.since = since;
+    const Summary summary = summarize(study);
+    const Combination& c = summary.combinations[2];
+    ASSERT_TRUE(c.before && c.added);
+    EXPECT_EQ(c.before->levels[0].exceeded, 2U);
+    EXPECT_EQ(c.added->levels[0].exceeded, 2U);
+    EXPECT_EQ(c.levels[0].exceeded, study.since.empty() ? 3U : 2U);
+    EXPECT_EQ(c.before->levels[0].probability.high, statistics::proportion(2, 4, 0.95).high);
+    const std::size_t area = *find_measure("fallen_area_m2");
+    EXPECT_DOUBLE_EQ(c.before->measures[area].mean.value, 1.25);
+    EXPECT_DOUBLE_EQ(c.added->measures[area].mean.value, 4.1 / 4.0);
+  }
+  for (RunResult& run : study.runs)
+    for (StageMeasures& stage : run.stages)
+      stage.damage.fallen_blocks = stage.damage.fallen_area > 0.0 ? 1 : 0;
+  const Combination c = summarize(study).combinations[2];
+  EXPECT_EQ(c.falls.exceeded, 4U);
+  EXPECT_EQ(c.before->falls.exceeded, 2U);
+  EXPECT_EQ(c.added->falls.exceeded, 2U);
+  EXPECT_EQ(c.falls.n, 4U);
+  study.since = study.before = "";
+  EXPECT_FALSE(summarize(study).combinations[2].before);
 }
 
 TEST(Summaries, MarginalIsWhatAVariantChangesByMuch) {

@@ -114,6 +114,9 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
   }
   study.precision = study::Precision{"fallen_area_m2", 0.1, std::nullopt};
   study.outlines = {outline({0.0, 0.0})};
+  study.ground = {{"opening “tunnel”", "circle, 5.5 m wide, 5.5 m high"},
+                  {"unit weight γ", "22.27 kN/m³ (2270 kg/m³)"},
+                  {"joints: friction φ", "30°"}};
   if (options.map) study.grid = {{-5.5, -5.5}, 0.275, 40, 40};
   for (int r = 0; r < options.realizations; ++r) {
     std::uint32_t place = 0;

@@ -29,8 +29,8 @@ export interface MeasureSummary extends Description {
   exceedance: Band & { value: number[]; probability: number[] };
 }
 
-export interface LevelShare {
-  name: string;
+/** Of how many realizations something holds. */
+export interface Share {
   /** Realizations that have the measure. */
   n: number;
   exceeded: number;
@@ -39,8 +39,14 @@ export interface LevelShare {
   high: number;
 }
 
+export interface LevelShare extends Share {
+  name: string;
+}
+
 /** Damage until the end of `before`, or what came after it. */
 export interface DamagePart {
+  /** A block has fallen. */
+  falls: Share;
   levels: LevelShare[];
   measures: Record<string, Description>;
 }
@@ -56,6 +62,7 @@ export interface Combination {
   median: string | null;
   checked: number;
   marginal: number;
+  falls: Share;
   levels: LevelShare[];
   measures: Record<string, MeasureSummary>;
   before: DamagePart | null;
@@ -118,6 +125,8 @@ export interface StudyJson {
   fragility: Fragility[];
   grid: { corner: [number, number]; cell_m: Maybe; columns: number; rows: number };
   outlines: [number, number][][];
+  /** Openings, rock, joints and loads. */
+  ground: { name: string; value: string }[];
   failed: { key: string; realization: number; values: string[]; variant: string; error: string }[];
 }
 

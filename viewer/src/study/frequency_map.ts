@@ -9,7 +9,7 @@ import type { Selection } from "./selection";
 type What = "fallen" | "fallen_or_loosened";
 
 /** How often the rock of a place falls, or falls or loosens, around the opening. */
-class FrequencyMap {
+export class FrequencyMap {
   readonly element: HTMLElement;
   private readonly canvas = h("canvas", { role: "img" });
   private readonly reading = h("p", { class: "hint", role: "status" });
@@ -19,6 +19,7 @@ class FrequencyMap {
     private readonly selection: Selection,
     private readonly what: What,
     title: string,
+    private readonly widest = 560,
   ) {
     const box = h("div", {}, this.canvas);
     this.canvas.setAttribute("aria-label", `${title}: how often, around the opening`);
@@ -37,7 +38,7 @@ class FrequencyMap {
 
   draw(): void {
     const { columns, rows, corner, cell_m } = this.study.json.grid;
-    const width = Math.min(560, this.canvas.parentElement!.clientWidth);
+    const width = Math.min(this.widest, this.canvas.parentElement!.clientWidth);
     if (width <= 0 || cell_m === null) return;
     const size = width / columns;
     const height = size * rows;
@@ -112,21 +113,27 @@ export class FrequencyMaps {
       new FrequencyMap(study, selection, "fallen", `Fallen${since}`),
       new FrequencyMap(study, selection, "fallen_or_loosened", `Fallen or loosened${since}`),
     ];
-    const bar = legendElement({
-      title: "Share of the realizations in which the rock that lay there is gone or has moved",
-      bar: {
-        colors: Array.from({ length: 12 }, (_, i) => colorOf(i / 11)),
-        scale: { min: 0, max: 1, logarithmic: false },
-        format: (v) => percentText(v),
-      },
-      note: "Without colour: in none. The outline of the opening is dashed.",
-    });
+    const bar = frequencyLegend(
+      "Share of the realizations in which the rock that lay there is gone or has moved",
+    );
     this.element = h("div", {}, h("div", { class: "maps" }, ...this.maps.map((m) => m.element)), bar);
   }
 
   draw(): void {
     for (const map of this.maps) map.draw();
   }
+}
+
+export function frequencyLegend(title: string): HTMLElement {
+  return legendElement({
+    title,
+    bar: {
+      colors: Array.from({ length: 12 }, (_, i) => colorOf(i / 11)),
+      scale: { min: 0, max: 1, logarithmic: false },
+      format: (v) => percentText(v),
+    },
+    note: "Without colour: in none. Dashed: the opening.",
+  });
 }
 
 function colorOf(t: number): string {

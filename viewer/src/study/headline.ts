@@ -1,6 +1,6 @@
 import type { Finding } from "../findings";
 import { capital, count, integer, significant } from "../format";
-import type { Combination, Fragility, LevelShare, Study } from "./data";
+import type { Combination, Fragility, Share, Study } from "./data";
 import { percent, percentRange, shownAs, withUnit } from "./quantities";
 import { headline } from "./selection";
 
@@ -33,40 +33,49 @@ function inCombination(study: Study, values: readonly (string | null)[]): string
   return name === "all runs" ? "" : `With ${name}, `;
 }
 
-/** "lose more than 0.6 m² of rock": what it is to exceed a level. */
-function exceeding(study: Study, l: number, plural: boolean): string {
-  const { measure, threshold } = study.json.levels[l];
-  const q = shownAs(study.measure(measure));
-  const [lose, have] = plural ? ["lose", "have"] : ["loses", "has"];
-  if (measure === "fallen_area_m2") return `${lose} more than ${withUnit(q, threshold)} of rock`;
-  if (measure === "fallen_blocks") return `${lose} more than ${count(threshold, "block")}`;
-  return `${have} ${q.title} above ${withUnit(q, threshold)}`;
+const range = (share: Share) => `(${percentRange(share.low, share.high)})`;
+const shareOf = (share: Share) =>
+  `${integer(share.exceeded)} of ${count(share.n, "realization")} ${range(share)}`;
+
+/** That nothing was seen to fall, and how sure that is. */
+function nothing(study: Study, share: Share): string {
+  return `none of ${count(share.n, "realization")} (probability below ${percent(share.high)}, with ${percent(study.json.confidence)} confidence)`;
 }
 
-/** "9 of 20 had lost more than that". */
-function hadExceeded(study: Study, l: number, share: LevelShare): string {
-  const lost = study.json.levels[l].measure.startsWith("fallen") ? "lost" : "had";
-  return `${integer(share.exceeded)} of ${integer(share.n)} had ${lost} more than that`;
-}
-
-const range = (share: LevelShare) => `(${percentRange(share.low, share.high)})`;
-
-/** How many realizations exceed a level, and of these how many before the shaking and by it. */
-function probabilitySentence(study: Study, k: number, l: number): string {
+/** Whether rock falls, by gravity and by the shaking, and how sure that is. */
+function fallSentence(study: Study, k: number): string {
   const c = study.json.combinations[k];
   const { since, before, at_shaking } = study.json;
-  const own = c.levels[l];
-  const exceed = exceeding(study, l, own.exceeded !== 1);
-  const text = `${inCombination(study, c.values)}${integer(own.exceeded)} of ${count(own.n, "realization")} ${exceed}${study.after()} ${range(own)}`;
-  if (!c.before || !c.added) return `${capital(text)}.`;
-  const earlier = c.before.levels[l];
-  const had = hadExceeded(study, l, earlier);
-  if (since)
-    return `${capital(text)}; ${had} ${at_shaking ? "before it, under gravity alone" : `by the end of “${before}”`} ${range(earlier)}.`;
-  const later = c.added.levels[l];
-  const lose = later.exceeded === 1 ? "loses" : "lose";
-  const more = study.json.levels[l].measure.startsWith("fallen") ? `${lose} more than that` : "add that";
-  return `${capital(text)}: ${had} before the shaking, under gravity alone ${range(earlier)}, and ${integer(later.exceeded)} ${more} by the shaking ${range(later)}.`;
+  const start = inCombination(study, c.values);
+  const found = (what: string, share: Share) =>
+    capital(`${what} in ${share.exceeded === 0 ? nothing(study, share) : shareOf(share)}.`);
+  if (!c.before || !c.added) return found(`${start}rock falls`, c.falls);
+  const early = c.before.falls;
+  const when = at_shaking ? "Before it, under gravity alone," : `By the end of “${before}”`;
+  const gravity =
+    early.exceeded === 0
+      ? `${when} nothing had fallen.`
+      : `${when} rock had fallen in ${integer(early.exceeded)} of ${integer(early.n)} ${range(early)}.`;
+  const added = at_shaking ? "the shaking brings rock down" : `after “${before}” rock falls`;
+  if (since || c.falls.exceeded === 0) return `${found(start + added, c.added.falls)} ${gravity}`;
+  return `${found(`${start}rock falls`, c.falls)} ${found(added, c.added.falls)} ${gravity}`;
+}
+
+/** Whether blocks can count as fallen: not without an opening to fall into, unless a distance was given. */
+function canFall(study: Study): boolean {
+  const { outlines, combinations } = study.json;
+  return outlines.length > 0 || combinations.some((c) => (c.measures["fallen_blocks"]?.max ?? 0) > 0);
+}
+
+/** Of a study without an opening. */
+function slipSentence(study: Study, k: number): string {
+  const c = study.json.combinations[k];
+  const name = study.json.measures.some((m) => m.name === "slip_max_ever_m")
+    ? "slip_max_ever_m"
+    : "slip_max_m";
+  const q = shownAs(study.measure(name));
+  const at = (p: number) => withUnit(q, c.measures[name].quantiles.find((x) => x.p === p)?.value ?? null);
+  return `There is no opening for rock to fall into. ${capital(`${inCombination(study, c.values)}the ${q.title} is ${at(0.5)} in the median and ${at(0.95)} at 95 % of ${count(c.n, "realization")}.`)}`;
 }
 
 /** Of a study without levels. */
@@ -97,20 +106,17 @@ function curveSentence(study: Study, f: Fragility): string {
   return `Half of the realizations exceed “${f.level}”${study.after()} at a ${kind.title} of ${significant(f.theta.value)} ${kind.unit} (${interval(f.theta)})${of}; β of the fragility curve is ${significant(f.beta.value)} (${interval(f.beta)}).`;
 }
 
-/** What came down, before the shaking and by it, with the strongest shaking. The first is the verdict; none without runs. */
+/** Whether rock falls with the strongest shaking, before it and by it, and how well that is known. The first is the verdict; none
+ * without runs. */
 export function headlineFindings(study: Study): Finding[] {
-  const { combinations, levels, confidence, fragility } = study.json;
-  const shaken = strongest(study);
+  const { combinations, levels, fragility } = study.json;
+  const shaken = strongest(study).slice(0, mostNamed);
   if (shaken.length === 0) return [];
   const plain = (text: string): Finding => ({ grade: "plain", text });
-  if (levels.length === 0) return shaken.slice(0, mostNamed).map((k) => plain(meanSentence(study, k)));
+  const sentence = canFall(study) ? fallSentence : slipSentence;
+  const falls = shaken.map((k) => plain(sentence(study, k)));
+  if (levels.length === 0) return [...falls, ...shaken.map((k) => plain(meanSentence(study, k)))];
   const l = tellingLevel(combinations[shaken[0]]);
   const curves = fragility.filter((f) => f.level === levels[l].name && f.intensity === "pga_m_s2");
-  return [
-    ...shaken.slice(0, mostNamed).map((k) => plain(probabilitySentence(study, k, l))),
-    plain(
-      `That is the level “${levels[l].name}”. In brackets: ${percent(confidence)} confidence interval of the probability.`,
-    ),
-    ...curves.slice(0, mostNamed).map((f) => plain(curveSentence(study, f))),
-  ];
+  return [...falls, ...curves.slice(0, mostNamed).map((f) => plain(curveSentence(study, f)))];
 }

@@ -4,6 +4,7 @@ import { count, integer } from "../format";
 import { whenPrinting } from "../printing";
 import { readStudy, type Study } from "./data";
 import { Distribution } from "./distribution";
+import { groundSection, resultSection } from "./first_screen";
 import { FragilityView, probabilityTable } from "./fragility";
 import { FrequencyMaps } from "./frequency_map";
 import { Extremes, Gallery, pictureNote } from "./pictures";
@@ -13,7 +14,7 @@ import { studyFindings } from "./verdict";
 import { start } from "../start";
 
 function head(study: Study): HTMLElement {
-  const { title, version, realizations, combinations } = study.json;
+  const { title, realizations, combinations } = study.json;
   return h(
     "header",
     {},
@@ -21,7 +22,7 @@ function head(study: Study): HTMLElement {
     h(
       "div",
       { class: "subtitle" },
-      `Monte Carlo study with keyblock ${version} · ${count(realizations, "realization")} × ${count(combinations.length, "combination")} · seed ${study.header.seed}`,
+      `${count(realizations, "realization")} of the joints × ${count(combinations.length, "combination")} of values`,
     ),
   );
 }
@@ -67,7 +68,6 @@ function statistics(study: Study, selection: Selection): Child[] {
   if (fragility.length > 0) parts.push(new FragilityView(study).element);
   if (levels.length > 0) parts.push(section("levels", "Probability of damage", probabilityTable(study)));
   parts.push(
-    selection.element,
     section(
       "distribution",
       "How much, and how sure",
@@ -162,14 +162,20 @@ function legend(): HTMLElement {
 }
 
 function build(study: Study, main: HTMLElement): void {
-  const [verdict, ...others] = studyFindings(study);
-  const parts: Child[] = [
-    head(study),
-    section("verdict", "Result", h("p", { class: "verdict" }, verdict.text), findingList(others)),
-  ];
+  const findings = studyFindings(study);
+  const parts: Child[] = [head(study)];
   if (study.json.combinations.length > 0) {
     const selection = new Selection(study);
-    parts.push(...statistics(study, selection), ...runs(study, selection));
+    parts.push(
+      selection.element,
+      resultSection(study, selection, findings),
+      groundSection(study),
+      ...statistics(study, selection),
+      ...runs(study, selection),
+    );
+  } else {
+    const [verdict, ...others] = findings;
+    parts.push(section("verdict", "Result", h("p", { class: "verdict" }, verdict.text), findingList(others)));
   }
   parts.push(section("method", "How it was computed", howComputed(study)));
   main.replaceChildren(...parts.filter((p): p is Node => p instanceof Node));

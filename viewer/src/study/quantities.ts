@@ -48,8 +48,8 @@ export function withUnit(q: Shown, x: number | null, digits = 3): string {
 }
 
 /** "0.8 … 1.4"; a dash where there is no interval. */
-export function interval(q: Shown, e: { low: number | null; high: number | null }): string {
-  return e.low === null || e.high === null ? "–" : `${plain(q, e.low)} … ${plain(q, e.high)}`;
+export function interval(q: Shown, e: { low: number | null; high: number | null }, digits = 3): string {
+  return e.low === null || e.high === null ? "–" : `${plain(q, e.low, digits)} … ${plain(q, e.high, digits)}`;
 }
 
 /** Half the width of an interval over its estimate; null where that says nothing. */

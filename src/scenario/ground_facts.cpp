@@ -1,0 +1,202 @@
+#include "scenario/ground_facts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rockmass/section.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+/// Values of a fact that are named; of more, the first and the last.
+constexpr std::size_t most_values = 4;
+
+std::string number(double x) {
+  return fmt::format("{:.4g}", x);
+}
+
+/// 20e9 and "/m" as "20 GPa/m".
+std::string pressure(double pa, const char* per = "") {
+  constexpr std::pair<double, const char*> units[] = {{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}};
+  for (const auto& [size, name] : units)
+    if (std::abs(pa) >= size) return fmt::format("{} {}{}", number(pa / size), name, per);
+  return pa == 0.0 ? "0" : fmt::format("{} Pa{}", number(pa), per);
+}
+
+std::string length(const rockmass::Distribution& d) {
+  const std::string spread = d.std > 0.0 ? " ± " + number(d.std) : "";
+  return number(d.mean) + spread + " m";
+}
+
+std::string quoted(const char* what, const std::string& name) {
+  return fmt::format("{} “{}”", what, name);
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* between = ", ") {
+  return fmt::format("{}", fmt::join(parts, between));
+}
+
+class Facts {
+ public:
+  explicit Facts(const Scenario& scenario) : scenario_(scenario) {}
+
+  std::vector<GroundFact> all() {
+    for (const ExcavationSpec& spec : scenario_.excavations) opening(spec);
+    stress();
+    rock();
+    joints();
+    for (const JointSetSpec& spec : scenario_.joint_sets) set(spec);
+    for (const TraceMapSpec& spec : scenario_.trace_maps)
+      add(quoted("trace map", spec.name), own(spec.joints, "as all joints"));
+    for (const RegionSpec& spec : scenario_.regions) add(quoted("region", spec.name), own_rock(spec.rock));
+    shaking();
+    if (!scenario_.loads.empty()) add("loads", std::to_string(scenario_.loads.size()));
+    if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
+    return std::move(facts_);
+  }
+
+ private:
+  void add(std::string name, std::string value) { facts_.push_back({std::move(name), std::move(value)}); }
+
+  void opening(const ExcavationSpec& spec) {
+    const Box box = bounds(Polygon{excavation_outline(spec), {}});
+    const char* shape = spec.shape == ExcavationShape::circle      ? "circle"
+                        : spec.shape == ExcavationShape::horseshoe ? "horseshoe"
+                                                                   : "polygon";
+    add(quoted("opening", spec.name),
+        fmt::format("{}, {} m wide, {} m high", shape, number(box.size().x), number(box.size().y)));
+  }
+
+  void stress() {
+    if (!scenario_.in_situ) return add("stress before excavation", "of its own weight");
+    const InSituSpec& spec = *scenario_.in_situ;
+    if (!spec.depth)
+      return add("stress before excavation",
+                 fmt::format("σxx {}, σyy {}, σxy {} (compression negative)", pressure(spec.sxx),
+                             pressure(spec.syy), pressure(spec.sxy)));
+    add("depth", number(*spec.depth) + " m of rock above the model");
+    add("K₀", number(*spec.k0));
+  }
+
+  void rock() {
+    const RockKeys& rock = scenario_.rock;
+    const double weight = *rock.density * norm(scenario_.gravity);
+    add("unit weight γ", weight > 0.0
+                             ? fmt::format("{} kN/m³ ({} kg/m³)", number(weight / 1e3), number(*rock.density))
+                             : number(*rock.density) + " kg/m³, no gravity");
+    add("Young's modulus E", pressure(*rock.young));
+    add("Poisson's ratio ν", number(*rock.poisson));
+    const std::string order = *rock.order == automatic_order ? "automatic" : std::to_string(*rock.order);
+    add("section", fmt::format("plane {}, blocks of order {}",
+                               *rock.state == PlaneState::plane_strain ? "strain" : "stress", order));
+  }
+
+  void joints() {
+    const JointKeys& joints = scenario_.joints;
+    add("joints: friction φ", number(joints.friction.value_or(0.0)) + "°");
+    add("joints: cohesion c", pressure(joints.cohesion.value_or(0.0)));
+    if (joints.tension.value_or(0.0) > 0.0) add("joints: tensile strength", pressure(*joints.tension));
+    const double normal = joints.normal_stiffness.value_or(scenario_.solver.penalty * *scenario_.rock.young);
+    const double shear = joints.shear_stiffness.value_or(JointProperties{}.stiffness_ratio * normal);
+    const char* standard = joints.normal_stiffness ? "" : " (default)";
+    add("joints: stiffness",
+        fmt::format("kn {}, ks {}{}", pressure(normal, "/m"), pressure(shear, "/m"), standard));
+  }
+
+  /// What a set or map gives of its own.
+  static std::string own(const JointKeys& joints, const char* nothing) {
+    std::vector<std::string> parts;
+    if (joints.friction) parts.push_back("φ " + number(*joints.friction) + "°");
+    if (joints.cohesion) parts.push_back("c " + pressure(*joints.cohesion));
+    if (joints.tension) parts.push_back("tensile strength " + pressure(*joints.tension));
+    if (joints.normal_stiffness) parts.push_back("kn " + pressure(*joints.normal_stiffness, "/m"));
+    if (joints.shear_stiffness) parts.push_back("ks " + pressure(*joints.shear_stiffness, "/m"));
+    return parts.empty() ? nothing : joined(parts);
+  }
+
+  static std::string own_rock(const RockKeys& rock) {
+    std::vector<std::string> parts;
+    if (rock.density) parts.push_back(number(*rock.density) + " kg/m³");
+    if (rock.young) parts.push_back("E " + pressure(*rock.young));
+    if (rock.poisson) parts.push_back("ν " + number(*rock.poisson));
+    return parts.empty() ? "as the rock" : joined(parts);
+  }
+
+  void set(const JointSetSpec& spec) {
+    const rockmass::JointSet& set = spec.set;
+    std::vector<std::string> parts{
+        fmt::format("dip {}° towards {}°", number(set.dip), number(set.dip_direction))};
+    if (scenario_.section_azimuth) {
+      const double dip = rockmass::apparent_dip(set.dip, set.dip_direction, *scenario_.section_azimuth);
+      parts.back() += fmt::format(" ({:.0f}° down to the {} in the section)", std::abs(dip),
+                                  dip < 0.0 ? "left" : "right");
+    }
+    parts.push_back("spacing " + length(set.spacing));
+    parts.push_back("length " + length(set.length));
+    const std::string properties = own(spec.joints, "");
+    if (!properties.empty()) parts.push_back(properties);
+    add(quoted("set", set.name), joined(parts));
+  }
+
+  /// The motions that stages apply, once each.
+  void shaking() {
+    std::vector<int> seen;
+    for (const simulation::Stage& stage : scenario_.stages) {
+      if (stage.motion < 0 || std::find(seen.begin(), seen.end(), stage.motion) != seen.end()) continue;
+      seen.push_back(stage.motion);
+      const MotionSpec& spec = scenario_.motions[static_cast<std::size_t>(stage.motion)];
+      add(quoted("motion", spec.name), motion(spec));
+    }
+  }
+
+  static std::string motion(const MotionSpec& spec) {
+    std::vector<std::string> parts;
+    for (const MotionComponentSpec& component : spec.components)
+      parts.push_back(component.file.filename().string());
+    if (spec.window)
+      parts.push_back(
+          fmt::format("{} … {} s of it", number(spec.window->first), number(spec.window->second)));
+    const auto sine = [&](const char* axis, const std::optional<loading::Sine>& s) {
+      if (s)
+        parts.push_back(fmt::format("{}: {} m/s² at {} Hz, {} cycles", axis, number(s->amplitude),
+                                    number(s->frequency), number(s->cycles)));
+    };
+    sine("x", spec.sine_x);
+    sine("y", spec.sine_y);
+    return parts.empty() ? "a table" : joined(parts);
+  }
+
+  const Scenario& scenario_;
+  std::vector<GroundFact> facts_;
+};
+
+}  // namespace
+
+std::vector<GroundFact> ground_facts(const Scenario& scenario) {
+  return Facts(scenario).all();
+}
+
+void GroundFacts::add(const std::vector<GroundFact>& facts) {
+  for (const GroundFact& fact : facts) {
+    auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.name == fact.name; });
+    if (row == rows_.end()) row = rows_.insert(row, {fact.name, {}});
+    if (std::find(row->values.begin(), row->values.end(), fact.value) == row->values.end())
+      row->values.push_back(fact.value);
+  }
+}
+
+std::vector<GroundFact> GroundFacts::merged() const {
+  std::vector<GroundFact> facts;
+  for (const Row& row : rows_) {
+    const bool few = row.values.size() <= most_values;
+    facts.push_back({row.name, few ? joined(row.values, " · ")
+                                   : fmt::format("{} … {} ({} values)", row.values.front(), row.values.back(),
+                                                 row.values.size())});
+  }
+  return facts;
+}
+
+}  // namespace keyblock::scenario
