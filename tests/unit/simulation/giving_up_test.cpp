@@ -73,7 +73,8 @@ TEST(GivingUp, AStopThatWasAskedForBeforeEndsTheStep) {
   dynamics::Stepper stepper(model, team, profile, &stop);
   stepper.start(state);
   EXPECT_THROW(stepper.advance(state, 0.002, nullptr), dynamics::Interrupted);
-  EXPECT_THROW(stepper.relax(state, 0.002, std::vector<double>(2, 1.0)), dynamics::Interrupted);
+  const std::vector<double> scale(2, 1.0);
+  EXPECT_THROW(stepper.relax(state, {.step = 0.002, .inertia_scale = scale}), dynamics::Interrupted);
   EXPECT_EQ(state.step, 0);
   stop = false;
   EXPECT_NO_THROW(stepper.advance(state, 0.002, nullptr));
