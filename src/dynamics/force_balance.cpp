@@ -64,7 +64,7 @@ void ForceBalance::find_scales(const Model& model, const StepProblem& problem) {
 /// Of a strain, a few ε of 1; the force of it on a coefficient of stiffness K = E |∇φ|² A is E |∇φ| A. Of a depth
 /// and of the stretch of a support, a few ε of a coordinate.
 void ForceBalance::find_rounding(const Model& model, const StepProblem& problem) {
-  constexpr double epsilon = 8.0 * std::numeric_limits<double>::epsilon();
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   double extent = 0.0;
   for (const Vec2 x : model.surface.position) extent = std::max({extent, std::abs(x.x), std::abs(x.y)});
   force_.assign(model.blocks.size(), 0.0);

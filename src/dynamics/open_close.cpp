@@ -278,9 +278,9 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
   bound_steps_.resize(springs_->size());
-  // More of them may do so in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates have not
-  // settled it, all go half as far whenever the error does not fall by a half.
-  if (++bound_updates_ > undamped_updates && ratio > 0.5 * bound_error_)
+  // More of them may do so in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates of
+  // a static step have not settled it, all go half as far whenever the error does not fall by a half.
+  if (problem.is_static() && ++bound_updates_ > undamped_updates && ratio > 0.5 * bound_error_)
     bound_damping_ = std::max(0.5 * bound_damping_, least_damping);
   bound_error_ = ratio;
   for (std::size_t c = 0; c < springs_->size(); ++c) {

@@ -101,9 +101,8 @@ ordered_json part_json(const StudyData& study, const std::optional<DamagePart>& 
   ordered_json all = ordered_json::object();
   for (std::size_t m = 0; m < part->measures.size(); ++m)
     all[measures()[m].name] = description_json(part->measures[m]);
-  return {{"falls", share_json(part->falls)},
-          {"levels", levels_json(study, part->levels)},
-          {"measures", all}};
+  return {
+      {"falls", share_json(part->falls)}, {"levels", levels_json(study, part->levels)}, {"measures", all}};
 }
 
 ordered_json combination_json(const StudyData& study, const Combination& c) {

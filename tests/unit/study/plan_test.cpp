@@ -161,10 +161,10 @@ TEST(Plan, SaysThatThereIsNoRelease) {
   std::vector<std::string> warnings;
   const Plan plan = make_plan(gallery_file, {"study.marginal={}"}, "1.2.3", &warnings);
   EXPECT_EQ(plan.runs.size(), 3U * 2U * 3U);
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_THAT(warnings[0], HasSubstr("no variant \"released\", as it leaves out the stage \"excavated\""));
+  const char* const no_release = "no variant \"released\", as it leaves out the stage \"excavated\"";
+  EXPECT_THAT(warnings, ::testing::Contains(HasSubstr(no_release)));
   make_plan(gallery_file, {"study.marginal={}", "study.since=start"}, "1.2.3", &warnings);
-  EXPECT_TRUE(warnings.empty());
+  EXPECT_THAT(warnings, ::testing::Not(::testing::Contains(HasSubstr("no variant"))));
 }
 
 TEST(Plan, IsReadAsItWasWritten) {
