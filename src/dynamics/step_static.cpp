@@ -12,10 +12,14 @@ namespace {
 /// Shear forces of a static step belong to its own normal forces, to as many digits as its end is measured by: bounds that lag by 1 % of
 /// all forces would leave a thousandth of the weight of single blocks out of balance, step after step.
 constexpr double most_bound_error = 1e-7, least_bound_error = 1e-12, bound_share = 1e-2;
+/// The error of bounds is that of all contacts together, and may be that of one small block. Where bounds alone are left to be found, it
+/// has to be so much less.
+constexpr double settled_share = 1e-4;
 constexpr int most_bound_updates = 40;
 
 SolverOptions options_of(const StaticStep& step, SolverOptions options) {
-  const double bound_error = std::clamp(bound_share * step.tolerance, least_bound_error, most_bound_error);
+  double bound_error = std::clamp(bound_share * step.tolerance, least_bound_error, most_bound_error);
+  if (step.settles_bounds) bound_error = std::max(settled_share * bound_error, least_bound_error);
   options.bound_tolerance = std::min(options.bound_tolerance, bound_error);
   options.bound_accuracy = std::min(options.bound_accuracy, bound_error);
   if (step.settles_bounds)
