@@ -120,14 +120,11 @@ TEST(Warnings, OfBlocksOfOrder1AroundAnOpening) {
   EXPECT_THAT(warned({"rock.order=auto"}), IsEmpty());
   EXPECT_THAT(warned({"stage.settled.excavate=[]"}),
               UnorderedElementsAre(HasSubstr("no stage excavates it")));
-  const std::vector<std::string> wide{
-      "domain.x=[-10, 10]",
-      "domain.y=[-10, 10]",
-      "excavation.tunnel.diameter=6",
-      "joint_set.bedding.gap=0",
-      "joint_set.bedding.length=40",
-      "joint_set=[{name='a', dip=20, dip_direction=90, spacing=0.5, length=60, gap=0}, "
-      "{name='b', dip=70, dip_direction=270, spacing=0.5, length=60, gap=0}]"};
+  const char* const two_sets =
+      R"(joint_set=[{name='a', dip=20, dip_direction=90, spacing=0.5, length=60, gap=0}, {name='b', dip=70, dip_direction=270, spacing=0.5, length=60, gap=0}])";
+  const std::vector<std::string> wide{"domain.x=[-10, 10]",           "domain.y=[-10, 10]",
+                                      "excavation.tunnel.diameter=6", "joint_set.bedding.gap=0",
+                                      "joint_set.bedding.length=40",  two_sets};
   EXPECT_THAT(warned({wide[0], wide[1], wide[2], wide[5]}), IsEmpty());
   const auto stiff = HasSubstr("the joints are 5 times as stiff as the default, 2e+10 Pa/m");
   EXPECT_THAT(warned({wide[0], wide[1], wide[2], wide[5], "joints.normal_stiffness=1e11"}),
