@@ -105,7 +105,7 @@ TEST_F(FallingRock, WeightPressureLargestBlockAndDepths) {
   for (const auto member : {&Damage::fallen_weight, &Damage::equivalent_pressure, &Damage::fallen_depth,
                             &Damage::fallen_depth_crown, &Damage::largest_fallen_area})
     EXPECT_EQ(damage.*member, 0.0);
-  for (const std::size_t b : {0, 1, 2}) drop(b);
+  for (std::size_t b = 0; b < 3; ++b) drop(b);
   damage = measure();
   const double weight = 2600.0 * g;
   EXPECT_EQ(damage.fallen_blocks, 3);
