@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "simulation/before_shaking.h"
@@ -87,6 +89,55 @@ std::string split_at_shaking(const RunRecord& run) {
       fallen_text(end.fallen_blocks - before.fallen_blocks, end.fallen_area - before.fallen_area));
 }
 
+std::string standing_text(const StageRecord& stage) {
+  using simulation::Standing;
+  switch (*stage.standing) {
+    case Standing::stands:
+      return "it stands";
+    case Standing::moves:
+      return stage.stage.kind == StageKind::settle
+                 ? fmt::format("it moves ({})", simulation::verdict_text(stage))
+                 : fmt::format("it moves, at up to {:.2g} m/s", stage.largest_speed);
+    case Standing::collapsed:
+      return fmt::format("it has collapsed: {} {} fallen", stage.damage.fallen_blocks,
+                         stage.damage.fallen_blocks == 1 ? "block has" : "blocks have");
+    case Standing::unsettled:
+      break;
+  }
+  return "it is not known whether it stands";
+}
+
+/// Where the fallen rock came from.
+std::string depths_text(const simulation::Damage& damage) {
+  const std::pair<const char*, double> parts[] = {{"crown", damage.fallen_depth_crown},
+                                                  {"left wall", damage.fallen_depth_left},
+                                                  {"right wall", damage.fallen_depth_right},
+                                                  {"invert", damage.fallen_depth_invert}};
+  std::string text;
+  for (const auto& [name, depth] : parts) {
+    if (depth > 0.0) text += fmt::format("{}{} {:.2f} m", text.empty() ? "" : ", ", name, depth);
+  }
+  return text;
+}
+
+/// What has come of it all by the end; empty where there is nothing to say.
+std::string result_text(const RunRecord& run) {
+  if (run.stages.empty()) return {};
+  const StageRecord& last = run.stages.back();
+  const simulation::Damage& damage = last.damage;
+  if (last.standing)
+    return fmt::format(
+        "at the end of \"{}\" {}; largest displacement {:.4g} m, largest rotation {:.2g} degrees\n",
+        one_line(last.stage.name, 40, true), standing_text(last), damage.displacement_max,
+        damage.rotation_max);
+  if (damage.fallen_blocks == 0 || std::isnan(damage.equivalent_pressure)) return {};
+  return fmt::format(
+      "fallen: {:.3g} kN per m of tunnel, {:.3g} kPa over the width of the opening (a dead weight); "
+      "largest block {:.3g} kN/m; from behind the {}\n",
+      1e-3 * damage.fallen_weight, 1e-3 * damage.equivalent_pressure, 1e-3 * damage.largest_fallen_weight,
+      depths_text(damage));
+}
+
 std::vector<std::string> warnings(const RunRecord& run) {
   std::vector<std::string> texts;
   for (const StageRecord& stage : run.stages) {
@@ -130,6 +181,7 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
       1000.0 * run.max_overlap.depth, 100.0 * run.energy.residual_ratio, run.state_hash);
   text += aligned(rows);
   text += split_at_shaking(run);
+  text += result_text(run);
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
   return text;
 }

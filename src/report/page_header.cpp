@@ -33,6 +33,8 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"moving", results::moving_json(record.moving)},
           {"damage", results::damage_json(record.damage)},
           {"fallen", results::fallen_json(record.fallen)},
+          {"standing", results::standing_json(record.standing)},
+          {"largest_speed_m_s", record.largest_speed},
           {"wall_time_s", record.wall_time},
           {"interrupted", record.interrupted}};
 }
@@ -64,6 +66,7 @@ ordered_json model_json(const simulation::ModelRecord& model) {
           {"opening_limit_m", results::or_null(model.opening_limit)},
           {"warnings", model.warnings},
           {"closure_is_lower_bound", model.closure_is_lower_bound},
+          {"ground", results::ground_json(model.ground)},
           {"cutting",
            {{"traces", cut.traces},
             {"joints_used", cut.joints_used},

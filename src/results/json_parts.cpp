@@ -5,6 +5,7 @@
 
 #include "results/record_fields.h"
 #include "simulation/fallen.h"
+#include "simulation/standing.h"
 
 namespace keyblock::results {
 
@@ -22,7 +23,8 @@ ordered_json or_null(const std::optional<int>& value) {
 }
 
 ordered_json damage_json(const simulation::Damage& damage) {
-  ordered_json json{{"fallen_blocks", damage.fallen_blocks}};
+  ordered_json json;
+  for (const auto& [name, member] : damage_counts) json[name] = damage.*member;
   for (const auto& [name, member] : damage_fields) json[name] = damage.*member;
   return json;
 }
@@ -31,6 +33,7 @@ simulation::Damage read_damage(const ordered_json& json) {
   simulation::Damage damage;
   json.at("fallen_blocks").get_to(damage.fallen_blocks);
   // Files of earlier versions have fewer.
+  if (json.contains("hinges")) json.at("hinges").get_to(damage.hinges);
   for (const auto& [name, member] : damage_fields)
     damage.*member = json.contains(name) ? number(json.at(name)) : std::nan("");
   return damage;
@@ -59,6 +62,17 @@ std::vector<simulation::FallenBlock> read_fallen(const ordered_json& json) {
          part.is_null() ? simulation::WallPart::none : simulation::wall_part_of(part.get<std::string>())});
   }
   return fallen;
+}
+
+ordered_json standing_json(const std::optional<simulation::Standing>& standing) {
+  return standing ? ordered_json(simulation::standing_name(*standing)) : ordered_json();
+}
+
+std::optional<simulation::Standing> read_standing(const ordered_json& json) {
+  using simulation::Standing;
+  for (const Standing s : {Standing::stands, Standing::moves, Standing::collapsed, Standing::unsettled})
+    if (json == simulation::standing_name(s)) return s;
+  return std::nullopt;
 }
 
 ordered_json energy_json(const simulation::Energy& energy) {
@@ -104,6 +118,19 @@ simulation::OpenCloseStatistics read_open_close(const ordered_json& json) {
   json.at("retried_steps").get_to(statistics.retried_steps);
   json.at("unconverged_steps").get_to(statistics.unconverged_steps);
   return statistics;
+}
+
+ordered_json ground_json(const std::vector<std::pair<std::string, std::string>>& ground) {
+  ordered_json json = ordered_json::array();
+  for (const auto& [name, value] : ground) json.push_back({{"name", name}, {"value", value}});
+  return json;
+}
+
+std::vector<std::pair<std::string, std::string>> read_ground(const ordered_json& json) {
+  std::vector<std::pair<std::string, std::string>> ground;
+  for (const auto& fact : json)
+    ground.emplace_back(fact.at("name").get<std::string>(), fact.at("value").get<std::string>());
+  return ground;
 }
 
 ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 origin) {

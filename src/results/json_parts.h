@@ -1,6 +1,8 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec2.h"
@@ -12,20 +14,25 @@ namespace keyblock::results {
 
 nlohmann::ordered_json damage_json(const simulation::Damage& damage);
 nlohmann::ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen);
+nlohmann::ordered_json standing_json(const std::optional<simulation::Standing>& standing);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
 nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics);
+/// Names and values of ModelRecord::ground.
+nlohmann::ordered_json ground_json(const std::vector<std::pair<std::string, std::string>>& ground);
 /// Which blocks, where, and when; null where none overlap.
 nlohmann::ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 origin);
 nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, y], …]
 
 simulation::Damage read_damage(const nlohmann::ordered_json& json);
 std::vector<simulation::FallenBlock> read_fallen(const nlohmann::ordered_json& json);
+std::optional<simulation::Standing> read_standing(const nlohmann::ordered_json& json);
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
 std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
 simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);
 /// Into an overlap, but for its depth; the origin of its coordinates stays in them.
 void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapRecord& overlap);
+std::vector<std::pair<std::string, std::string>> read_ground(const nlohmann::ordered_json& json);
 std::vector<Vec2> read_points(const nlohmann::ordered_json& json);
 
 /// JSON has no NaN: it is written as null.

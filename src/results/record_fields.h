@@ -21,6 +21,7 @@ inline constexpr std::pair<const char*, double simulation::Energy::*> energy_fie
 static_assert(sizeof(simulation::Energy) == std::size(energy_fields) * sizeof(double),
               "a term of the energy is missing");
 
+using simulation::damage_counts;
 using simulation::damage_fields;
 
 }  // namespace keyblock::results

@@ -96,7 +96,8 @@ std::string model_json(const simulation::ModelRecord& model) {
                           {"opening_limit", or_null(model.opening_limit)},
                           {"cutting", cutting},
                           {"warnings", model.warnings},
-                          {"closure_is_lower_bound", model.closure_is_lower_bound}};
+                          {"closure_is_lower_bound", model.closure_is_lower_bound},
+                          {"ground", ground_json(model.ground)}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -120,10 +121,11 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     model.slip_limit = later_number(json, "slip_limit");
     model.opening_limit = later_number(json, "opening_limit");
     visit_cutting(model.cutting, Read{json.at("cutting")});
-    // Files of earlier versions have neither.
+    // Files of earlier versions have none of these.
     if (json.contains("warnings")) json.at("warnings").get_to(model.warnings);
     if (json.contains("closure_is_lower_bound"))
       json.at("closure_is_lower_bound").get_to(model.closure_is_lower_bound);
+    if (json.contains("ground")) model.ground = read_ground(json.at("ground"));
     return 0;
   });
 }
@@ -154,6 +156,8 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"blocks_by_order", r.blocks_by_order},
                           {"damage", damage_json(r.damage)},
                           {"fallen", fallen_json(r.fallen)},
+                          {"standing", standing_json(r.standing)},
+                          {"largest_speed", r.largest_speed},
                           {"wall_time", r.wall_time},
                           {"interrupted", r.interrupted},
                           {"motion_time", r.motion_time},
@@ -191,7 +195,11 @@ StageLine read_stage_json(const std::string& text) {
     r.moving = read_moving(json.at("moving"));
     json.at("blocks_by_order").get_to(r.blocks_by_order);
     r.damage = read_damage(json.at("damage"));
-    if (json.contains("fallen")) r.fallen = read_fallen(json.at("fallen"));  // not in files of version 0.1
+    if (json.contains("fallen")) {  // not in files of version 0.1
+      r.fallen = read_fallen(json.at("fallen"));
+      r.standing = read_standing(json.at("standing"));
+      r.largest_speed = number(json.at("largest_speed"));
+    }
     r.wall_time = number(json.at("wall_time"));
     json.at("interrupted").get_to(r.interrupted);
     for (const auto& t : json.at("motion_time")) r.motion_time.push_back(number(t));

@@ -112,7 +112,7 @@ void complete_killed_stage(const RunData& data, int index, simulation::StageReco
   stage.interrupted = true;
   stage.duration = time - stage.start_time;
   stage.steps = std::max(stage.steps, last - first);
-  stage.wall_time = stage.worst_residual_ratio = std::nan("");
+  stage.wall_time = stage.worst_residual_ratio = stage.largest_speed = std::nan("");
   // Files of version 0.1 tell of the motion at the end alone.
   if (stage.motion_time.empty() && stage.stage.kind == simulation::StageKind::shake)
     stage.pga = stage.pgv = stage.arias = std::nan("");

@@ -85,6 +85,8 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"wall_time_s", r.wall_time},
           {"interrupted", r.interrupted},
           {"equilibrium", equilibrium(r)},
+          {"standing", standing_json(r.standing)},
+          {"largest_speed_m_s", r.largest_speed},
           {"blocks_by_order", blocks_by_order(r)},
           {"damage", damage_json(r.damage)},
           {"fallen", fallen_json(r.fallen)}};

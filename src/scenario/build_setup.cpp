@@ -7,6 +7,7 @@
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
 #include "scenario/expected_blocks.h"
+#include "scenario/ground_facts.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
@@ -227,6 +228,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.time_step = scenario.time_step;
   setup.motions = read_motions(scenario, notes);
   setup.files = input_files(scenario);
+  for (const GroundFact& fact : ground_facts(scenario)) setup.ground.emplace_back(fact.name, fact.value);
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
   place_histories(scenario, setup, notes);

@@ -134,7 +134,8 @@ void read_damage(TableReader& t, simulation::DamageLimits& damage) {
            {.meaning = "How far a block has moved when it counts as fallen.",
             .unit = "m",
             .above = 0.0,
-            .fallback = "5 % of the width of the opening"});
+            .fallback =
+                "5 % of the width of the opening; without an [[excavation]] half of √(area) of the block"});
   t.number("loosened_distance", damage.loosened_distance,
            {.meaning = "How far a block has moved when it counts as loosened.", .unit = "m", .above = 0.0});
   t.number("slip", damage.slip,

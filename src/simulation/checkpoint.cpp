@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000c;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'000d;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -54,6 +54,8 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.blocks_by_order);
   archive(s.damage);
   archive(s.fallen);
+  archive(s.largest_speed);
+  archive(s.standing);
   archive(s.wall_time);
   archive(s.interrupted);
   archive(s.motion_time);
@@ -82,6 +84,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.orders.lowered);
   archive(s.damage.reference.open);
   archive(s.damage.reference.start);
+  archive(s.damage.reference.turn);
   archive(s.damage.reference.base);
   archive(s.damage.reference.height);
   archive(s.damage.reference.width);

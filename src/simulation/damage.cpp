@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/index.h"
 #include "simulation/fallen.h"
+#include "simulation/standing.h"
 
 namespace keyblock::simulation {
 
@@ -15,6 +17,26 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 Vec2 centroid_now(const dynamics::Block& block, const dynamics::State& state) {
   return Vec2{state.position[block.first], state.position[block.first + 1]} / std::sqrt(block.area);
+}
+
+/// Of a unit of √(area of a block): what it moves by before it counts as fallen, where there is no opening to fall into.
+constexpr double fall_share = 0.5;
+
+// rad, by which a block has turned against its reference position, of all that turn it the one that fits its corners best.
+double turn_of(const dynamics::Model& model, std::size_t block) {
+  const contact::Surface& surface = model.surface;
+  const std::size_t begin = at(surface.block_begin[block]), end = at(surface.block_begin[block + 1]);
+  Vec2 before, now;
+  for (std::size_t v = begin; v < end; ++v) {
+    before += model.reference[v] / static_cast<double>(end - begin);
+    now += surface.position[v] / static_cast<double>(end - begin);
+  }
+  double along = 0.0, across = 0.0;
+  for (std::size_t v = begin; v < end; ++v) {
+    along += dot(model.reference[v] - before, surface.position[v] - now);
+    across += cross(model.reference[v] - before, surface.position[v] - now);
+  }
+  return std::atan2(across, along);
 }
 
 Box box_of(std::span<const Vec2> ring) {
@@ -49,6 +71,8 @@ void DamageGauge::start(const dynamics::State& state, std::span<const contact::C
   reference_.start.clear();
   for (const dynamics::Block& block : model_.blocks) reference_.start.push_back(centroid_now(block, state));
   reference_.base = base_.displacement(state);
+  reference_.turn.clear();
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) reference_.turn.push_back(turn_of(model_, b));
   joints_.start(contacts);
   if (setup_.excavations.empty()) return;
   const Ring& outline = setup_.excavations.front().outline;
@@ -88,23 +112,44 @@ Vec2 DamageGauge::down() const {
   return model_.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model_.gravity);
 }
 
+double DamageGauge::fall_distance(const dynamics::Block& block) const {
+  if (setup_.damage.fall_distance) return *setup_.damage.fall_distance;
+  if (const std::optional<double> width = opening_width()) return 0.05 * *width;
+  return model_.gravity == Vec2{} ? 0.0 : fall_share * std::sqrt(block.area);
+}
+
+Vec2 DamageGauge::displacement(std::size_t block, const dynamics::State& state) const {
+  const Vec2 base = base_.displacement(state) - reference_.base;
+  return centroid_now(model_.blocks[block], state) - reference_.start[block] - base;
+}
+
 std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const {
   std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
-  const std::optional<double> width = opening_width();
-  const double fall = setup_.damage.fall_distance.value_or(0.05 * width.value_or(0.0));
-  const Vec2 base = base_.displacement(state) - reference_.base;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.surface.present[b]) status[b] = BlockStatus::excavated;
     if (!started() || !model_.moves(b)) continue;
     const dynamics::Block& block = model_.blocks[b];
-    const Vec2 moved = centroid_now(block, state) - reference_.start[b] - base;
+    const Vec2 moved = displacement(b, state);
     if (norm(moved) <= setup_.damage.loosened_distance) continue;
     status[b] = BlockStatus::loosened;
+    const double fall = fall_distance(block);
     if (fall <= 0.0 || norm(moved) <= fall) continue;
     if (dot(moved, down()) > fall || openings_.area_inside(polygon_on_base(b, state)) > 0.5 * block.area)
       status[b] = BlockStatus::fallen;
   }
   return status;
+}
+
+double DamageGauge::largest_speed(const dynamics::State& state) const {
+  double largest = 0.0;
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    if (!model_.moves(b)) continue;
+    const dynamics::Block& block = model_.blocks[b];
+    const Vec2 velocity =
+        Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
+    largest = std::max(largest, norm(velocity - base_.velocity(state)));
+  }
+  return largest;
 }
 
 void DamageGauge::watch(const dynamics::State& state) {
@@ -130,6 +175,9 @@ Damage DamageGauge::measure(const dynamics::State& state) {
   double inside = 0.0;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
+    damage.displacement_max = std::max(damage.displacement_max, norm(displacement(b, state)));
+    const double turned = std::remainder(turn_of(model_, b) - reference_.turn[b], 2.0 * std::numbers::pi);
+    damage.rotation_max = std::max(damage.rotation_max, std::abs(turned) * 180.0 / std::numbers::pi);
     if (status_now[b] == BlockStatus::loosened) damage.loosened_area += model_.blocks[b].area;
     if (status_now[b] != BlockStatus::in_place) inside += openings_.area_inside(polygon_on_base(b, state));
   }
@@ -152,6 +200,13 @@ Damage DamageGauge::measure(const dynamics::State& state) {
   damage.closure_vertical = closure(reference_.height, model_, state, status_now);
   damage.closure_horizontal = closure(reference_.width, model_, state, status_now);
   return damage;
+}
+
+void DamageGauge::describe(const dynamics::State& state, StageRecord& record) {
+  record.damage = measure(state);
+  record.fallen = fallen(status(state));
+  record.largest_speed = largest_speed(state);
+  if (setup_.excavations.empty()) record.standing = standing_of(record, setup_.damage.loosened_distance);
 }
 
 }  // namespace keyblock::simulation

@@ -43,12 +43,15 @@ class DamageGauge {
   [[nodiscard]] std::vector<BlockStatus> status(const dynamics::State& state) const;
   /// The blocks of this status that have fallen.
   [[nodiscard]] std::vector<FallenBlock> fallen(std::span<const BlockStatus> status) const;
+  /// All that the record of a stage that has ended tells of damage.
+  void describe(const dynamics::State& state, StageRecord& record);
   [[nodiscard]] const JointGauge& joints() const { return joints_; }
   [[nodiscard]] std::optional<double> opening_width() const;
 
   struct Reference {
     std::vector<std::uint8_t> open;  ///< per excavation
     std::vector<Vec2> start;         ///< centroids, per block
+    std::vector<double> turn;        ///< rad, of every block against its reference position
     Vec2 base;                       ///< m, displacement of the base
     Diameter height, width;          ///< of the first excavation
   };
@@ -64,6 +67,12 @@ class DamageGauge {
   /// Where the outline of a block would be now if the base had not moved.
   [[nodiscard]] Polygon polygon_on_base(std::size_t block, const dynamics::State& state) const;
   [[nodiscard]] Vec2 down() const;
+  /// m/s, largest of a centroid against the base.
+  [[nodiscard]] double largest_speed(const dynamics::State& state) const;
+  /// m; 0: nothing falls.
+  [[nodiscard]] double fall_distance(const dynamics::Block& block) const;
+  /// m, of a centroid against the base since the reference.
+  [[nodiscard]] Vec2 displacement(std::size_t block, const dynamics::State& state) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;

@@ -11,7 +11,10 @@
 /// The measures of damage by the names that they have in files.
 namespace keyblock::simulation {
 
-/// In SI units; `fallen_blocks` stands beside them.
+inline constexpr std::pair<const char*, int Damage::*> damage_counts[] = {
+    {"fallen_blocks", &Damage::fallen_blocks}, {"hinges", &Damage::hinges}};
+
+/// In SI units, angles in degrees.
 inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
     {"fallen_area_m2", &Damage::fallen_area},
     {"fallen_weight_n_m", &Damage::fallen_weight},
@@ -25,6 +28,8 @@ inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
     {"fallen_depth_invert_m", &Damage::fallen_depth_invert},
     {"opening_filled_ratio", &Damage::opening_filled_ratio},
     {"loosened_area_m2", &Damage::loosened_area},
+    {"displacement_max_m", &Damage::displacement_max},
+    {"rotation_max_deg", &Damage::rotation_max},
     {"slip_max_m", &Damage::slip_max},
     {"slip_max_ever_m", &Damage::slip_max_ever},
     {"slip_mean_m", &Damage::slip_mean},
@@ -36,20 +41,23 @@ inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
     {"opened_length_ever_m", &Damage::opened_length_ever},
     {"closure_vertical_m", &Damage::closure_vertical},
     {"closure_horizontal_m", &Damage::closure_horizontal}};
-// The count of fallen blocks takes the room of one more.
-static_assert(sizeof(Damage) == (1 + std::size(damage_fields)) * sizeof(double),
+static_assert(sizeof(Damage) ==
+                  std::size(damage_counts) * sizeof(int) + std::size(damage_fields) * sizeof(double),
               "a measure of the damage is missing");
 
-/// All names, `fallen_blocks` first.
+/// All names, counts first.
 inline std::vector<std::string> damage_names() {
-  std::vector<std::string> names{"fallen_blocks"};
+  std::vector<std::string> names;
+  for (const auto& [name, member] : damage_counts) names.emplace_back(name);
   for (const auto& [name, member] : damage_fields) names.emplace_back(name);
   return names;
 }
 
 /// The measure of this name. Throws std::invalid_argument where there is none.
 inline double damage_value(const Damage& damage, std::string_view measure) {
-  if (measure == "fallen_blocks") return damage.fallen_blocks;
+  for (const auto& [name, member] : damage_counts) {
+    if (measure == name) return damage.*member;
+  }
   for (const auto& [name, member] : damage_fields) {
     if (measure == name) return damage.*member;
   }

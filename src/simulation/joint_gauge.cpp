@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -44,7 +45,25 @@ void JointGauge::watch(std::span<const BlockStatus> status) {
   }
 }
 
+int JointGauge::hinges(std::span<const BlockStatus> status) const {
+  struct Ends {
+    bool open = false, closed = false;
+  };
+  std::map<std::pair<int, int>, Ends> joints;
+  for (const Piece& piece : pieces_) {
+    if (!in_place(piece, status)) continue;
+    const std::pair<int, int> blocks =
+        std::minmax(model_.surface.block[at(piece.vertex)], model_.surface.block[at(piece.edge)]);
+    const bool open = offset(piece).opening > setup_.damage.opening;
+    (open ? joints[blocks].open : joints[blocks].closed) = true;
+  }
+  return static_cast<int>(std::count_if(joints.begin(), joints.end(), [](const auto& joint) {
+    return joint.second.open && joint.second.closed;
+  }));
+}
+
 void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) const {
+  damage.hinges = hinges(status);
   double length = 0.0, slip_length = 0.0;
   for (const Piece& piece : pieces_) {
     damage.slip_max_ever = std::max(damage.slip_max_ever, piece.slip_ever);

@@ -29,7 +29,7 @@ class JointGauge {
   void start(std::span<const contact::Contact> contacts);
   /// Looks at all pieces. `status`: of every block now.
   void watch(std::span<const BlockStatus> status);
-  /// Adds slip and opening to `damage`: in place now, and ever up to the last look.
+  /// Adds slip, opening and hinges to `damage`: in place now, and ever up to the last look.
   void measure(std::span<const BlockStatus> status, Damage& damage) const;
   /// Slip of the piece at a contact, by its vertex and edge; 0 for contacts made later.
   [[nodiscard]] double slip(int vertex, int edge) const;
@@ -41,6 +41,8 @@ class JointGauge {
   struct Offset {
     double slip, opening;
   };
+  /// Pairs of blocks with a piece of joint in place that is open beyond the limit, and one that is not.
+  [[nodiscard]] int hinges(std::span<const BlockStatus> status) const;
   [[nodiscard]] Offset offset(const Piece& piece) const;
   [[nodiscard]] bool in_place(const Piece& piece, std::span<const BlockStatus> status) const;
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/profile.h"
@@ -49,6 +50,7 @@ struct ModelRecord {
   std::optional<double> opening_width;              ///< m
   std::optional<double> slip_limit, opening_limit;  ///< m, beyond which a joint counts as slipped, opened
   cutting::CutStatistics cutting;
+  std::vector<std::pair<std::string, std::string>> ground;  ///< names and values: RunSetup::ground
 };
 
 enum class BlockStatus : std::uint8_t { in_place = 0, loosened = 1, fallen = 2, excavated = 3 };
@@ -140,15 +142,18 @@ struct FallenBlock {
 /// Measures as defined in the user guide; cumulative since the first excavation. NaN: there is no such number.
 struct Damage {
   int fallen_blocks = 0;
-  double fallen_area = 0.0;                                       ///< m²
-  double fallen_weight = 0.0;                                     ///< N per metre of tunnel
-  double equivalent_pressure = 0.0;                               ///< Pa; NaN without an opening
+  int hinges = 0;                    ///< joints in place that are open at one end and closed at another
+  double fallen_area = 0.0;          ///< m²
+  double fallen_weight = 0.0;        ///< N per metre of tunnel
+  double equivalent_pressure = 0.0;  ///< Pa; NaN without an opening
   double largest_fallen_area = 0.0, largest_fallen_weight = 0.0;  ///< m², N per metre; of one block
   /// m, behind the outlines of openings, where there are any, else NaN.
   double fallen_depth = 0.0, fallen_depth_crown = 0.0, fallen_depth_left = 0.0, fallen_depth_right = 0.0,
          fallen_depth_invert = 0.0;
   double opening_filled_ratio = 0.0;
   double loosened_area = 0.0;                                 ///< m²
+  double displacement_max = 0.0;                              ///< m, of a centroid against the base
+  double rotation_max = 0.0;                                  ///< degrees, of a block
   double slip_max = 0.0, slip_mean = 0.0, opening_max = 0.0;  ///< m, of joints in place
   double slipped_length = 0.0, opened_length = 0.0;           ///< m, likewise
   /// m, of these and of joints beside blocks that have fallen: the largest up to now.
@@ -160,6 +165,14 @@ struct MovingBlock {
   int block = 0;
   double carried = 0.0;  ///< share of its weight that contacts carry
   int group = 0;  ///< the same for moving blocks that touch and do not fall: the least of their numbers
+};
+
+/// How blocks around no opening are at the end of a stage (standing.h).
+enum class Standing : std::uint8_t {
+  stands = 0,
+  moves = 1,
+  collapsed = 2,
+  unsettled = 3,  ///< static steps ended before it was known
 };
 
 struct StageRecord {
@@ -178,8 +191,10 @@ struct StageRecord {
   std::vector<MovingBlock> moving;
   std::vector<int> blocks_by_order;  ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;
-  std::vector<FallenBlock> fallen;  ///< at its end, ascending
-  double wall_time = 0.0;           ///< s
+  std::vector<FallenBlock> fallen;   ///< at its end, ascending
+  double largest_speed = 0.0;        ///< m/s, of a centroid against the base, at its end
+  std::optional<Standing> standing;  ///< none where there are excavations
+  double wall_time = 0.0;            ///< s
   bool interrupted = false;
   /// The motion as applied, thinned to what a plot needs: time in the stage (s), acceleration (m/s²).
   std::vector<double> motion_time;

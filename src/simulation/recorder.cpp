@@ -95,6 +95,7 @@ ModelRecord Recorder::model() const {
   record.slip_limit = setup_.damage.slip;
   record.opening_limit = setup_.damage.opening;
   record.cutting = setup_.system.statistics;
+  record.ground = setup_.ground;
   return record;
 }
 

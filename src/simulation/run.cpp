@@ -385,8 +385,7 @@ void Runner::run_stage() {
   check_overlap();
   record_frame();
   if (!is_within_step_) record_contacts();
-  record.damage = gauge_.measure(now_.mechanics);
-  record.fallen = gauge_.fallen(gauge_.status(now_.mechanics));
+  gauge_.describe(now_.mechanics, record);
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
   if (record.interrupted) {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "block/material.h"
@@ -48,10 +49,11 @@ struct History {
 
 /// Limits of the damage measures; see the user guide.
 struct DamageLimits {
-  std::optional<double> fall_distance;  ///< m; default 5 % of the width of the opening
-  double loosened_distance = 0.01;      ///< m
-  double slip = 0.001;                  ///< m; a joint counts as slipped beyond it
-  double opening = 0.001;               ///< m; a joint counts as opened beyond it
+  std::optional<double>
+      fall_distance;  ///< m; default 5 % of the width of the opening, half of √(area) without one
+  double loosened_distance = 0.01;  ///< m
+  double slip = 0.001;              ///< m; a joint counts as slipped beyond it
+  double opening = 0.001;           ///< m; a joint counts as opened beyond it
 };
 
 /// How the program chooses the order of blocks that leave it open.
@@ -85,6 +87,8 @@ struct RunSetup {
   std::vector<InputFile> files;         ///< that the scenario names
   std::vector<std::string> warnings;    ///< of input that seems odd, for the report
   bool closure_is_lower_bound = false;  ///< blocks of order 1 are too stiff for it
+  /// What the rock is and what acts on it, for reports: names and values (scenario/ground_facts.h).
+  std::vector<std::pair<std::string, std::string>> ground;
 
   cutting::BlockSystem system;
   std::vector<BlockProperties> properties;  ///< one per block of `system`

@@ -16,6 +16,7 @@ namespace {
 
 /// Titles and units, in the order of the names.
 constexpr std::pair<const char*, const char*> titles[] = {{"fallen blocks", ""},
+                                                          {"hinges", ""},
                                                           {"fallen area", "m²"},
                                                           {"weight of fallen rock", "N/m"},
                                                           {"equivalent pressure", "Pa"},
@@ -28,6 +29,8 @@ constexpr std::pair<const char*, const char*> titles[] = {{"fallen blocks", ""},
                                                           {"depth of fallen rock behind the invert", "m"},
                                                           {"filled share of the opening", ""},
                                                           {"loosened area", "m²"},
+                                                          {"largest displacement", "m"},
+                                                          {"largest rotation", "°"},
                                                           {"largest slip in place", "m"},
                                                           {"largest slip ever", "m"},
                                                           {"mean slip in place", "m"},
@@ -39,7 +42,8 @@ constexpr std::pair<const char*, const char*> titles[] = {{"fallen blocks", ""},
                                                           {"opened length ever", "m"},
                                                           {"vertical closure", "m"},
                                                           {"horizontal closure", "m"}};
-static_assert(std::size(titles) == 1 + std::size(simulation::damage_fields),
+static_assert(std::size(titles) ==
+                  std::size(simulation::damage_counts) + std::size(simulation::damage_fields),
               "a measure of the damage is missing");
 
 /// Differences are taken to this many per unit: far below what a measure means, far above its rounding.
@@ -94,7 +98,7 @@ std::optional<simulation::Damage> damage_between(const RunResult& run, std::stri
   if (since.empty()) return damage;
   const auto start = named(since);
   if (start == run.stages.end()) return std::nullopt;
-  damage.fallen_blocks -= start->damage.fallen_blocks;
+  for (const auto& [name, member] : simulation::damage_counts) damage.*member -= start->damage.*member;
   for (const auto& [name, member] : simulation::damage_fields)
     damage.*member = difference(damage.*member, start->damage.*member);
   // What fell between: the difference of two extremes would be of no block.

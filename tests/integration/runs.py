@@ -15,11 +15,11 @@ SUMMARY_FIELDS = {
     "energy": "kinetic strain gravity contact friction input numerical residual_ratio",
 }
 STAGE_FIELDS = {
-    "": "name kind steps duration pga_m_s2 pgv_m_s arias_m_s equilibrium damage",
+    "": "name kind steps duration pga_m_s2 pgv_m_s arias_m_s equilibrium standing largest_speed_m_s damage fallen",
     "equilibrium": "reached verdict worst_residual_ratio largest_way_m largest_way_share moving_blocks",
-    "damage": "fallen_blocks fallen_area_m2 fallen_weight_n_m equivalent_pressure_pa largest_fallen_area_m2 "
+    "damage": "fallen_blocks hinges fallen_area_m2 fallen_weight_n_m equivalent_pressure_pa largest_fallen_area_m2 "
     "largest_fallen_weight_n_m fallen_depth_m fallen_depth_crown_m fallen_depth_left_m fallen_depth_right_m "
-    "fallen_depth_invert_m opening_filled_ratio loosened_area_m2 slip_max_m slip_max_ever_m "
+    "fallen_depth_invert_m opening_filled_ratio loosened_area_m2 displacement_max_m rotation_max_deg slip_max_m slip_max_ever_m "
     "slip_mean_m slipped_length_m slipped_length_ever_m opening_max_m opening_max_ever_m opened_length_m opened_length_ever_m "
     "closure_vertical_m closure_horizontal_m",
 }
@@ -38,6 +38,7 @@ class Run(Scenario):
         self.assert_fields(summary["stages"][0], STAGE_FIELDS)
         self.assertEqual((summary["title"], summary["blocks"], summary["steps"]), ("A block on an incline", 2, 500))
         self.assertEqual(summary["open_close"]["unconverged_steps"], 0)
+        self.assertEqual(summary["stages"][0]["standing"], "moves")  # it slides still
         self.assertEqual((out / "result.h5").read_bytes()[:4], b"\x89HDF")
         self.assertIn("A block on an incline", (out / "report.html").read_text())
         self.assertEqual([p.name for p in out.iterdir() if p.name.endswith(".tmp")], [])

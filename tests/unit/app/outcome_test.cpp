@@ -86,6 +86,39 @@ TEST(OutcomeText, SaysWhatToBeWaryOf) {
               HasSubstr("note: stage \"first earthquake\" was interrupted\nnote: 3 steps did not"));
 }
 
+TEST(OutcomeText, SaysWhatFellAndFromWhere) {
+  RunRecord run = settled_and_shaken();
+  simulation::Damage& damage = run.stages[1].damage;
+  damage.fallen_weight = 91.2e3;
+  damage.equivalent_pressure = 15.2e3;
+  damage.largest_fallen_weight = 30.5e3;
+  damage.fallen_depth = damage.fallen_depth_crown = 1.234;
+  damage.fallen_depth_right = 0.4;
+  EXPECT_THAT(
+      outcome_text(run, 9),
+      HasSubstr("\nfallen: 91.2 kN per m of tunnel, 15.2 kPa over the width of the opening (a dead "
+                "weight); largest block 30.5 kN/m; from behind the crown 1.23 m, right wall 0.40 m\n"));
+  damage.fallen_blocks = 0;
+  EXPECT_THAT(outcome_text(run, 9), Not(HasSubstr("fallen:")));
+}
+
+TEST(OutcomeText, SaysWhetherItStands) {
+  RunRecord run = settled_and_shaken();
+  StageRecord& last = run.stages[1];
+  last.standing = simulation::Standing::collapsed;
+  last.damage.displacement_max = 1.5;
+  last.damage.rotation_max = 90.0;
+  EXPECT_THAT(
+      outcome_text(run, 9),
+      HasSubstr("\nat the end of \"first earthquake\" it has collapsed: 12 blocks have fallen; largest "
+                "displacement 1.5 m, largest rotation 90 degrees\n"));
+  last.standing = simulation::Standing::moves;
+  last.largest_speed = 0.25;
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("it moves, at up to 0.25 m/s; largest"));
+  last.standing = simulation::Standing::stands;
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("\" it stands; largest"));
+}
+
 TEST(OutcomeText, OfARunThatDidNothing) {
   EXPECT_THAT(outcome_text({}, 0), HasSubstr("0 steps in 0.0 s: 0.00 ms"));
 }

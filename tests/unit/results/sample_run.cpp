@@ -169,6 +169,9 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
     EXPECT_TRUE(same(a.fallen[k].area, b.fallen[k].area) && same(a.fallen[k].weight, b.fallen[k].weight) &&
                 same(a.fallen[k].depth, b.fallen[k].depth));
   }
+  EXPECT_EQ(a.damage.hinges, b.damage.hinges);
+  EXPECT_EQ(a.standing, b.standing);
+  EXPECT_TRUE(same(a.largest_speed, b.largest_speed));
   EXPECT_TRUE(same(a.wall_time, b.wall_time));
   EXPECT_EQ(a.interrupted, b.interrupted);
   EXPECT_EQ(a.motion_time, b.motion_time);
@@ -212,6 +215,7 @@ SampleRun::SampleRun() {
   model.warnings = {"rock.density = 2.6 kg/m3", "a \"quoted\" one"};
   model.closure_is_lower_bound = true;
   model.cutting = {10, 7, 12.3, 4.5, 6, 2, 8, 16.0, 1e-5};
+  model.ground = {{"friction φ", "30°"}, {"set “J 2”", "dip 65°, \"spacing\" 0.5 m"}};
 }
 
 simulation::Frame SampleRun::frame(int stage, long step) {
@@ -302,6 +306,9 @@ simulation::StageRecord SampleRun::stage(int index) {
   if (index == 0) record.moving = {{2, 0.7, 1}};
   if (index == 0) record.way = 0.25, record.way_share = 0.1 / 3.0;
   record.damage.fallen_blocks = index;
+  record.damage.hinges = 7 * index;
+  record.largest_speed = noise(index, 5);
+  if (index > 0) record.standing = simulation::Standing::collapsed;
   double value = noise(index, 1);
   for (const auto& [name, member] : simulation::damage_fields) record.damage.*member = value *= -0.7;
   record.damage.closure_horizontal = 1e-17;

@@ -39,8 +39,8 @@ TEST(Summary, HasEveryFieldOfTheContract) {
   }
   ASSERT_EQ(summary["stages"].size(), 2U);
   for (const json& stage : summary["stages"]) {
-    for (const char* key :
-         {"name", "kind", "steps", "duration", "pga_m_s2", "pgv_m_s", "arias_m_s", "equilibrium", "damage"}) {
+    for (const char* key : {"name", "kind", "steps", "duration", "pga_m_s2", "pgv_m_s", "arias_m_s",
+                            "equilibrium", "damage", "fallen", "standing", "largest_speed_m_s"}) {
       EXPECT_TRUE(stage.contains(key)) << key;
     }
     for (const char* key : {"reached", "worst_residual_ratio", "moving_blocks"}) {
