@@ -29,13 +29,15 @@ const tests = {
     );
     assert.deepEqual(headings, [
       "Result",
-      "What was run",
+      "Ground and loads",
+      "Stages",
       "Damage by stage",
       "The blocks before and after each stage",
       "Animation",
       "Histories of chosen points",
       "Quality of the computation",
       "From joints to blocks",
+      "How it was computed",
       "Conventions",
     ]);
     assert.equal(await text(page, "h1"), "Brick wall <synthetic> & shaken");
@@ -53,7 +55,7 @@ const tests = {
     );
     assert.equal(await page.locator("#verdict .attention").count(), 0);
     assert.equal(await page.locator("#quality td.attention").count(), 0);
-    assert.equal(await page.locator("#damage tbody tr").count(), 3);
+    assert.equal(await page.locator("#damage tbody tr").count(), 2 * 3);
     assert.match(await text(page, "#damage tbody tr:nth-child(2)"), /\+\d/);
     assert.equal(await page.locator(".pictures figure").count(), 5);
     assert.equal(await sidewaysOverflow(page), 0);
@@ -358,29 +360,30 @@ const tests = {
   async "slips have the digits they need, and the limit that they are measured by"() {
     const page = await open("tunnel");
     assert.match(
-      await text(page, "#verdict .findings"),
+      await text(page, "#verdict"),
       /31\.7\sm of joint slipped by more than 1 mm and 11\.2\sm opened by more than 1 mm\./,
     );
     assert.match(
-      await text(page, "#verdict .findings"),
+      await text(page, "#verdict"),
       /slipped by up to 73\.1 mm;[^]*In place at the end: up to 19\.6 mm/,
     );
     // The wall point in the crown is on a fallen block.
-    const columns = await page.$$eval("#damage thead th", (all) =>
+    const joints = "#damage .table-box:nth-of-type(2)";
+    const columns = await page.$$eval(`${joints} thead th`, (all) =>
       all.map((e) => e.firstChild.textContent),
     );
-    const last = await page.$$eval("#damage tbody tr:last-child > *", (all) =>
+    const last = await page.$$eval(`${joints} tbody tr:last-child > *`, (all) =>
       all.map((e) => e.innerText.trim()),
     );
     assert.equal(last[columns.indexOf("Closure, vertical")], "–");
     assert.match(last[columns.indexOf("Largest slip ever")], /^73\.1/);
     await close(page);
     const still = await open("far_and_still");
-    const titles = await still.$$eval("#damage thead th", (all) => all.map((e) => e.firstChild.textContent));
-    const row = await still.$$eval("#damage tbody tr:first-child > *", (all) =>
+    const titles = await still.$$eval(`${joints} thead th`, (all) => all.map((e) => e.firstChild.textContent));
+    const row = await still.$$eval(`${joints} tbody tr:first-child > *`, (all) =>
       all.map((e) => e.firstChild.textContent),
     );
-    const slips = ["Largest slip in place", "Largest slip ever", "Mean slip"];
+    const slips = ["Largest slip in place", "Largest slip ever", "Mean slip in place"];
     assert.deepEqual(
       slips.map((title) => row[titles.indexOf(title)]),
       ["0.013", "0.013", "0.00072"],
@@ -402,23 +405,132 @@ const tests = {
     await close(page);
   },
 
-  async "a run without excavation has the measures of damage that apply"() {
+  async "a run without excavation says whether it stands, and has the measures that apply"() {
     const page = await open("no_excavation");
     const columns = await page.$$eval("#damage thead th", (all) =>
       all.map((e) => e.firstChild.textContent),
     );
     assert.deepEqual(columns, [
       "At the end of",
-      "Largest slip in place",
       "Largest slip ever",
+      "Largest slip in place",
+      "Largest rotation",
+      "Hinges",
     ]);
     assert.equal(await page.locator("#damage tbody tr").count(), 4);
+    assert.equal(await text(page, ".badge"), "Stands");
+    const result = await text(page, "#verdict");
+    assert.match(result, /It stands at the end of “after”\./);
     assert.match(
-      await text(page, ".verdict"),
-      /no excavation in this model; the largest displacement/,
+      result,
+      /The largest displacement is 31\.2 mm \(bent brick\) and the largest rotation of a block 0\.09°\./,
     );
+    assert.match(
+      result,
+      /4 joints between blocks in place are hinges: open at one end by more than 1 mm/,
+    );
+    assert.doesNotMatch(result, /no excavation|What falls/);
     await shoot(page, "no_excavation-1400");
     await close(page);
+  },
+
+  async "a collapse is called one"() {
+    const page = await open("collapsed");
+    assert.equal(await text(page, ".badge"), "Has collapsed");
+    assert.ok(await page.locator(".badge.bad").isVisible());
+    const result = await text(page, "#verdict");
+    assert.match(
+      result,
+      /A part of it has collapsed: 1 of \d+ blocks has fallen\. The first fell in “first earthquake”\./,
+    );
+    assert.match(
+      result,
+      /Weight of fallen rock\s*13\.4 kN\/m \(1 block, 0\.6 m²\)/,
+    );
+    assert.doesNotMatch(result, /pressure|wall/);
+    await shoot(page, "collapsed-1400");
+    await close(page);
+  },
+
+  async "what falls is told as an engineer asks it"() {
+    const page = await open("tunnel");
+    assert.equal(await text(page, ".badge"), "Rock falls");
+    const result = await text(page, "#verdict");
+    assert.match(
+      result,
+      /Weight of fallen rock\s*[\d.]+ kN\/m \(\d+ blocks?, [\d.]+ m²\)/,
+    );
+    assert.match(
+      result,
+      /Largest block\s*[\d.]+ kN\/m \([\d.]+ m², block \d+\)/,
+    );
+    assert.match(result, /Deepest behind the wall\s*crown [\d.]+ m/);
+    assert.match(result, /Equivalent pressure\s*[\d.]+ kPa/);
+    assert.match(result, /not a proof of what a support has to carry/);
+    assert.match(result, /All checks of the computation are passed/);
+    assert.match(result, /one realization of the joints \(number 3\)/);
+    await close(page);
+  },
+
+  async "ground and loads are listed, and program facts come last"() {
+    const page = await open("tunnel");
+    const facts = await page.$$eval("#ground dl > div", (all) =>
+      all.map((e) => [...e.children].map((c) => c.innerText.trim())),
+    );
+    const found = Object.fromEntries(facts);
+    assert.equal(found["K₀"], "0.8");
+    assert.equal(found["Depth"], "80 m of rock above the model");
+    assert.equal(found["Young's modulus E"], "12 GPa");
+    assert.match(
+      found["Set “bed joints”"],
+      /^dip 0° towards 90°.*spacing 0\.6 m/,
+    );
+    assert.match(
+      found["PGA in “first earthquake”"],
+      /^2\.31\sm\/s² \(0\.24\sg\)$/,
+    );
+    for (const word of ["hash", "Degrees of freedom"])
+      assert.doesNotMatch(await text(page, "#verdict"), new RegExp(word));
+    assert.match(await text(page, "#run"), /Degrees of freedom/);
+    await close(page);
+  },
+
+  async "the first screen of a laptop has the result, its picture and what falls"() {
+    const page = await open("tunnel", { width: 1366, height: 768 });
+    for (const part of [
+      ".badge",
+      ".verdict",
+      ".final canvas",
+      ".result .answers .facts",
+      ".result .findings",
+    ]) {
+      const box = await page.locator(part).first().boundingBox();
+      assert.ok(
+        box.y >= 0 && box.y + box.height <= 768,
+        `${part}: ${box.y} + ${box.height}`,
+      );
+    }
+    const [words, picture] = [
+      await page.locator(".words").boundingBox(),
+      await page.locator(".final canvas").boundingBox(),
+    ];
+    assert.ok(
+      picture.x > words.x + words.width - 1 &&
+        picture.y < words.y + words.height,
+    );
+    await page.screenshot({ path: join(screenshots, "first-screen-1366.png") });
+    await close(page);
+    const phone = await open("tunnel", { width: 390, height: 844 });
+    assert.ok((await sidewaysOverflow(phone)) <= 0);
+    const tops = [];
+    for (const part of [".verdict", ".final canvas", ".answers"])
+      tops.push((await phone.locator(part).boundingBox()).y);
+    assert.deepEqual(
+      [...tops].sort((a, b) => a - b),
+      tops,
+    );
+    await phone.screenshot({ path: join(screenshots, "first-screen-390.png") });
+    await close(phone);
   },
 
   async "fits a narrow window, a dark screen and paper"() {

@@ -101,6 +101,18 @@ int main(int argc, char** argv) {
   for (auto& row : stone.steps) row.closed_contacts = 0;
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "fallen_stone");
   keyblock::report::write_report(stone, std::filesystem::path(argv[1]) / "fallen_stone");
+  // The same, but one stone counts as fallen.
+  for (std::size_t k = 2; k < stone.run.stages.size(); ++k) {
+    keyblock::simulation::StageRecord& stage = stone.run.stages[k];
+    const auto& block = stone.model.blocks[0];
+    stage.fallen = {{0, block.area, 9.81 * block.density * block.area, std::nan("")}};
+    stage.damage.fallen_blocks = 1;
+    stage.damage.fallen_area = stage.damage.largest_fallen_area = block.area;
+    stage.damage.fallen_weight = stage.damage.largest_fallen_weight = stage.fallen[0].weight;
+    stage.standing = keyblock::simulation::Standing::collapsed;
+  }
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "collapsed");
+  keyblock::report::write_report(stone, std::filesystem::path(argv[1]) / "collapsed");
   // As large as the demo: about 900 blocks, 10,000 display vertices, 300 frames.
   write("large", {.columns = 32, .rows = 28, .edge_pieces = 3, .frames_per_stage = 75});
   // Blocks smaller than pixels.

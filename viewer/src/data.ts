@@ -7,6 +7,7 @@
 export interface Damage {
   /** Holds where the area of the fallen blocks is known. */
   fallen_blocks: number;
+  hinges: number;
   fallen_area_m2: number | null;
   fallen_weight_n_m: number | null;
   equivalent_pressure_pa: number | null;
@@ -19,6 +20,8 @@ export interface Damage {
   fallen_depth_invert_m: number | null;
   opening_filled_ratio: number | null;
   loosened_area_m2: number | null;
+  displacement_max_m: number | null;
+  rotation_max_deg: number | null;
   slip_max_m: number | null;
   slip_max_ever_m: number | null;
   slip_mean_m: number | null;
@@ -45,6 +48,8 @@ export interface Stage {
   planned_duration: number | null;
   pga_m_s2: number | null;
   equilibrium_reached: boolean;
+  /** What a static stage came to: "in equilibrium", "mechanism of 3 blocks"; null of dynamic ones. */
+  verdict: string | null;
   worst_residual_ratio: number | null;
   moving: { block: number; carried: number | null }[];
   damage: Damage;
@@ -56,6 +61,10 @@ export interface Stage {
     depth_m: number | null;
     wall: "crown" | "left" | "right" | "invert" | null;
   }[];
+  /** Of a run without excavations; null: with them, or not known. */
+  standing: "stands" | "moves" | "collapsed" | "unsettled" | null;
+  /** Of a block at its end. */
+  largest_speed_m_s: number | null;
   wall_time_s: number | null;
   interrupted: boolean;
 }
@@ -85,6 +94,8 @@ export interface Header {
     warnings: string[];
     /** Blocks of order 1 are too stiff for it. */
     closure_is_lower_bound: boolean;
+    /** What the rock is and what acts on it. */
+    ground: { name: string; value: string }[];
     cutting: {
       traces: number;
       joints_used: number;

@@ -41,7 +41,7 @@ export interface Legend {
   classes?: { color: string; name: string; line?: boolean }[];
 }
 
-/** Mean displacement vector of a block between two states of all vertices. */
+/** Mean displacement vector of a block against the base (Run.baseOf) between two states of all vertices. */
 export function blockDisplacement(
   run: Run,
   block: number,
@@ -58,7 +58,9 @@ export function blockDisplacement(
     x += u[v] - since[v];
     y += u[n + v] - since[n + v];
   }
-  return [x / (end - begin), y / (end - begin)];
+  const [baseX, baseY] = run.baseOf(u);
+  const [sinceX, sinceY] = run.baseOf(since);
+  return [x / (end - begin) - baseX + sinceX, y / (end - begin) - baseY + sinceY];
 }
 
 export interface Principal {

@@ -1,18 +1,20 @@
 import { Animation } from "./animation";
 import { Clock } from "./clock";
+import { damageTables } from "./damage_tables";
 import { readPage, type Header } from "./data";
 import { h, section, type Child } from "./dom";
 import { Fields } from "./fields";
-import { findingList } from "./findings";
+import { FinalPicture } from "./final_picture";
+import { groundAndLoads } from "./ground";
 import { NowFacts } from "./now_facts";
 import { count, integer } from "./format";
 import { Pictures } from "./pictures";
 import type { Plot } from "./plots";
 import { whenPrinting } from "./printing";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
+import { resultSection } from "./result";
 import { Run } from "./run";
-import { cuttingFacts, damageTable, movingTable, qualityTable, runFacts, stageTable } from "./tables";
-import { findings } from "./verdict";
+import { cuttingFacts, movingTable, programFacts, qualityTable, stageTable } from "./tables";
 import { start } from "./start";
 
 function head(header: Header): HTMLElement {
@@ -40,13 +42,13 @@ function conventions(): HTMLElement {
       item("x points to the right, y up; all forces and energies are per metre of thickness of the section."),
       item("Stress is Cauchy stress, mean over a block; compression is negative."),
       item(
-        "Displacement and velocity are relative to the base, whose acceleration the ground motion is. Static steps take no simulated time.",
+        "Displacement and velocity are relative to the base, whose acceleration the ground motion is. Displacements of blocks are against the fixed blocks, too, where all of these are moved alike. Static steps take no simulated time.",
       ),
       item(
         "Slip is the shear displacement of the two sides of a joint against each other since the excavation; gap is the opening normal to it, negative where contact springs are compressed.",
       ),
       item(
-        "A block has fallen when it has left its place for the opening; loosened means moved beyond the limit of the scenario without having fallen. Damage is cumulative since the first excavation; the user guide has the definitions.",
+        "A block has fallen when it has moved down, or into the opening, by more than the limit of the scenario: by default 5 % of the width of the opening, and without an opening half of √(area of the block). Loosened means moved by more than 1 cm, or the limit of the scenario, without having fallen. Blocks move against the base: the fixed blocks, where they move alike. Damage is cumulative since the first excavation; the user guide has the definitions.",
       ),
       item(
         "Energies: kinetic + strain + gravity + contact + friction + damping + numerical − input = residual, where friction, damping and numerical are losses and input is the work of motion, loads and supports.",
@@ -72,6 +74,8 @@ function build(run: Run, main: HTMLElement): void {
   };
   const animation = run.frameCount > 0 ? new Animation(run, fields, clock) : null;
   const pictures = run.frameCount > 0 ? new Pictures(run, fields) : null;
+  const final = run.frameCount > 0 ? new FinalPicture(run, fields) : null;
+  if (final) drawn.push(final);
   if (animation) drawn.push(animation);
   if (pictures) drawn.push(pictures);
 
@@ -81,46 +85,27 @@ function build(run: Run, main: HTMLElement): void {
     if (frame >= 0) clock.seek(frame);
     animation?.showBlock(block);
   };
-  const found = findings(run);
-  const [verdict, ...others] = found;
   const parts: Child[] = [
     head(header),
-    section(
-      "verdict",
-      "Result",
-      h("p", { class: "verdict" }, verdict.text),
-      findingList(others),
-      movingTable(run, showBlock),
-    ),
-    section(
-      "run",
-      "What was run",
-      runFacts(run),
-      run.stages.length > 0 ? stageTable(run) : null,
-      header.model.scenario
-        ? h(
-            "details",
-            {},
-            h("summary", {}, "The scenario, as run"),
-            h("pre", {}, h("code", {}, header.model.scenario)),
-          )
-        : null,
-    ),
+    resultSection(run, final?.element ?? null, movingTable(run, showBlock)),
+    section("ground", "Ground and loads", groundAndLoads(run)),
   ];
-  const damage = damageTable(run);
-  if (damage) parts.push(section("damage", "Damage by stage", damage));
+  if (run.stages.length > 0) parts.push(section("stages", "Stages", stageTable(run)));
+  const damage = damageTables(run);
+  if (damage.length > 0) parts.push(section("damage", "Damage by stage", ...damage));
   if (pictures) parts.push(section("states", "The blocks before and after each stage", pictures.element));
   const motion = track(motionPlots(run, clock));
   if (animation) {
-    const excavated = run.header.model.excavations.length > 0;
+    const falls =
+      run.header.model.excavations.length > 0 || run.stages.some((s) => s.damage.fallen_blocks > 0);
     const aside =
-      motion.length > 0 || excavated
+      motion.length > 0 || falls
         ? h(
             "div",
             { class: "aside" },
             ...motion,
             ...track(damagePlots(run, clock)),
-            excavated ? new NowFacts(run, clock).element : null,
+            falls ? new NowFacts(run, clock).element : null,
           )
         : null;
     parts.push(
@@ -165,6 +150,21 @@ function build(run: Run, main: HTMLElement): void {
   );
   const cutting = cuttingFacts(run);
   if (cutting) parts.push(section("cutting", "From joints to blocks", cutting));
+  parts.push(
+    section(
+      "run",
+      "How it was computed",
+      programFacts(run),
+      header.model.scenario
+        ? h(
+            "details",
+            {},
+            h("summary", {}, "The scenario, as run"),
+            h("pre", {}, h("code", {}, header.model.scenario)),
+          )
+        : null,
+    ),
+  );
   parts.push(conventions());
   main.replaceChildren(...parts.filter((p): p is Node => p instanceof Node));
 
@@ -172,6 +172,7 @@ function build(run: Run, main: HTMLElement): void {
     fields.readTheme();
     animation?.view.readTheme();
     pictures?.readTheme();
+    final?.readTheme();
     drawn.forEach((d) => d.redraw());
     plots.forEach((p) => p.rebuild());
   };

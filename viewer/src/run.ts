@@ -271,6 +271,41 @@ export class Run {
     return Number.isFinite(box.minX) ? box : { minX: -1, minY: -1, maxX: 1, maxY: 1 };
   }
 
+  /** What all fixed blocks have moved by, of displacements as displacementAt gives them; nothing where they move differently. */
+  baseOf(u: Float32Array): [number, number] {
+    const n = this.vertexCount;
+    let base: [number, number] | null = null;
+    for (let r = 0; r < this.ringBegin.length; r++) {
+      if (!this.fixed[this.ringBlock[r]]) continue;
+      for (let v = this.ringBegin[r]; v < this.ringEnd[r]; v++) {
+        base ??= [u[v], u[n + v]];
+        const apart = Math.hypot(u[v] - base[0], u[n + v] - base[1]);
+        if ((base[0] === 0 && base[1] === 0) || apart > 3 * this.header.displacement_quantum) return [0, 0];
+      }
+    }
+    return base ?? [0, 0];
+  }
+
+  /** Blocks that are not fixed. */
+  movable(): number {
+    return this.blockCount - this.fixed.reduce((sum, f) => sum + f, 0);
+  }
+
+  /** The largest displacement of a corner against the base in the last frame, m, and its block. */
+  largestDisplacement(): [number, number] {
+    const u = this.displacementAt(this.frameCount - 1);
+    const [baseX, baseY] = this.baseOf(u);
+    let [largest, at] = [0, -1];
+    for (let r = 0; r < this.ringBegin.length; r++) {
+      if (this.fixed[this.ringBlock[r]]) continue;
+      for (let v = this.ringBegin[r]; v < this.ringEnd[r]; v++) {
+        const d = Math.hypot(u[v] - baseX, u[this.vertexCount + v] - baseY);
+        if (d > largest) [largest, at] = [d, this.ringBlock[r]];
+      }
+    }
+    return [largest, at];
+  }
+
   /** Area of the blocks that are not fixed, m². */
   rockArea(): number {
     return this.area.reduce((sum, a, b) => sum + (this.fixed[b] ? 0 : a), 0);

@@ -1,10 +1,9 @@
 import type { Damage, Stage } from "./data";
 import type { Finding } from "./findings";
-import { capital, count, fixed, integer, length, list, significant } from "./format";
+import { capital, count, fixed, integer, length, list, quoted, significant } from "./format";
 import { stageTime } from "./labels";
 import type { Run } from "./run";
-
-const quoted = (name: string) => `“${name}”`;
+import { standingFindings } from "./standing";
 
 /** Peak ground acceleration as "1.18 m/s² (0.12 g)". */
 export function acceleration(a: number): string {
@@ -27,12 +26,20 @@ export function marginalStages(run: Run): { index: number; stage: Stage }[] {
     );
 }
 
+/** The stage that opens the first excavation; −1: none has. */
+export function firstExcavation(run: Run): number {
+  return run.stages.findIndex((s) => s.excavate.length > 0);
+}
+
 /** What happened to the rock, in sentences. The first is the verdict. */
 export function findings(run: Run): Finding[] {
-  const excavated = run.stages.findIndex((s) => s.excavate.length > 0);
+  const excavated = firstExcavation(run);
+  return [...(excavated >= 0 ? damageFindings(run, excavated) : standingFindings(run)), ...slipFindings(run)];
+}
+
+/** What makes the result less sure. */
+export function sureness(run: Run): Finding[] {
   return [
-    ...(excavated >= 0 ? damageFindings(run, excavated) : [movementFinding(run)]),
-    ...slipFindings(run),
     ...(run.header.run.interrupted ? [interruption(run)] : []),
     ...marginalStages(run).map(({ stage }) => marginalFinding(run, stage)),
   ];
@@ -57,7 +64,7 @@ function interruption(run: Run): Finding {
 }
 
 /** The last stage of which something is known. */
-function lastKnown(run: Run, measure: (damage: Damage) => number | null): number {
+export function lastKnown(run: Run, measure: (damage: Damage) => number | null): number {
   let k = run.stages.length - 1;
   while (k >= 0 && measure(run.stages[k].damage) === null) k--;
   return k;
@@ -137,26 +144,6 @@ function slipFindings(run: Run): Finding[] {
       text: `${when} slipped by up to ${length(end.slip_max_ever_m)}; ${slipped}.${left}`,
     },
   ];
-}
-
-function movementFinding(run: Run): Finding {
-  const last = run.frameCount - 1;
-  if (last < 0) return { grade: "attention", text: "No frame was recorded: there is nothing to draw." };
-  const u = run.displacementAt(last);
-  let largest = 0;
-  let at = 0;
-  for (let r = 0; r < run.ringBegin.length; r++) {
-    if (run.fixed[run.ringBlock[r]]) continue;
-    for (let v = run.ringBegin[r]; v < run.ringEnd[r]; v++) {
-      const d = Math.hypot(u[v], u[run.vertexCount + v]);
-      if (d > largest) [largest, at] = [d, run.ringBlock[r]];
-    }
-  }
-  const moved =
-    largest > 0
-      ? `the largest displacement at the end is ${length(largest)} (${run.blockName(at)})`
-      : "nothing has moved";
-  return { grade: "plain", text: `There is no excavation in this model; ${moved}.` };
 }
 
 function marginalFinding(run: Run, stage: Stage): Finding {
@@ -254,6 +241,24 @@ export function checks(run: Run): Check[] {
     });
   }
   return result;
+}
+
+/** What the checks say together. */
+export function checksFinding(run: Run): Finding {
+  const all = checks(run);
+  const bad = all.filter((c) => c.good === false).length;
+  const unknown = all.filter((c) => c.good === null).length;
+  if (bad + unknown === 0) return { grade: "good", text: "All checks of the computation are passed." };
+  const checked = count(all.length, "check");
+  const parts = [
+    ...(bad > 0
+      ? [`${bad} of ${checked} of the computation ${bad === 1 ? "needs" : "need"} attention.`]
+      : []),
+    ...(unknown > 0
+      ? [`${unknown} of ${checked} cannot be made, as the run left no record of its end.`]
+      : []),
+  ];
+  return { grade: "attention", text: parts.join(" ") };
 }
 
 /** What makes a static stage marginal. */

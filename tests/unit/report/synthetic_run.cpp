@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/fallen.h"
+
 namespace keyblock::made_up {
 
 namespace {
@@ -69,6 +71,17 @@ class Wall {
     model.slip_limit = model.opening_limit = 0.001;
     model.joint_set_names = {"bed joints", "head joints"};
     model.history_names = {"crown", "springline"};
+    model.ground = {
+        {"opening “tunnel”", "polygon, 8 m wide, 5.4 m high"},
+        {"depth", "80 m of rock above the model"},
+        {"K₀", "0.8"},
+        {"unit weight γ", "22.27 kN/m³ (2270 kg/m³)"},
+        {"Young's modulus E", "12 GPa"},
+        {"joints: friction φ", "35°"},
+        {"joints: stiffness", "kn 240 GPa/m, ks 96 GPa/m (default)"},
+        {"set “bed joints”",
+         "dip 0° towards 90° (0° down to the right in the section), spacing 0.6 m, length 8 ± 2 m"},
+        {"motion “quake”", "record_090.smc, record_up.smc"}};
     model.cutting.traces = 412;
     model.cutting.joints_used = 231;
     model.cutting.trace_length = 618.4;
@@ -316,10 +329,16 @@ class Wall {
       stage.worst_residual_ratio = plan.kind == StageKind::settle ? 0.0083 : 0.0;
       if (options_.marginal && k == 0) stage.moving = {{120, 0.8, 120}};
       if (options_.marginal && k == 1) stage.moving = {{120, 0.62, 120}, {121, 0.0, 121}, {137, 0.35, 137}};
-      if (options_.excavation)
+      if (options_.excavation) {
+        stage.fallen = fallen_at(k);
         stage.damage = damage_at(k);
-      else
+      } else {
         stage.damage.slip_max = stage.damage.slip_max_ever = 1e-3 * static_cast<double>(k);
+        stage.damage.equivalent_pressure = stage.damage.fallen_depth = std::nan("");
+        stage.damage.rotation_max = 0.03 * static_cast<double>(k);
+        stage.damage.hinges = k < 2 ? 0 : 4;
+        stage.standing = simulation::Standing::stands;
+      }
       if (plan.kind == StageKind::shake) add_motion(stage);
       record.steps += stage.steps;
       record.wall_time += stage.wall_time;
@@ -334,6 +353,17 @@ class Wall {
     record.energy.residual_ratio = 0.0021;
   }
 
+  [[nodiscard]] std::vector<simulation::FallenBlock> fallen_at(std::size_t stage) const {
+    std::vector<simulation::FallenBlock> fallen;
+    for (std::size_t b = 0; stage >= 2 && b < boxes_.size(); ++b) {
+      if (status(b, 2, options_.shake_duration) != BlockStatus::fallen) continue;
+      const auto& block = run_.model.blocks[b];
+      fallen.push_back({static_cast<int>(b), block.area, block.area * block.density * gravity,
+                        boxes_[b].max.y - opening_.max.y, simulation::WallPart::crown});
+    }
+    return fallen;
+  }
+
   [[nodiscard]] simulation::Damage damage_at(std::size_t stage) const {
     simulation::Damage damage;
     if (stage >= 1) {
@@ -344,13 +374,20 @@ class Wall {
     }
     if (stage < 2) return damage;
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
-      const BlockStatus s = status(b, 2, options_.shake_duration);
-      if (s == BlockStatus::fallen) {
-        ++damage.fallen_blocks;
-        damage.fallen_area += run_.model.blocks[b].area;
-      }
-      if (s == BlockStatus::loosened) damage.loosened_area += run_.model.blocks[b].area;
+      if (status(b, 2, options_.shake_duration) == BlockStatus::loosened)
+        damage.loosened_area += run_.model.blocks[b].area;
     }
+    const auto fallen = fallen_at(stage);
+    for (const simulation::FallenBlock& block : fallen) {
+      ++damage.fallen_blocks;
+      damage.fallen_area += block.area;
+      damage.fallen_weight += block.weight;
+    }
+    simulation::set_extremes(fallen, damage);
+    damage.equivalent_pressure = damage.fallen_weight / opening_.size().x;
+    damage.displacement_max = 1.9;
+    damage.rotation_max = 38.0;
+    damage.hinges = 11;
     damage.opening_filled_ratio = damage.fallen_area / (opening_.size().x * opening_.size().y);
     // Blocks fell, and the crown with them.
     damage.slip_max = 0.0196;
