@@ -30,7 +30,7 @@ ordered_json stage_json(const simulation::StageRecord& record) {
                           : ordered_json()},
           {"worst_residual_ratio", record.worst_residual_ratio},
           {"way_m", record.way},
-          {"moving", results::moving_json(record.moving)},
+          {"moving", results::movements_json(record)},
           {"damage", results::damage_json(record.damage)},
           {"fallen", results::fallen_json(record.fallen)},
           {"standing", results::standing_json(record.standing)},

@@ -6,6 +6,7 @@
 #include "results/record_fields.h"
 #include "simulation/fallen.h"
 #include "simulation/standing.h"
+#include "simulation/verdict.h"
 
 namespace keyblock::results {
 
@@ -91,6 +92,13 @@ ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving) {
   ordered_json json = ordered_json::array();
   for (const auto& m : moving)
     json.push_back({{"block", m.block}, {"carried", m.carried}, {"group", m.group}});
+  return json;
+}
+
+ordered_json movements_json(const simulation::StageRecord& stage) {
+  ordered_json json = moving_json(stage.moving);
+  for (std::size_t k = 0; k < stage.moving.size(); ++k)
+    json[k]["movement"] = simulation::movement_name(simulation::movement_of(stage, k));
   return json;
 }
 

@@ -17,6 +17,8 @@ nlohmann::ordered_json fallen_json(const std::vector<simulation::FallenBlock>& f
 nlohmann::ordered_json standing_json(const std::optional<simulation::Standing>& standing);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
+/// With what each block does (simulation/verdict.h).
+nlohmann::ordered_json movements_json(const simulation::StageRecord& stage);
 nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics);
 /// Names and values of ModelRecord::ground.
 nlohmann::ordered_json ground_json(const std::vector<std::pair<std::string, std::string>>& ground);

@@ -53,15 +53,13 @@ ordered_json equilibrium(const simulation::StageRecord& r) {
     return {{"reached", nullptr},       {"verdict", nullptr},           {"worst_residual_ratio", nullptr},
             {"largest_way_m", nullptr}, {"largest_way_share", nullptr}, {"moving_blocks", nullptr}};
   }
-  ordered_json moving = moving_json(r.moving);
-  for (std::size_t k = 0; k < r.moving.size(); ++k) moving[k]["movement"] = movement_name(movement_of(r, k));
   return {{"reached", r.equilibrium_reached},
           {"verdict", verdict_text(r)},
           {"worst_residual_ratio", r.worst_residual_ratio},
           {"largest_way_m", r.way},
           {"largest_way_share", r.way_share},
           {"moving_blocks", r.moving.size()},
-          {"moving", std::move(moving)}};
+          {"moving", movements_json(r)}};
 }
 
 ordered_json blocks_by_order(const simulation::StageRecord& r) {

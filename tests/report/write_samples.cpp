@@ -66,7 +66,12 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "killed");
   keyblock::report::write_report(killed, std::filesystem::path(argv[1]) / "killed");
   write("short", {.frames_per_stage = 5, .interrupted = true, .shake_duration = 0.08});
-  write("no_frames", {.frames = false});
+  keyblock::results::RunData unsettled = synthetic_run({.frames = false});
+  unsettled.run.stages[0].way = 0.0312;
+  unsettled.run.stages[0].way_share = 0.04;
+  unsettled.run.stages[1].equilibrium_reached = false;
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "no_frames");
+  keyblock::report::write_report(unsettled, std::filesystem::path(argv[1]) / "no_frames");
   write("no_excavation", {.excavation = false});
   keyblock::results::RunData odd = synthetic_run({});
   odd.model.warnings = {
@@ -99,6 +104,10 @@ int main(int argc, char** argv) {
   move_block(stone, 1, -500.0F);
   stone.frames.erase(stone.frames.begin(), stone.frames.begin() + 9);
   for (auto& row : stone.steps) row.closed_contacts = 0;
+  for (auto& stage : stone.run.stages) {
+    stage.damage.loosened_area = 0.6;
+    stage.damage.displacement_max = 4.0;
+  }
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "fallen_stone");
   keyblock::report::write_report(stone, std::filesystem::path(argv[1]) / "fallen_stone");
   // The same, but one stone counts as fallen.

@@ -51,7 +51,10 @@ export interface Stage {
   /** What a static stage came to: "in equilibrium", "mechanism of 3 blocks"; null of dynamic ones. */
   verdict: string | null;
   worst_residual_ratio: number | null;
-  moving: { block: number; carried: number | null }[];
+  /** Of a block that is not moving, while it was out of balance: the largest. */
+  way_m: number | null;
+  /** Blocks that move without bound: what each does, and the share of its weight that contacts carry. */
+  moving: { block: number; carried: number | null; movement: "mechanism" | "falling" | "partly held" }[];
   damage: Damage;
   /** Blocks that have fallen by its end; `wall`: the part of the outline behind which the deepest corner lay. */
   fallen: {

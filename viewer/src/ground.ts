@@ -14,12 +14,13 @@ function shaking(stage: Stage): [string, Child] {
 export function groundAndLoads(run: Run): HTMLElement {
   const box = run.extentOfRock();
   const still = run.blockCount - run.movable();
-  const list = factList([
-    ["Section", `${significant(box.maxX - box.minX, 4)} × ${significant(box.maxY - box.minY, 4)} m`],
+  return factList([
+    [
+      "Size of the model",
+      `${significant(box.maxX - box.minX, 4)} × ${significant(box.maxY - box.minY, 4)} m`,
+    ],
     ["Blocks", still === 0 ? integer(run.movable()) : `${integer(run.movable())} and ${still} fixed`],
     ...run.header.model.ground.map(({ name, value }): [string, Child] => [capital(name), value]),
     ...run.stages.filter((s) => s.kind === "shake").map(shaking),
   ]);
-  list.classList.add("listed");
-  return list;
 }

@@ -5,7 +5,6 @@ import { readPage, type Header } from "./data";
 import { h, section, type Child } from "./dom";
 import { Fields } from "./fields";
 import { FinalPicture } from "./final_picture";
-import { groundAndLoads } from "./ground";
 import { NowFacts } from "./now_facts";
 import { count, integer } from "./format";
 import { Pictures } from "./pictures";
@@ -88,7 +87,6 @@ function build(run: Run, main: HTMLElement): void {
   const parts: Child[] = [
     head(header),
     resultSection(run, final?.element ?? null, movingTable(run, showBlock)),
-    section("ground", "Ground and loads", groundAndLoads(run)),
   ];
   if (run.stages.length > 0) parts.push(section("stages", "Stages", stageTable(run)));
   const damage = damageTables(run);

@@ -1,9 +1,10 @@
 import type { Damage } from "./data";
 import { factList, h, section, type Child } from "./dom";
 import { findingList, type Finding } from "./findings";
-import { count, fixed, integer, significant } from "./format";
+import { groundAndLoads } from "./ground";
+import { count, fixed, integer, length, significant } from "./format";
 import type { Run } from "./run";
-import { checksFinding, firstExcavation, findings, lastKnown, marginalStages, sureness } from "./verdict";
+import { firstExcavation, findings, lastKnown, marginalStages, sureness } from "./verdict";
 
 type Grade = "good" | "attention" | "bad" | "plain";
 
@@ -26,9 +27,15 @@ function ofRock(run: Run): { words: string; grade: Grade } {
 }
 
 function ofStructure(run: Run): { words: string; grade: Grade } {
-  switch ([...run.stages].reverse().find((s) => s.standing !== null)?.standing) {
+  const stage = [...run.stages].reverse().find((s) => s.standing !== null);
+  switch (stage?.standing) {
     case "stands":
-      return { words: "Stands", grade: "good" };
+      return (stage.damage.loosened_area_m2 ?? 0) > 0
+        ? {
+            words: `Stands, moved by up to ${length(stage.damage.displacement_max_m, 2)}`,
+            grade: "attention",
+          }
+        : { words: "Stands", grade: "good" };
     case "moves":
       return { words: "Moves", grade: "attention" };
     case "collapsed":
@@ -71,14 +78,16 @@ function whatFalls(run: Run): HTMLElement | null {
   ];
   if (damage.equivalent_pressure_pa !== null)
     facts.push(
-      ["Deepest behind the wall", depths(damage) || "–"],
+      ["Depth behind the wall", depths(damage) || "–"],
       ["Equivalent pressure", `${significant(damage.equivalent_pressure_pa / 1e3, 3)} kPa`],
     );
   const note =
     damage.equivalent_pressure_pa === null
       ? "Weights are per metre of thickness."
       : "Weights are per metre of tunnel; the pressure is the weight over the width of the opening. It is a dead weight, not a proof of what a support has to carry.";
-  return h("div", {}, h("h3", {}, "What falls"), factList(facts), h("p", { class: "hint" }, note));
+  const list = factList(facts);
+  list.classList.add("listed");
+  return h("div", { class: "falls" }, h("h3", {}, "What falls"), list, h("p", { class: "hint" }, note));
 }
 
 /** One run tells of one rock mass. */
@@ -91,14 +100,15 @@ function realizationFinding(run: Run): Finding {
     };
   return {
     grade: "plain",
-    text: `This is one realization of the joints (number ${integer(model.realization)}) of many with the same statistics. A study of many realizations tells how often rock falls, and how much.`,
+    text: `One realization of the joints (number ${integer(model.realization)}) of many: a study of many tells how often rock falls, and how much.`,
   };
 }
 
-/** The first screen: what came of the run, how sure that is, and how it looks. */
+/** The first screen: what came of the run, how sure that is, how it looks, and of what ground and loads. */
 export function resultSection(run: Run, picture: HTMLElement | null, ...below: Child[]): HTMLElement {
   const [verdict, ...others] = findings(run);
   const { words, grade } = badge(run);
+  const falls = whatFalls(run);
   return section(
     "verdict",
     "Result",
@@ -115,12 +125,13 @@ export function resultSection(run: Run, picture: HTMLElement | null, ...below: C
       h(
         "div",
         { class: "answers" },
-        whatFalls(run),
+        falls ?? (others.length > 0 ? findingList(others) : null),
         h("h3", {}, "How sure is it?"),
-        findingList([checksFinding(run), ...sureness(run), realizationFinding(run)]),
+        findingList([...sureness(run), realizationFinding(run)]),
       ),
+      h("div", { class: "ground", id: "ground" }, h("h3", {}, "Ground and loads"), groundAndLoads(run)),
     ),
-    findingList(others),
+    falls ? findingList(others) : null,
     ...below,
   );
 }

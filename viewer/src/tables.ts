@@ -1,6 +1,6 @@
 import type { Stage } from "./data";
 import { column, factList, h, tableBox, type Child } from "./dom";
-import { count, duration, fixed, integer, significant } from "./format";
+import { count, duration, fixed, integer, length, significant } from "./format";
 import { stageTime } from "./labels";
 import type { Run } from "./run";
 import { checks, checksFinding, marginalStages } from "./verdict";
@@ -42,10 +42,10 @@ export function programFacts(run: Run): HTMLElement {
 
 const kinds = { settle: "static", shake: "shaking", rest: "dynamic, no shaking" };
 
+/** What a static stage came to, in the words of the program. */
 function equilibrium(stage: Stage): string {
   if (stage.kind !== "settle") return "–";
-  if (!stage.equilibrium_reached) return stage.interrupted ? "not yet" : "not reached";
-  return stage.moving.length > 0 ? "of the others" : "reached";
+  return stage.interrupted && !stage.equilibrium_reached ? "not yet" : (stage.verdict ?? "–");
 }
 
 export function stageTable(run: Run): HTMLElement {
@@ -58,7 +58,8 @@ export function stageTable(run: Run): HTMLElement {
     column("Peak acceleration", "m/s²"),
     column("Equilibrium", "", true),
     column("Worst residual", "of weight"),
-    column("Still moving"),
+    column("Moved before it"),
+    column("Moving"),
     column("Wall time"),
   ];
   const rows = run.stages.map((s) => [
@@ -76,6 +77,7 @@ export function stageTable(run: Run): HTMLElement {
     ),
     h("td", { class: "text" }, equilibrium(s)),
     h("td", {}, s.kind === "settle" ? significant(s.worst_residual_ratio, 2) : "–"),
+    h("td", {}, s.kind === "settle" ? length(s.way_m, 2) : "–"),
     h(
       "td",
       {},
@@ -110,6 +112,7 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
         ),
       ),
       h("td", { class: "text" }, stage.name),
+      h("td", { class: "text" }, m.movement),
       h("td", {}, significant(run.area[m.block], 3)),
       h("td", {}, significant((run.area[m.block] * run.density[m.block]) / 1e3, 3)),
       h("td", {}, m.carried === null ? "–" : fixed(100 * m.carried, 0)),
@@ -118,6 +121,7 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
   const head = [
     column("Block"),
     column("Stage", "", true),
+    column("Movement", "", true),
     column("Area", "m²"),
     column("Mass", "t/m"),
     column("Carried by contacts", "% of weight"),
@@ -125,15 +129,15 @@ export function movingTable(run: Run, show: (block: number, stage: number) => vo
   return h(
     "details",
     { open: rows.length <= 12 },
-    h("summary", {}, `${count(blocks.size, "block")} still moving at the end of a static stage`),
-    tableBox("Blocks still moving", [head], rows, "narrow"),
+    h("summary", {}, `${count(blocks.size, "block")} moving at the end of a static stage`),
+    tableBox("Moving blocks, and how much of their weight contacts carry", [head], rows, "narrow"),
   );
 }
 
 /** The checks with their limits, and above them what they say together. */
 export function qualityTable(run: Run): HTMLElement {
   const all = checks(run);
-  const { grade, text } = checksFinding(run);
+  const { grade, text } = checksFinding(all);
   const rows = all.map((c) => [
     h("th", { scope: "row" }, c.name),
     h("td", { class: "wrap" }, c.value),

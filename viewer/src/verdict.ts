@@ -37,11 +37,14 @@ export function findings(run: Run): Finding[] {
   return [...(excavated >= 0 ? damageFindings(run, excavated) : standingFindings(run)), ...slipFindings(run)];
 }
 
-/** What makes the result less sure. */
+/** What makes the result less sure, and what the checks say that is not in these sentences yet. */
 export function sureness(run: Run): Finding[] {
+  const marginal = marginalFindings(run);
+  const others = checks(run).filter((c) => c.name !== marginalCheck || marginal.length === 0);
   return [
     ...(run.header.run.interrupted ? [interruption(run)] : []),
-    ...marginalStages(run).map(({ stage }) => marginalFinding(run, stage)),
+    ...marginal,
+    checksFinding(others, marginal.length > 0 ? "other " : ""),
   ];
 }
 
@@ -146,18 +149,16 @@ function slipFindings(run: Run): Finding[] {
   ];
 }
 
-function marginalFinding(run: Run, stage: Stage): Finding {
-  const moving = stage.moving.length;
-  const area = stage.moving.reduce((sum, m) => sum + run.area[m.block], 0);
-  const what =
-    moving > 0
-      ? `${fallen(moving, area)} ${moving === 1 ? "was" : "were"} still moving when ${quoted(stage.name)} ended`
-      : `${quoted(stage.name)} ended without equilibrium`;
-  return {
-    grade: "attention",
-    text: `This case is marginal: ${what}. What falls then may depend on small differences of the model; see the list of moving blocks.`,
-  };
+/** Static stages that ended with moving blocks, or without equilibrium; none: nothing is to be said. */
+function marginalFindings(run: Run): Finding[] {
+  const stages = marginalStages(run);
+  if (stages.length === 0) return [];
+  const falls = run.header.model.excavations.length > 0 ? "What falls" : "What comes of it";
+  const text = `This case is marginal: ${list(stages.map(({ stage }) => leftOver(run, stage)))}. ${falls} may depend on small differences of the model.`;
+  return [{ grade: "attention", text }];
 }
+
+const marginalCheck = "Marginal static stages";
 
 export interface Check {
   name: string;
@@ -232,9 +233,9 @@ export function checks(run: Run): Check[] {
   ];
   const settled = run.stages.filter((s) => s.kind === "settle" && !s.interrupted);
   if (settled.length > 0) {
-    const marginal = marginalStages(run).map(({ stage }) => `${quoted(stage.name)}: ${leftOver(stage)}`);
+    const marginal = marginalStages(run).map(({ stage }) => leftOver(run, stage));
     result.push({
-      name: "Marginal static stages",
+      name: marginalCheck,
       value: marginal.length === 0 ? `0 of ${settled.length}` : list(marginal),
       limit: "none",
       good: marginal.length === 0,
@@ -243,13 +244,13 @@ export function checks(run: Run): Check[] {
   return result;
 }
 
-/** What the checks say together. */
-export function checksFinding(run: Run): Finding {
-  const all = checks(run);
+/** What checks say together. */
+export function checksFinding(all: readonly Check[], other = ""): Finding {
   const bad = all.filter((c) => c.good === false).length;
   const unknown = all.filter((c) => c.good === null).length;
-  if (bad + unknown === 0) return { grade: "good", text: "All checks of the computation are passed." };
-  const checked = count(all.length, "check");
+  if (bad + unknown === 0)
+    return { grade: "good", text: `All ${other}checks of the computation are passed.` };
+  const checked = count(all.length, `${other}check`);
   const parts = [
     ...(bad > 0
       ? [`${bad} of ${checked} of the computation ${bad === 1 ? "needs" : "need"} attention.`]
@@ -261,11 +262,11 @@ export function checksFinding(run: Run): Finding {
   return { grade: "attention", text: parts.join(" ") };
 }
 
-/** What makes a static stage marginal. */
-function leftOver(stage: Stage): string {
-  const moving = stage.moving.length;
-  return [
-    ...(stage.equilibrium_reached ? [] : ["no equilibrium"]),
-    ...(moving > 0 ? [`${count(moving, "block")} still moving`] : []),
-  ].join(", ");
+/** What makes a static stage marginal: "“excavated”: mechanism of 3 blocks (1.2 m² in all)". */
+function leftOver(run: Run, stage: Stage): string {
+  const area = stage.moving.reduce((sum, m) => sum + run.area[m.block], 0);
+  const size =
+    area > 0 ? ` (${significant(area, 3)}\u00a0m²${stage.moving.length > 1 ? " in all" : ""})` : "";
+  const verdict = stage.verdict === "not reached" ? "equilibrium not reached" : stage.verdict;
+  return `${quoted(stage.name)}: ${verdict}${size}`;
 }

@@ -327,7 +327,7 @@ class Wall {
       stage.wall_time = 1.3e-3 * static_cast<double>(stage.steps);
       stage.equilibrium_reached = plan.kind == StageKind::settle && !(options_.marginal && k == 1);
       stage.worst_residual_ratio = plan.kind == StageKind::settle ? 0.0083 : 0.0;
-      if (options_.marginal && k == 0) stage.moving = {{120, 0.8, 120}};
+      if (options_.marginal && k == 0) stage.moving = {{120, 0.97, 120}};
       if (options_.marginal && k == 1) stage.moving = {{120, 0.62, 120}, {121, 0.0, 121}, {137, 0.35, 137}};
       if (options_.excavation) {
         stage.fallen = fallen_at(k);
