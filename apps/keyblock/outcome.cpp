@@ -25,6 +25,8 @@ using Row = std::array<std::string, table_columns>;
 
 constexpr double largest_overlap = 1e-3;  // m, that is none to speak of
 
+constexpr double least_rotation = 0.01;  // degrees
+
 const Row heading{"stage",     "steps",       "time s",   "PGA m/s2", "fallen",
                   "fallen m2", "loosened m2", "filled %", "slip mm"};
 
@@ -38,7 +40,7 @@ Row row(const StageRecord& stage) {
           fmt::format("{}", d.fallen_blocks),
           fmt::format("{:.2f}", d.fallen_area),
           fmt::format("{:.2f}", d.loosened_area),
-          fmt::format("{:.1f}", 100.0 * d.opening_filled_ratio),
+          stage.standing ? "-" : fmt::format("{:.1f}", 100.0 * d.opening_filled_ratio),  // without an opening
           fmt::format("{:.2f}", 1000.0 * d.slip_max_ever)};
 }
 
@@ -127,9 +129,10 @@ std::string result_text(const RunRecord& run) {
   const simulation::Damage& damage = last.damage;
   if (last.standing)
     return fmt::format(
-        "at the end of \"{}\" {}; largest displacement {:.4g} m, largest rotation {:.2g} degrees\n",
+        "at the end of \"{}\" {}; the middle of a block has moved by up to {:.4g} m, "
+        "and a block turned by up to {} degrees\n",
         one_line(last.stage.name, 40, true), standing_text(last), damage.displacement_max,
-        damage.rotation_max);
+        damage.rotation_max < least_rotation ? "0" : fmt::format("{:.2g}", damage.rotation_max));
   if (damage.fallen_blocks == 0 || std::isnan(damage.equivalent_pressure)) return {};
   return fmt::format(
       "fallen: {:.3g} kN per m of tunnel, {:.3g} kPa over the width of the opening (a dead weight); "

@@ -142,6 +142,8 @@ const char* name_of(FragilityStatus status) {
       return "exceeded_at_rest";
     case FragilityStatus::too_few_clusters:
       return "too_few_realizations";
+    case FragilityStatus::few_fits:
+      return "few_fits";
     case FragilityStatus::wide_theta:
       return "wide_theta";
     case FragilityStatus::wide_beta:
@@ -296,8 +298,10 @@ Replicates replicated(const Table& table, const FragilityFit& fit, std::span<con
     }
     const FragilityFit again = fit_from(stripes, &fit, replicate_tolerance);
     if (again.status == FragilityStatus::fitted) ++found.fitted;
-    add_known(found.theta, again.theta);
-    add_known(found.beta, again.beta);
+    if (again.status != FragilityStatus::separated) {
+      add_known(found.theta, again.theta);
+      add_known(found.beta, again.beta);
+    }
     for (std::size_t k = 0; k < at.size(); ++k) add_known(found.probability[k], again.probability(at[k]));
   }
   return found;
@@ -316,6 +320,9 @@ FragilityStatus judged(const FragilityCurve& curve, const FragilityLimits& limit
     return FragilityStatus::exceeded_at_rest;
   if (status != FragilityStatus::fitted) return status;
   if (curve.clusters < smallest_bootstrap_sample) return FragilityStatus::too_few_clusters;
+  if (static_cast<double>(curve.resamples_fitted) <
+      limits.fitted_share * static_cast<double>(curve.resamples))
+    return FragilityStatus::few_fits;
   if (spans_more(curve.theta, limits.widest_theta)) return FragilityStatus::wide_theta;
   if (spans_more(curve.beta, limits.widest_beta)) return FragilityStatus::wide_beta;
   return status;
@@ -341,6 +348,7 @@ FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<cons
     curve.beta.value = curve.fit.beta;
     if (curve.clusters >= smallest_bootstrap_sample) {
       found = replicated(table, curve.fit, at, resamples);
+      curve.resamples = resamples;
       curve.resamples_fitted = found.fitted;
       curve.theta = with_interval(curve.fit.theta, found.theta, confidence);
       curve.beta = with_interval(curve.fit.beta, found.beta, confidence);

@@ -38,6 +38,7 @@ enum class FragilityStatus {
   /// The fit stands, or does not matter, but it is no curve to be shown (FragilityLimits):
   exceeded_at_rest,  ///< too many exceed the level without shaking, where P(0) = 0
   too_few_clusters,  ///< fewer than smallest_bootstrap_sample: nobody knows how sure θ and β are
+  few_fits,          ///< too many resamples have none: it hangs on single clusters
   wide_theta,        ///< the interval of θ spans too much
   wide_beta,         ///< the interval of β does
 };
@@ -72,11 +73,13 @@ struct FragilityLimits {
   double widest_theta = 4.0;    ///< upper over lower end of the interval of θ
   double widest_beta = 4.0;     ///< the same of β
   double share_at_rest = 0.05;  ///< of the runs without shaking that exceed the level
+  double fitted_share = 0.75;   ///< of the resamples that have a fit, at least
 };
 
-/// The fit with its band. The bootstrap draws whole clusters, so that what the runs of one realization have in common
-/// does not make the band too narrow. Resamples without a fit enter the band with their step or constant, and the intervals of
-/// θ and β with the limits that they go to (FragilityFit). Where all runs together give no fit, or with fewer than
+/// The fit with its band. The bootstrap draws whole clusters, so that what the runs of one realization have in common does not make
+/// the band too narrow. Resamples without a fit enter the band with their step or constant. The intervals of θ and β have those
+/// that do not increase, or exceed never or always, with the limits that they go to (FragilityFit); separated ones, whose θ
+/// and β may be anything up to a limit, are left out. Where all runs together give no fit, or with fewer than
 /// smallest_bootstrap_sample clusters, there is neither band nor interval.
 struct FragilityCurve {
   FragilityFit fit;
@@ -88,7 +91,7 @@ struct FragilityCurve {
   std::vector<double> intensity;      ///< as asked for; empty unless `status` is fitted
   std::vector<Estimate> probability;  ///< there, pointwise band
   std::size_t clusters = 0;
-  std::size_t resamples_fitted = 0;  ///< of all resamples
+  std::size_t resamples = 0, resamples_fitted = 0;
 };
 
 FragilityCurve fragility_curve(std::span<const Observation> runs, std::span<const double> at,

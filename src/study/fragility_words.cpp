@@ -74,6 +74,10 @@ std::string why_no_curve(const StudyData& study, const FragilityGroup& group) {
     case FragilityStatus::too_few_clusters:
       return fmt::format("{} realizations are too few for an interval of the median; {} give one",
                          curve.clusters, statistics::smallest_bootstrap_sample);
+    case FragilityStatus::few_fits:
+      return fmt::format(
+          "{:.0f} % of the bootstrap resamples have none, so that it hangs on single realizations",
+          100.0 - 100.0 * static_cast<double>(curve.resamples_fitted) / static_cast<double>(curve.resamples));
     case FragilityStatus::wide_theta:
       return why_wide("the median θ", curve.theta, intensity.unit, limits.widest_theta, study.confidence);
     case FragilityStatus::wide_beta:

@@ -387,6 +387,21 @@ const tests = {
     await close(page);
   },
 
+  async "a study without an opening says how far blocks move where none falls"() {
+    const page = await open("study_wall");
+    assert.match(
+      await text(page, ".verdict"),
+      /^With .*, blocks fall in none of 8 realizations \(probability below \d+\s%, with 95\s% confidence\)\. The largest displacement is [\d.]+\smm in the median and [\d.]+\smm at 95 %; the largest rotation is/,
+    );
+    const rows = await page.$$eval(".what-falls tbody th", (all) =>
+      all.map((e) => e.innerText),
+    );
+    assert.equal(rows[0], "Blocks fall in");
+    assert.ok(rows.includes("Largest displacement (mm)"), rows.join());
+    assert.doesNotMatch(await text(page, "#verdict"), /[Rr]ock falls|opening/);
+    await close(page);
+  },
+
   async "a study without runs says so"() {
     const page = await open("study_empty");
     assert.match(await text(page, ".verdict"), /No run has ended/);

@@ -50,6 +50,15 @@ int main(int argc, char** argv) {
                         .variants = false,
                         .failures = false,
                         .pictures = 0});
+  // A wall: there is no opening.
+  write("study_wall", {.realizations = 8,
+                       .scales = {"0.05", "0.15"},
+                       .orders = {"1"},
+                       .variants = false,
+                       .failures = false,
+                       .opening = false,
+                       .map = false,
+                       .pictures = 0});
   // More pictures than a page holds.
   write("study_large", {.realizations = 190, .variants = false, .failures = false});
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "study_empty");

@@ -32,7 +32,7 @@ function ofStructure(run: Run): { words: string; grade: Grade } {
     case "stands":
       return (stage.damage.loosened_area_m2 ?? 0) > 0
         ? {
-            words: `Stands, moved by up to ${length(stage.damage.displacement_max_m, 2)}`,
+            words: `Stands, moved by up to ${length(run.largestDisplacement()[0], 2)}`,
             grade: "attention",
           }
         : { words: "Stands", grade: "good" };

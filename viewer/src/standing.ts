@@ -59,6 +59,9 @@ function movingNames(run: Run, stage: Stage): string {
   return list(left > 0 ? [...names, `${left} more`] : names);
 }
 
+/** Degrees: what is less is not told. */
+const leastRotation = 0.01;
+
 /** How far, how much turned, and which joints have become hinges. */
 function moved(run: Run, stage: Stage | null): Finding[] {
   const [distance, block] = run.largestDisplacement();
@@ -68,8 +71,8 @@ function moved(run: Run, stage: Stage | null): Finding[] {
       : "nothing has moved",
   ];
   const damage = stage?.damage;
-  if (damage && (damage.rotation_max_deg ?? 0) > 0)
-    parts.push(`the largest rotation of a block ${angle(damage.rotation_max_deg!)}`);
+  const turned = damage?.rotation_max_deg ?? 0;
+  if (turned >= leastRotation) parts.push(`the largest rotation of a block is ${angle(turned)}`);
   const found: Finding[] = [{ grade: "plain", text: `${capital(list(parts))}.` }];
   if (damage && damage.hinges > 0) {
     const limit = run.header.model.opening_limit_m;

@@ -110,13 +110,23 @@ TEST(OutcomeText, SaysWhetherItStands) {
   last.damage.rotation_max = 90.0;
   EXPECT_THAT(
       outcome_text(run, 9),
-      HasSubstr("\nat the end of \"first earthquake\" it has collapsed: 12 blocks have fallen; largest "
-                "displacement 1.5 m, largest rotation 90 degrees\n"));
+      HasSubstr("\nat the end of \"first earthquake\" it has collapsed: 12 blocks have fallen; the middle of "
+                "a block has moved by up to 1.5 m, and a block turned by up to 90 degrees\n"));
   last.standing = simulation::Standing::moves;
   last.largest_speed = 0.25;
-  EXPECT_THAT(outcome_text(run, 9), HasSubstr("it moves, at up to 0.25 m/s; largest"));
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("it moves, at up to 0.25 m/s; the middle"));
   last.standing = simulation::Standing::stands;
-  EXPECT_THAT(outcome_text(run, 9), HasSubstr("\" it stands; largest"));
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("\" it stands; the middle"));
+  last.damage.rotation_max = 1e-13;
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr("turned by up to 0 degrees"));
+}
+
+TEST(OutcomeText, NothingIsFilledWithoutAnOpening) {
+  RunRecord run = settled_and_shaken();
+  run.stages[1].damage.opening_filled_ratio = 0.125;
+  EXPECT_THAT(outcome_text(run, 9), HasSubstr(" 12.5 "));
+  run.stages[1].standing = simulation::Standing::stands;
+  EXPECT_THAT(outcome_text(run, 9), Not(HasSubstr(" 12.5 ")));
 }
 
 TEST(OutcomeText, OfARunThatDidNothing) {

@@ -231,13 +231,23 @@ TEST(Fragility, AnIntervalThatSpansTooMuchIsNoCurve) {
   EXPECT_EQ(fragility_curve(runs, three, 0.95, strict).status, FragilityStatus::wide_beta);
 }
 
-// A resample without a fit is not left out: nearly every second one of these is a step, so that β may be 0.
-TEST(Fragility, ResamplesWithoutAFitCount) {
-  const FragilityCurve steep = curve_of(exceeding({1, 0, 18, 1}, three));
-  EXPECT_EQ(steep.fit.status, FragilityStatus::fitted);
-  EXPECT_LT(steep.resamples_fitted, 800U);
-  EXPECT_EQ(steep.beta.low, 0.0);
-  expect_no_curve(steep, FragilityStatus::wide_beta);
+// A realization is in no resample of 20 with a probability of (1 − 1/20)^20 = 36 %, neither of two with 12 %.
+TEST(Fragility, AFitThatHangsOnASingleRealizationIsNoCurve) {
+  const FragilityCurve one = curve_of(exceeding({17, 2, 1}, three));
+  EXPECT_EQ(one.fit.status, FragilityStatus::fitted);
+  EXPECT_NEAR(static_cast<double>(one.resamples_fitted) / 1000.0, 0.62, 0.05);
+  expect_no_curve(one, FragilityStatus::few_fits);
+  const FragilityCurve two = curve_of(exceeding({1, 9, 9, 1}, three));
+  EXPECT_NEAR(static_cast<double>(two.resamples_fitted) / 1000.0, 0.88, 0.03);
+  EXPECT_EQ(two.status, FragilityStatus::fitted);
+}
+
+// Resamples whose shares do not increase have a β without end; they are not left out of its interval.
+TEST(Fragility, ResamplesThatDoNotIncreaseWidenTheIntervals) {
+  const FragilityCurve flat = curve_of(exceeding({10, 1, 1, 8}, three));
+  EXPECT_EQ(flat.fit.status, FragilityStatus::fitted);
+  EXPECT_LT(flat.resamples_fitted, 1000U);
+  EXPECT_TRUE(std::isinf(flat.beta.high));
 }
 
 TEST(Fragility, FewerRealizationsThanABootstrapNeedsAreNoCurve) {

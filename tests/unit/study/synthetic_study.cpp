@@ -65,9 +65,13 @@ void add_stages(study::RunResult& run, double scale, double severity) {
     }
     const double x = share * severity;
     s.damage.fallen_area = x < 0.03 ? 0.0 : 4.0 * x;
+    s.damage.fallen_weight = 25e3 * s.damage.fallen_area;
+    s.damage.equivalent_pressure = s.damage.fallen_weight / 5.5;
     s.damage.fallen_blocks = static_cast<int>(s.damage.fallen_area / 0.2);
     s.damage.opening_filled_ratio = s.damage.fallen_area / 23.8;
     s.damage.loosened_area = 3.0 * std::sqrt(x);
+    s.damage.displacement_max = 0.5 * std::sqrt(x);
+    s.damage.rotation_max = 30.0 * x;
     s.damage.slip_max = s.damage.slip_max_ever = 0.4 * std::sqrt(x);
     s.damage.slip_mean = 0.004 * x;
     s.damage.slipped_length = 60.0 * x;
@@ -113,10 +117,12 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
     study.variants = {"friction-", "friction+", "released"};
   }
   study.precision = study::Precision{"fallen_area_m2", 0.1, std::nullopt};
-  study.outlines = {outline({0.0, 0.0})};
-  study.ground = {{"opening “tunnel”", "circle, 5.5 m wide, 5.5 m high"},
-                  {"unit weight γ", "22.27 kN/m³ (2270 kg/m³)"},
-                  {"joints: friction φ", "30°"}};
+  if (options.opening) {
+    study.outlines = {outline({0.0, 0.0})};
+    study.ground = {{"opening “tunnel”", "circle, 5.5 m wide, 5.5 m high"}};
+  }
+  study.ground.push_back({"unit weight γ", "22.27 kN/m³ (2270 kg/m³)"});
+  study.ground.push_back({"joints: friction φ", "30°"});
   if (options.map) study.grid = {{-5.5, -5.5}, 0.275, 40, 40};
   for (int r = 0; r < options.realizations; ++r) {
     std::uint32_t place = 0;

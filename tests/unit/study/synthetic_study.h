@@ -18,6 +18,7 @@ struct SyntheticStudyOptions {
   bool variants = true;  ///< friction−, friction+ and released, of the first realizations
   bool failures = true;  ///< some runs fail, some are missing
   bool levels = true;
+  bool opening = true;  ///< otherwise the blocks are around none
   bool map = true;
   bool since = false;              ///< measures begin after the excavation
   std::size_t pictures = 100'000;  ///< how many realizations have one

@@ -7,8 +7,16 @@ import { FrequencyMap, frequencyLegend } from "./frequency_map";
 import { interval, label, percent, percentRange, plain, shownAs, withUnit } from "./quantities";
 import type { Selection } from "./selection";
 
-/** Measures of what falls, for the first screen, as far as a study has them. */
-const whatFalls = ["fallen_area_m2"];
+/** Measures of what falls and moves, for the first screen, as far as a study has them. */
+const whatFalls = [
+  "fallen_area_m2",
+  "fallen_weight_n_m",
+  "equivalent_pressure_pa",
+  "largest_fallen_area_m2",
+  "largest_fallen_weight_n_m",
+  "fallen_depth_m",
+];
+const whatMoves = ["displacement_max_m", "rotation_max_deg", "hinges"];
 
 /** Pixels that the map of the first screen may be wide: with all beside it, it fits a laptop. */
 const mapWidth = 360;
@@ -55,9 +63,10 @@ function quantileCells(study: Study, measure: string, d: Description | undefined
 function fallTable(study: Study, combination: number): HTMLElement {
   const { levels, measures, confidence } = study.json;
   const parts = partsOf(study, combination);
+  const hasOpening = study.json.outlines.length > 0;
   const name = (...text: Child[]) => h("th", { scope: "row", class: "text" }, ...text);
   const rows: Child[][] = [
-    [name("Rock falls in"), ...parts.map((p) => shareCell(p.falls))],
+    [name(hasOpening ? "Rock falls in" : "Blocks fall in"), ...parts.map((p) => shareCell(p.falls))],
     ...levels.map((level, l) => {
       const q = shownAs(study.measure(level.measure));
       return [
@@ -70,7 +79,9 @@ function fallTable(study: Study, combination: number): HTMLElement {
       ];
     }),
   ];
-  const shown = whatFalls.filter((m) => measures.some((q) => q.name === m));
+  const asked = hasOpening ? whatFalls : [...whatFalls, ...whatMoves];
+  const known = (m: string) => study.json.combinations.some((c) => (c.measures[m]?.n ?? 0) > 0);
+  const shown = asked.filter((m) => measures.some((q) => q.name === m) && known(m));
   rows.push([
     name("Of all realizations"),
     ...parts.flatMap(() => ["median", "95 %"].map((t) => h("td", { class: "muted" }, t))),

@@ -47,35 +47,37 @@ function fallSentence(study: Study, k: number): string {
   const c = study.json.combinations[k];
   const { since, before, at_shaking } = study.json;
   const start = inCombination(study, c.values);
+  const [falls, bring, fallen] = hasOpening(study)
+    ? ["rock falls", "brings rock down", "rock had fallen"]
+    : ["blocks fall", "brings blocks down", "blocks had fallen"];
   const found = (what: string, share: Share) =>
     capital(`${what} in ${share.exceeded === 0 ? nothing(study, share) : shareOf(share)}.`);
-  if (!c.before || !c.added) return found(`${start}rock falls`, c.falls);
+  if (!c.before || !c.added) return found(start + falls, c.falls);
   const early = c.before.falls;
   const when = at_shaking ? "Before it, under gravity alone," : `By the end of “${before}”`;
   const gravity =
     early.exceeded === 0
       ? `${when} nothing had fallen.`
-      : `${when} rock had fallen in ${integer(early.exceeded)} of ${integer(early.n)} ${range(early)}.`;
-  const added = at_shaking ? "the shaking brings rock down" : `after “${before}” rock falls`;
+      : `${when} ${fallen} in ${integer(early.exceeded)} of ${integer(early.n)} ${range(early)}.`;
+  const added = at_shaking ? `the shaking ${bring}` : `after “${before}” ${falls}`;
   if (since || c.falls.exceeded === 0) return `${found(start + added, c.added.falls)} ${gravity}`;
-  return `${found(`${start}rock falls`, c.falls)} ${found(added, c.added.falls)} ${gravity}`;
+  return `${found(start + falls, c.falls)} ${found(added, c.added.falls)} ${gravity}`;
 }
 
-/** Whether blocks can count as fallen: not without an opening to fall into, unless a distance was given. */
-function canFall(study: Study): boolean {
-  const { outlines, combinations } = study.json;
-  return outlines.length > 0 || combinations.some((c) => (c.measures["fallen_blocks"]?.max ?? 0) > 0);
+function hasOpening(study: Study): boolean {
+  return study.json.outlines.length > 0;
 }
 
-/** Of a study without an opening. */
-function slipSentence(study: Study, k: number): string {
+/** Of blocks around no opening: how far they have moved, where none falls. */
+function structureSentence(study: Study, k: number): string {
   const c = study.json.combinations[k];
-  const name = study.json.measures.some((m) => m.name === "slip_max_ever_m")
-    ? "slip_max_ever_m"
-    : "slip_max_m";
-  const q = shownAs(study.measure(name));
-  const at = (p: number) => withUnit(q, c.measures[name].quantiles.find((x) => x.p === p)?.value ?? null);
-  return `There is no opening for rock to fall into. ${capital(`${inCombination(study, c.values)}the ${q.title} is ${at(0.5)} in the median and ${at(0.95)} at 95 % of ${count(c.n, "realization")}.`)}`;
+  if (c.falls.exceeded > 0) return fallSentence(study, k);
+  const parts = ["displacement_max_m", "rotation_max_deg"].map((name) => {
+    const q = shownAs(study.measure(name));
+    const at = (p: number) => withUnit(q, c.measures[name].quantiles.find((x) => x.p === p)?.value ?? null);
+    return `the ${q.title} is ${at(0.5)} in the median and ${at(0.95)} at 95 %`;
+  });
+  return `${capital(`${inCombination(study, c.values)}blocks fall in ${nothing(study, c.falls)}.`)} ${capital(parts.join("; "))}.`;
 }
 
 /** Of a study without levels. */
@@ -113,7 +115,7 @@ export function headlineFindings(study: Study): Finding[] {
   const shaken = strongest(study).slice(0, mostNamed);
   if (shaken.length === 0) return [];
   const plain = (text: string): Finding => ({ grade: "plain", text });
-  const sentence = canFall(study) ? fallSentence : slipSentence;
+  const sentence = hasOpening(study) ? fallSentence : structureSentence;
   const falls = shaken.map((k) => plain(sentence(study, k)));
   if (levels.length === 0) return [...falls, ...shaken.map((k) => plain(meanSentence(study, k)))];
   const l = tellingLevel(combinations[shaken[0]]);
