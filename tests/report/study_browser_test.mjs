@@ -151,7 +151,7 @@ const tests = {
       "More than 0.8\u00a0m² (moderate)",
       ...parts.map((p) => `${p.levels[1].exceeded} of ${p.levels[1].n}`),
     ]);
-    const area = rows.find((r) => r[0] === "Fallen area (m²)").slice(1);
+    const area = rows.find((r) => r[0] === "Area (m²)").slice(1);
     const wanted = parts.flatMap((p) =>
       [0.5, 0.95].map(
         (q) => p.measures.fallen_area_m2.quantiles.find((x) => x.p === q).value,
@@ -160,12 +160,31 @@ const tests = {
     area.forEach((x, k) => {
       assert.ok(Math.abs(Number(x) - wanted[k]) <= 0.05 * wanted[k], x);
     });
+    for (const what of [
+      "Weight (kN/m)",
+      "Equivalent pressure (kPa)",
+      "Largest block (kN/m)",
+      "Depth behind the wall (m)",
+    ])
+      assert.ok(
+        rows.some((r) => r[0] === what),
+        what,
+      );
+    const hidden = await page.$eval(
+      ".first-screen .table-box",
+      (e) => e.scrollWidth - e.clientWidth,
+    );
+    assert.equal(hidden, 0);
     const facts = await text(page, "#ground");
     assert.match(facts, /Joints: friction φ\s+30°/);
     assert.match(facts, /PGA\s+0\.214 … 1\.07\sm\/s² \(0\.02 … 0\.11\sg\)/);
     await page.screenshot({
       path: join(samples, "screenshots", "study-first-screen.png"),
     });
+    const since = await open("study_since", { width: 1366, height: 768 });
+    const ground = await since.locator("#ground").boundingBox();
+    assert.ok(ground.y + ground.height <= 768, JSON.stringify(ground));
+    await close(since);
     // The selection changes both.
     const row = await text(page, "#verdict tbody tr:first-child");
     const before = await pixels(page, 0);
@@ -391,13 +410,14 @@ const tests = {
     const page = await open("study_wall");
     assert.match(
       await text(page, ".verdict"),
-      /^With .*, blocks fall in none of 8 realizations \(probability below \d+\s%, with 95\s% confidence\)\. The largest displacement is [\d.]+\smm in the median and [\d.]+\smm at 95 %; the largest rotation is/,
+      /^With .*, blocks fall in none of 8 realizations \(probability below \d+\s%, with 95\s% confidence\)\. The largest displacement is [\d.]+\smm in the median and [\d.]+\smm at 95 %; the largest rotation is [\d.]+° in the median/,
     );
     const rows = await page.$$eval(".what-falls tbody th", (all) =>
       all.map((e) => e.innerText),
     );
     assert.equal(rows[0], "Blocks fall in");
     assert.ok(rows.includes("Largest displacement (mm)"), rows.join());
+    assert.ok(!rows.includes("Equivalent pressure (kPa)"), rows.join());
     assert.doesNotMatch(await text(page, "#verdict"), /[Rr]ock falls|opening/);
     await close(page);
   },

@@ -89,7 +89,7 @@ export function column(text: string, unit = "", isText = false): HTMLElement {
 /** Names with what they are, side by side where there is room. */
 export function factList(facts: [string, Child][]): HTMLElement {
   const list = h("dl", { class: "facts" });
-  for (const [name, value] of facts) list.append(h("div", {}, h("dt", {}, name), h("dd", {}, value)));
+  for (const [name, value] of facts) list.append(h("div", {}, h("dt", {}, name), " ", h("dd", {}, value)));
   return list;
 }
 

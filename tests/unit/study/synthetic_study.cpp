@@ -53,7 +53,7 @@ BlockStatus status_at(Vec2 p, double severity, double draw) {
   return depth + 0.5 * draw < 1.9 * pull ? BlockStatus::loosened : BlockStatus::in_place;
 }
 
-void add_stages(study::RunResult& run, double scale, double severity) {
+void add_stages(study::RunResult& run, double scale, double severity, bool opening) {
   const auto stage = [&](const char* name, StageKind kind, double share) {
     study::StageMeasures s;
     s.name = name;
@@ -66,7 +66,10 @@ void add_stages(study::RunResult& run, double scale, double severity) {
     const double x = share * severity;
     s.damage.fallen_area = x < 0.03 ? 0.0 : 4.0 * x;
     s.damage.fallen_weight = 25e3 * s.damage.fallen_area;
-    s.damage.equivalent_pressure = s.damage.fallen_weight / 5.5;
+    s.damage.largest_fallen_area = 0.4 * s.damage.fallen_area;
+    s.damage.largest_fallen_weight = 0.4 * s.damage.fallen_weight;
+    s.damage.equivalent_pressure = opening ? s.damage.fallen_weight / 5.5 : std::nan("");
+    s.damage.fallen_depth = opening ? 0.3 * s.damage.fallen_area : std::nan("");
     s.damage.fallen_blocks = static_cast<int>(s.damage.fallen_area / 0.2);
     s.damage.opening_filled_ratio = s.damage.fallen_area / 23.8;
     s.damage.loosened_area = 3.0 * std::sqrt(x);
@@ -154,7 +157,7 @@ study::StudyData synthetic_study(const SyntheticStudyOptions& options) {
             const double factor = variant == "friction-"   ? 1.0 + 1.5 * lot(r, 4, place)
                                   : variant == "friction+" ? 0.8
                                                            : 1.0;
-            add_stages(run, s, factor * severity);
+            add_stages(run, s, factor * severity, options.opening);
             if (options.map) add_map(run, study.grid, factor * severity);
           }
           study.runs.push_back(std::move(run));

@@ -8,18 +8,21 @@ import { interval, label, percent, percentRange, plain, shownAs, withUnit } from
 import type { Selection } from "./selection";
 
 /** Measures of what falls and moves, for the first screen, as far as a study has them. */
-const whatFalls = [
-  "fallen_area_m2",
-  "fallen_weight_n_m",
-  "equivalent_pressure_pa",
-  "largest_fallen_area_m2",
-  "largest_fallen_weight_n_m",
-  "fallen_depth_m",
+const whatFalls: [string, string][] = [
+  ["fallen_area_m2", "Area"],
+  ["fallen_weight_n_m", "Weight"],
+  ["equivalent_pressure_pa", "Equivalent pressure"],
+  ["largest_fallen_weight_n_m", "Largest block"],
+  ["fallen_depth_m", "Depth behind the wall"],
 ];
-const whatMoves = ["displacement_max_m", "rotation_max_deg", "hinges"];
+const whatMoves: [string, string][] = [
+  ["displacement_max_m", "Largest displacement"],
+  ["rotation_max_deg", "Largest rotation"],
+  ["hinges", "Hinges"],
+];
 
 /** Pixels that the map of the first screen may be wide: with all beside it, it fits a laptop. */
-const mapWidth = 360;
+const mapWidth = 280;
 
 /** A part of the damage: before the shaking, added by it, or all. */
 interface Part {
@@ -81,14 +84,14 @@ function fallTable(study: Study, combination: number): HTMLElement {
   ];
   const asked = hasOpening ? whatFalls : [...whatFalls, ...whatMoves];
   const known = (m: string) => study.json.combinations.some((c) => (c.measures[m]?.n ?? 0) > 0);
-  const shown = asked.filter((m) => measures.some((q) => q.name === m) && known(m));
+  const shown = asked.filter(([m]) => measures.some((q) => q.name === m) && known(m));
   rows.push([
     name("Of all realizations"),
     ...parts.flatMap(() => ["median", "95 %"].map((t) => h("td", { class: "muted" }, t))),
   ]);
-  for (const m of shown)
+  for (const [m, title] of shown)
     rows.push([
-      name(capital(label(shownAs(study.measure(m))))),
+      name(label({ ...shownAs(study.measure(m)), title })),
       ...parts.flatMap((p) => quantileCells(study, m, p.measures[m])),
     ]);
   const head = [
@@ -121,7 +124,7 @@ function picture(study: Study, selection: Selection): HTMLElement | null {
   return h("div", { class: "where" }, map.element, legend);
 }
 
-/** The answer, with a map of where rock falls beside what falls; both follow the selection. */
+/** The answer, with a map of where rock falls beside what falls, which follow the selection; ground and loads. */
 export function resultSection(study: Study, selection: Selection, findings: readonly Finding[]): HTMLElement {
   const [verdict, ...others] = findings;
   const table = h("div");
@@ -133,15 +136,20 @@ export function resultSection(study: Study, selection: Selection, findings: read
   selection.onChange(draw);
   draw();
   const several = study.json.combinations.length > 1;
-  const answer = h(
-    "div",
-    { class: "beside" },
-    h("p", { class: "verdict" }, verdict.text),
-    several ? chosen : null,
-    table,
-    findingList(others),
+  const map = picture(study, selection);
+  const isWide = study.json.combinations.some((_, k) => partsOf(study, k).length > 2);
+  return section(
+    "verdict",
+    "Result",
+    h(
+      "div",
+      { class: `first-screen${map ? "" : " alone"}${isWide ? " wide" : ""}` },
+      h("div", { class: "answer" }, h("p", { class: "verdict" }, verdict.text), several ? chosen : null),
+      map,
+      h("div", { class: "falls" }, table, findingList(others)),
+      groundAndLoads(study),
+    ),
   );
-  return section("verdict", "Result", h("div", { class: "first-screen" }, picture(study, selection), answer));
 }
 
 /** The range of the strongest shakings, in m/s² and g. */
@@ -153,8 +161,9 @@ function shakingFact(study: Study): [string, string][] {
   return [["PGA", `${text((a) => significant(a, 3))}\u00a0m/s² (${text((a) => fixed(a / 9.81, 2))}\u00a0g)`]];
 }
 
-export function groundSection(study: Study): HTMLElement | null {
+function groundAndLoads(study: Study): HTMLElement | null {
   const facts: [string, string][] = study.json.ground.map(({ name, value }) => [capital(name), value]);
   const all = [...facts, ...shakingFact(study)];
-  return all.length > 0 ? section("ground", "Ground and loads", factList(all)) : null;
+  if (all.length === 0) return null;
+  return h("div", { class: "ground", id: "ground" }, h("h3", {}, "Ground and loads"), factList(all));
 }

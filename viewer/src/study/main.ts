@@ -4,7 +4,7 @@ import { count, integer } from "../format";
 import { whenPrinting } from "../printing";
 import { readStudy, type Study } from "./data";
 import { Distribution } from "./distribution";
-import { groundSection, resultSection } from "./first_screen";
+import { resultSection } from "./first_screen";
 import { FragilityView, probabilityTable } from "./fragility";
 import { FrequencyMaps } from "./frequency_map";
 import { Extremes, Gallery, pictureNote } from "./pictures";
@@ -169,7 +169,6 @@ function build(study: Study, main: HTMLElement): void {
     parts.push(
       selection.element,
       resultSection(study, selection, findings),
-      groundSection(study),
       ...statistics(study, selection),
       ...runs(study, selection),
     );

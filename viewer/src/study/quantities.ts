@@ -45,7 +45,8 @@ export function plain(q: Shown, x: number | null, digits = 3): string {
 
 export function withUnit(q: Shown, x: number | null, digits = 3): string {
   const text = plain(q, x, digits);
-  return q.unit && text !== "–" ? `${text}\u00a0${q.unit}` : text;
+  if (q.unit === "" || text === "–") return text;
+  return q.unit === "°" ? `${text}°` : `${text}\u00a0${q.unit}`;
 }
 
 /** "0.8 … 1.4"; a dash where there is no interval. */
