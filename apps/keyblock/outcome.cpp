@@ -132,7 +132,7 @@ std::string result_text(const RunRecord& run) {
         "at the end of \"{}\" {}; the middle of a block has moved by up to {:.4g} m, "
         "and a block turned by up to {} degrees\n",
         one_line(last.stage.name, 40, true), standing_text(last), damage.displacement_max,
-        damage.rotation_max < least_rotation ? "0" : fmt::format("{:.2g}", damage.rotation_max));
+        damage.rotation_max < least_rotation ? "0" : fmt::format("{:.3g}", damage.rotation_max));
   if (damage.fallen_blocks == 0 || std::isnan(damage.equivalent_pressure)) return {};
   return fmt::format(
       "fallen: {:.3g} kN per m of tunnel, {:.3g} kPa over the width of the opening (a dead weight); "

@@ -34,7 +34,9 @@ export function firstExcavation(run: Run): number {
 /** What happened to the rock, in sentences. The first is the verdict. */
 export function findings(run: Run): Finding[] {
   const excavated = firstExcavation(run);
-  return [...(excavated >= 0 ? damageFindings(run, excavated) : standingFindings(run)), ...slipFindings(run)];
+  return excavated >= 0
+    ? [...damageFindings(run, excavated), ...closureFindings(run), ...slipFindings(run)]
+    : [...standingFindings(run), ...slipFindings(run)];
 }
 
 /** What makes the result less sure, and what the checks say that is not in these sentences yet. */
@@ -125,6 +127,26 @@ function damageFindings(run: Run, excavated: number): Finding[] {
   if (end.fallen_blocks > 0 && parts.length > 0)
     result.push({ grade: "plain", text: `${capital(list(parts))}.` });
   return result;
+}
+
+/** By how much the opening has closed; none where it has not, or nothing is known. */
+function closureFindings(run: Run): Finding[] {
+  const end = run.stages[lastKnown(run, (d) => d.fallen_area_m2)]?.damage;
+  if (!end) return [];
+  const both = [end.closure_vertical_m, end.closure_horizontal_m];
+  if (both.every((x) => x === 0)) return [];
+  const [vertical, horizontal] = both.map((x) => length(x));
+  const fallen = both.includes(null) ? " (–: a point of the wall is on a block that has fallen)" : "";
+  const bound =
+    run.header.model.closure_is_lower_bound && both.some((x) => x !== null)
+      ? "; this is a lower bound, as blocks of order 1 that fit each other are too stiff"
+      : "";
+  return [
+    {
+      grade: "plain",
+      text: `Closure of the opening: vertical ${vertical}, horizontal ${horizontal}${fallen}${bound}.`,
+    },
+  ];
 }
 
 function slipFindings(run: Run): Finding[] {
@@ -244,17 +266,18 @@ export function checks(run: Run): Check[] {
   return result;
 }
 
+const lowerCase = (text: string) => text.charAt(0).toLowerCase() + text.slice(1);
+
 /** What checks say together. */
 export function checksFinding(all: readonly Check[], other = ""): Finding {
+  const failed = list(all.flatMap((c) => (c.good === false ? [lowerCase(c.name)] : [])));
   const bad = all.filter((c) => c.good === false).length;
   const unknown = all.filter((c) => c.good === null).length;
   if (bad + unknown === 0)
     return { grade: "good", text: `All ${other}checks of the computation are passed.` };
   const checked = count(all.length, `${other}check`);
   const parts = [
-    ...(bad > 0
-      ? [`${bad} of ${checked} of the computation ${bad === 1 ? "needs" : "need"} attention.`]
-      : []),
+    ...(bad > 0 ? [`${bad} of ${checked} ${bad === 1 ? "needs" : "need"} attention: ${failed}.`] : []),
     ...(unknown > 0
       ? [`${unknown} of ${checked} cannot be made, as the run left no record of its end.`]
       : []),

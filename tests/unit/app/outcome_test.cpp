@@ -107,11 +107,11 @@ TEST(OutcomeText, SaysWhetherItStands) {
   StageRecord& last = run.stages[1];
   last.standing = simulation::Standing::collapsed;
   last.damage.displacement_max = 1.5;
-  last.damage.rotation_max = 90.0;
+  last.damage.rotation_max = 178.2;
   EXPECT_THAT(
       outcome_text(run, 9),
       HasSubstr("\nat the end of \"first earthquake\" it has collapsed: 12 blocks have fallen; the middle of "
-                "a block has moved by up to 1.5 m, and a block turned by up to 90 degrees\n"));
+                "a block has moved by up to 1.5 m, and a block turned by up to 178 degrees\n"));
   last.standing = simulation::Standing::moves;
   last.largest_speed = 0.25;
   EXPECT_THAT(outcome_text(run, 9), HasSubstr("it moves, at up to 0.25 m/s; the middle"));
