@@ -89,8 +89,9 @@ function splitAtShaking(run: Run, excavated: number, last: number): string {
   if (end.fallen_blocks === 0) return ", neither before the shaking nor by it";
   const blocks = end.fallen_blocks - early.fallen_blocks;
   const area = (end.fallen_area_m2 ?? 0) - (early.fallen_area_m2 ?? 0);
-  if (early.fallen_blocks === 0) return ", all by the shaking";
-  if (blocks === 0) return ", all before the shaking, which added nothing";
+  const all = end.fallen_blocks > 1 ? "all " : "";
+  if (early.fallen_blocks === 0) return `, ${all}by the shaking`;
+  if (blocks === 0) return `, ${all}before the shaking, which added nothing`;
   return `: ${fallen(early.fallen_blocks, early.fallen_area_m2)} before the shaking, and the shaking added ${fallen(blocks, area)}`;
 }
 

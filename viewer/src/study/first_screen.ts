@@ -44,9 +44,10 @@ function partsOf(study: Study, combination: number): Part[] {
   return since ? parts : [...parts, { ...c, title: "In all" }];
 }
 
-/** A value, and its interval in small print behind it. */
+/** A value, and its interval in small print, if there is one. */
 function cell(value: string, range: string, span = 1): HTMLElement {
-  return h("td", { colspan: span }, value, h("span", { class: "sub" }, `(${range})`));
+  const interval = range === "–" ? null : h("span", { class: "sub" }, `(${range})`);
+  return h("td", { colspan: span }, value, interval);
 }
 
 function shareCell(share: Share): HTMLElement {
