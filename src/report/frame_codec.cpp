@@ -8,10 +8,9 @@ namespace keyblock::report {
 namespace {
 
 std::uint32_t quantised(double x, double quantum) {
-  constexpr double bound = 1 << 30;
   if (std::isnan(x)) return 0;
   return static_cast<std::uint32_t>(
-      static_cast<std::int32_t>(std::lround(std::clamp(x / quantum, -bound, bound))));
+      static_cast<std::int32_t>(std::lround(std::clamp(x / quantum, -most_quanta, most_quanta))));
 }
 
 std::uint32_t zigzag(std::uint32_t e) {

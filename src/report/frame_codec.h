@@ -7,6 +7,9 @@
 
 namespace keyblock::report {
 
+/// Numbers are held at this many quanta.
+inline constexpr double most_quanta = 1 << 30;
+
 /// A table of numbers x[f][i] (row f: a frame) as multiples of a quantum q, packed for deflate:
 ///
 ///   n[f][i] = round(x[f][i] / q)

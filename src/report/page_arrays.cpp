@@ -216,7 +216,9 @@ double displacement_quantum(const results::RunData& run) {
       for (const float c : u)
         if (std::isfinite(c)) largest = std::max(largest, std::abs(double{c}));
   const double size = run.model.vertices.empty() ? 1.0 : std::max(box.size().x, box.size().y);
-  return largest > 0.0 ? std::min(share_of_size * size, share_of_largest * largest) : share_of_size * size;
+  if (largest == 0.0) return share_of_size * size;
+  // What flies far must not be held on its way.
+  return std::max(std::min(share_of_size * size, share_of_largest * largest), largest / most_quanta);
 }
 
 double stress_quantum(const results::RunData& run) {

@@ -43,7 +43,7 @@ PageData make_page_data(const results::RunData& run);
 ArrayPack page_arrays(const results::RunData& run);
 
 /// Resolution of the displacements in the page, m: 10^-7 of the model's size, finer where all displacements
-/// are small.
+/// are small, and coarser where a block flies too far to be told in most_quanta.
 double displacement_quantum(const results::RunData& run);
 
 /// Resolution of the stresses in the page, Pa: a thousandth of their typical (median) size.

@@ -182,6 +182,23 @@ const tests = {
     await shoot(page, "marginal-400");
     await close(page);
   },
+
+  async "a study fits narrow windows, a dark screen and paper"() {
+    const narrow = await open("study", { width: 400 });
+    assert.ok((await sidewaysOverflow(narrow)) <= 0);
+    await shoot(narrow, "study-400");
+    await close(narrow);
+    const page = await open("study", { width: 800 });
+    assert.ok((await sidewaysOverflow(page)) <= 0);
+    await page.pdf({
+      path: join(screenshots, "study.pdf"),
+      format: "A4",
+    });
+    await close(page);
+    const dark = await open("study", { colorScheme: "dark" });
+    await shoot(dark, "study-dark");
+    await close(dark);
+  },
 };
 
 await run(tests);

@@ -38,7 +38,6 @@ const tests = {
     );
     assert.deepEqual(headings, [
       "Result",
-      "Ground and loads",
       "Fragility",
       "Probability of damage",
       "How much, and how sure",
@@ -439,23 +438,6 @@ const tests = {
     console.log(`  ready after ${page.seconds.toFixed(2)} s`);
     assert.ok(page.seconds < 3 * (process.env.CI ? 3 : 1.5));
     await close(page);
-  },
-
-  async "fits narrow windows, a dark screen and paper"() {
-    const narrow = await open("study", { width: 400 });
-    assert.ok((await sidewaysOverflow(narrow)) <= 0);
-    await shoot(narrow, "study-400");
-    await close(narrow);
-    const page = await open("study", { width: 800 });
-    assert.ok((await sidewaysOverflow(page)) <= 0);
-    await page.pdf({
-      path: join(samples, "screenshots", "study.pdf"),
-      format: "A4",
-    });
-    await close(page);
-    const dark = await open("study", { colorScheme: "dark" });
-    await shoot(dark, "study-dark");
-    await close(dark);
   },
 };
 

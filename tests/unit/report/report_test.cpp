@@ -9,6 +9,7 @@
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "report/frame_codec.h"
 #include "report/page_data.h"
 #include "report/viewer_template.h"
 #include "synthetic_run.h"
@@ -106,6 +107,14 @@ TEST(Report, DisplacementsAreFinerThanAnyPixel) {
     for (const auto& u : frame.displacement)
       largest = std::max({largest, std::abs(double{u[0]}), std::abs(double{u[1]})});
   EXPECT_DOUBLE_EQ(displacement_quantum(still), 1e-4 * largest);
+}
+
+TEST(Report, BlocksThatFlyFarAreNotHeldOnTheirWay) {
+  results::RunData run = made_up::synthetic_run({.frames_per_stage = 2});
+  run.frames.back().displacement[0] = {1e5F, 0.0F};
+  const double quantum = displacement_quantum(run);
+  EXPECT_LE(1e5 / quantum, most_quanta);
+  EXPECT_LE(quantum, 1e-4);
 }
 
 TEST(Report, IsWrittenBesideNothingElse) {
