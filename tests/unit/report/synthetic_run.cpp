@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulation/fallen.h"
+#include "synthetic_damage.h"
 
 namespace keyblock::made_up {
 
@@ -71,17 +71,7 @@ class Wall {
     model.slip_limit = model.opening_limit = 0.001;
     model.joint_set_names = {"bed joints", "head joints"};
     model.history_names = {"crown", "springline"};
-    model.ground = {
-        {"opening “tunnel”", "polygon, 8 m wide, 5.4 m high"},
-        {"depth", "80 m of rock above the model"},
-        {"K₀", "0.8"},
-        {"unit weight γ", "22.27 kN/m³ (2270 kg/m³)"},
-        {"Young's modulus E", "12 GPa"},
-        {"joints: friction φ", "35°"},
-        {"joints: stiffness", "kn 240 GPa/m, ks 96 GPa/m (default)"},
-        {"set “bed joints”",
-         "dip 0° towards 90° (0° down to the right in the section), spacing 0.6 m, length 8 ± 2 m"},
-        {"motion “quake”", "record_090.smc, record_up.smc"}};
+    model.ground = synthetic_ground();
     model.cutting.traces = 412;
     model.cutting.joints_used = 231;
     model.cutting.trace_length = 618.4;
@@ -365,43 +355,12 @@ class Wall {
   }
 
   [[nodiscard]] simulation::Damage damage_at(std::size_t stage) const {
-    simulation::Damage damage;
-    if (stage >= 1) {
-      damage.slip_max = damage.slip_max_ever = 4.0e-4;
-      damage.slip_mean = 2.1e-5;
-      damage.closure_vertical = 1.2e-3;
-      damage.closure_horizontal = 6.0e-4;
-    }
-    if (stage < 2) return damage;
+    double loosened = 0.0;
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
       if (status(b, 2, options_.shake_duration) == BlockStatus::loosened)
-        damage.loosened_area += run_.model.blocks[b].area;
+        loosened += run_.model.blocks[b].area;
     }
-    const auto fallen = fallen_at(stage);
-    for (const simulation::FallenBlock& block : fallen) {
-      ++damage.fallen_blocks;
-      damage.fallen_area += block.area;
-      damage.fallen_weight += block.weight;
-    }
-    simulation::set_extremes(fallen, damage);
-    damage.equivalent_pressure = damage.fallen_weight / opening_.size().x;
-    damage.displacement_max = 1.9;
-    damage.rotation_max = 38.0;
-    damage.hinges = 11;
-    damage.opening_filled_ratio = damage.fallen_area / (opening_.size().x * opening_.size().y);
-    // Blocks fell, and the crown with them.
-    damage.slip_max = 0.0196;
-    damage.slip_max_ever = 0.0731;
-    damage.slip_mean = 0.0021;
-    damage.slipped_length = 27.3;
-    damage.slipped_length_ever = 31.7;
-    damage.opening_max = 0.0052;
-    damage.opening_max_ever = 0.0384;
-    damage.opened_length = 6.1;
-    damage.opened_length_ever = 9.4 + 0.6 * static_cast<double>(stage);
-    damage.closure_vertical = std::nan("");
-    damage.closure_horizontal = -2.1e-3;
-    return damage;
+    return synthetic_damage(stage, fallen_at(stage), loosened, opening_.size());
   }
 
   void add_motion(simulation::StageRecord& stage) const {
