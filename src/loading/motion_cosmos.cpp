@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "loading/motion_formats.h"
 
@@ -32,13 +33,24 @@ Announcement read_announcement(const MotionText& text, std::size_t line) {
   return {*count, column_width(words).value_or(0)};
 }
 
-std::size_t require(const MotionText& text, std::string_view words, std::size_t from) {
-  const std::size_t line = text.find(words, from);
-  if (line == text.size()) {
-    text.fail(text.size() - 1, 0, "the end of the file", fmt::format("a line with `{}`", words),
-              "the file may have been cut short");
+// Whether a line is an end mark or begins the next section.
+bool ends_section(const MotionText& text, std::size_t line) {
+  const std::string words = lower(text.line(line));
+  return words.find("end-of-data") != std::string::npos || words.find("end of data") != std::string::npos ||
+         words.find("(format v") != std::string::npos;
+}
+
+// The line with one of `words`, which mean the same, in the section of line `from`.
+std::size_t require(const MotionText& text, std::initializer_list<std::string_view> words, std::size_t from) {
+  const std::string expected = fmt::format("a line with `{}`", *words.begin());
+  for (std::size_t k = from; k < text.size(); ++k) {
+    const std::string line = lower(text.line(k));
+    if (std::any_of(words.begin(), words.end(),
+                    [&](std::string_view w) { return line.find(w) != std::string::npos; }))
+      return k;
+    if (k > from && ends_section(text, k)) text.fail(k, expected + " before this one");
   }
-  return line;
+  text.fail(text.size() - 1, 0, "the end of the file", expected, "the file may have been cut short");
 }
 
 double time_step(const MotionText& text, std::size_t line, const std::vector<double>& reals) {
@@ -70,15 +82,6 @@ AccelerationUnit section_unit(const MotionText& text, std::size_t line, const st
   return named ? *named : *coded;
 }
 
-std::size_t data_line(const MotionText& text, std::size_t from) {
-  for (std::size_t k = from; k < text.size(); ++k) {
-    const std::string line = lower(text.line(k));
-    if (line.find("pts, approx") != std::string::npos || line.find("pts approx") != std::string::npos)
-      return k;
-  }
-  return require(text, "pts, approx", from);
-}
-
 // By the integer header, where 0 is no azimuth; else by the code of the channel in a comment `|<SCNL>BMR.BNZ.AK.--`.
 MotionDirection section_direction(const MotionText& text, std::size_t first, std::size_t end,
                                   const std::vector<double>& integers) {
@@ -107,13 +110,6 @@ bool matches_cosmos(const MotionText& text) {
          text.find("integer-header values follow") < text.size();
 }
 
-// Whether a line is an end mark or begins the next section.
-bool ends_section(const MotionText& text, std::size_t line) {
-  const std::string words = lower(text.line(line));
-  return words.find("end-of-data") != std::string::npos || words.find("end of data") != std::string::npos ||
-         words.find("(format v") != std::string::npos;
-}
-
 // The line after the end mark, `End-of-data for …` or `/&  ---  End of data for channel 1`, which may be missing.
 std::size_t section_end(const MotionText& text, std::size_t from, std::vector<std::string>* notes) {
   for (std::size_t k = from; k < text.size(); ++k) {
@@ -134,19 +130,19 @@ std::size_t section_end(const MotionText& text, std::size_t from, std::vector<st
 // Adds the section at line `first`, if it is one of acceleration. Returns the line after it.
 std::size_t read_section(const MotionText& text, std::size_t first,
                          std::vector<MotionComponent>& components) {
-  const std::size_t integer_line = require(text, "integer-header values follow", first);
+  const std::size_t integer_line = require(text, {"integer-header values follow"}, first);
   const Announcement integer_size = read_announcement(text, integer_line);
   std::size_t next = 0;
   const auto integers =
       text.numbers(integer_line + 1, integer_size.count, integer_size.width, "integers of the header", &next);
-  const std::size_t real_line = require(text, "real-header values follow", integer_line);
+  const std::size_t real_line = require(text, {"real-header values follow"}, integer_line);
   if (real_line != next) text.fail(next, "a line `Real-header values follow`");
   const Announcement real_size = read_announcement(text, real_line);
   const auto reals =
       text.numbers(real_line + 1, real_size.count, real_size.width, "reals of the header", &next);
-  if (lower(text.line(next)).find("comment") == std::string::npos && data_line(text, next) != next)
+  const std::size_t line = require(text, {"pts, approx", "pts approx"}, next);
+  if (lower(text.line(next)).find("comment") == std::string::npos && line != next)
     text.fail(next, "a line `Comment line(s) follow`");
-  const std::size_t line = data_line(text, next);
   if (lower(text.line(line)).find("accel") == std::string::npos) return section_end(text, line, nullptr);
   const bool uncorrected = lower(text.line(first)).find("uncorrected") != std::string::npos;
   MotionComponent component = make_component(text, uncorrected ? "COSMOS V1" : "COSMOS V2");

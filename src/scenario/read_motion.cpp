@@ -17,20 +17,22 @@ constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
                                         {"linear", Baseline::linear},
                                         {"taper", Baseline::taper}};
 
-// How a file is read. `given` holds where there is a file to read.
-void read_reading(TableReader& t, MotionComponentSpec& component, bool given) {
+// How a file is read. `given` holds where there is a file to read, `file_condition` says so.
+void read_reading(TableReader& t, MotionComponentSpec& component, bool given,
+                  std::string_view file_condition) {
   const bool documenting = t.documenting();
   const bool by_hand = t.find("skip") != nullptr || t.find("column") != nullptr || t.find("dt") != nullptr;
-  const auto of_file = [&](Rule rule, bool applies = true, std::string_view condition = "a file") {
-    rule.applies = documenting || (given && applies);
-    rule.condition = condition;
+  const auto of_file = [&](Rule rule) {
+    rule.applies = documenting || given;
+    rule.condition = file_condition;
     return rule;
   };
-  t.integer("channel", component.channel,
-            of_file({.meaning = "Which component of a file that holds several, counted from 1.",
-                     .at_least = 1.0,
-                     .fallback = "the only one"},
-                    !by_hand, "none of skip, column and dt"));
+  Rule channel = of_file({.meaning = "Which component of a file that holds several, counted from 1.",
+                          .at_least = 1.0,
+                          .fallback = "the only one"});
+  channel.applies = channel.applies && (documenting || !by_hand);
+  channel.condition = "none of skip, column and dt";
+  t.integer("channel", component.channel, channel);
   loading::MotionReading& reading = component.reading;
   t.integer(
       "skip", reading.skip,
@@ -69,7 +71,7 @@ constexpr std::string_view file_meaning =
 void read_component(TableReader& t, MotionComponentSpec& component) {
   component.path = t.path();
   t.file("file", component.file, {.meaning = file_meaning, .required = true});
-  read_reading(t, component, true);
+  read_reading(t, component, true, "");
   const Value* azimuth = t.find("azimuth");
   constexpr std::string_view type = "number from 0 to 360, or \"up\"";
   const Rule rule{
@@ -125,7 +127,7 @@ void read_direction(TableReader& t, std::string_view key, loading::AccelerationT
     component.vertical = key == "y";
     component.along_section = key == "x";
     s.file("file", component.file, {.meaning = file_meaning, .fallback = "a sine"});
-    read_reading(s, component, file);
+    read_reading(s, component, file, "a file");
     if (file && !documenting) motion.components.push_back(std::move(component));
     if (!file && !documenting) sine = read;
   });
