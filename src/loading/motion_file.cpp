@@ -32,6 +32,7 @@ constexpr const MotionFormat* formats[] = {&smc_format,  &csmip_format, &cosmos_
 constexpr double largest_acceleration = 1e9;
 
 constexpr double largest_file = 200e6;  // bytes
+constexpr std::size_t longest_line = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& file, std::string found, std::string expected,
                          std::string hint = {}) {
@@ -69,6 +70,16 @@ void check_size(const std::filesystem::path& path) {
            fmt::format("at most {:.0f} MB; records are far smaller", largest_file / 1e6));
 }
 
+void check_lines(const std::string& file, std::string_view content) {
+  for (std::size_t begin = 0; begin < content.size();) {
+    const std::size_t end = std::min(content.find_first_of("\r\n", begin), content.size());
+    if (end - begin > longest_line)
+      refuse(file, fmt::format("a line of {} characters", end - begin),
+             fmt::format("lines of at most {} characters", longest_line));
+    begin = end + 1;
+  }
+}
+
 void check_is_text(const std::string& file, std::string_view content) {
   const std::pair<std::string_view, const char*> known[] = {
       {"PK\x03\x04", "a zip archive or a spreadsheet; unpack it, or save the sheet as CSV"},
@@ -82,7 +93,7 @@ void check_is_text(const std::string& file, std::string_view content) {
   }
   constexpr std::size_t looked_at = 1 << 16;
   const std::string_view head = content.substr(0, looked_at);
-  if (head.find('\0') == std::string_view::npos) return;
+  if (head.find('\0') == std::string_view::npos) return check_lines(file, content);
   const bool sequence = head.size() > 8 &&
                         head.substr(0, 6).find_first_not_of("0123456789 ") == std::string_view::npos &&
                         std::string_view("DRQM").find(head[6]) != std::string_view::npos;

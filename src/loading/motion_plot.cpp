@@ -81,14 +81,12 @@ std::string time_panel(ChartFrame frame, std::string_view title, const AllSeries
                        bool numbers) {
   const double range = value_range(curves);
   frame.y = {-range, range};
-  std::string svg = draw_frame(frame, title, numbers);
+  double all_range = 0.0;
+  for (const auto& curve : curves) all_range = std::max(all_range, largest(curve));
+  const char* cut = all_range > range ? "; drifts leave the picture" : "";
+  std::string svg = draw_frame(frame, fmt::format("{}{}", title, cut), numbers);
   for (std::size_t w = 0; w < ways.size(); ++w)
     svg += draw_curve(frame, all[w].time, curves[w], ways[w].color, ways[w].width);
-  if (largest(curves[recorded]) > range)
-    svg += draw_text(
-        frame.left + 8.0, frame.top + 16.0, "start",
-        fmt::format("as recorded it reaches {:.3g}, outside of the picture", largest(curves[recorded])),
-        "fill=\"#c0392b\"");
   return svg;
 }
 
@@ -181,7 +179,7 @@ std::string draw_sheet(const MotionComponent& c, double top) {
                   c.acceleration.size(), c.times.empty() ? fmt::format(", dt {:.6g} s", c.dt) : "",
                   std::abs(m.peak) / standard_gravity, m.peak_velocity, m.arias_intensity));
   if (!jumps.empty())
-    svg += draw_text(right_edge, top + 37.0, "start", "It " + jumps + ".", "fill=\"#c0392b\"");
+    svg += draw_text(right_edge + right_width, top + 16.0, "end", "It " + jumps + ".", "fill=\"#c0392b\"");
   if (!(c.end() > c.time(0)) || !std::isfinite(c.end()))
     return svg + draw_text(left_edge, top + title_height, "start", "Nothing can be drawn over time, s");
   AllSeries all;

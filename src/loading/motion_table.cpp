@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "loading/motion_formats.h"
 #include "loading/table_header.h"
@@ -128,6 +129,20 @@ TableHeader header_of(const MotionText& text, std::size_t rows, std::size_t colu
   return read_table_header(text, lines, columns);
 }
 
+// A table without names whose second column goes up evenly has times there, and perhaps a count in the first one.
+void check_unnamed(const MotionText& text, const TextTable& table) {
+  const std::vector<double>& second = table.columns[1];
+  constexpr std::size_t least_rows = 10;
+  if (second.size() < least_rows || table.columns.size() < 3) return;
+  const double step = second[1] - second[0], rounding = 1e-3 * step;
+  for (std::size_t k = 1; k < second.size(); ++k) {
+    if (!(step > 0.0) || !(std::abs(second[k] - second[0] - step * static_cast<double>(k)) <= rounding))
+      return;
+  }
+  text.fail(table.lines.front(), 1, "a second column that goes up evenly, as times do",
+            "times in the first column only", "other tables are read with skip, column, dt and unit");
+}
+
 std::vector<MotionComponent> read_table(const MotionText& text, const MotionReading& reading) {
   const std::size_t rows = table_start(text);
   const auto separator = row_separator(text.line(rows));
@@ -136,6 +151,7 @@ std::vector<MotionComponent> read_table(const MotionText& text, const MotionRead
   TextTable table = read_rows(text, rows);
   std::size_t line = rows;
   const TableHeader header = header_of(text, rows, table.columns.size(), line);
+  if (line == rows) check_unnamed(text, table);
   std::vector<MotionComponent> components;
   MotionComponent pattern = make_component(text, table_format.name);
   set_times(text, table, header.seconds, pattern);

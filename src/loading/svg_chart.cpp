@@ -66,7 +66,7 @@ std::string draw_text(double x, double y, std::string_view anchor, std::string_v
 }
 
 std::string draw_frame(const ChartFrame& frame, std::string_view title, bool numbers) {
-  constexpr double pixels_per_x = 80.0, pixels_per_y = 30.0;
+  constexpr double pixels_per_x = 80.0, pixels_per_y = 24.0;
   const double right = frame.left + frame.width, bottom = frame.top + frame.height;
   std::string svg = draw_text(frame.left, frame.top - 7.0, "start", title, "fill=\"#333\"");
   for (const double x : chart_ticks(frame.x, static_cast<int>(frame.width / pixels_per_x))) {
@@ -89,11 +89,15 @@ std::string draw_curve(const ChartFrame& frame, const std::vector<double>& x, co
                        std::string_view color, double width) {
   constexpr double columns_per_pixel = 2.0;
   std::string path;
+  double before = 0.0;  // where the last point would be
   const auto column = [&](std::size_t k) { return std::floor(frame.at_x(x[k]) * columns_per_pixel); };
+  const double bottom = frame.top + frame.height;
   const auto add = [&](std::size_t k) {
-    const double inside = std::clamp(frame.at_y(y[k]), frame.top, frame.top + frame.height);
-    fmt::format_to(std::back_inserter(path), "{}{:.1f},{:.2f}", path.empty() ? "M" : "L", frame.at_x(x[k]),
-                   inside);
+    const double place = frame.at_y(y[k]);
+    const bool outside = (place < frame.top && before < frame.top) || (place > bottom && before > bottom);
+    fmt::format_to(std::back_inserter(path), "{}{:.1f},{:.2f}", path.empty() || outside ? "M" : "L",
+                   frame.at_x(x[k]), std::clamp(place, frame.top, bottom));
+    before = place;
   };
   for (std::size_t k = 0; k < x.size();) {
     std::size_t low = k, high = k, next = k + 1;

@@ -27,7 +27,7 @@ std::vector<double> chart_ticks(const ChartAxis& axis, int most);
 /// Lines and numbers of both scales, with a title above; numbers of the x-axis where `numbers` holds.
 std::string draw_frame(const ChartFrame& frame, std::string_view title, bool numbers);
 
-/// A line through the points, as far as it lies in the frame. For more points than pixels it is their outline: of every half pixel the
+/// A line through the points; stretches above or below the frame are left out. For more points than pixels it is their outline: of every half pixel the
 /// lowest and the highest.
 std::string draw_curve(const ChartFrame& frame, const std::vector<double>& x, const std::vector<double>& y,
                        std::string_view color, double width);

@@ -43,7 +43,8 @@ class RowReader {
     const std::string expected =
         count == 1 ? "one finite number" : fmt::format("{} finite numbers: time and accelerations", count);
     if (fields.size() != count)
-      text_.fail(line, 1, fmt::format("{} fields in {}", fields.size(), quoted_text(row)), expected);
+      text_.fail(line, 1, fmt::format("{} fields in {}", fields.size(), quoted_text(row)), expected,
+                 "text that is no table is read with skip, column, dt and unit");
     for (std::size_t c = 0; c < count; ++c) {
       const auto value = field_number(fields[c], separator_);
       const auto column = static_cast<std::size_t>(fields[c].data() - row.data()) + 1;

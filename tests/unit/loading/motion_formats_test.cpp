@@ -225,6 +225,7 @@ TEST(MotionFile, WhatIsNoTextIsNamed) {
   EXPECT_THAT(write("\xFF\xFE" + std::string("1\0,\0", 4)), HasSubstr("UTF-16"));
   EXPECT_THAT(write("000001D AB  C" + std::string(20, '\0')), HasSubstr("miniSEED"));
   EXPECT_THAT(write(std::string("0 1\n1 \0 2\n", 10)), HasSubstr("a binary file"));
+  EXPECT_THAT(write("0 1\n" + std::string(2'000'000, '1')), HasSubstr("a line of 2000000 characters"));
   EXPECT_THAT(refusal_of(folder), HasSubstr("a folder"));
   EXPECT_THAT(refusal_of("/dev/zero"), HasSubstr("a device or pipe"));
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);

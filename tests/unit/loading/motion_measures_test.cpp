@@ -147,7 +147,7 @@ TEST(MotionPlot, IsAnSvgWithASheetPerComponent) {
 TEST(MotionPlot, ADriftDoesNotFlattenTheRest) {
   MotionComponent drifting = sine_record(1.0, 1.0, 20, 100);
   for (double& a : drifting.acceleration) a += 0.5;
-  EXPECT_THAT(plot_motion_svg({drifting}), HasSubstr("outside of the picture"));
+  EXPECT_THAT(plot_motion_svg({drifting}), HasSubstr("velocity, m/s; drifts leave the picture"));
 }
 
 }  // namespace

@@ -54,6 +54,12 @@ TEST(MotionTable, WithoutNamesThereAreNoDirections) {
               HasSubstr("a table of time and accelerations"));
 }
 
+TEST(MotionTable, ACountBeforeTheTimesIsNoTime) {
+  std::string text;
+  for (int k = 0; k < 12; ++k) text += fmt::format("{} {:.2f} {}\n", k + 1, 0.01 * k, k % 3);
+  EXPECT_THAT(error_of(text).expected, HasSubstr("times in the first column only"));
+}
+
 TEST(MotionTable, OtherColumnsAreLeftOut) {
   const auto components =
       read_text("time (s),acceleration (cm/s2),velocity (cm/s),displ_cm\n0,100,2,3\n0.5,200,4,6\n");
