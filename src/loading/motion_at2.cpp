@@ -8,10 +8,10 @@
 namespace keyblock::loading {
 namespace {
 
-constexpr std::size_t longest_header = 20;
+constexpr std::size_t longest_at2_header = 20;
 
 std::size_t size_line(const MotionText& text) {
-  for (std::size_t k = 0; k < longest_header && k < text.size(); ++k) {
+  for (std::size_t k = 0; k < longest_at2_header && k < text.size(); ++k) {
     const std::string line = lower(text.line(k));
     if (line.find("npts") != std::string::npos && line.find("dt") != std::string::npos) return k;
   }

@@ -9,14 +9,14 @@
 namespace keyblock::loading {
 namespace {
 
-constexpr std::size_t event_line = 3, text_lines = 11, integer_lines = 6, real_lines = 10;
+constexpr std::size_t smc_event_line = 3, text_lines = 11, integer_lines = 6, real_lines = 10;
 constexpr std::size_t integer_count = 48, real_count = 50;
 constexpr std::size_t integer_width = 10, real_width = 15, sample_width = 10;
 
 // Positions in the integer and real headers; the first of each is the value that stands for "unknown".
 constexpr std::size_t vertical_orientation = 12, horizontal_orientation = 13, comment_count = 15,
                       point_count = 16;
-constexpr std::size_t sampling_rate = 1, largest = 29, smallest = 31;
+constexpr std::size_t sampling_rate = 1, largest_sample = 29, smallest_sample = 31;
 
 // From the words of the text header, or else from the integers: 0 is up, 90 horizontal, 180 down.
 MotionDirection find_smc_direction(const MotionComponent& component, const std::vector<double>& integers) {
@@ -30,9 +30,9 @@ MotionDirection find_smc_direction(const MotionComponent& component, const std::
 
 void check_smc_peak(MotionComponent& component, const std::vector<double>& reals) {
   const double none = reals[0];
-  if (reals[largest] == none || reals[smallest] == none) return;
-  compare_peak(component,
-               std::max(std::abs(reals[largest]), std::abs(reals[smallest])) * component.file_unit_in_si);
+  if (reals[largest_sample] == none || reals[smallest_sample] == none) return;
+  compare_peak(component, std::max(std::abs(reals[largest_sample]), std::abs(reals[smallest_sample])) *
+                              component.file_unit_in_si);
 }
 
 bool matches_smc(const MotionText& text) {
@@ -61,8 +61,8 @@ std::vector<MotionComponent> read_smc(const MotionText& text, const MotionReadin
               "unevenly digitized records are not supported");
   }
   MotionComponent component = make_component(text, smc_format.name);
-  component.event = squeeze(text.line(event_line));
-  for (std::size_t k = event_line + 1; k < text_lines; ++k) {
+  component.event = squeeze(text.line(smc_event_line));
+  for (std::size_t k = smc_event_line + 1; k < text_lines; ++k) {
     const std::string_view line = text.line(k);
     const std::size_t station = lower(line).find("station ="), direction = lower(line).find("component=");
     if (station < direction) component.station = squeeze(line.substr(station + 9, direction - station - 9));
