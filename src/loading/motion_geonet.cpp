@@ -31,11 +31,11 @@ std::optional<std::size_t> text_line(const MotionText& text, std::size_t first, 
 // mm/s/s of `Acceleration:  Peak  -2080.5 mm/s/s at  23.28 s`; of raw data times the factor of `Raw readings in units of 1.00 mm/s/s`.
 AccelerationUnit geonet_unit(const MotionText& text, std::size_t first) {
   const auto peak = text_line(text, first, "acceleration");
-  const auto unit = peak ? line_unit(text, *peak) : std::nullopt;
+  const auto unit = peak ? unit_of_values(text, *peak) : std::nullopt;
   if (!unit) text.fail(peak.value_or(first), "the line `Acceleration:  Peak` with the unit of the samples");
   const auto raw = text_line(text, first, "raw readings");
   if (!raw) return *unit;
-  const auto raw_unit = line_unit(text, *raw);
+  const auto raw_unit = unit_of_values(text, *raw);
   const auto factor = number_after(text.line(*raw), "units of");
   if (!raw_unit || !factor || !(*factor > 0.0)) text.fail(*raw, "`Raw readings in units of 1.00 mm/s/s`");
   return {raw_unit->name, *factor * raw_unit->in_si};
@@ -87,7 +87,7 @@ MotionComponent read_geonet_component(const MotionText& text, std::size_t first,
   }
   const auto peak_line = text_line(text, first, "acceleration");
   const auto peak = number_after(lower(text.line(*peak_line)), "peak");
-  const double peak_unit = line_unit(text, *peak_line)->in_si;
+  const double peak_unit = unit_of_values(text, *peak_line)->in_si;
   if (peak) compare_peak(component, *peak * peak_unit, 0.05 * peak_unit);
   return component;
 }

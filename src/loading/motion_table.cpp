@@ -112,7 +112,9 @@ AccelerationUnit common_unit(const MotionText& text, const TableHeader& header, 
   if (const auto unit = comment_unit(text, first)) return *unit;
   // `time (s), acc`: who names the unit of the time has forgotten that of the acceleration.
   if (header.time_unit_in_brackets)
-    text.fail(line, fmt::format("a unit of acceleration in the header: {}", acceleration_units_text));
+    text.fail(line, 1, quoted_text(text.line(line)),
+              fmt::format("a unit of acceleration in the header: {}", acceleration_units_text),
+              "unit = \"…\" states it");
   first.notes.push_back("the file names no unit; m/s2 is assumed");
   return {"m/s2", 1.0};
 }

@@ -213,6 +213,17 @@ bool is_announced(const std::vector<Token>& tokens, std::size_t k) {
   return (token.before == '(' || token.before == '[') && token.closed;
 }
 
+bool is_factor(std::string_view word) {
+  if (word.starts_with('x')) word.remove_prefix(1);
+  return parse_number(word).has_value();
+}
+
+// Whether the number at token k stands where a unit should: `in 0.001 g`, `(1e-3 g)`.
+bool announces_factor(const std::vector<Token>& tokens, std::size_t k) {
+  if (tokens[k].before == '(' || tokens[k].before == '[') return true;
+  return k > 0 && is_one_of(tokens[k - 1].text, {"of", "in", "unit", "units", "are", "is"});
+}
+
 // "units of", "the unit is", "unit:" and the like. "COMMUNITY HOSPITAL" and "UNIT 1" are none.
 bool announces_unit(const std::vector<Token>& tokens, std::string_view line) {
   for (std::size_t k = 0; k < tokens.size(); ++k) {
@@ -242,7 +253,8 @@ std::vector<UnitMention> unit_mentions(std::string_view line) {
     if (mention && !defined) {
       mention->at = tokens[k].at;
       mention->words = lower(line.substr(tokens[k].at, std::min(end, line.size()) - tokens[k].at));
-      mention->after_number = k > 0 && parse_number(tokens[k - 1].text).has_value();
+      mention->after_number = k > 0 && is_factor(tokens[k - 1].text);
+      mention->scaled = mention->after_number && announces_factor(tokens, k - 1);
       mention->last = next == tokens.size();
       mention->sure = mention->sure || (is_announced(tokens, k) && tokens[k].text != "in");
       mentions.push_back(std::move(*mention));
@@ -259,13 +271,20 @@ std::optional<AccelerationUnit> acceleration_unit(std::string_view words) {
   return whole && mentions[0].kind == UnitKind::acceleration ? std::optional(mentions[0].unit) : std::nullopt;
 }
 
-std::optional<AccelerationUnit> line_unit(const MotionText& text, std::size_t line, std::size_t from) {
+namespace {
+
+std::optional<AccelerationUnit> unit_in_line(const MotionText& text, std::size_t line, std::size_t from,
+                                             bool values) {
   const std::string_view words = text.line(line).substr(std::min(from, text.line(line).size()));
   const std::string expected = fmt::format("a unit of acceleration: {}", acceleration_units_text);
   std::optional<AccelerationUnit> unit;
   for (const UnitMention& mention : unit_mentions(words)) {
-    if (!mention.sure) continue;
     const std::size_t column = from + mention.at + 1;
+    const bool number = !values && (mention.scaled || (mention.sure && mention.after_number));
+    if (number)
+      text.fail(line, column, fmt::format("a number before the unit \"{}\"", mention.words),
+                expected + ", and no factor");
+    if (!mention.sure) continue;
     if (mention.kind != UnitKind::acceleration)
       text.fail(line, column, fmt::format("the unit \"{}\"", mention.words), expected);
     if (unit && unit->in_si != mention.unit.in_si)
@@ -275,6 +294,16 @@ std::optional<AccelerationUnit> line_unit(const MotionText& text, std::size_t li
   }
   if (!unit && announces_unit(tokens_of(words), words)) text.fail(line, expected);
   return unit;
+}
+
+}  // namespace
+
+std::optional<AccelerationUnit> line_unit(const MotionText& text, std::size_t line, std::size_t from) {
+  return unit_in_line(text, line, from, false);
+}
+
+std::optional<AccelerationUnit> unit_of_values(const MotionText& text, std::size_t line) {
+  return unit_in_line(text, line, 0, true);
 }
 
 void refuse_other_quantity(const MotionText& text, std::size_t line) {

@@ -23,7 +23,8 @@ struct UnitMention {
   AccelerationUnit unit;  ///< of an acceleration
   /// Whether it can be nothing but a unit: `cm/s2`, and `g` after "in units of" or alone in brackets. Not so: `g` or `m` in passing.
   bool sure = false;
-  bool after_number = false;  ///< as in `PGA 0.3 g`
+  bool after_number = false;  ///< as in `PGA 0.3 g` or `(x10 m/s2)`
+  bool scaled = false;        ///< the number is a factor: `in 0.001 g`, `(1e-3 g)`
   bool last = false;          ///< no word follows
 };
 
@@ -39,8 +40,11 @@ inline constexpr const char* acceleration_units_text = "g, cm/s2, gal, m/s2 or m
 class MotionText;
 
 /// The unit of acceleration that a line names from column `from` on; absent when it names none. Throws InputError when the line names
-/// two, one of another quantity, one that is not understood, or announces a unit that does not follow.
+/// two, one of another quantity, one that is not understood, one with a number before it, or announces a unit that does not follow.
 std::optional<AccelerationUnit> line_unit(const MotionText& text, std::size_t line, std::size_t from = 0);
+
+/// The same of a line with values in that unit, `Peak  -2080.5 mm/s/s`.
+std::optional<AccelerationUnit> unit_of_values(const MotionText& text, std::size_t line);
 
 /// Throws InputError where a line is about velocity or displacement, and not about acceleration.
 void refuse_other_quantity(const MotionText& text, std::size_t line);

@@ -119,8 +119,16 @@ bool is_plain_bracket(std::string_view name) {
 bool has_strange_unit(std::string_view name) {
   if (!is_plain_bracket(name)) return true;
   const auto words = words_between(name, " \t_:");
-  if (words.size() < 2) return false;
-  return words[words.size() - 2] == "in" || words.back().find_first_of("/%") != std::string::npos;
+  if (words.empty()) return false;
+  const bool after_in = words.size() > 1 && words[words.size() - 2] == "in";
+  return after_in || words.back().find_first_of("/%") != std::string::npos;
+}
+
+// `a (1e-3 g)`, `a 0.001 g`; the number of `acc_090_g` is none of this kind.
+bool is_scaled(std::string_view name, const UnitMention& mention) {
+  if (mention.scaled) return true;
+  const auto words = words_between(name.substr(0, mention.at), " \t_:()[]");
+  return mention.after_number && !words.empty() && words.back().find_first_of(".ex") != std::string::npos;
 }
 
 MotionDirection name_direction(std::string_view name) {
@@ -152,7 +160,7 @@ TableColumn read_column_name(const MotionText& text, std::size_t line, const std
   const auto mention = std::find_if(mentions.begin(), mentions.end(), is_unit);
   const bool other = column.kind != UnitKind::acceleration;
   if (mention == mentions.end() ? !other && has_strange_unit(name)
-                                : mention->kind == UnitKind::unknown && !other)
+                                : !other && (mention->kind == UnitKind::unknown || is_scaled(name, *mention)))
     text.fail(line, 1, quoted_text(name),
               fmt::format("a unit of acceleration in the header: {}", acceleration_units_text),
               "other files are read with skip, column, dt and unit");

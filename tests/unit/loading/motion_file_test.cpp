@@ -281,7 +281,8 @@ TEST(MotionFile, ADamagedFirstRowOfACsvIsNoHeader) {
 
 TEST(MotionFile, AHeaderThatNamesAnotherUnitIsRefused) {
   for (const std::string header : {"t,a_mm", "t,acc in furlongs", "time (s),acc", "t,a [rod/s2]",
-                                   "t,acc (raw)", "t,v_cm/s", "t,acc_counts", "t,a (cm/s)"}) {
+                                   "t,acc (raw)", "t,v_cm/s", "t,acc_counts", "t,a (1e-3 g)",
+                                   "t,a (x10 m/s2)", "t,a 0.001 g", "t,a (g/100)", "t,a/g", "t,a (cm/s)"}) {
     EXPECT_THAT(error_of(header + "\n0,1\n1,2\n").expected, HasSubstr("g, cm/s2, gal, m/s2 or mm/s2"))
         << header;
   }

@@ -55,6 +55,7 @@ TEST(MotionUnits, OfALineOfAnAt2File) {
   for (const char* title :
        {"ACCELERATION IN UNITS OF FURLONGS", "ACCELERATION (FURLONGS/SEC2)", "ACCELERATION IN CM/SEC",
         "UNITS: CM", "VELOCITY TIME HISTORY IN UNITS OF CM/S", "DISPLACEMENT", "VELOCITY (M/S)",
+        "ACCELERATION IN 0.001 G", "ACCELERATION (0.01 CM/S2)", "ACCELERATION SCALED BY 980 CM/S2",
         "ACCELERATION IN UNITS OF G OR CM/S2", "UNITS: COUNTS", "UNITS OF"}) {
     SCOPED_TRACE(title);
     const Diagnostic d = error_of(with_title(title));
