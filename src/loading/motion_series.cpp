@@ -35,7 +35,7 @@ class OscillatorStep {
 };
 
 double largest_displacement(const MotionSeries& series, double period, double damping) {
-  constexpr double places = 20.0, most_parts = 16.0, same = 1e-6;
+  constexpr double places = 40.0, most_parts = 64.0, same = 1e-6;
   const double omega = 2.0 * std::numbers::pi / period;
   double x = 0.0, v = 0.0, largest = 0.0, full = 0.0, parts = 1.0;
   OscillatorStep step(omega, damping, period / places);

@@ -18,8 +18,8 @@ struct MotionSeries {
 MotionSeries motion_series(const MotionComponent& component, Baseline baseline);
 
 /// Pseudo-acceleration ω² max |x| of oscillators x'' + 2 ζ ω x' + ω² x = −a(t) that are at rest at the first sample, m/s², one per period
-/// (s). Exact for a(t) linear between samples (Nigam & Jennings 1969); the largest |x| is looked for at twenty places in a period, or at
-/// sixteen between two samples.
+/// (s). Exact for a(t) linear between samples (Nigam & Jennings 1969); the largest |x| is looked for at forty places in a period, or at
+/// sixty-four between two samples.
 std::vector<double> response_spectrum(const MotionSeries& series, const std::vector<double>& periods,
                                       double damping);
 
