@@ -21,6 +21,8 @@ struct MotionArguments {
   bool plot = false;
   std::string output = "motion.svg";
   bool force = false;
+  loading::MotionReading reading;
+  std::vector<double> window;  // empty, or from and to
 };
 
 [[noreturn]] void refuse_output(const std::filesystem::path& output, std::string found,
@@ -36,7 +38,7 @@ bool is_plot(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return false;
   const std::string text = read_file(file);
-  return text.starts_with("<svg ") && text.ends_with(">time, s</text>\n</svg>\n");
+  return text.starts_with("<svg ") && text.ends_with("time, s</text>\n</svg>\n");
 }
 
 // Records are never replaced, other files than plots not without being asked to.
@@ -59,7 +61,11 @@ void show_motions(const MotionArguments& arguments) {
   std::vector<Diagnostic> mistakes;
   for (const std::string& file : arguments.files) {
     try {
-      for (auto& component : loading::read_motion_file(file)) components.push_back(std::move(component));
+      for (auto& component : loading::read_motion_file(file, arguments.reading)) {
+        if (!arguments.window.empty())
+          component = loading::cut_out(std::move(component), arguments.window[0], arguments.window[1]);
+        components.push_back(std::move(component));
+      }
     } catch (const InputError& error) {
       mistakes.insert(mistakes.end(), error.diagnostics().begin(), error.diagnostics().end());
     }
@@ -78,18 +84,35 @@ void add_motion(CLI::App& app) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command =
       app.add_subcommand("motion", "What a ground motion record holds: components, dt, points, peak, unit");
-  command
-      ->add_option("FILE", arguments->files,
-                   "USGS SMC, PEER AT2, CSMIP or COSMOS V2, or CSV (time, acceleration)")
+  command->add_option("FILE", arguments->files, loading::motion_format_names() + " of time and accelerations")
       ->required();
-  command->add_flag("--plot", arguments->plot, "Draw the components into an SVG file");
+  command->add_option("--skip", arguments->reading.skip, "Read plain numbers after this many lines")
+      ->type_name("LINES");
+  command->add_option("--column", arguments->reading.column, "Read plain numbers of this column, from 1")
+      ->type_name("K");
+  command->add_option("--dt", arguments->reading.dt, "Read plain numbers with this time step, in s")
+      ->type_name("SECONDS");
+  command
+      ->add_option("--unit", arguments->reading.unit, "Unit of plain numbers, or of a file that names none")
+      ->type_name("UNIT");
+  command
+      ->add_option("--window", arguments->window,
+                   "Only the samples from one time to another, in s of the record")
+      ->type_name("FROM TO")
+      ->expected(2);
+  command->add_flag(
+      "--plot", arguments->plot,
+      "Draw the components, with velocity, displacement, spectra and the baseline options, into an SVG "
+      "file");
   command->add_option("-o,--output", arguments->output, "The SVG file")
       ->type_name("SVG")
       ->capture_default_str()
       ->needs("--plot");
   command->add_flag("--force", arguments->force, "Replace the SVG file even if it is no plot of motions")
       ->needs("--plot");
-  command->footer("Example:\n  keyblock motion motions/*.smc --plot -o record.svg");
+  command->footer(
+      "Examples:\n  keyblock motion motions/*.smc --plot -o record.svg\n  keyblock motion other.txt --skip 3 "
+      "--dt 0.01 --unit g");
   command->callback([arguments] { show_motions(*arguments); });
 }
 

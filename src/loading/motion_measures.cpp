@@ -7,7 +7,9 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <utility>
 
+#include "core/error.h"
 #include "core/text.h"
 
 namespace keyblock::loading {
@@ -122,6 +124,73 @@ MotionMeasures measure(const MotionComponent& component) {
   return m;
 }
 
+namespace {
+
+constexpr double least_jump = 0.05;  // of the peak
+
+EndJumps jumps_of(double start, double end, double peak) {
+  EndJumps jumps{std::abs(start), std::abs(end), peak};
+  if (!(jumps.start > least_jump * peak)) jumps.start = 0.0;
+  if (!(jumps.end > least_jump * peak)) jumps.end = 0.0;
+  return jumps;
+}
+
+std::string unusual_peak(double peak) {
+  const double in_g = std::abs(peak) / standard_gravity;
+  if (in_g >= least_usual_peak && in_g <= most_usual_peak) return {};
+  return fmt::format("the peak is {:.3g} g; usual is {} to {} g; is the unit right?", in_g, least_usual_peak,
+                     most_usual_peak);
+}
+
+}  // namespace
+
+EndJumps end_jumps(const GroundMotion& motion) {
+  const std::vector<Vec2>& a = motion.accelerations();
+  if (a.empty()) return {};
+  return jumps_of(norm(a.front()), norm(a.back()), motion.peak());
+}
+
+EndJumps end_jumps(const MotionComponent& component) {
+  const std::vector<double>& a = component.acceleration;
+  return jumps_of(a.front(), a.back(), std::abs(a[component.peak_index()]));
+}
+
+std::string jumps_text(const EndJumps& jumps) {
+  const auto part = [&](const char* verb, double jump) {
+    return fmt::format("{} with a jump of {:.3g} m/s2, {:.0f} % of its peak", verb, jump,
+                       100.0 * jump / jumps.peak);
+  };
+  if (jumps.start > 0.0 && jumps.end > 0.0)
+    return part("starts", jumps.start) + ", and " + part("ends", jumps.end);
+  if (jumps.start > 0.0) return part("starts", jumps.start);
+  return jumps.end > 0.0 ? part("ends", jumps.end) : "";
+}
+
+MotionComponent cut_out(MotionComponent component, double from, double to) {
+  constexpr double rounding = 1e-9;
+  const double slack = rounding * component.duration();
+  std::vector<double> times, samples;
+  for (std::size_t k = 0; k < component.acceleration.size(); ++k) {
+    const double t = component.time(k);
+    if (t < from - slack || t > to + slack) continue;
+    times.push_back(t);
+    samples.push_back(component.acceleration[k]);
+  }
+  if (samples.size() < 2) {
+    Diagnostic diagnostic;
+    diagnostic.where.file = component.file;
+    diagnostic.key = "window";
+    diagnostic.found = fmt::format("[{}, {}]", from, to);
+    diagnostic.expected =
+        fmt::format("ascending times within the record, {} to {} s", component.time(0), component.end());
+    throw InputError(std::move(diagnostic));
+  }
+  component.start = times.front();
+  if (!component.times.empty()) component.times = std::move(times);
+  component.acceleration = std::move(samples);
+  return component;
+}
+
 std::string describe_motion(const std::vector<MotionComponent>& components) {
   std::string text;
   std::string file;
@@ -147,6 +216,11 @@ std::string describe_motion(const std::vector<MotionComponent>& components) {
                         m.peak_velocity, m.final_velocity);
     text += fmt::format("    Arias intensity      {:.4g} m/s; 5-95 % duration {:.4g} s\n", m.arias_intensity,
                         m.significant_duration);
+    if (!c.processing.empty())
+      text += fmt::format("    reading              {}\n", printable(c.processing, longest_text));
+    for (const std::string& words : {unusual_peak(m.peak), jumps_text(end_jumps(c))}) {
+      if (!words.empty()) text += fmt::format("    note                 {}\n", words);
+    }
     for (const std::string& note : c.notes) text += fmt::format("    note                 {}\n", note);
   }
   return text;

@@ -33,10 +33,26 @@ ShakingMeasures measure(const GroundMotion& motion, double scale, double duratio
 /// strong. A jump counts as far as it goes. 0 where nothing changes.
 double mean_period(const GroundMotion& motion);
 
+/// g. A peak outside of this range is not that of a record of an earthquake, or it is in another unit.
+inline constexpr double least_usual_peak = 1e-4, most_usual_peak = 3.0;
+
+/// How far a motion is from rest where it starts and ends: |a| there, m/s², where it is more than a twentieth of the peak; else 0.
+struct EndJumps {
+  double start = 0.0, end = 0.0, peak = 0.0;
+};
+EndJumps end_jumps(const GroundMotion& motion);
+EndJumps end_jumps(const MotionComponent& component);
+/// "starts with a jump of 0.125 m/s2 and ends with one of 0.08 m/s2, 26 and 17 % of its peak"; empty when it does neither.
+std::string jumps_text(const EndJumps& jumps);
+
+/// The samples from one time to another, s of the record. Throws InputError when there are fewer than two.
+MotionComponent cut_out(MotionComponent component, double from, double to);
+
 /// What a file holds, for people: one paragraph per component, then the notes.
 std::string describe_motion(const std::vector<MotionComponent>& components);
 
-/// Accelerations over time, one panel per component to one scale, as an SVG document.
+/// A picture as an SVG document. Per component: acceleration, velocity and displacement over time, response spectra of 5 % damping, and
+/// the build-up of the Arias intensity, each as recorded and after each way of correcting the baseline.
 std::string plot_motion_svg(const std::vector<MotionComponent>& components);
 
 }  // namespace keyblock::loading

@@ -1,136 +1,219 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 
-#include "core/xml_text.h"
+#include "core/text.h"
 #include "loading/motion_measures.h"
+#include "loading/motion_series.h"
+#include "loading/svg_chart.h"
 
 namespace keyblock::loading {
 namespace {
 
-// The page, in pixels.
-constexpr double width = 960.0, left = 70.0, right = 20.0, panel_height = 150.0, panel_gap = 34.0, top = 40.0,
-                 bottom = 44.0;
-constexpr double plot_width = width - left - right;
+// The picture, in pixels. A component fits on a screen of 1366 × 768.
+constexpr double page_width = 1320.0, legend_height = 34.0, sheet_height = 650.0;
+constexpr double left_edge = 78.0, left_width = 720.0, right_edge = 880.0, right_width = 420.0;
+constexpr double title_height = 66.0, panel_height = 146.0, panel_gap = 30.0;
+constexpr double spectrum_height = 258.0, build_up_height = 178.0;
 
-// A step of 1, 2 or 5 times a power of ten that divides `range` into at most `most` parts.
-double tick_step(double range, int most) {
-  const double raw = range / most;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= raw) return factor * power;
-  }
-  return 10.0 * power;
-}
+constexpr double spectrum_damping = 0.05, shortest_period = 0.02, longest_period = 10.0;
+constexpr int spectrum_periods = 120;
 
-// The multiples of `step` in [from, to]. They are counted, so that there are few whatever the numbers are.
-std::vector<double> ticks(double from, double to, double step) {
-  constexpr int most = 20;
-  const double first = std::ceil(from / step);
-  std::vector<double> places;
-  for (int k = 0; k < most && (first + k) * step <= to + 1e-9 * step; ++k)
-    places.push_back((first + k) * step);
-  return places;
-}
+struct Way {
+  Baseline baseline;
+  const char* name;
+  const char* color;
+  double width;
+};
+// Drawn in this order; what is recorded lies on top.
+constexpr std::array<Way, 4> ways{{{Baseline::taper, "taper", "#009E73", 1.2},
+                                   {Baseline::linear, "linear", "#D55E00", 1.2},
+                                   {Baseline::demean, "demean", "#0072B2", 1.2},
+                                   {Baseline::none, "none: as recorded", "#222222", 1.2}}};
+constexpr std::size_t recorded = 3;
 
-// Smallest and largest acceleration of every column of pixels: what a line through all samples would cover.
-std::string outline(const MotionComponent& c, double t0, double seconds_per_pixel, double zero,
-                    double pixels_per_unit) {
-  std::string path;
-  const auto add = [&](double x, double a) {
-    fmt::format_to(std::back_inserter(path), "{}{:.1f},{:.2f}", path.empty() ? "M" : "L", left + x,
-                   zero - a * pixels_per_unit);
-  };
-  constexpr double columns_per_pixel = 2.0;
-  for (std::size_t k = 0; k < c.acceleration.size();) {
-    const double column = std::floor((c.time(k) - t0) / seconds_per_pixel * columns_per_pixel);
-    std::size_t low = k, high = k, next = k + 1;
-    for (; next < c.acceleration.size(); ++next) {
-      if (std::floor((c.time(next) - t0) / seconds_per_pixel * columns_per_pixel) != column) break;
-      if (c.acceleration[next] < c.acceleration[low]) low = next;
-      if (c.acceleration[next] > c.acceleration[high]) high = next;
-    }
-    for (const std::size_t sample : {std::min(low, high), std::max(low, high)}) {
-      add((c.time(sample) - t0) / seconds_per_pixel, c.acceleration[sample]);
-      if (low == high) break;
-    }
-    k = next;
-  }
-  return path;
-}
+using AllSeries = std::array<MotionSeries, ways.size()>;
+using Curves = std::array<std::vector<double>, ways.size()>;
 
-std::string title(const MotionComponent& c) {
+std::string sheet_title(const MotionComponent& c) {
   std::string name = std::filesystem::path(c.file).filename().string();
   if (c.vertical) return name + ", up";
   if (c.azimuth) return fmt::format("{}, {}°", name, *c.azimuth);
-  return c.label.empty() ? name : name + ", " + c.label;
+  constexpr std::size_t longest_label = 60;
+  return c.label.empty() ? name : name + ", " + printable(c.label, longest_label);
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+// Half the height of a panel, for the curves without a drift; the others may leave it when they reach more than three times as far.
+double value_range(const Curves& curves) {
+  constexpr double far = 3.0, margin = 1.08, least = 1e-100;
+  double corrected = 0.0, all = 0.0;
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    all = std::max(all, largest(curves[w]));
+    const bool is_free = ways[w].baseline == Baseline::demean || ways[w].baseline == Baseline::linear;
+    if (is_free) corrected = std::max(corrected, largest(curves[w]));
+  }
+  const double range = all <= far * corrected ? all : corrected;
+  return range > least ? margin * range : 1.0;
+}
+
+// "at the end: none 0.01, demean 0, …"
+std::string end_values(const Curves& curves, const char* unit) {
+  std::string text = "at the end: ";
+  for (std::size_t w = ways.size(); w-- > 0;) {
+    const std::string_view name = ways[w].name;
+    const double end = curves[w].back();
+    const double shown = std::abs(end) < 1e-6 * largest(curves[w]) ? 0.0 : end;
+    text += fmt::format("{} {:.3g}{}", name.substr(0, name.find(':')), shown, w > 0 ? ", " : "");
+  }
+  return text + " " + unit;
+}
+
+std::string time_panel(ChartFrame frame, std::string_view title, const AllSeries& all, const Curves& curves,
+                       bool numbers) {
+  const double range = value_range(curves);
+  frame.y = {-range, range};
+  double all_range = 0.0;
+  for (const auto& curve : curves) all_range = std::max(all_range, largest(curve));
+  const char* cut = all_range > range ? "; drifts leave the picture" : "";
+  std::string svg = draw_frame(frame, fmt::format("{}{}", title, cut), numbers);
+  for (std::size_t w = 0; w < ways.size(); ++w)
+    svg += draw_curve(frame, all[w].time, curves[w], ways[w].color, ways[w].width);
+  return svg;
+}
+
+Curves curves_of(const AllSeries& all, std::vector<double> MotionSeries::*what) {
+  Curves curves;
+  for (std::size_t w = 0; w < ways.size(); ++w) curves[w] = all[w].*what;
+  return curves;
+}
+
+std::string mark_peak(const ChartFrame& frame, const MotionComponent& c, double range) {
+  const std::size_t at = c.peak_index();
+  ChartFrame scaled = frame;
+  scaled.y = {-range, range};
+  return fmt::format(
+             "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"none\" stroke=\"#c0392b\" "
+             "stroke-width=\"1.5\"/>\n",
+             scaled.at_x(c.time(at)), scaled.at_y(c.acceleration[at])) +
+         draw_text(frame.left + frame.width, frame.top - 7.0, "end",
+                   fmt::format("{:.3g} m/s² = {:.3g} g at {:.2f} s", c.acceleration[at],
+                               c.acceleration[at] / standard_gravity, c.time(at)),
+                   "fill=\"#c0392b\"");
+}
+
+std::string time_panels(const MotionComponent& c, const AllSeries& all, double top) {
+  ChartFrame frame{left_edge, top + title_height, left_width, panel_height, {c.time(0), c.end()}, {}};
+  const Curves accelerations = curves_of(all, &MotionSeries::acceleration);
+  std::string svg = time_panel(frame, "acceleration, m/s²", all, accelerations, false);
+  svg += mark_peak(frame, c, value_range(accelerations));
+  frame.top += panel_height + panel_gap;
+  const Curves velocities = curves_of(all, &MotionSeries::velocity);
+  svg += time_panel(frame, "velocity, m/s", all, velocities, false);
+  svg += draw_text(frame.left + frame.width, frame.top - 7.0, "end", end_values(velocities, "m/s"));
+  frame.top += panel_height + panel_gap;
+  const Curves displacements = curves_of(all, &MotionSeries::displacement);
+  svg += time_panel(frame, "displacement, m", all, displacements, true);
+  svg += draw_text(frame.left + frame.width, frame.top - 7.0, "end", end_values(displacements, "m"));
+  return svg +
+         draw_text(frame.left + frame.width / 2.0, frame.top + panel_height + 32.0, "middle", "time, s");
+}
+
+std::string spectrum_panel(const AllSeries& all, double top) {
+  std::vector<double> periods;
+  for (int k = 0; k <= spectrum_periods; ++k)
+    periods.push_back(shortest_period *
+                      std::pow(longest_period / shortest_period, static_cast<double>(k) / spectrum_periods));
+  Curves spectra;
+  double most = 0.0;
+  for (std::size_t w = 0; w < ways.size(); ++w) {
+    spectra[w] = response_spectrum(all[w], periods, spectrum_damping);
+    most = std::max(most, largest(spectra[w]));
+  }
+  const ChartFrame frame{right_edge,
+                         top + title_height,
+                         right_width,
+                         spectrum_height,
+                         {shortest_period, longest_period, true},
+                         {0.0, most > 0.0 ? 1.08 * most : 1.0}};
+  std::string svg = draw_frame(frame, "response spectrum of 5 % damping, m/s²", true);
+  for (std::size_t w = 0; w < ways.size(); ++w)
+    svg += draw_curve(frame, periods, spectra[w], ways[w].color, ways[w].width + 0.3);
+  return svg +
+         draw_text(frame.left + frame.width / 2.0, frame.top + frame.height + 32.0, "middle", "period, s");
+}
+
+std::string build_up_panel(const MotionComponent& c, const AllSeries& all, double top) {
+  const Curves arias = curves_of(all, &MotionSeries::arias);
+  double most = 0.0;
+  for (const auto& curve : arias) most = std::max(most, curve.back());
+  const double bottom = top + title_height + 3.0 * panel_height + 2.0 * panel_gap;
+  const ChartFrame frame{right_edge,      bottom - build_up_height, right_width,
+                         build_up_height, {c.time(0), c.end()},     {0.0, most > 0.0 ? 1.08 * most : 1.0}};
+  std::string svg = draw_frame(frame, "build-up of the Arias intensity, m/s", true);
+  for (std::size_t w = 0; w < ways.size(); ++w)
+    svg += draw_curve(frame, all[w].time, arias[w], ways[w].color, ways[w].width + 0.3);
+  const MotionMeasures m = measure(c);
+  svg +=
+      draw_text(frame.left + frame.width, frame.top - 7.0, "end",
+                fmt::format("{:.3g} m/s, 5 to 95 % in {:.3g} s", m.arias_intensity, m.significant_duration));
+  return svg + draw_text(frame.left + frame.width / 2.0, bottom + 32.0, "middle", "time, s");
+}
+
+std::string draw_sheet(const MotionComponent& c, double top) {
+  const MotionMeasures m = measure(c);
+  std::string svg =
+      draw_text(left_edge, top + 16.0, "start", sheet_title(c), "font-weight=\"bold\" font-size=\"15\"");
+  const std::string jumps = jumps_text(end_jumps(c));
+  svg += draw_text(
+      left_edge, top + 37.0, "start",
+      fmt::format("{}; {} samples{}; PGA {:.3g} g, PGV {:.3g} m/s, Arias intensity {:.3g} m/s", c.format,
+                  c.acceleration.size(), c.times.empty() ? fmt::format(", dt {:.6g} s", c.dt) : "",
+                  std::abs(m.peak) / standard_gravity, m.peak_velocity, m.arias_intensity));
+  if (!jumps.empty())
+    svg += draw_text(right_edge + right_width, top + 16.0, "end", "It " + jumps + ".", "fill=\"#c0392b\"");
+  if (!(c.end() > c.time(0)) || !std::isfinite(c.end()))
+    return svg + draw_text(left_edge, top + title_height, "start", "Nothing can be drawn over time, s");
+  AllSeries all;
+  for (std::size_t w = 0; w < ways.size(); ++w) all[w] = motion_series(c, ways[w].baseline);
+  return svg + time_panels(c, all, top) + spectrum_panel(all, top) + build_up_panel(c, all, top);
+}
+
+std::string draw_legend() {
+  std::string svg = draw_text(left_edge, 22.0, "start", "baseline:", "fill=\"#333\"");
+  double x = left_edge + 70.0;
+  for (std::size_t w = ways.size(); w-- > 0;) {
+    svg += fmt::format("<path d=\"M{:.1f},18H{:.1f}\" stroke=\"{}\" stroke-width=\"2.5\"/>\n", x, x + 26.0,
+                       ways[w].color);
+    svg += draw_text(x + 33.0, 22.0, "start", ways[w].name);
+    x += w == recorded ? 180.0 : 110.0;
+  }
+  return svg;
 }
 
 }  // namespace
 
 std::string plot_motion_svg(const std::vector<MotionComponent>& components) {
-  double t0 = HUGE_VAL, t1 = -HUGE_VAL, peak = 0.0;
-  for (const MotionComponent& c : components) {
-    t0 = std::min(t0, c.time(0));
-    t1 = std::max(t1, c.end());
-    peak = std::max(peak, std::abs(c.acceleration[c.peak_index()]));
-  }
-  if (components.empty() || !(t1 > t0)) t0 = 0.0, t1 = 1.0;
-  if (!(peak > 1e-100)) peak = 1.0;
-  const double value_step = tick_step(2.0 * peak, 5), time_step = tick_step(t1 - t0, 10);
-  const double range = 1.08 * peak;
-  const double seconds_per_pixel = (t1 - t0) / plot_width, pixels_per_unit = panel_height / (2.0 * range);
-  const auto count = static_cast<double>(components.size());
-  const double height = top + count * panel_height + std::max(0.0, count - 1.0) * panel_gap + bottom;
-
+  const double height = legend_height + sheet_height * static_cast<double>(components.size());
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-      width, height);
-  double panel = top;
-  for (const MotionComponent& c : components) {
-    const double zero = panel + panel_height / 2.0;
-    svg += fmt::format("<text x=\"{}\" y=\"{}\" font-weight=\"bold\">{}</text>\n", left, panel - 7.0,
-                       xml_text(title(c)));
-    for (const double t : ticks(t0, t1, time_step)) {
-      const double x = left + (t - t0) / seconds_per_pixel;
-      svg += fmt::format("<path d=\"M{0:.1f},{1}V{2}\" stroke=\"#ddd\"/>\n", x, panel, panel + panel_height);
-    }
-    for (const double a : ticks(-range, range, value_step)) {
-      const double y = zero - a * pixels_per_unit;
-      svg += fmt::format("<path d=\"M{},{:.1f}H{}\" stroke=\"{}\"/>\n", left, y, width - right,
-                         a == 0.0 ? "#888" : "#ddd");
-      svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:.6g}</text>\n", left - 6.0,
-                         y + 4.0, a);
-    }
-    svg += fmt::format(
-        "<text transform=\"translate(16,{}) rotate(-90)\" text-anchor=\"middle\">m/s²</text>\n", zero);
-    svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#14507d\" stroke-width=\"0.8\"/>\n",
-                       outline(c, t0, seconds_per_pixel, zero, pixels_per_unit));
-    const std::size_t at = c.peak_index();
-    const double x = left + (c.time(at) - t0) / seconds_per_pixel,
-                 y = zero - c.acceleration[at] * pixels_per_unit;
-    svg += fmt::format(
-        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"none\" stroke=\"#c0392b\" "
-        "stroke-width=\"1.5\"/>\n",
-        x, y);
-    svg += fmt::format(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#c0392b\">{:.3g} m/s² = {:.3g} g at {:.2f} "
-        "s</text>\n",
-        width - right, panel - 7.0, c.acceleration[at], c.acceleration[at] / standard_gravity, c.time(at));
-    panel += panel_height + panel_gap;
+      page_width, height);
+  svg += draw_legend();
+  double top = legend_height;
+  for (const MotionComponent& component : components) {
+    svg += draw_sheet(component, top);
+    top += sheet_height;
   }
-  const double axis = height - bottom + 16.0;
-  for (const double t : ticks(t0, t1, time_step)) {
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:.6g}</text>\n",
-                       left + (t - t0) / seconds_per_pixel, axis, t);
-  }
-  svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">time, s</text>\n</svg>\n",
-                     left + plot_width / 2.0, axis + 18.0);
-  return svg;
+  return svg + "</svg>\n";
 }
 
 }  // namespace keyblock::loading

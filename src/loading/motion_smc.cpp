@@ -1,25 +1,25 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "loading/motion_file.h"
-#include "loading/motion_text.h"
+#include "loading/motion_formats.h"
 
 // USGS strong-motion CD format: https://escweb.wr.usgs.gov/nsmp-data/smcfmt.html
 namespace keyblock::loading {
 namespace {
 
-constexpr std::size_t event_line = 3, text_lines = 11, integer_lines = 6, real_lines = 10;
+constexpr std::size_t smc_event_line = 3, text_lines = 11, integer_lines = 6, real_lines = 10;
 constexpr std::size_t integer_count = 48, real_count = 50;
 constexpr std::size_t integer_width = 10, real_width = 15, sample_width = 10;
 
 // Positions in the integer and real headers; the first of each is the value that stands for "unknown".
 constexpr std::size_t vertical_orientation = 12, horizontal_orientation = 13, comment_count = 15,
                       point_count = 16;
-constexpr std::size_t sampling_rate = 1, largest = 29, smallest = 31;
+constexpr std::size_t sampling_rate = 1, largest_sample = 29, smallest_sample = 31;
 
 // From the words of the text header, or else from the integers: 0 is up, 90 horizontal, 180 down.
-MotionDirection find_direction(const MotionComponent& component, const std::vector<double>& integers) {
+MotionDirection find_smc_direction(const MotionComponent& component, const std::vector<double>& integers) {
   const MotionDirection named = parse_direction(component.label);
   if (named.vertical || named.azimuth) return named;
   if (integers[vertical_orientation] == 0.0) return parse_direction("up");
@@ -28,18 +28,12 @@ MotionDirection find_direction(const MotionComponent& component, const std::vect
   return parse_direction(fmt::format("{}", integers[horizontal_orientation]));
 }
 
-void check_peak(MotionComponent& component, const std::vector<double>& reals) {
-  const double unknown = reals[0];
-  if (reals[largest] == unknown || reals[smallest] == unknown) return;
-  const double stated = std::max(std::abs(reals[largest]), std::abs(reals[smallest]));
-  const double read = std::abs(component.acceleration[component.peak_index()]) / component.file_unit_in_si;
-  if (std::abs(read - stated) > 0.01 * stated) {
-    component.notes.push_back(
-        fmt::format("the header states a peak of {} cm/s2, the samples reach {}", stated, read));
-  }
+void check_smc_peak(MotionComponent& component, const std::vector<double>& reals) {
+  const double none = reals[0];
+  if (reals[largest_sample] == none || reals[smallest_sample] == none) return;
+  compare_peak(component, std::max(std::abs(reals[largest_sample]), std::abs(reals[smallest_sample])) *
+                              component.file_unit_in_si);
 }
-
-}  // namespace
 
 bool matches_smc(const MotionText& text) {
   const std::string_view first = text.line(0);
@@ -47,7 +41,7 @@ bool matches_smc(const MotionText& text) {
   return text.line(1).starts_with('*') && first.find_first_of("0123456789.,", 2) == std::string_view::npos;
 }
 
-std::vector<MotionComponent> read_smc(const MotionText& text) {
+std::vector<MotionComponent> read_smc(const MotionText& text, const MotionReading& /*reading*/) {
   if (lower(text.line(0)).find("accelerogram") == std::string::npos) {
     text.fail(0, "an accelerogram (SMC types 1 and 2), not velocity, displacement or spectra");
   }
@@ -66,11 +60,9 @@ std::vector<MotionComponent> read_smc(const MotionText& text) {
               "the sampling rate in samples per second, 1e-6 to 1e9",
               "unevenly digitized records are not supported");
   }
-  MotionComponent component;
-  component.file = text.file();
-  component.format = "USGS SMC";
-  component.event = squeeze(text.line(event_line));
-  for (std::size_t k = event_line + 1; k < text_lines; ++k) {
+  MotionComponent component = make_component(text, smc_format.name);
+  component.event = squeeze(text.line(smc_event_line));
+  for (std::size_t k = smc_event_line + 1; k < text_lines; ++k) {
     const std::string_view line = text.line(k);
     const std::size_t station = lower(line).find("station ="), direction = lower(line).find("component=");
     if (station < direction) component.station = squeeze(line.substr(station + 9, direction - station - 9));
@@ -80,10 +72,14 @@ std::vector<MotionComponent> read_smc(const MotionText& text) {
   const std::size_t data = real_start + real_lines + *comments;
   std::size_t next = 0;
   set_samples(component, text.numbers(data, *points, sample_width, "samples", &next), {"cm/s2", 0.01},
-              find_direction(component, integers));
+              find_smc_direction(component, integers));
   if (next < text.size()) text.fail(next, fmt::format("the end of the file after {} samples", *points));
-  check_peak(component, reals);
+  check_smc_peak(component, reals);
   return {std::move(component)};
 }
+
+}  // namespace
+
+const MotionFormat smc_format{"USGS SMC", matches_smc, read_smc};
 
 }  // namespace keyblock::loading

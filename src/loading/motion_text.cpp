@@ -11,19 +11,12 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "loading/motion_file.h"
 
 namespace keyblock::loading {
 namespace {
 
 bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
-}
-
-std::string quoted(std::string_view text) {
-  constexpr std::size_t longest = 40;
-  text = trim(text);
-  return text.empty() ? std::string("a blank field") : '"' + printable(text, longest) + '"';
 }
 
 // Where the number that starts at `begin` ends, for fields without a fixed width.
@@ -39,14 +32,32 @@ std::size_t free_field_end(std::string_view line, std::size_t begin) {
   return end;
 }
 
+// Bytes of Latin-1 as UTF-8.
+std::string from_latin_1(std::string_view bytes) {
+  std::string text;
+  text.reserve(bytes.size() + bytes.size() / 8);
+  for (const char c : bytes) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x80U) {
+      text += c;
+    } else {
+      text += static_cast<char>(0xC0U | (code >> 6U));
+      text += static_cast<char>(0x80U | (code & 0x3FU));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 MotionText::MotionText(std::string file, std::string content)
     : file_(std::move(file)), content_(std::move(content)) {
+  if (find_invalid_utf8(content_) != std::string_view::npos) content_ = from_latin_1(content_);
   std::string_view all = content_;
   if (all.starts_with("\xEF\xBB\xBF")) all.remove_prefix(3);
+  const char line_end = all.find('\n') == std::string_view::npos ? '\r' : '\n';
   for (std::size_t begin = 0; begin < all.size();) {
-    const std::size_t end = std::min(all.find('\n', begin), all.size());
+    const std::size_t end = std::min(all.find(line_end, begin), all.size());
     std::string_view text = all.substr(begin, end - begin);
     while (!text.empty() && (is_blank(text.back()) || text.back() == '\x1a')) text.remove_suffix(1);
     lines_.push_back(text);
@@ -67,6 +78,31 @@ std::size_t MotionText::find(std::string_view text, std::size_t from) const {
   return lines_.size();
 }
 
+void MotionText::add_numbers(std::size_t line, std::size_t count, std::size_t width, const std::string& what,
+                             std::vector<double>& values) const {
+  const std::string_view row = lines_[line];
+  const bool free = width == 0 || row.find('\t') != std::string_view::npos;
+  for (std::size_t begin = 0; begin < row.size();) {
+    std::size_t end = begin + width;
+    if (free) {
+      while (begin < row.size() && (is_blank(row[begin]) || row[begin] == ',')) ++begin;
+      if (begin == row.size()) break;
+      end = free_field_end(row, begin);
+    }
+    const std::string_view field = row.substr(begin, end - begin);
+    if (values.size() == count) {
+      fail(line, begin + 1, quoted_text(field), fmt::format("the end of the line after {} {}", count, what));
+    }
+    const auto value = parse_number(field);
+    if (!value) {
+      fail(line, begin + 1, quoted_text(field),
+           fmt::format("a finite number ({} {} read so far)", values.size(), what));
+    }
+    values.push_back(*value);
+    begin = end;
+  }
+}
+
 std::vector<double> MotionText::numbers(std::size_t first, std::size_t count, std::size_t width,
                                         const std::string& what, std::size_t* next_line) const {
   std::vector<double> values;
@@ -78,28 +114,36 @@ std::vector<double> MotionText::numbers(std::size_t first, std::size_t count, st
            fmt::format("the end of the file after {} {}", values.size(), what),
            fmt::format("{} {}", count, what), "the file may have been cut short");
     }
-    const std::string_view row = lines_[k];
-    for (std::size_t begin = 0; begin < row.size();) {
-      std::size_t end = begin + width;
-      if (width == 0) {
-        while (begin < row.size() && (is_blank(row[begin]) || row[begin] == ',')) ++begin;
-        if (begin == row.size()) break;
-        end = free_field_end(row, begin);
-      }
-      const std::string_view field = row.substr(begin, end - begin);
-      if (values.size() == count) {
-        fail(k, begin + 1, quoted(field), fmt::format("the end of the line after {} {}", count, what));
-      }
-      const auto value = parse_number(field);
-      if (!value) {
-        fail(k, begin + 1, quoted(field),
-             fmt::format("a finite number ({} of {} {} read so far)", values.size(), count, what));
-      }
-      values.push_back(*value);
-      begin = end;
-    }
+    add_numbers(k, count, width, what, values);
   }
+  if (k == lines_.size() && count > 1) check_last_number(k - 1);
   if (next_line != nullptr) *next_line = k;
+  return values;
+}
+
+// Where the line end is missing, and the last number has fewer decimals than the one before it, the rest of the number is missing, too.
+void MotionText::check_last_number(std::size_t line) const {
+  if (content_.ends_with('\n') || content_.ends_with('\r')) return;
+  const auto decimals = [](std::string_view text) {
+    const std::size_t point = text.rfind('.');
+    return point == std::string_view::npos ? 0 : text.size() - point;
+  };
+  const std::string_view row = lines_[line];
+  const std::size_t begin = row.find_last_of(" \t,") + 1;
+  std::string_view before = trim(row.substr(0, begin));
+  if (before.empty() && line > 0) before = lines_[line - 1];
+  before = before.substr(0, before.find_last_not_of(" \t,\r") + 1);
+  before = before.substr(before.find_last_of(" \t,") + 1);
+  if (decimals(row.substr(begin)) < decimals(before))
+    fail(line, begin + 1, quoted_text(row.substr(begin)), "as many decimals as in the number before it",
+         "the file may have been cut short");
+}
+
+std::vector<double> MotionText::numbers_to_end(std::size_t first, bool (*skipped)(std::string_view)) const {
+  std::vector<double> values;
+  for (std::size_t k = first; k < lines_.size(); ++k) {
+    if (!skipped(lines_[k])) add_numbers(k, content_.size(), 0, "samples", values);
+  }
   return values;
 }
 
@@ -120,8 +164,23 @@ void MotionText::fail(std::size_t line, std::size_t column, std::string found, s
 }
 
 void MotionText::fail(std::size_t line, std::string expected) const {
-  const std::string found = line < lines_.size() ? quoted(lines_[line]) : "the end of the file";
+  const std::string found = line < lines_.size() ? quoted_text(lines_[line]) : "the end of the file";
   fail(line < lines_.size() ? line : lines_.size(), 1, found, std::move(expected));
+}
+
+void MotionText::refuse(std::string found, std::string expected, std::string hint) const {
+  Diagnostic diagnostic;
+  diagnostic.where.file = file_;
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  diagnostic.hint = std::move(hint);
+  throw InputError(std::move(diagnostic));
+}
+
+std::string quoted_text(std::string_view text) {
+  constexpr std::size_t longest = 40;
+  text = trim(text);
+  return text.empty() ? std::string("a blank field") : '"' + printable(text, longest) + '"';
 }
 
 std::string_view trim(std::string_view text) {
@@ -179,60 +238,17 @@ bool is_time_step(std::optional<double> seconds) {
   return seconds && *seconds >= shortest && *seconds <= longest;
 }
 
-std::optional<AccelerationUnit> acceleration_unit(std::string_view word) {
-  std::string unit = lower(word);
-  std::erase_if(unit, [](char c) { return is_blank(c) || c == '^' || c == '*'; });
-  const std::pair<const char*, AccelerationUnit> known[] = {
-      {"g", {"g", standard_gravity}}, {"cm/s2", {"cm/s2", 0.01}}, {"m/s2", {"m/s2", 1.0}}};
-  if (unit == "gal" || unit == "gals" || unit == "cm/s/s" || unit == "cm/sec/sec" || unit == "cm/sec2" ||
-      unit == "cm/s²") {
-    unit = "cm/s2";
-  } else if (unit == "m/s/s" || unit == "m/sec/sec" || unit == "m/sec2" || unit == "m/s²") {
-    unit = "m/s2";
-  } else if (unit == "g's" || unit == "gs") {
-    unit = "g";
-  }
-  for (const auto& [name, value] : known) {
-    if (unit == name) return value;
-  }
-  return {};
-}
-
-MotionDirection parse_direction(std::string_view words) {
-  MotionDirection direction;
-  const std::string text = lower(trim(words));
-  std::string_view all = text;
-  if (all.ends_with("deg")) all = trim(all.substr(0, all.size() - 3));
-  const auto any_of = [&](std::initializer_list<std::string_view> known) {
-    return std::find(known.begin(), known.end(), all) != known.end();
-  };
-  direction.downwards = any_of({"down", "dwn", "dn"});
-  direction.vertical = direction.downwards || any_of({"up", "ver", "vert", "vertical", "v", "z"});
-  if (const auto degrees = parse_number(all); degrees && *degrees >= 0.0 && *degrees <= 360.0) {
-    direction.azimuth = *degrees;
-  } else if (all.size() >= 3 && (all.front() == 'n' || all.front() == 's') &&
-             (all.back() == 'e' || all.back() == 'w')) {
-    // A quadrant bearing: N21E is 21° east of north.
-    const auto bearing = parse_number(all.substr(1, all.size() - 2));
-    if (bearing && *bearing >= 0.0 && *bearing <= 90.0) {
-      const double eastwards = all.back() == 'e' ? *bearing : -*bearing;
-      direction.azimuth = all.front() == 'n' ? std::fmod(360.0 + eastwards, 360.0) : 180.0 - eastwards;
-    }
-  }
-  return direction;
-}
-
-void set_samples(MotionComponent& component, std::vector<double> samples, const AccelerationUnit& unit,
-                 const MotionDirection& direction) {
-  component.azimuth = direction.azimuth;
-  component.vertical = direction.vertical;
-  if (direction.downwards)
-    component.notes.push_back("recorded positive downwards; turned to positive upwards");
-  const double factor = direction.downwards ? -unit.in_si : unit.in_si;
-  for (double& a : samples) a *= factor;
-  component.acceleration = std::move(samples);
-  component.file_unit = unit.name;
-  component.file_unit_in_si = unit.in_si;
+std::optional<std::size_t> column_width(std::string_view text) {
+  const std::size_t open = text.rfind('(');
+  if (open == std::string_view::npos) return {};
+  const std::size_t letter = text.find_first_of("FEGIfegi", open);
+  if (letter == std::string_view::npos) return {};
+  const std::string_view digits =
+      text.substr(letter + 1, text.find_first_not_of("0123456789", letter + 1) - letter - 1);
+  constexpr double widest = 100.0;
+  const auto width = parse_number(digits);
+  if (!width || !(*width >= 1.0 && *width <= widest)) return {};
+  return static_cast<std::size_t>(*width);
 }
 
 }  // namespace keyblock::loading

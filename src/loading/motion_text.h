@@ -7,10 +7,9 @@
 
 namespace keyblock::loading {
 
-struct MotionComponent;
-
 /// The lines of a strong-motion file, with what its readers share. Lines count from 0 here and from 1 in
-/// messages. A byte order mark at the beginning is left out.
+/// messages. A byte order mark at the beginning is left out; lines end with LF, CR LF or CR. Text that is no UTF-8 is taken for
+/// Latin-1.
 class MotionText {
  public:
   MotionText(std::string file, std::string content);
@@ -24,12 +23,16 @@ class MotionText {
   /// First line ≥ `from` that contains `text` in any case; size() when there is none.
   [[nodiscard]] std::size_t find(std::string_view text, std::size_t from = 0) const;
 
-  /// Reads `count` numbers from line `first` on, in columns of `width` characters; with width 0 numbers end at a
-  /// blank, a comma, or where a sign that belongs to no exponent begins the next. `what` they are is for the message.
+  /// Reads `count` numbers from line `first` on, in columns of `width` characters; with width 0, and in lines with tabs, numbers end
+  /// at a blank, a comma, or where a sign that belongs to no exponent begins the next. `what` they are is for the message.
   /// `next_line` receives the line after the last one read. Throws InputError for anything that is no finite
-  /// number, when the file ends too early, and when the last line read has more numbers.
+  /// number, when the file ends too early or within the last number, and when the last line read has more numbers.
   [[nodiscard]] std::vector<double> numbers(std::size_t first, std::size_t count, std::size_t width,
                                             const std::string& what, std::size_t* next_line = nullptr) const;
+
+  /// All numbers from line `first` to the end, as with width 0. Lines for which `skipped` holds are left out.
+  [[nodiscard]] std::vector<double> numbers_to_end(std::size_t first,
+                                                   bool (*skipped)(std::string_view)) const;
 
   /// `stated` as a number of lines or numbers that the file can hold: whole, from `least` to the length of the file in
   /// characters. Nothing else is a count.
@@ -38,8 +41,17 @@ class MotionText {
   [[noreturn]] void fail(std::size_t line, std::size_t column, std::string found, std::string expected,
                          std::string hint = {}) const;
   [[noreturn]] void fail(std::size_t line, std::string expected) const;
+  /// Of the file as a whole.
+  [[noreturn]] void refuse(std::string found, std::string expected, std::string hint = {}) const;
 
  private:
+  /// Adds the numbers of a line to `values` until there are `count`; `what` and `count` are for messages.
+  void add_numbers(std::size_t line, std::size_t count, std::size_t width, const std::string& what,
+                   std::vector<double>& values) const;
+
+  /// Throws InputError when the file ends within the last of `values`, in its line `line`.
+  void check_last_number(std::size_t line) const;
+
   std::string file_;
   std::string content_;
   std::vector<std::string_view> lines_;
@@ -54,41 +66,15 @@ std::optional<double> parse_number(std::string_view text);
 /// The number that follows `key` in `text` (after any of " =:("), e.g. number_after("NPTS= 12", "NPTS").
 std::optional<double> number_after(std::string_view text, std::string_view key);
 
+/// The width of a column in the last Fortran format of `text`: 10 of (8f10.6), 8 of (10I8), 13 of (6F13.6); absent when it has none.
+std::optional<std::size_t> column_width(std::string_view text);
+
+/// Text for a message: in quotes, cut when it is long.
+std::string quoted_text(std::string_view text);
+
 /// Whether a step between samples is one: neither so short nor so long that times lose their meaning.
 bool is_time_step(std::optional<double> seconds);
 /// What is expected of one, in words.
 inline constexpr const char* time_step_text = "the time step, 1e-9 to 1e6 s";
-
-/// m/s² per unit for the spellings in use (g, cm/s2, cm/sec/sec, gal, m/s2 …); absent for any other word.
-struct AccelerationUnit {
-  std::string name;  ///< "g", "cm/s2" or "m/s2"
-  double in_si = 1.0;
-};
-std::optional<AccelerationUnit> acceleration_unit(std::string_view word);
-
-/// The direction in which a component is positive.
-struct MotionDirection {
-  std::optional<double> azimuth;  ///< degrees from north, clockwise
-  bool vertical = false;
-  bool downwards = false;  ///< vertical and positive downwards
-};
-/// From words as files have them: "360", "90 DEG", "N21E", "up", "DWN"; nothing is set for any others.
-MotionDirection parse_direction(std::string_view words);
-
-/// Stores samples given in `unit` and their direction, turned to positive upwards when positive downwards.
-void set_samples(MotionComponent& component, std::vector<double> samples, const AccelerationUnit& unit,
-                 const MotionDirection& direction);
-
-/// One reader per format. `matches_…` looks at the content; `read_…` may throw InputError.
-bool matches_smc(const MotionText& text);
-bool matches_at2(const MotionText& text);
-bool matches_csmip(const MotionText& text);
-bool matches_cosmos(const MotionText& text);
-bool matches_csv(const MotionText& text);
-std::vector<MotionComponent> read_smc(const MotionText& text);
-std::vector<MotionComponent> read_at2(const MotionText& text);
-std::vector<MotionComponent> read_csmip(const MotionText& text);
-std::vector<MotionComponent> read_cosmos(const MotionText& text);
-std::vector<MotionComponent> read_csv(const MotionText& text);
 
 }  // namespace keyblock::loading

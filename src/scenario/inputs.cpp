@@ -10,6 +10,7 @@
 #include "core/atomic_file.h"
 #include "core/hash.h"
 #include "loading/motion_file.h"
+#include "loading/motion_measures.h"
 #include "loading/projection.h"
 #include "rockmass/trace_map.h"
 #include "scenario/shaking_checks.h"
@@ -84,13 +85,24 @@ class MotionReader {
     options.section_azimuth = scenario_.section_azimuth.value_or(0.0);
     options.window = spec.window;
     options.baseline = spec.baseline;
-    return loading::project_motion(spec.name, components, options);
+    GroundMotion motion = loading::project_motion(spec.name, components, options);
+    if (spec.window) warn_of_jumps(spec, motion);
+    return motion;
+  }
+
+  void warn_of_jumps(const MotionSpec& spec, const GroundMotion& motion) {
+    const std::string jumps = loading::jumps_text(loading::end_jumps(motion));
+    if (!jumps.empty())
+      warnings_.push_back(fmt::format(
+          "{}.window: the motion {}; baseline = \"taper\" brings both ends to zero", spec.path, jumps));
   }
 
   // Components are added up, whether or not they are different ones.
   void warn_of_repetition(const MotionSpec& motion, const MotionComponentSpec& component) {
     for (const MotionComponentSpec* before = motion.components.data(); before != &component; ++before) {
-      if (before->file != component.file || before->channel.value_or(1) != component.channel.value_or(1))
+      if (before->file != component.file || before->channel.value_or(1) != component.channel.value_or(1) ||
+          before->reading.column != component.reading.column ||
+          before->along_section != component.along_section)
         continue;
       warnings_.push_back(
           fmt::format("{}: the same record as {}; both are added up", component.path, before->path));
@@ -98,7 +110,7 @@ class MotionReader {
   }
 
   MotionComponent channel(const MotionComponentSpec& spec) {
-    std::vector<MotionComponent> read = loading::read_motion_file(spec.file);
+    std::vector<MotionComponent> read = loading::read_motion_file(spec.file, spec.reading);
     const std::string key = spec.path + ".channel";
     const int count = static_cast<int>(read.size());
     if (!spec.channel && count > 1) {
@@ -119,6 +131,12 @@ class MotionReader {
   }
 
   ComponentDirection direction(const MotionComponentSpec& spec, const MotionComponent& component) {
+    if (spec.along_section) {
+      if (component.vertical)
+        warnings_.push_back(
+            fmt::format("{}: the file calls this component \"{}\"", spec.path, component.label));
+      return {false, scenario_.section_azimuth.value_or(0.0)};
+    }
     const std::string key = spec.path + ".azimuth";
     ComponentDirection along{spec.vertical, spec.azimuth.value_or(0.0)};
     if (!spec.vertical && !spec.azimuth) {

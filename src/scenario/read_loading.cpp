@@ -8,14 +8,8 @@
 namespace keyblock::scenario {
 namespace {
 
-using loading::Baseline;
 using loading::Load;
 using loading::Support;
-
-constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
-                                        {"demean", Baseline::demean},
-                                        {"linear", Baseline::linear},
-                                        {"taper", Baseline::taper}};
 
 const BlockSpec* find_block(const Scenario& scenario, const std::string& name) {
   const auto block = std::find_if(scenario.blocks.begin(), scenario.blocks.end(),
@@ -83,90 +77,6 @@ void read_in_situ(TableReader& t, Scenario& scenario) {
   if (in_situ.depth && scenario.gravity.y >= 0.0) {
     t.fail("depth", "a depth without gravity downwards",
            "gravity = [x, y] with y below 0, or a constant stress");
-  }
-}
-
-void read_component(TableReader& t, MotionComponentSpec& component) {
-  component.path = t.path();
-  t.file("file", component.file,
-         {.meaning = "Record: USGS SMC, PEER AT2, CSMIP or COSMOS V2, or two columns (time s, acceleration).",
-          .required = true});
-  t.integer("channel", component.channel,
-            {.meaning = "Which component of a file that holds several, counted from 1.",
-             .at_least = 1.0,
-             .fallback = "the only one"});
-  const Value* azimuth = t.find("azimuth");
-  constexpr std::string_view type = "number from 0 to 360, or \"up\"";
-  const Rule rule{
-      .meaning = "Direction in which the acceleration is positive: clockwise from north, or upwards.",
-      .unit = "°",
-      .at_least = 0.0,
-      .at_most = 360.0,
-      .fallback = "as the file says"};
-  if (azimuth != nullptr && azimuth->is_number()) {
-    t.number("azimuth", component.azimuth, rule);
-  } else if (const Value* found = t.any("azimuth", type, rule); found != nullptr) {
-    component.vertical = found->is(Value::Type::string) && found->text == "up";
-    if (!component.vertical) t.fail("azimuth", describe(*found), "a number from 0 to 360, or \"up\"");
-  }
-}
-
-// One direction of a motion: rows, or a sine.
-void read_direction(TableReader& t, std::string_view key, loading::AccelerationTable& rows,
-                    std::optional<loading::Sine>& sine, bool applies) {
-  Rule rule{.meaning =
-                "Acceleration of the base over time in this direction: rows `[[t, a], …]`, linear between "
-                "rows and zero outside, or a sine.",
-            .unit = "s, m/s²",
-            .applies = applies,
-            .condition = "no components"};
-  const Value* value = t.find(key);
-  if (!t.documenting() && (value == nullptr || !value->is(Value::Type::table))) {
-    if (t.time_rows(key, rows, true, rule) && rows.front().first < 0.0) {
-      t.fail(key, fmt::format("a first time of {}", rows.front().first), "times of at least 0");
-    }
-    return;
-  }
-  rule.group = "Sine";
-  rule.group_meaning = "a(t) = amplitude · sin(2π frequency t), for a number of cycles.";
-  t.table(key, rule, [&](TableReader& s) {
-    loading::Sine& read = sine.emplace();
-    s.number("amplitude", read.amplitude, {.meaning = "Amplitude.", .unit = "m/s²", .required = true});
-    s.number("frequency", read.frequency,
-             {.meaning = "Frequency.", .unit = "Hz", .required = true, .above = 0.0});
-    s.number("cycles", read.cycles,
-             {.meaning = "Number of cycles, whole or not.", .required = true, .above = 0.0});
-  });
-}
-
-void read_motion(TableReader& t, MotionSpec& motion) {
-  motion.path = t.path();
-  t.name("name", motion.name, "motion", {.meaning = "Name, for the stages that use it.", .required = true});
-  const bool record = t.find("components") != nullptr;
-  const bool documenting = t.documenting();
-  t.tables("components", motion.components,
-           {.meaning = "The components of a record. Horizontal ones are projected on the section: "
-                       "a_x = Σ a_i cos(azimuth_i − section azimuth).",
-            .condition = "neither x nor y"},
-           [](TableReader& c, MotionComponentSpec& component) { read_component(c, component); });
-  if (record && t.find("components")->items.empty())
-    t.fail("components", "an empty array", "at least one component");
-  t.interval("window", motion.window,
-             {.meaning = "Part of the record that is used.",
-              .unit = "s",
-              .fallback = "the whole record",
-              .applies = record || documenting,
-              .condition = "components"});
-  t.word("baseline", motion.baseline, baselines,
-         {.meaning =
-              "What is done to the window: nothing; its mean taken off; a straight line taken off so that "
-              "the ground ends at rest where it was; a cosine taper at both ends (5 % each).",
-          .applies = record || documenting,
-          .condition = "components"});
-  read_direction(t, "x", motion.x, motion.sine_x, !record || documenting);
-  read_direction(t, "y", motion.y, motion.sine_y, !record || documenting);
-  if (!record && t.find("x") == nullptr && t.find("y") == nullptr) {
-    t.missing("components", "components of a record, or x or y");
   }
 }
 
@@ -298,10 +208,10 @@ void read_loading(TableReader& root, Scenario& scenario) {
       {.meaning = "Stress before excavation. Without it the rock carries its own weight alone, and the "
                   "crown of an opening in cohesionless joints is marginal."},
       [&](TableReader& t) { read_in_situ(t, scenario); });
-  root.tables(
-      "motion", scenario.motions,
-      {.meaning = "A motion of the base: a record with its components, or acceleration given in x and y."},
-      [](TableReader& t, MotionSpec& motion) { read_motion(t, motion); });
+  root.tables("motion", scenario.motions,
+              {.meaning = "A motion of the base: a record with its components, or the acceleration in x and "
+                          "y: rows, a sine, or a file."},
+              [](TableReader& t, MotionSpec& motion) { read_motion(t, motion); });
   root.tables(
       "load", scenario.loads,
       {.meaning = "A force at a point of a block, or a traction along a straight stretch of its boundary. "

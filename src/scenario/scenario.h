@@ -105,13 +105,15 @@ struct InSituSpec {
 
 struct MotionComponentSpec {
   std::filesystem::path file;
-  std::optional<int> channel;     ///< component of a file that holds several, counted from 1
-  bool vertical = false;          ///< azimuth = "up"
+  std::optional<int> channel;  ///< component of a file that holds several, counted from 1
+  bool vertical = false;       ///< azimuth = "up", or the file of y
+  bool along_section = false;  ///< the file of x
+  loading::MotionReading reading;
   std::optional<double> azimuth;  ///< degrees; neither: as the file says
   std::string path;
 };
 
-/// A record projected on the section, or acceleration over time in x and y.
+/// A record projected on the section, or along its axes, or acceleration over time in x and y.
 struct MotionSpec {
   std::string name;
   std::vector<MotionComponentSpec> components;

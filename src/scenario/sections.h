@@ -18,6 +18,8 @@ void read_rock_mass(TableReader& root, Scenario& scenario);
 void read_shapes(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]].
 void read_loading(TableReader& root, Scenario& scenario);
+/// One [[motion]].
+void read_motion(TableReader& t, MotionSpec& motion);
 /// [time], [[stage]], [[history]], [damage], [output], [solver].
 void read_run(TableReader& root, Scenario& scenario);
 /// [study], after all that its keys name.

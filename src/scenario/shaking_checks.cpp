@@ -13,7 +13,6 @@ namespace keyblock::scenario {
 namespace {
 
 constexpr double least_steps = 20.0;  // of the time integration in a period that it has to follow
-constexpr double least_peak = 1e-4, most_peak = 3.0;  // g
 constexpr double chords = 0.02;  // that a period falls short by, as accelerations go straight between samples
 constexpr double rounding = 1e-6;  // of times in files
 
@@ -57,13 +56,14 @@ void warn_of_peak(const Stage& stage, const MotionSpec& spec, const GroundMotion
   const double duration = stage.duration.value_or(motion.duration()),
                peak = loading::measure(motion, stage.scale, duration).peak,
                in_g = peak / loading::standard_gravity;
-  if (in_g >= least_peak && in_g <= most_peak) return;
+  if (in_g >= loading::least_usual_peak && in_g <= loading::most_usual_peak) return;
   warnings.push_back(
       fmt::format("{}: the peak acceleration of {} is {:.4g} m/s2, {:.3g} g, with scale = {:.4g}; usual is "
                   "{} to {} g; {}",
-                  join_path("stage", stage.name), spec.path, peak, in_g, stage.scale, least_peak, most_peak,
-                  in_g > most_peak ? "is the record in cm/s2, and was read as m/s2 or g?"
-                                   : "is the record in g, and was read as m/s2 or cm/s2?"));
+                  join_path("stage", stage.name), spec.path, peak, in_g, stage.scale,
+                  loading::least_usual_peak, loading::most_usual_peak,
+                  in_g > loading::most_usual_peak ? "is the record in cm/s2, and was read as m/s2 or g?"
+                                                  : "is the record in g, and was read as m/s2 or cm/s2?"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 """The command line: help, exit codes, messages about wrong input."""
 
 import json
+import os
 import re
 import subprocess
 import unittest
@@ -155,6 +156,19 @@ class Motion(Scenario):
             self.keyblock("motion", "a.csv", "--plot", "-o", "mine.svg", *options)
         self.assertIn("time, s", (self.folder / "mine.svg").read_text())
         self.assertEqual(record.read_text(), text)
+
+    def test_reads_plain_numbers_as_it_is_told(self):
+        self.write("plain.txt", "a title\n0.1 0.2 -0.3\n0.0 0.1\n")
+        self.assertIn("skip, column, dt and unit", self.keyblock("motion", "plain.txt", expect=1).stderr)
+        text = self.keyblock("motion", "plain.txt", "--dt", "0.01", "--unit", "g", "--window", "0.01", "0.04").stdout
+        self.assertRegex(text, r"samples +4, dt 0\.01 s")
+        self.assertIn("-0.3 g", text)
+        self.assertIn("unit", self.keyblock("motion", "plain.txt", "--dt", "0.01", expect=1).stderr)
+
+    def test_neither_waits_for_pipes_nor_reads_devices(self):
+        os.mkfifo(self.folder / "pipe")
+        for name in ("pipe", "/dev/zero"):
+            self.assertIn("a device or pipe", self.keyblock("motion", name, expect=1).stderr)
 
     def test_names_every_file_that_is_no_record(self):
         error = self.keyblock("motion", "gone.smc", "incline.toml", expect=1).stderr

@@ -126,17 +126,28 @@ TEST(MotionDescription, NamesWhatAnEngineerAsks) {
   }
 }
 
-TEST(MotionPlot, IsAnSvgWithAPanelPerComponent) {
+TEST(MotionPlot, IsAnSvgWithASheetPerComponent) {
   MotionComponent up = sine_record(1.0, 1.0, 5, 100), east = sine_record(3.0, 2.0, 10, 100);
   up.vertical = true;
   east.azimuth = 90.0;
+  east.acceleration.back() = 1.5;
   const std::string svg = plot_motion_svg({up, east});
   EXPECT_THAT(svg, testing::StartsWith("<svg xmlns"));
-  EXPECT_THAT(svg, HasSubstr("&lt;sine&gt;.csv, up"));
-  EXPECT_THAT(svg, HasSubstr("&lt;sine&gt;.csv, 90°"));
-  EXPECT_THAT(svg, HasSubstr("0.306 g"));
-  EXPECT_THAT(svg, testing::EndsWith("</svg>\n"));
+  for (const char* words : {"&lt;sine&gt;.csv, up", "&lt;sine&gt;.csv, 90°", "0.306 g", "acceleration, m/s²",
+                            "velocity, m/s", "displacement, m", "response spectrum of 5 % damping",
+                            "build-up of the Arias intensity", "none: as recorded", "demean", "linear",
+                            "taper", "It ends with a jump of 1.5 m/s2, 50 % of its peak."}) {
+    EXPECT_THAT(svg, HasSubstr(words));
+  }
+  EXPECT_THAT(svg, testing::EndsWith("time, s</text>\n</svg>\n"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+// What drifts out of the picture is cut off, and told.
+TEST(MotionPlot, ADriftDoesNotFlattenTheRest) {
+  MotionComponent drifting = sine_record(1.0, 1.0, 20, 100);
+  for (double& a : drifting.acceleration) a += 0.5;
+  EXPECT_THAT(plot_motion_svg({drifting}), HasSubstr("velocity, m/s; drifts leave the picture"));
 }
 
 }  // namespace

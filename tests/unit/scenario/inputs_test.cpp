@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "scenario_text.h"
@@ -50,6 +52,79 @@ TEST(Motions, OtherDirectionsThanTheFileSaysAreWarnedOf) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_THAT(warnings[0],
               HasSubstr("motion.shafter-1989.components[0].azimuth is 300°; the file says 360°"));
+}
+
+// A scenario of two blocks with a motion of these keys, and a file for it.
+std::vector<loading::GroundMotion> motions_of(const std::string& keys, std::vector<std::string>& warnings,
+                                              const std::string& content = "0 1 10\n0.5 2 20\n1.0 3 30\n") {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "motion.txt";
+  std::ofstream(file) << content;
+  std::string text = keys;
+  for (std::size_t at = text.find("FILE"); at != std::string::npos; at = text.find("FILE"))
+    text.replace(at, 4, "file = '" + file.string() + "'");
+  return read_motions(parse(two_blocks + "[[motion]]\nname = \"m\"\n" + text), warnings);
+}
+
+TEST(Motions, FilesAlongTheAxesNeedNoAzimuth) {
+  std::vector<std::string> warnings;
+  const auto both = motions_of(
+      "x = { FILE, column = 2, unit = \"m/s2\" }\ny = { FILE, column = 3, unit = \"cm/s2\" }\n", warnings);
+  EXPECT_THAT(warnings, IsEmpty());
+  EXPECT_EQ(both.at(0).duration(), 1.0);
+  EXPECT_EQ(both[0].at(0.5), (Vec2{2.0, 0.2}));
+  const auto stepped =
+      motions_of("x = { FILE, skip = 1, dt = 0.1, unit = \"g\" }\nwindow = [0.1, 0.5]\n", warnings);
+  EXPECT_NEAR(stepped.at(0).duration(), 0.4, 1e-12);
+  EXPECT_EQ(stepped[0].at(0.0).y, 0.0);
+  EXPECT_EQ(stepped[0].at(0.0).x, 2.0 * loading::standard_gravity);
+  const auto listed =
+      motions_of("components = [{ FILE, column = 2, unit = \"gal\", azimuth = \"up\" }]\n", warnings);
+  EXPECT_EQ(listed.at(0).at(1.0), (Vec2{0.0, 0.03}));
+}
+
+TEST(Motions, AFileInXWithOtherThingsIsRefused) {
+  std::vector<std::string> warnings;
+  const std::pair<const char*, const char*> wrong[] = {
+      {"x = { FILE, column = 2 }\n", "the unit of the samples"},
+      {"x = { FILE, unit = \"furlongs\" }\n", "a unit of acceleration"},
+      {"x = { FILE, column = 2, channel = 1, unit = \"g\" }\n", "none of skip, column and dt"},
+      {"x = { FILE, amplitude = 1.0, unit = \"g\" }\n", "no file"},
+      {"x = { FILE, column = 2, unit = \"g\" }\ny = [[0, 1], [1, 1]]\n", "a file in both directions"},
+      {"x = { amplitude = 1.0, frequency = 1.0, cycles = 1.0, dt = 0.1 }\n", "a file"},
+      {"x = { FILE, column = 2, unit = \"g\" }\ncomponents = [{ FILE, azimuth = \"up\" }]\n",
+       "no components"}};
+  for (const auto& [keys, expected] : wrong) {
+    try {
+      motions_of(keys, warnings);
+      ADD_FAILURE() << keys;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(expected)) << keys;
+    }
+  }
+}
+
+TEST(Motions, AVerticalRecordAlongXIsWarnedOf) {
+  std::vector<std::string> warnings;
+  motions_of("x = { FILE }\n", warnings, "time (s),up (g)\n0,1\n1,2\n");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("motion.m.x: the file calls this component \"up (g)\""));
+}
+
+TEST(Motions, AWindowThatStartsOrEndsWithAJumpIsTold) {
+  const std::string record = "0 0\n1 10\n2 5\n3 -20\n4 0.5\n5 0\n";
+  const std::string x = "x = { FILE, column = 2, unit = \"m/s2\" }\n";
+  std::vector<std::string> warnings;
+  motions_of(x, warnings, record);
+  motions_of(x + "window = [0, 4]\n", warnings, record);
+  EXPECT_THAT(warnings, IsEmpty());
+  motions_of(x + "window = [1, 4]\n", warnings, record);
+  motions_of(x + "window = [0, 2]\n", warnings, record);
+  motions_of(x + "window = [1, 4]\nbaseline = \"taper\"\n", warnings, record);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_THAT(
+      warnings[0],
+      HasSubstr("motion.m.window: the motion starts with a jump of 10 m/s2, 50 % of its peak; baseline"));
+  EXPECT_THAT(warnings[1], HasSubstr("ends with a jump of 5 m/s2, 50 %"));
 }
 
 TEST(Motions, TheSameRecordTwiceIsWarnedOf) {

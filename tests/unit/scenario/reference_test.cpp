@@ -54,7 +54,7 @@ TEST(Reference, HasEverySection) {
                             "[study]",
                             "[cutting]",
                             "Distribution",
-                            "Sine"}) {
+                            "Sine or file"}) {
     EXPECT_NE(find_section(sections, title), nullptr) << title;
   }
 }
