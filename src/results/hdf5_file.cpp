@@ -188,7 +188,7 @@ Handle open_with_or_without_locks(const std::function<hid_t(hid_t)>& open) {
     check(H5Pset_file_locking(access, false, true), what);
     file = open(access);
   }
-  return {file, H5Fclose};
+  return {check_id(file, "file"), H5Fclose};
 }
 
 Handle open_group(hid_t parent, const std::string& name) {

@@ -77,7 +77,7 @@ Handle open_group(hid_t parent, const std::string& name);
 Handle open_dataset(hid_t parent, const std::string& name);
 
 /// A file that open(access properties) opens or creates, locked as far as the file system knows locks: HDF5 itself only
-/// understands ENOSYS, where others say ENOLCK or EOPNOTSUPP. Not valid where it cannot be opened.
+/// understands ENOSYS, where others say ENOLCK or EOPNOTSUPP.
 Handle open_with_or_without_locks(const std::function<hid_t(hid_t)>& open);
 
 /// Attributes of a group, UTF-8 strings and scalars.

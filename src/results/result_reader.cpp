@@ -31,12 +31,14 @@ constexpr unsigned read_attempts = 24;  // some 20 ms in all
 hdf5::Handle open_file(const std::filesystem::path& path) {
   if (!file_exists(path)) fail(path, "no such file", "the results of a run");
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ}) {
-    hdf5::Handle file = hdf5::open_with_or_without_locks([&](hid_t access) {
-      // Each attempt at a page that is being written waits twice as long as the last, from 1 ns.
-      hdf5::check(H5Pset_metadata_read_attempts(access, read_attempts), "file access");
-      return H5Fopen(path.c_str(), mode, access);
-    });
-    if (file.valid()) return file;
+    try {
+      return hdf5::open_with_or_without_locks([&](hid_t access) {
+        // Each attempt at a page that is being written waits twice as long as the last, from 1 ns.
+        hdf5::check(H5Pset_metadata_read_attempts(access, read_attempts), "file access");
+        return H5Fopen(path.c_str(), mode, access);
+      });
+    } catch (const RunError&) {  // the next mode may do, or the last words are below
+    }
   }
   fail(path, H5Fis_hdf5(path.c_str()) > 0 ? "an HDF5 file that cannot be opened" : "no HDF5 file",
        "the results of a run", "it may have been cut short");

@@ -39,7 +39,6 @@ hdf5::Handle create_file(const std::filesystem::path& path, const simulation::Mo
     hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), what);
     return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
   });
-  hdf5::check_id(file, what);
   write_model(file, model);
   return file;
 }

@@ -25,11 +25,11 @@ class NoLocks(Scenario):
                     (self.folder / "out/histories.csv").read_text(), (self.folder / "locks/histories.csv").read_text()
                 )
 
-    def test_a_file_in_use_is_left_alone(self):
-        # The answer of a lock that somebody else holds is no missing lock.
-        with self.without_locks(errno.EAGAIN):
-            done = self.keyblock("run", self.scenario, "-o", "used", expect=1)
-        self.assertIn("used: ", done.stderr)
+    def test_a_file_in_use_is_not_written(self):
+        # That somebody else holds a lock is another answer.
+        with self.without_locks(errno.EAGAIN), mock.patch.dict(os.environ, {"NO_LOCKS_FOR": "result.h5.tmp"}):
+            done = self.keyblock("run", self.scenario, "-o", "used", expect=2)
+        self.assertIn("unable to lock file", done.stderr)
 
 
 if __name__ == "__main__":
