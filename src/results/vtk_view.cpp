@@ -54,6 +54,7 @@ lines.Position = [0.0, 0.0, 0.01 * size]
 
 
 def arrows(name, source, array, color, glyph="Arrow"):
+    UpdatePipeline(time=view.ViewTime, proxy=source)
     information = source.PointData.GetArray(array)
     if information is None:
         return

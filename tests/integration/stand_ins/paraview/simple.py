@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ElementTree
 import vtkmodules.all as vtk
 
 shown, screenshots = [], []  # what the script has made, for tests
+updated = set()  # sources whose data is known
 
 
 class Proxy:
@@ -59,6 +60,8 @@ class PVDReader(Proxy):
 
     @property
     def PointData(self):
+        if self not in updated:
+            raise RuntimeError("nothing is known of the data of a source before it is updated")
         return PointData(self._output())
 
     def GetDataInformation(self):
@@ -115,6 +118,7 @@ class Representation(Proxy):
 
 
 class View(Proxy):
+    ViewTime = 0.0
     _allowed = ("Background", "OrientationAxesVisibility", "InteractionMode", "CameraParallelProjection")
 
 
@@ -150,7 +154,12 @@ def GetAnimationScene():
     return Scene()
 
 
+def UpdatePipeline(time=None, proxy=None):
+    updated.add(proxy)
+
+
 def Show(source, view):
+    updated.add(source)
     shown.append(Representation(source))
     return shown[-1]
 
