@@ -392,5 +392,30 @@ print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["s
             "True\n");
 }
 
+// Those of earlier versions have no velocities and do not know the stress normal to the section.
+TEST(ResultFileDocs, FilesWithoutTheNewerDatasetsAreReadAndExported) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const PythonResult result = python(folder, R"(
+import sys, h5py
+with h5py.File(sys.argv[1] + "/result.h5", "r+") as f:
+    del f["frames/velocity"], f["model/block_stress_ratio_zz"]
+)",
+                                     folder.string());
+  ASSERT_EQ(result.status, 0) << result.output;
+  const RunData data = read_run(folder);
+  ASSERT_FALSE(data.frames.empty());
+  EXPECT_TRUE(data.frames.front().velocity.empty());
+  EXPECT_EQ(data.frames.front().stress, sample.expected().frames.front().stress);
+  EXPECT_EQ(data.model.blocks.back().stress_ratio_zz, 0.0);
+  export_run(data, folder / "vtk", ExportFormat::vtk);
+  EXPECT_THAT(read_file(folder / "vtk/centres_00000.vtp"), testing::Not(HasSubstr("velocity")));
+}
+
 }  // namespace
 }  // namespace keyblock::results
