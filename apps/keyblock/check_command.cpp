@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "scenario/build.h"
+#include "scenario/cut_summary.h"
 #include "scenario/inputs.h"
 #include "scenario_arguments.h"
 #include "simulation/build_model.h"
@@ -28,6 +29,7 @@ void check_scenario(const ScenarioArguments& arguments) {
       warnings.push_back("a run ends at once: " + *reason);
   } else {
     scenario::add_block_warnings(scenario, blocks, warnings);
+    scenario::add_overlap_warnings(scenario, blocks.system, warnings);
   }
   print_warnings(arguments, warnings);
   print_warnings(arguments, scenario::study_warnings(scenario));
@@ -47,6 +49,8 @@ void check_scenario(const ScenarioArguments& arguments) {
                         plan.runs.size() / realizations);
   }
   std::cout << text << '\n';
+  if (const auto note = scenario::sliver_note(blocks.system, scenario.blocks.size()))
+    std::cout << arguments.file << ": " << *note << '\n';
 }
 
 }  // namespace

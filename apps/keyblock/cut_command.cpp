@@ -43,6 +43,7 @@ void cut_scenario(const CutArguments& arguments) {
   const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
   std::vector<std::string> warnings = scenario::rock_mass_warnings(scenario);
   scenario::add_block_warnings(scenario, model, warnings);
+  scenario::add_overlap_warnings(scenario, model.system, warnings);
   print_warnings(arguments.scenario, warnings);
   // Hundreds of megabytes for many blocks: both files are put together and written at the same time.
   AtomicFile& geojson = out.add("blocks.geojson");
@@ -57,10 +58,12 @@ void cut_scenario(const CutArguments& arguments) {
   const cutting::CutStatistics& cut = model.system.statistics;
   std::cout << fmt::format(
       "{} blocks from {} of {} traces; {:.1f} m of {:.1f} m end in rock or bound no block; {} slivers "
-      "merged\n"
-      "picture: {}\n",
+      "merged\n",
       model.system.blocks.size(), cut.joints_used, cut.traces, cut.removed_length, cut.trace_length,
-      cut.merged_slivers, svg.string());
+      cut.merged_slivers);
+  if (const auto note = scenario::sliver_note(model.system, scenario.blocks.size()))
+    std::cout << *note << '\n';
+  std::cout << "picture: " << svg.string() << '\n';
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "results/result_writer.h"
 #include "results/run_data.h"
 #include "scenario/build.h"
+#include "scenario/cut_summary.h"
 #include "scenario/inputs.h"
 #include "scenario_arguments.h"
 #include "simulation/fan_out.h"
@@ -92,6 +93,8 @@ void run_scenario(RunArguments arguments) {
     say_where_report_is(arguments);
     return;
   }
+  if (const auto note = scenario::sliver_note(setup.system, scenario.blocks.size()))
+    std::cout << *note << std::endl;
   simulation::RunRecord record;
   try {
     record = run_and_record(setup, arguments, guard);

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <iterator>
 #include <set>
 #include <tuple>
 #include <vector>
 
 #include "cutting/cleaning.h"
+#include "cutting/local_size.h"
 #include "cutting/noding.h"
 
 namespace keyblock::cutting {
@@ -24,16 +26,22 @@ struct Cell {
   friend auto operator<=>(const Cell&, const Cell&) = default;
 };
 
-bool share(const std::vector<int>& a, const std::vector<int>& b) {
-  return std::any_of(a.begin(), a.end(), [&](int f) { return std::binary_search(b.begin(), b.end(), f); });
+std::vector<int> common(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+  return both;
 }
 
 /// One pass over all close pairs. A move that takes away more than the edge between two vertices leaves the rings of
 /// its faces out of date; those faces wait for the next pass.
 class ClusterPass {
  public:
-  ClusterPass(PlanarGraph& graph, double reach)
-      : graph_(graph), reach_(reach), incident_(graph.points.size()), stale_(graph.faces.size(), false) {
+  ClusterPass(PlanarGraph& graph, double reach, double local_size)
+      : graph_(graph),
+        reach_(reach),
+        local_(graph, local_size),
+        incident_(graph.points.size()),
+        stale_(graph.faces.size(), false) {
     for (std::size_t e = 0; e < graph.edges.size(); ++e) {
       incident_[index(graph.edges[e].from)].push_back(static_cast<int>(e));
       incident_[index(graph.edges[e].to)].push_back(static_cast<int>(e));
@@ -46,7 +54,7 @@ class ClusterPass {
     for (const Pair& pair : close_pairs()) {
       const std::vector<int> faces = faces_at(pair.u), others = faces_at(pair.v);
       const auto stale = [&](int f) { return stale_[index(f)]; };
-      if (!share(faces, others) || std::any_of(faces.begin(), faces.end(), stale) ||
+      if (common(faces, others).empty() || std::any_of(faces.begin(), faces.end(), stale) ||
           std::any_of(others.begin(), others.end(), stale)) {
         continue;
       }
@@ -63,7 +71,7 @@ class ClusterPass {
  private:
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-  [[nodiscard]] std::vector<Pair> close_pairs() const {
+  [[nodiscard]] std::vector<Pair> close_pairs() {
     std::vector<Cell> cells;
     for (std::size_t v = 0; v < incident_.size(); ++v) {
       if (incident_[v].empty()) continue;
@@ -93,9 +101,13 @@ class ClusterPass {
     return pairs;
   }
 
-  void add_pair(std::vector<Pair>& pairs, int u, int v) const {
+  void add_pair(std::vector<Pair>& pairs, int u, int v) {
     const double d = squared_norm(to_vec2(graph_.point(u)) - to_vec2(graph_.point(v)));
-    if (d < reach_ * reach_) pairs.push_back({d, std::min(u, v), std::max(u, v)});
+    if (!(d < reach_ * reach_)) return;
+    double reach = reach_;
+    for (const int f : common(faces_at(u), faces_at(v)))
+      reach = std::min(reach, local_.share(index(f)) * reach_);
+    if (d < reach * reach) pairs.push_back({d, std::min(u, v), std::max(u, v)});
   }
 
   [[nodiscard]] std::vector<int> faces_at(int v) const {
@@ -236,16 +248,17 @@ class ClusterPass {
 
   PlanarGraph& graph_;
   double reach_;  ///< steps
+  LocalSize local_;
   std::vector<std::vector<int>> incident_;
   std::vector<bool> stale_;
 };
 
 }  // namespace
 
-int cluster_vertices(PlanarGraph& graph, double distance) {
+int cluster_vertices(PlanarGraph& graph, double distance, double local_size) {
   int total = 0;
   if (distance > 0.0) {
-    while (const int moved = ClusterPass(graph, distance / graph.grid).run()) total += moved;
+    while (const int moved = ClusterPass(graph, distance / graph.grid, local_size).run()) total += moved;
   }
   return total;
 }

@@ -19,6 +19,7 @@ CutTolerances CutTolerances::for_domain(double domain_area, double trace_length)
   double size = std::sqrt(domain_area);
   if (trace_length > 0.0) size = std::min(size, most_spacings * domain_area / trace_length);
   CutTolerances t;
+  t.size = size;
   t.snapping = 5e-5 * size;
   t.sliver_area = 2.5e-6 * size * size;
   t.sliver_thickness = 2.5e-4 * size;
@@ -155,7 +156,7 @@ void sort_blocks(std::vector<CutBlock>& blocks) {
 BlockSystem cut(const CutInput& input) {
   const double rough_area = std::abs(signed_area(input.domain));
   const CutTolerances tolerances = input.tolerances.value_or(CutTolerances::for_domain(rough_area));
-  const Linework work = make_linework(input, tolerances.snapping);
+  const Linework work = make_linework(input, tolerances);
 
   BlockSystem system;
   CutStatistics& statistics = system.statistics;
@@ -172,8 +173,9 @@ BlockSystem cut(const CutInput& input) {
   check_area(graph, work.domain_area);
 
   merge_slivers(graph, tolerances, statistics);
-  statistics.merged_vertices += cluster_vertices(graph, tolerances.cluster);
-  snap_vertices_to_edges(graph, edge_share * tolerances.cluster);
+  const double local = tolerances.cluster_is_given ? 0.0 : tolerances.size;
+  statistics.merged_vertices += cluster_vertices(graph, tolerances.cluster, local);
+  snap_vertices_to_edges(graph, edge_share * tolerances.cluster, local);
   merge_slivers(graph, tolerances, statistics);
   check_area(graph, work.domain_area);
 

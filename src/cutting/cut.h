@@ -10,6 +10,11 @@ namespace keyblock::cutting {
 /// The tolerances of cutting. Defaults scale with √(domain area) = L; in brackets their values for a domain
 /// of 20 × 20 m. Zero switches a step off.
 struct CutTolerances {
+  /// m. L, where slivers and close vertices are judged against the blocks around them: tolerances that are not given are lower
+  /// where these are small (local_size.h). 0: all are as they stand here.
+  double size = 0.0;
+  bool sliver_area_is_given = false, sliver_thickness_is_given = false, cluster_is_given = false;
+
   /// m. A trace that ends closer than this to another line is made to end on it. Usual: the accuracy of the
   /// map, or 5e-5 L [1 mm]. Too small: joints that a digitiser meant to meet bound no block; too large:
   /// rock bridges disappear.
@@ -29,7 +34,7 @@ struct CutTolerances {
   /// 5e-8 L [1 µm]. Larger: curved joints and outlines of fewer edges; shapes change by as much.
   double collinear = 0.0;
 
-  /// L is the square root of the area of the domain (m²), at most 80 times the area over the length of all traces in it (m):
+  /// None is given. L is the square root of the area of the domain (m²), at most 80 times the area over the length of all traces in it (m):
   /// the size of blocks, not only that of the model, says what is small.
   static CutTolerances for_domain(double domain_area, double trace_length = 0.0);
 };

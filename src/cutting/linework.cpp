@@ -224,9 +224,21 @@ EdgeLabel label_of(rockmass::TraceSource source) {
   return {statistical ? EdgeKind::joint_set : EdgeKind::trace_map, static_cast<std::int16_t>(source.index)};
 }
 
+// Real coordinates have steps of their own, the larger the farther they are from 0. Where vertices may stay within such steps of each
+// other the grid is no finer, so that blocks keep their shape when the shift is added.
+double grid_of(const Box& box, int exponent, double cluster) {
+  constexpr double many_steps = 1024.0;
+  constexpr int digits = 52;  // of a double after the first, binary
+  const double far =
+      std::max({std::abs(box.min.x), std::abs(box.min.y), std::abs(box.max.x), std::abs(box.max.y)});
+  const double grid = std::ldexp(1.0, exponent - grid_bits), step = std::ldexp(1.0, std::ilogb(far) - digits);
+  return cluster < many_steps * step ? std::max(grid, step) : grid;
+}
+
 }  // namespace
 
-Linework make_linework(const CutInput& input, double snapping) {
+Linework make_linework(const CutInput& input, const CutTolerances& tolerances) {
+  const double snapping = tolerances.snapping;
   Linework work;
   std::vector<Diagnostic> mistakes;
   const Ring domain = checked_ring(input.domain, "domain", mistakes);
@@ -240,7 +252,7 @@ Linework make_linework(const CutInput& input, double snapping) {
   const int exponent = std::ilogb(std::max(box.size().x, box.size().y)) + 1;
   const double unit = std::ldexp(1.0, exponent - 8);
   const Vec2 centre = 0.5 * (box.min + box.max);
-  work.grid = std::ldexp(1.0, exponent - grid_bits);
+  work.grid = grid_of(box, exponent, tolerances.cluster);
   work.shift = {std::nearbyint(centre.x / unit) * unit, std::nearbyint(centre.y / unit) * unit};
   work.domain_area = signed_area(domain);
   const auto on_grid = [&](const Ring& ring) {

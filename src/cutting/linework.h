@@ -29,9 +29,9 @@ struct Linework {
   [[nodiscard]] GridPoint to_grid(Vec2 real) const { return nearest_grid_point((real - shift) / grid); }
 };
 
-/// Checks the rings, chooses the grid and puts the ends of traces on the lines within `snapping` (m) of them.
+/// Checks the rings, chooses the grid and puts the ends of traces on the lines within the snapping distance of them.
 /// Traces are clipped to a box a little larger than the domain. Throws InputError.
-Linework make_linework(const CutInput& input, double snapping);
+Linework make_linework(const CutInput& input, const CutTolerances& tolerances);
 
 /// The lines as polylines through their nodes, in order.
 std::vector<SourceLine> split_at_nodes(const std::vector<SourceLine>& lines);

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "cutting/cleaning.h"
+#include "cutting/local_size.h"
 
 namespace keyblock::cutting {
 
@@ -12,7 +13,7 @@ namespace {
 class SliverMerger {
  public:
   SliverMerger(PlanarGraph& graph, const CutTolerances& tolerances)
-      : graph_(graph), tolerances_(tolerances), regions_(graph.faces.size()) {
+      : graph_(graph), tolerances_(tolerances), local_(graph, tolerances.size), regions_(graph.faces.size()) {
     for (std::size_t f = 0; f < regions_.size(); ++f) {
       regions_[f].area = graph.faces[f].area;
       regions_[f].perimeter = graph.faces[f].perimeter;
@@ -51,9 +52,15 @@ class SliverMerger {
 
   void consider(std::size_t f) {
     const Region& r = regions_[f];
-    if (r.area < tolerances_.sliver_area || r.area < tolerances_.sliver_thickness * r.perimeter) {
+    const auto is_below = [&](double area, double thickness) {
+      return r.area < area || r.area < thickness * r.perimeter;
+    };
+    if (!is_below(tolerances_.sliver_area, tolerances_.sliver_thickness)) return;
+    const double share = local_.share(f);
+    const double area = tolerances_.sliver_area_is_given ? 1.0 : share * share;
+    const double thickness = tolerances_.sliver_thickness_is_given ? 1.0 : share;
+    if (is_below(area * tolerances_.sliver_area, thickness * tolerances_.sliver_thickness))
       queue_.emplace(r.area, f);
-    }
   }
 
   std::size_t root(int face) {
@@ -96,6 +103,7 @@ class SliverMerger {
 
   PlanarGraph& graph_;
   const CutTolerances& tolerances_;
+  LocalSize local_;  ///< of the blocks before any is merged
   std::vector<Region> regions_;
   int merged_ = 0;
   double merged_area_ = 0.0;

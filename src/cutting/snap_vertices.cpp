@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cutting/cleaning.h"
+#include "cutting/local_size.h"
 #include "cutting/noding.h"
 #include "cutting/segment_index.h"
 
@@ -20,8 +21,12 @@ struct NearPair {
 /// they wait for the next pass.
 class SnapPass {
  public:
-  SnapPass(PlanarGraph& graph, double reach)
-      : graph_(graph), reach_(reach), incident_(graph.points.size()), stale_(graph.faces.size(), false) {
+  SnapPass(PlanarGraph& graph, double reach, double local_size)
+      : graph_(graph),
+        reach_(reach),
+        local_(graph, local_size),
+        incident_(graph.points.size()),
+        stale_(graph.faces.size(), false) {
     for (std::size_t e = 0; e < graph.edges.size(); ++e) {
       incident_[index(graph.edges[e].from)].push_back(static_cast<int>(e));
       incident_[index(graph.edges[e].to)].push_back(static_cast<int>(e));
@@ -50,7 +55,7 @@ class SnapPass {
     return a + std::clamp(dot(place(v) - a, d) / squared_norm(d), 0.0, 1.0) * d;
   }
 
-  [[nodiscard]] std::vector<NearPair> near_pairs() const {
+  [[nodiscard]] std::vector<NearPair> near_pairs() {
     Box box;
     for (const GraphEdge& e : graph_.edges) box.add(place(e.from));
     SegmentIndex segments(
@@ -69,7 +74,9 @@ class SnapPass {
         const Vec2 q = foot(v, e);
         // What is as near to an end of the edge is a matter of clustering.
         if (norm(p - q) >= reach_ || q == place(e.from) || q == place(e.to)) return;
-        if (side_of(v, id) >= 0) pairs.push_back({norm(p - q), v, id});
+        const int face = side_of(v, id);
+        if (face >= 0 && norm(p - q) < local_.share(index(face)) * reach_)
+          pairs.push_back({norm(p - q), v, id});
       });
     }
     const auto key = [](const NearPair& pair) { return std::tie(pair.distance, pair.vertex, pair.edge); };
@@ -176,6 +183,7 @@ class SnapPass {
 
   PlanarGraph& graph_;
   double reach_;  ///< steps
+  LocalSize local_;
   std::vector<std::vector<int>> incident_;
   std::vector<bool> stale_;
   bool bent_to_left_ = false;
@@ -183,11 +191,12 @@ class SnapPass {
 
 }  // namespace
 
-void snap_vertices_to_edges(PlanarGraph& graph, double distance) {
+void snap_vertices_to_edges(PlanarGraph& graph, double distance, double local_size) {
   // Every pass closes gaps; a bent edge may come near another vertex, so that some are needed, but never many.
   constexpr int max_passes = 100;
   if (!(distance > 0.0)) return;
-  for (int pass = 0; pass < max_passes && SnapPass(graph, distance / graph.grid).run() > 0; ++pass) {
+  for (int pass = 0; pass < max_passes && SnapPass(graph, distance / graph.grid, local_size).run() > 0;
+       ++pass) {
   }
 }
 

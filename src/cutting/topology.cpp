@@ -8,7 +8,9 @@ NodeCounts count_nodes(const std::vector<rockmass::Trace>& traces, const Ring& a
   CutInput input;
   input.domain = area;
   input.traces = traces;
-  const PlanarGraph graph = node(make_linework(input, snapping)).graph;
+  CutTolerances tolerances;
+  tolerances.snapping = tolerances.cluster = snapping;
+  const PlanarGraph graph = node(make_linework(input, tolerances)).graph;
 
   NodeCounts counts;
   std::vector<int> degree(graph.points.size(), 0);

@@ -7,12 +7,12 @@
 #include "core/file_set.h"
 #include "results/run_data.h"
 
-/// Results in the formats of other programs. Coordinates are real ones (the local origin is added). Blocks that are
+/// Results in the formats of other programs. Coordinates are real ones (the local origin is added) but in VTK. Blocks that are
 /// excavated are left out from then on.
 namespace keyblock::results {
 
 enum class ExportFormat {
-  vtk,      ///< for ParaView: FOLDER/blocks.pvd and contacts.pvd, time series of one file per frame
+  vtk,      ///< for ParaView: FOLDER/view.py, and time series of one file per frame
   csv,      ///< FOLDER/blocks.csv, contacts.csv, steps.csv and, where points were chosen, histories.csv
   geojson,  ///< FOLDER/stage_1_NAME.geojson …: the blocks as they lie at the end of each stage
 };
@@ -24,12 +24,10 @@ std::optional<ExportFormat> export_format(std::string_view name);
 std::vector<std::filesystem::path> export_run(const RunData& data, const std::filesystem::path& folder,
                                               ExportFormat format, bool replace = false);
 
-/// VTK XML files. Blocks are polygons, those with holes sets of triangles, with point data `displacement` (m) and cell
-/// data `block`, `status`, `stress` (xx, yy, xy; Pa), `displacement_magnitude` (m, of the centroid), `order` and
-/// `excavation` (−1: none). Contacts are lines as long as the joint that belongs to them, with `state`, `slip`, `gap`,
-/// `normal_force`, `shear_force`, `block_a`, `block_b`, `edge_kind` and `edge_index`. The time steps of a series must
-/// differ: where time stands still, as in static stages, each frame counts as a microsecond; the true time, stage and
-/// step stand in the field data TimeValue, stage and step of each file.
+/// VTK XML files, in local coordinates; each has the field data TimeValue, stage, step and origin. Series of them: blocks (cells),
+/// outlines (lines), centres (a point per block), contacts (a line per joint that a contact stands for) and forces (a point per
+/// contact that carries one); arrays as in docs/result-file.md. The time steps of a series must differ: where time stands still,
+/// as in static stages, each frame counts as a microsecond; the true time is TimeValue. view.py opens all in ParaView.
 std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out);
 
 /// Tables with one row per block and frame, per contact and contact frame, per recorded step.

@@ -50,6 +50,32 @@ Handle string_type(std::size_t size) {
   return type;
 }
 
+std::size_t longest_of(const std::vector<std::string>& values) {
+  std::size_t longest = 1;
+  for (const std::string& value : values) longest = std::max(longest, value.size());
+  return longest;
+}
+
+// All texts one after the other, as long as the longest.
+std::string padded(const std::vector<std::string>& values) {
+  const std::size_t longest = longest_of(values);
+  std::string texts;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    texts += values[k];
+    texts.resize((k + 1) * longest, '\0');
+  }
+  return texts;
+}
+
+// "unable to lock file, errno = 37, …", but for a file that is in use.
+herr_t see_failed_lock(unsigned /*n*/, const H5E_error2_t* error, void* seen) {
+  const std::string_view text = error->desc == nullptr ? "" : error->desc;
+  if (text.find("unable to lock file") != std::string_view::npos &&
+      text.find(fmt::format("errno = {},", EAGAIN)) == std::string_view::npos)
+    *static_cast<bool*>(seen) = true;
+  return 0;
+}
+
 // The type of texts that are read, which must be such.
 Handle string_type_of(hid_t stored, const std::string& name) {
   if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0)
@@ -147,6 +173,24 @@ Handle create_group(hid_t parent, const std::string& name) {
   return {check_id(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), name), H5Gclose};
 }
 
+Handle open_dataset(hid_t parent, const std::string& name) {
+  return {check_id(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), name), H5Dclose};
+}
+
+Handle open_with_or_without_locks(const std::function<hid_t(hid_t)>& open) {
+  const char* const what = "file access";
+  const Handle access(check_id(H5Pcreate(H5P_FILE_ACCESS), what), H5Pclose);
+  check(H5Pset_file_locking(access, true, true), what);
+  hid_t file = open(access);
+  bool has_no_locks = false;
+  if (file < 0) H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, see_failed_lock, &has_no_locks);
+  if (has_no_locks) {
+    check(H5Pset_file_locking(access, false, true), what);
+    file = open(access);
+  }
+  return {check_id(file, "file"), H5Fclose};
+}
+
 Handle open_group(hid_t parent, const std::string& name) {
   return {check_id(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), name), H5Gclose};
 }
@@ -157,6 +201,15 @@ void write_attribute(hid_t object, const std::string& name, const std::string& v
   const Handle attribute(
       check_id(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), name), H5Aclose);
   check(H5Awrite(attribute, type, value.c_str()), name);
+}
+
+void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& values) {
+  const Handle type = string_type(longest_of(values));
+  const hsize_t count = values.size();
+  const Handle space(check_id(H5Screate_simple(1, &count, nullptr), name), H5Sclose);
+  const Handle attribute(
+      check_id(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), name), H5Aclose);
+  check(H5Awrite(attribute, type, padded(values).data()), name);
 }
 
 template <class T>
@@ -205,8 +258,7 @@ void write_array(hid_t group, const std::string& name, const std::vector<hsize_t
 
 void write_strings(hid_t group, const std::string& name, const std::vector<std::string>& values) {
   const hsize_t count = values.size();
-  std::size_t longest = 1;
-  for (const std::string& value : values) longest = std::max(longest, value.size());
+  const std::size_t longest = longest_of(values);
   const Handle type = string_type(longest);
   const Handle space(check_id(H5Screate_simple(1, &count, nullptr), name), H5Sclose);
   const Handle properties = dataset_properties();
@@ -214,12 +266,7 @@ void write_strings(hid_t group, const std::string& name, const std::vector<std::
   const Handle dataset(
       check_id(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), name),
       H5Dclose);
-  std::string texts;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    texts += values[k];
-    texts.resize((k + 1) * longest, '\0');
-  }
-  if (count > 0) check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
+  if (count > 0) check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, padded(values).data()), name);
 }
 
 template <class T>

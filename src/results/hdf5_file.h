@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -73,9 +74,15 @@ void detach(hid_t file);
 
 Handle create_group(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
+Handle open_dataset(hid_t parent, const std::string& name);
+
+/// A file that open(access properties) opens or creates, locked as far as the file system knows locks: HDF5 itself only
+/// understands ENOSYS, where others say ENOLCK or EOPNOTSUPP.
+Handle open_with_or_without_locks(const std::function<hid_t(hid_t)>& open);
 
 /// Attributes of a group, UTF-8 strings and scalars.
 void write_attribute(hid_t object, const std::string& name, const std::string& value);
+void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& values);
 template <class T>
 void write_attribute(hid_t object, const std::string& name, T value);
 std::string read_text_attribute(hid_t object, const std::string& name);

@@ -86,7 +86,7 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   std::vector<std::int32_t> order;
   std::vector<std::uint8_t> fixed, edge_kind;
   std::vector<std::int16_t> edge_index;
-  std::vector<double> area, density;
+  std::vector<double> area, density, ratio_zz;
   std::vector<Vec2> centroid;
   Lists rings, excavations;
   for (const auto& block : model.blocks) {
@@ -95,6 +95,7 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
     fixed.push_back(block.fixed ? 1 : 0);
     area.push_back(block.area);
     density.push_back(block.density);
+    ratio_zz.push_back(block.stress_ratio_zz);
     centroid.push_back(block.centroid);
     rings.add(block.ring_start);
     excavations.add(block.excavations);
@@ -108,6 +109,7 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   write_column(group, "block_fixed", fixed);
   write_column(group, "block_area", area);
   write_column(group, "block_density", density);
+  write_column(group, "block_stress_ratio_zz", ratio_zz);
   write_points(group, "block_centroid", centroid);
   write_column(group, "block_rings", rings.start);
   write_column(group, "ring_start", rings.values);
@@ -130,17 +132,21 @@ simulation::ModelRecord read_model(hid_t file) {
   const auto fixed = read_array<std::uint8_t>(group, "block_fixed");
   const auto area = read_array<double>(group, "block_area"),
              density = read_array<double>(group, "block_density");
+  // Files of version 0.1 may have none.
+  const auto ratio_zz = H5Lexists(group, "block_stress_ratio_zz", H5P_DEFAULT) > 0
+                            ? read_array<double>(group, "block_stress_ratio_zz")
+                            : hdf5::Array<double>{{name.size()}, std::vector<double>(name.size())};
   const auto centroid = read_points(group, "block_centroid");
   const std::size_t count = name.size();
   if (order.rows() != count || fixed.rows() != count || area.rows() != count || density.rows() != count ||
-      centroid.size() != count) {
+      ratio_zz.rows() != count || centroid.size() != count) {
     throw RunError("the columns of model/block_… differ in length");
   }
   const Lists rings = read_lists(group, "block_rings", "ring_start", count);
   const Lists excavations = read_lists(group, "block_excavations", "excavation", count);
   for (std::size_t b = 0; b < count; ++b) {
     model.blocks.push_back({name[b], order.values[b], fixed.values[b] != 0, area.values[b], density.values[b],
-                            excavations.list(b), centroid[b], rings.list(b)});
+                            excavations.list(b), centroid[b], rings.list(b), ratio_zz.values[b]});
   }
   model.vertices = read_points(group, "vertices");
   const auto edge_kind = read_array<std::uint8_t>(group, "edge_kind");

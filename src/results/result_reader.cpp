@@ -30,13 +30,15 @@ constexpr unsigned read_attempts = 24;  // some 20 ms in all
 // A file whose writer was killed, or still runs, opens in the mode for concurrent readers alone.
 hdf5::Handle open_file(const std::filesystem::path& path) {
   if (!file_exists(path)) fail(path, "no such file", "the results of a run");
-  const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), "file access"), H5Pclose);
-  hdf5::check(H5Pset_file_locking(access, true, true), "file access");
-  // Each attempt at a page that is being written waits twice as long as the last, from 1 ns.
-  hdf5::check(H5Pset_metadata_read_attempts(access, read_attempts), "file access");
   for (const unsigned mode : {H5F_ACC_RDONLY, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ}) {
-    const hid_t id = H5Fopen(path.c_str(), mode, access);
-    if (id >= 0) return {id, H5Fclose};
+    try {
+      return hdf5::open_with_or_without_locks([&](hid_t access) {
+        // Each attempt at a page that is being written waits twice as long as the last, from 1 ns.
+        hdf5::check(H5Pset_metadata_read_attempts(access, read_attempts), "file access");
+        return H5Fopen(path.c_str(), mode, access);
+      });
+    } catch (const RunError&) {  // the next mode may do, or the last words are below
+    }
   }
   fail(path, H5Fis_hdf5(path.c_str()) > 0 ? "an HDF5 file that cannot be opened" : "no HDF5 file",
        "the results of a run", "it may have been cut short");

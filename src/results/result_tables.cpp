@@ -58,6 +58,7 @@ FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
       group_(hdf5::create_group(file, "frames")),
       displacement_(group_, "displacement", {vertices_, 2}),
       stress_(group_, "stress", {blocks_, 3}),
+      velocity_(group_, "velocity", {blocks_, 2}),
       status_(group_, "status", {blocks_}),
       order_(group_, "order", {blocks_}),
       stage_(group_, "stage", {}),
@@ -66,11 +67,14 @@ FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
 
 void FrameTable::append(const simulation::Frame& frame) {
   if (frame.displacement.size() != vertices_ || frame.stress.size() != blocks_ ||
-      frame.status.size() != blocks_ || frame.order.size() != blocks_) {
+      frame.status.size() != blocks_ || frame.order.size() != blocks_ ||
+      (!frame.velocity.empty() && frame.velocity.size() != blocks_)) {
     throw std::invalid_argument("a frame of another model");
   }
   displacement_.append_row(flat(frame.displacement.data()->data(), 2 * vertices_));
   stress_.append_row(flat(frame.stress.data()->data(), 3 * blocks_));
+  const std::vector<float> unknown(frame.velocity.empty() ? 2 * blocks_ : 0, std::nanf(""));
+  velocity_.append_row(unknown.empty() ? flat(frame.velocity.data()->data(), 2 * blocks_) : unknown);
   std::vector<std::uint8_t> status;
   for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
   status_.append_row(status);
@@ -83,6 +87,7 @@ void FrameTable::append(const simulation::Frame& frame) {
 void FrameTable::flush() {
   displacement_.flush();
   stress_.flush();
+  velocity_.flush();
   status_.flush();
   order_.flush();
   stage_.flush();
@@ -95,6 +100,9 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
   const auto time = read_array<double>(group, "time");
   const auto displacement = read_array<float>(group, "displacement"),
              stress = read_array<float>(group, "stress");
+  // Files of version 0.1 may have none.
+  const bool has_velocity = H5Lexists(group, "velocity", H5P_DEFAULT) > 0;
+  const auto velocity = has_velocity ? read_array<float>(group, "velocity") : Array<float>{};
   const auto status = read_array<std::uint8_t>(group, "status");
   const auto order = read_array<std::int16_t>(group, "order");
   const auto stage = read_array<std::int32_t>(group, "stage");
@@ -102,8 +110,10 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
   const std::size_t nv = displacement.width() / 2, nb = status.width();
   require(stress.width() == 3 * nb, "frames/stress");
   require(order.width() == nb, "frames/order");
-  std::vector<simulation::Frame> frames(common_rows(
-      time, {displacement.rows(), stress.rows(), status.rows(), order.rows(), stage.rows(), step.rows()}));
+  require(!has_velocity || velocity.width() == 2 * nb, "frames/velocity");
+  std::vector<simulation::Frame> frames(
+      common_rows(time, {displacement.rows(), stress.rows(), status.rows(), order.rows(), stage.rows(),
+                         step.rows(), has_velocity ? velocity.rows() : displacement.rows()}));
   for (std::size_t f = 0; f < frames.size(); ++f) {
     simulation::Frame& frame = frames[f];
     frame.time = time.values[f];
@@ -113,6 +123,10 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
     frame.stress.resize(nb);
     std::copy_n(displacement.values.data() + 2 * nv * f, 2 * nv, frame.displacement.data()->data());
     std::copy_n(stress.values.data() + 3 * nb * f, 3 * nb, frame.stress.data()->data());
+    if (has_velocity) {
+      frame.velocity.resize(nb);
+      std::copy_n(velocity.values.data() + 2 * nb * f, 2 * nb, frame.velocity.data()->data());
+    }
     const auto orders = std::span(order.values).subspan(nb * f, nb);
     frame.order.assign(orders.begin(), orders.end());
     for (std::size_t b = 0; b < nb; ++b) {

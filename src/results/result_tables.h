@@ -15,6 +15,10 @@ inline constexpr int result_format_version = 2;
 void write_model(hid_t file, const simulation::ModelRecord& model);
 simulation::ModelRecord read_model(hid_t file);
 
+/// Gives every dataset of a new file its attributes: what it is, its unit, and the names of its columns and of its values where
+/// these are numbers that stand for words.
+void describe_datasets(hid_t file);
+
 class FrameTable {
  public:
   FrameTable(hid_t file, const simulation::ModelRecord& model);
@@ -25,7 +29,7 @@ class FrameTable {
  private:
   std::size_t vertices_, blocks_;
   hdf5::Handle group_;
-  hdf5::Column<float> displacement_, stress_;
+  hdf5::Column<float> displacement_, stress_, velocity_;
   hdf5::Column<std::uint8_t> status_;
   hdf5::Column<std::int16_t> order_;
   hdf5::Column<std::int32_t> stage_;

@@ -32,14 +32,13 @@ constexpr hsize_t file_page = 4096;
 
 hdf5::Handle create_file(const std::filesystem::path& path, const simulation::ModelRecord& model) {
   const char* const what = "file";
-  const hdf5::Handle access(hdf5::check_id(H5Pcreate(H5P_FILE_ACCESS), what), H5Pclose);
-  hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), what);
-  // Some cluster file systems know no locks.
-  hdf5::check(H5Pset_file_locking(access, true, true), what);
   const hdf5::Handle creation(hdf5::check_id(H5Pcreate(H5P_FILE_CREATE), what), H5Pclose);
   hdf5::check(H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_PAGE, false, 1), what);
   hdf5::check(H5Pset_file_space_page_size(creation, file_page), what);
-  hdf5::Handle file(hdf5::check_id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), what), H5Fclose);
+  hdf5::Handle file = hdf5::open_with_or_without_locks([&](hid_t access) {
+    hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), what);
+    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
+  });
   write_model(file, model);
   return file;
 }
@@ -197,6 +196,7 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   state_->model = model;
   state_->change_file([&] {
     state_->file.emplace(state_->temporary_path(), model);
+    describe_datasets(state_->file->file);
     state_->file->flush_whole();
   });
   state_->start = state_->last_flush = Clock::now();

@@ -59,6 +59,21 @@ void VtkFile::field(const std::string& name, T value) {
   data_array(vtk_type<T>(), name, 1, 1, {}, &value, sizeof value);
 }
 
+void VtkFile::points(const std::vector<double>& coordinates) {
+  std::vector<std::int64_t> vertices, end;
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(coordinates.size() / 3); ++k) {
+    vertices.push_back(k);
+    end.push_back(k + 1);
+  }
+  open("Points");
+  array("Points", std::span<const double>(coordinates), 3);
+  close("Points");
+  open("Verts");
+  array("connectivity", std::span<const std::int64_t>(vertices));
+  array("offsets", std::span<const std::int64_t>(end));
+  close("Verts");
+}
+
 std::string VtkFile::text() const {
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n"
@@ -68,6 +83,13 @@ std::string VtkFile::text() const {
       kind_, body_);
   text += appended_;
   return text + "\n</AppendedData>\n</VTKFile>\n";
+}
+
+std::string vtk_piece(std::size_t points, std::size_t vertices, std::size_t lines) {
+  return fmt::format(
+      "NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
+      "NumberOfPolys=\"0\"",
+      points, vertices, lines);
 }
 
 std::string vtk_series(const std::vector<std::pair<double, std::string>>& files) {

@@ -23,6 +23,8 @@ class VtkFile {
   /// For the field data of the file: one value.
   template <class T>
   void field(const std::string& name, T value);
+  /// The points of the piece, x, y, z of each, with a vertex at each.
+  void points(const std::vector<double>& coordinates);
   [[nodiscard]] std::string text() const;
 
  private:
@@ -32,6 +34,9 @@ class VtkFile {
   std::string body_;
   std::string appended_;
 };
+
+/// Attributes of a piece of PolyData.
+std::string vtk_piece(std::size_t points, std::size_t vertices, std::size_t lines);
 
 /// A series of files over time (.pvd). Paths are relative to it.
 std::string vtk_series(const std::vector<std::pair<double, std::string>>& files);

@@ -7,23 +7,92 @@
 #include "rockmass/trace_map_reader.h"
 
 namespace keyblock::rockmass {
+namespace {
 
-std::pair<int, int> line_and_column(std::string_view text, std::size_t offset) {
-  const std::string_view before = text.substr(0, std::min(offset, text.size()));
-  const auto newline = before.rfind('\n');
-  const std::size_t column = newline == std::string_view::npos ? before.size() : before.size() - newline - 1;
-  return {static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1, static_cast<int>(column) + 1};
+constexpr const char* in_degrees_advice =
+    "project the lines on a plane in metres first: in QGIS by Export, Save features as, with a CRS in metres "
+    "(UTM); or by ogr2ogr -f GeoJSON -t_srs EPSG:32633 NEW OLD (33: your UTM zone)";
+
+/// Coordinates of a map of no named system are degrees where they can be degrees, where the map is smaller than this (10 km
+/// on the ground, m when read as lengths), and where it lies this many times its size from the origin.
+constexpr double largest_map_in_degrees = 0.1, least_distance_over_size = 100.0;
+
+bool can_be_degrees(const Box& box) {
+  return box.min.x >= -180.0 && box.max.x <= 360.0 && box.min.y >= -90.0 && box.max.y <= 90.0;
+}
+
+bool seems_to_be_degrees(const Box& box) {
+  const double size = std::max(box.size().x, box.size().y);
+  return can_be_degrees(box) && size < largest_map_in_degrees &&
+         norm(box.min) > least_distance_over_size * size;
+}
+
+}  // namespace
+
+std::optional<std::string> MapReader::add(const std::vector<Vec2>& vertices) {
+  const std::size_t before = traces_.size();
+  for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
+    if (!(vertices[k] == vertices[k + 1]))
+      traces_.push_back({vertices[k], vertices[k + 1], source_, polylines_});
+  }
+  if (traces_.size() == before) {
+    return vertices.size() == 1 ? "a trace of one vertex"
+                                : fmt::format("a trace of {} equal vertices", vertices.size());
+  }
+  for (const Vec2 p : vertices) box_.add(p);
+  ++polylines_;
+  return std::nullopt;
+}
+
+void MapReader::names_system(int line, int column, std::string key, std::string name) {
+  if (system_.found.empty()) system_ = {{file_, line, column}, std::move(key), std::move(name), "", ""};
+}
+
+void MapReader::check_unit() {
+  if (traces_.empty()) return;
+  constexpr const char* expected = "coordinates in metres, as those of the domain";
+  if (is_in_degrees(system_.found)) {
+    if (!can_be_degrees(box_)) return;  // a label that does not fit
+    mistake(system_.where.line, system_.where.column, system_.key,
+            fmt::format("longitude and latitude ({}), in degrees", shortened(system_.found)), expected,
+            std::string(in_degrees_advice) + "; or leave that name out, if they are metres");
+  } else if (system_.found.empty() && seems_to_be_degrees(box_)) {
+    mistake(0, 0, "",
+            fmt::format("coordinates from [{:.9g}, {:.9g}] to [{:.9g}, {:.9g}], which seem to be degrees",
+                        box_.min.x, box_.min.y, box_.max.x, box_.max.y),
+            expected, std::string(in_degrees_advice) + "; or move them nearer to [0, 0], if they are metres");
+  }
+}
+
+std::vector<Trace> MapReader::finish() {
+  check_unit();
+  if (mistakes_.empty() && traces_.empty()) mistake(0, 0, "", "no trace", "one trace or more");
+  if (!mistakes_.empty()) throw InputError(std::move(mistakes_));
+  return std::move(traces_);
 }
 
 std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index) {
   const std::string text = read_file(path);
   MapReader map(path.string(), map_index);
+  if (const auto foreign = foreign_format(text)) {
+    map.mistake(0, 0, "", foreign->name, MapReader::format_expected, foreign->advice);
+    return map.finish();
+  }
   const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first != std::string::npos && text[first] == '{') {
     read_geojson(text, map);
+  } else if (first != std::string::npos && is_wkt(std::string_view(text).substr(first))) {
+    const auto [line, column] = line_and_column(text, first);
+    read_wkt(std::string_view(text).substr(first), map, line, column);
   } else {
-    read_trace_csv(text, map);
+    read_trace_table(text, map);
   }
+  return map.finish();
+}
+
+std::vector<Trace> traces_of(const std::vector<Vec2>& vertices, int map_index) {
+  MapReader map("", map_index);
+  map.add(vertices);
   return map.finish();
 }
 

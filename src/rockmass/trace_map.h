@@ -9,15 +9,24 @@ namespace keyblock::rockmass {
 /// The traces of a digitised map, coordinates as in the file. Every straight piece is one Trace with source
 /// {trace_map, map_index} and the number of its polyline; pieces of length zero are left out.
 ///
-/// The file is GeoJSON if its first character is `{`, else CSV.
+/// The contents of the file say what it is:
 /// - GeoJSON (RFC 7946): LineString and MultiLineString, bare, in a Feature, a FeatureCollection or a
 ///   GeometryCollection. Heights are ignored, features without geometry skipped.
-/// - CSV (RFC 4180; separator `,` or `;`): a header with the columns trace, x, y in any order, further ones are ignored;
-///   one row per vertex. Rows with the same text in `trace` are one trace, in their order; they follow each other.
+/// - Well-known text: LINESTRING and MULTILINESTRING, alone or in a GEOMETRYCOLLECTION, one after the other.
+/// - A table: cells between commas, semicolons, tabs or spaces (RFC 4180 as to quotes); names of columns in small letters or
+///   capitals. Where commas separate no cells, a number may have a decimal comma.
+///   With a header of the columns trace, x, y in any order, further ones ignored: one row per vertex. Rows with the same
+///   text in `trace` are one trace, in their order; they follow each other.
+///   With a column `wkt` (`wkt_geom`, `geometry`, `geom`, `the_geom`): a geometry as above in each row.
+///   With no header, or with x1, y1, x2, y2, …: a trace in each row, x y x y ….
 ///
-/// Throws InputError with every mistake of the file (at most 20): unreadable file, syntax, missing columns, other
-/// geometry, lists and objects nested too deeply, numbers missing or not finite, traces of fewer than two different vertices,
-/// and in CSV traces that go on after rows of another one.
+/// Throws InputError with every mistake of the file (at most 20): unreadable file, a file of another kind, which is named,
+/// syntax, missing columns, other geometry, lists and objects nested too deeply, numbers missing or not finite, traces of
+/// fewer than two different vertices, traces that go on after rows of another one, and coordinates in degrees: the file says so,
+/// or they lie as only degrees do.
 std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index);
+
+/// One trace through these vertices, of which two differ.
+std::vector<Trace> traces_of(const std::vector<Vec2>& vertices, int map_index);
 
 }  // namespace keyblock::rockmass

@@ -16,10 +16,6 @@ using Json = nlohmann::json;
 
 constexpr int deepest = 32;  // levels of lists and objects
 
-std::string shortened(std::string_view text) {
-  return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
-}
-
 std::string text_of(const Json& value) {
   return shortened(value.dump());
 }
@@ -203,6 +199,19 @@ class GeoJsonReader {
   MapReader& map_;
 };
 
+// The member `crs` of GeoJSON before RFC 7946, by name or by the number of EPSG.
+void name_system(const Json& root, std::string_view text, MapReader& map) {
+  if (!root.is_object()) return;
+  for (const char* member : {"name", "code"}) {
+    const Json value = root.value(Json::json_pointer(std::string("/crs/properties/") + member), Json());
+    if (!value.is_string() && !value.is_number_integer()) continue;
+    const std::string key = std::string("crs.properties.") + member;
+    const auto [line, column] = line_and_column(text, JsonText(text).find(key));
+    map.names_system(line, column, key,
+                     value.is_string() ? value.get<std::string>() : "EPSG:" + value.dump());
+  }
+}
+
 }  // namespace
 
 void read_geojson(std::string_view text, MapReader& map) {
@@ -225,6 +234,7 @@ void read_geojson(std::string_view text, MapReader& map) {
     map.mistake(line, column, "", shortened(number), "a finite number");
     return;
   }
+  name_system(root, text, map);
   GeoJsonReader(text, map).object(root, "");
 }
 

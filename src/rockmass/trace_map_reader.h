@@ -8,64 +8,84 @@
 #include <vector>
 
 #include "core/error.h"
+#include "geometry/polygon.h"
 #include "rockmass/trace.h"
 
 /// What the readers of trace maps share; for trace_map*.cpp alone.
 namespace keyblock::rockmass {
 
-/// What both formats share: the traces found and the mistakes.
+/// What all formats share: the traces found and the mistakes.
 class MapReader {
  public:
   MapReader(std::string file, int map_index)
       : file_(std::move(file)), source_{TraceSource::Kind::trace_map, map_index} {}
 
-  void mistake(int line, int column, std::string key, std::string found, std::string expected) {
+  void mistake(int line, int column, std::string key, std::string found, std::string expected,
+               std::string hint = {}) {
     if (is_full()) return;
-    mistakes_.push_back({{file_, line, column}, std::move(key), std::move(found), std::move(expected), {}});
+    mistakes_.push_back(
+        {{file_, line, column}, std::move(key), std::move(found), std::move(expected), std::move(hint)});
   }
 
   /// Whether there are so many mistakes that further ones are not listed.
   [[nodiscard]] bool is_full() const { return mistakes_.size() >= max_mistakes; }
 
   static constexpr const char* trace_expected = "two or more different vertices";
+  static constexpr const char* format_expected = "GeoJSON, WKT, or a table with the columns trace, x, y";
 
   /// Adds a trace. Returns what is found in place of one that has no two different vertices.
-  std::optional<std::string> add(const std::vector<Vec2>& vertices) {
-    const std::size_t before = traces_.size();
-    for (std::size_t k = 0; k + 1 < vertices.size(); ++k) {
-      if (!(vertices[k] == vertices[k + 1]))
-        traces_.push_back({vertices[k], vertices[k + 1], source_, polylines_});
-    }
-    if (traces_.size() == before) {
-      return vertices.size() == 1 ? "a trace of one vertex"
-                                  : fmt::format("a trace of {} equal vertices", vertices.size());
-    }
-    ++polylines_;
-    return std::nullopt;
-  }
+  std::optional<std::string> add(const std::vector<Vec2>& vertices);
 
-  std::vector<Trace> finish() {
-    if (mistakes_.empty() && traces_.empty()) mistake(0, 0, "", "no trace", "one trace or more");
-    if (!mistakes_.empty()) throw InputError(std::move(mistakes_));
-    return std::move(traces_);
-  }
+  /// The file names the system of its coordinates, at this place.
+  void names_system(int line, int column, std::string key, std::string name);
+
+  /// All traces. Throws the mistakes, if there are any; coordinates in degrees are one.
+  std::vector<Trace> finish();
 
  private:
   /// Mistakes beyond this number are not listed.
   static constexpr std::size_t max_mistakes = 20;
 
+  void check_unit();
+
   std::string file_;
   TraceSource source_;
   std::vector<Trace> traces_;
   int polylines_ = 0;
+  Box box_;
+  Diagnostic system_;  ///< where the file names its system of coordinates, and as what
   std::vector<Diagnostic> mistakes_;
 };
 
 /// Of an offset into the text, counted from 1.
 std::pair<int, int> line_and_column(std::string_view text, std::size_t offset);
 
+/// What a line of a message can hold of a text.
+std::string shortened(std::string_view text);
+
+/// Without the spaces around it.
+std::string_view trimmed(std::string_view text);
+
+/// Takes the first line off a text, without its end: CR, LF or both.
+std::string_view take_line(std::string_view& text);
+
+/// Whether coordinates in this system are degrees: `EPSG:4326`, `urn:ogc:def:crs:OGC:1.3:CRS84`, …
+bool is_in_degrees(std::string_view system);
+
+/// What a file of another kind is, and what to do with it.
+struct ForeignFormat {
+  std::string name;
+  std::string advice;
+};
+std::optional<ForeignFormat> foreign_format(std::string_view text);
+
+/// Whether the text begins with a geometry as well-known text.
+bool is_wkt(std::string_view text);
+
 /// One reader per format; mistakes are added to the map.
 void read_geojson(std::string_view text, MapReader& map);
-void read_trace_csv(std::string_view text, MapReader& map);
+void read_trace_table(std::string_view text, MapReader& map);
+/// `line` and `column`: where the text begins in the file.
+void read_wkt(std::string_view text, MapReader& map, int line = 1, int column = 1);
 
 }  // namespace keyblock::rockmass

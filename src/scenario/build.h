@@ -27,6 +27,10 @@ BlockModel build_blocks(const Scenario& scenario, int realization);
 void add_block_warnings(const Scenario& scenario, const BlockModel& model,
                         std::vector<std::string>& warnings);
 
+/// Explicit blocks that overlap at the start: each other, blocks of the domain, or the frame around it.
+void add_overlap_warnings(const Scenario& scenario, const cutting::BlockSystem& system,
+                          std::vector<std::string>& warnings);
+
 /// Everything a run needs, but for `version`. Of a block's keys those of its [[block]] go before those of the last
 /// [[region]] that holds its centroid, and those before [rock].
 ///

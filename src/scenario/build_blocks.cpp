@@ -36,6 +36,9 @@ cutting::CutTolerances tolerances_of(const CuttingKeys& keys, const Box& window,
   tolerances.sliver_area = keys.sliver_area.value_or(tolerances.sliver_area);
   tolerances.sliver_thickness = keys.sliver_thickness.value_or(tolerances.sliver_thickness);
   tolerances.cluster = keys.cluster.value_or(tolerances.cluster);
+  tolerances.sliver_area_is_given = keys.sliver_area.has_value();
+  tolerances.sliver_thickness_is_given = keys.sliver_thickness.has_value();
+  tolerances.cluster_is_given = keys.cluster.has_value();
   tolerances.collinear = keys.collinear.value_or(tolerances.collinear);
   return tolerances;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "overlap/overlap.h"
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
 #include "scenario/expected_blocks.h"
@@ -18,10 +17,6 @@
 
 namespace keyblock::scenario {
 namespace {
-
-// Overlaps of explicit blocks deeper than this share of the size of the smallest block are warned of, the deepest ones.
-constexpr double overlap_share = 1e-4;
-constexpr std::size_t most_overlaps = 5;
 
 using simulation::BlockProperties;
 using simulation::RunSetup;
@@ -161,30 +156,6 @@ void check_size(const Scenario& scenario, const std::vector<BlockProperties>& pr
   }
 }
 
-// Contact takes blocks that overlap at the start as they are: nothing pushes them apart.
-void warn_of_overlaps(const Scenario& scenario, const cutting::BlockSystem& system,
-                      std::vector<std::string>& warnings) {
-  if (scenario.blocks.empty()) return;
-  const std::size_t cut = system.blocks.size() - scenario.blocks.size();
-  std::vector<Polygon> polygons;
-  double least_depth = HUGE_VAL;
-  for (const cutting::CutBlock& block : system.blocks) {
-    polygons.push_back(block.polygon);
-    least_depth = std::min(least_depth, overlap_share * std::sqrt(area(block.polygon)));
-  }
-  const auto overlaps = overlap::all_overlaps(polygons, least_depth);
-  const auto name = [&](int block) {
-    const auto b = static_cast<std::size_t>(block);
-    return b < cut ? std::string("a block of the domain") : scenario.blocks[b - cut].path;
-  };
-  for (std::size_t k = 0; k < std::min(overlaps.size(), most_overlaps); ++k) {
-    const Vec2 where = overlaps[k].where + system.origin;
-    warnings.push_back(fmt::format("{} and {} overlap by {:.3g} m at [{:.6g}, {:.6g}]",
-                                   name(overlaps[k].block_a), name(overlaps[k].block_b), overlaps[k].depth,
-                                   where.x, where.y));
-  }
-}
-
 double top_of(const Scenario& scenario, const cutting::BlockSystem& system) {
   if (scenario.domain) return scenario.domain->y.second - system.origin.y;
   Box box;
@@ -250,7 +221,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
                       place_text(scenario, "rock.order"), *reason));
   }
   if (warnings != nullptr) {
-    warn_of_overlaps(scenario, setup.system, notes);
+    add_overlap_warnings(scenario, setup.system, notes);
     warnings->insert(warnings->end(), notes.begin(), notes.end());
   }
   setup.warnings = std::move(notes);

@@ -1,5 +1,7 @@
 #include "scenario/cut_summary.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -46,6 +48,18 @@ ordered_json cutting_json(const cutting::CutStatistics& cut) {
 }
 
 }  // namespace
+
+std::optional<std::string> sliver_note(const cutting::BlockSystem& system, std::size_t explicit_blocks) {
+  constexpr double worth_saying = 0.01;
+  const cutting::CutStatistics& cut = system.statistics;
+  const auto merged = static_cast<std::size_t>(cut.merged_slivers);
+  const std::size_t blocks = system.blocks.size() - explicit_blocks + merged;
+  if (static_cast<double>(merged) <= worth_saying * static_cast<double>(blocks)) return std::nullopt;
+  return fmt::format(
+      "{} of {} blocks are slivers and part of their neighbours, {:.3g} m2 of {:.6g} m2 in all; [cutting] "
+      "has the limits",
+      merged, blocks, cut.sliver_area, cut.domain_area);
+}
 
 std::string cut_summary(const Scenario& scenario, int realization, const BlockModel& model,
                         const std::string& version) {

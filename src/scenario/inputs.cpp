@@ -168,7 +168,9 @@ class MotionReader {
 
 std::vector<fs::path> input_paths(const Scenario& scenario) {
   std::set<fs::path> paths;
-  for (const TraceMapSpec& map : scenario.trace_maps) paths.insert(map.file);
+  for (const TraceMapSpec& map : scenario.trace_maps) {
+    if (!map.file.empty()) paths.insert(map.file);
+  }
   for (const MotionSpec& motion : scenario.motions) {
     for (const MotionComponentSpec& component : motion.components) paths.insert(component.file);
   }
@@ -193,7 +195,10 @@ std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario) {
   std::vector<Diagnostic> mistakes;
   for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
     try {
-      const auto map = rockmass::read_trace_map(scenario.trace_maps[k].file, static_cast<int>(k));
+      const TraceMapSpec& spec = scenario.trace_maps[k];
+      const int index = static_cast<int>(k);
+      const auto map = spec.file.empty() ? rockmass::traces_of(spec.points, index)
+                                         : rockmass::read_trace_map(spec.file, index);
       traces.insert(traces.end(), map.begin(), map.end());
     } catch (const InputError& error) {
       append(mistakes, error);

@@ -216,12 +216,23 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
 
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
   map.path = t.path();
+  const bool has_points = t.find("points") != nullptr, has_file = t.find("file") != nullptr;
   t.file("file", map.file,
-         {.meaning =
-              "GeoJSON (LineString and MultiLineString features) or CSV (columns `trace,x,y`, one row per "
-              "vertex, those of a trace one after the other), in the coordinates of the domain.",
-          .required = true});
-  t.name("name", map.name, "trace_map", {.meaning = "Name in results.", .fallback = "that of the file"});
+         {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](user-guide.md#trace-maps), in the "
+                     "coordinates of the domain. `file` or `points` is required.",
+          .required = !t.documenting() && !has_points,
+          .fallback = "points"});
+  t.points("points", map.points,
+           {.meaning = "The vertices of one trace, in place of a file.", .unit = "m", .fallback = "file"});
+  if (has_points && has_file) t.fail("points", "points and a file", "one of the two");
+  if (!map.points.empty() &&
+      std::all_of(map.points.begin(), map.points.end(), [&](Vec2 p) { return p == map.points.front(); }))
+    t.fail("points", fmt::format("{} points, all the same", map.points.size()),
+           "two or more different points");
+  t.name("name", map.name, "trace_map",
+         {.meaning = "Name in results. Required with `points`.",
+          .required = !t.documenting() && has_points,
+          .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
   read_joint_keys(t, map.joints, set_defaults);
   check_stiffness(t, map.joints, standard);
@@ -338,11 +349,15 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
   root.tables("trace_map", scenario.trace_maps,
               {.meaning = "Joints mapped one by one, straight or as polylines."},
               [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
-  root.table("cutting",
-             {.meaning = "Tolerances of cutting; 0 switches a step off. L is the square root of the area of "
-                         "the domain, at most "
-                         "80 times that area over the length of all traces in it."},
-             [&](TableReader& t) { read_cutting(t, scenario.cutting); });
+  root.table(
+      "cutting",
+      {.meaning =
+           "Tolerances of cutting; 0 switches a step off. L is the square root of the area of the "
+           "domain, at most 80 times that area over the length of all traces in it. For "
+           "`sliver_area`, `sliver_thickness` and `cluster` L is also at most 80 times the size of the "
+           "blocks around: a patch of small blocks in a large domain keeps its blocks. A value that "
+           "is given holds everywhere."},
+      [&](TableReader& t) { read_cutting(t, scenario.cutting); });
   root.tables(
       "region", scenario.regions,
       {.meaning =

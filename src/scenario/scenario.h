@@ -57,7 +57,8 @@ struct JointSetSpec {
 
 struct TraceMapSpec {
   std::string name;
-  std::filesystem::path file;
+  std::filesystem::path file;  ///< empty: points
+  std::vector<Vec2> points;    ///< of one trace
   JointKeys joints;
   std::string path;
 };

@@ -36,14 +36,6 @@ contact::JointLaw law_of(const JointProperties& joint) {
           false};
 }
 
-Polygon frame_polygon(const Box& domain) {
-  const double width = 0.05 * std::max(domain.size().x, domain.size().y);
-  const Vec2 a = domain.min, b = domain.max;
-  const Box outer = domain.grown(width);
-  return {{outer.min, {outer.max.x, outer.min.y}, outer.max, {outer.min.x, outer.max.y}},
-          {{a, {a.x, b.y}, b, {b.x, a.y}}}};
-}
-
 /// Polynomials over a block. Throws InputError where it is so thin, for its order, that they cannot be told from each other.
 block::Basis make_basis(const Polygon& polygon, const BlockProperties& properties, int order) {
   try {
@@ -201,6 +193,14 @@ int joint_law(const RunSetup& setup, cutting::EdgeLabel label) {
       return 3 + sets + std::min<int>(label.index, maps - 1);
   }
   return 0;
+}
+
+Polygon frame_polygon(const Box& domain) {
+  const double width = 0.05 * std::max(domain.size().x, domain.size().y);
+  const Vec2 a = domain.min, b = domain.max;
+  const Box outer = domain.grown(width);
+  return {{outer.min, {outer.max.x, outer.min.y}, outer.max, {outer.min.x, outer.max.y}},
+          {{a, {a.x, b.y}, b, {b.x, a.y}}}};
 }
 
 Model build_model(const RunSetup& setup) {

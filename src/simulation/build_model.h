@@ -10,6 +10,9 @@ namespace keyblock::simulation {
 /// Index of the joint law of an edge label in Model::laws.
 int joint_law(const RunSetup& setup, cutting::EdgeLabel label);
 
+/// The fixed block around a domain: a ring of a twentieth of the larger extent.
+Polygon frame_polygon(const Box& domain);
+
 /// The mechanical model of a setup. Blocks keep their order; with a frame, one more block, fixed, stands last.
 /// Throws InputError for loads and supports that lie off their block and for blocks that no polynomial can be built on.
 dynamics::Model build_model(const RunSetup& setup);

@@ -38,6 +38,8 @@ struct ModelRecord {
     Vec2 centroid;
     /// Display vertices of ring r are vertices[ring_start[r] … ring_start[r + 1]) of ModelRecord.
     std::vector<int> ring_start;
+    /// Stress normal to the section over the sum of those in it: 0 in plane stress, Poisson's ratio in plane strain.
+    double stress_ratio_zz = 0.0;
   };
   std::vector<Block> blocks;
   std::vector<Vec2> vertices;  ///< reference positions of all display vertices, m
@@ -63,7 +65,8 @@ struct Frame {
   std::vector<std::array<float, 2>> displacement;  ///< of every display vertex since the start, m
   std::vector<std::array<float, 3>> stress;        ///< mean Cauchy stress of every block: xx, yy, xy, Pa
   std::vector<BlockStatus> status;                 ///< of every block
-  std::vector<std::int16_t> order;                 ///< of every block
+  std::vector<std::array<float, 2>> velocity;  ///< of the mass centre of every block, m/s; empty: not known
+  std::vector<std::int16_t> order;             ///< of every block
 };
 
 enum class ContactState : std::uint8_t { open = 0, sliding = 1, locked = 2 };

@@ -72,6 +72,8 @@ ModelRecord Recorder::model() const {
     row.fixed = block.fixed;
     row.area = block.area;
     row.density = block.material.density;
+    if (!block.fixed && block.material.state == PlaneState::plane_strain)
+      row.stress_ratio_zz = block.material.poisson;
     if (!is_frame) row.excavations = setup_.system.blocks[b].excavations;
     row.centroid = block.centroid;
     const contact::Surface& surface = model_.surface;
@@ -113,6 +115,10 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
     const block::Stress s =
         block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&state.position[block.first]);
     frame.stress.push_back({static_cast<float>(s.xx), static_cast<float>(s.yy), static_cast<float>(s.xy)});
+    // The first basis function is constant, 1/√area.
+    const double scale = 1.0 / std::sqrt(block.area);
+    frame.velocity.push_back({static_cast<float>(scale * state.velocity[block.first]),
+                              static_cast<float>(scale * state.velocity[block.first + 1])});
     frame.order.push_back(static_cast<std::int16_t>(block.basis.order()));
   }
   frame.status = gauge_.status(state);

@@ -98,6 +98,27 @@ RC_GTEST_PROP(Cleaning, RawBlocksShareTheirEdges, ()) {
   RC_ASSERT(std::abs(total_area(system) - domain_area) < 1e-11 * domain_area);
 }
 
+/// Far from the origin real coordinates have 10⁻⁹ m between them, and vertices that lie closer would fall together.
+RC_GTEST_PROP(Cleaning, RawBlocksKeepTheirShapeFarFromTheOrigin, ()) {
+  CutInput input = random_input();
+  const Vec2 far{466000.0, 6.7e6};
+  for (Vec2& p : input.domain) p += far;
+  for (rockmass::Trace& trace : input.traces) {
+    trace.a += far;
+    trace.b += far;
+    if (trace.a == trace.b) RC_DISCARD();
+  }
+  input.excavations.clear();
+  input.tolerances = CutTolerances{};
+  BlockSystem system = cut(input);
+  for (CutBlock& block : system.blocks) {
+    for (Vec2& p : block.polygon.outer) p += system.origin;
+    for (Ring& hole : block.polygon.holes)
+      for (Vec2& p : hole) p += system.origin;
+  }
+  RC_ASSERT(GeosOracle().all_valid(system.blocks));
+}
+
 /// No two vertices of one block closer than the tolerance, unless a move would have turned a block over.
 TEST(Cleaning, VerticesAreClustered) {
   std::size_t close = 0;

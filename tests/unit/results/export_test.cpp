@@ -236,7 +236,13 @@ TEST(Export, VtkSeriesHasTimesThatAscend) {
   const auto files = export_run(small_motions(), folder, ExportFormat::vtk);
   EXPECT_EQ(files[0], folder / "blocks.pvd");
   EXPECT_EQ(files[1], folder / "contacts.pvd");
-  EXPECT_EQ(files.size(), 2U + 6 + 3);
+  EXPECT_EQ(files[2], folder / "outlines.pvd");
+  EXPECT_EQ(files[3], folder / "centres.pvd");
+  EXPECT_EQ(files[4], folder / "forces.pvd");
+  EXPECT_EQ(files[5], folder / "view.py");
+  EXPECT_EQ(files.size(), 6U + 3 * 6 + 2 * 3);
+  for (const int series : {2, 3}) EXPECT_EQ(series_times(files[series]), series_times(files[0]));
+  EXPECT_EQ(series_times(files[4]), series_times(files[1]));
   const std::vector<double> times = series_times(files[0]);
   ASSERT_EQ(times.size(), 6U);
   for (std::size_t k = 1; k < times.size(); ++k) EXPECT_GT(times[k], times[k - 1]);
@@ -268,7 +274,7 @@ print("type of cell 0", grid.GetCellType(0), "its points", grid.GetCell(0).GetNu
 print("blocks", sorted({int(data.GetArray("block").GetValue(k)) for k in range(grid.GetNumberOfCells())}))
 print("order", int(data.GetArray("order").GetValue(1)))
 print("status", int(data.GetArray("status").GetValue(1)))
-print("stress", data.GetArray("stress").GetNumberOfComponents(), data.GetArray("stress").GetComponentName(2))
+print("stress", data.GetArray("stress").GetNumberOfComponents(), data.GetArray("stress").GetComponentName(3))
 print("displacement", [round(v, 6) for v in grid.GetPointData().GetArray("displacement").GetTuple3(0)])
 print("point", [round(v, 6) for v in grid.GetPoint(3)])
 print("magnitude", round(data.GetArray("displacement_magnitude").GetValue(0), 6))
@@ -288,22 +294,27 @@ print("line", [round(v, 5) for p in (0, 1) for v in lines.GetPoint(p)])
             "blocks [0, 1]\n"
             "order 32\n"
             "status 2\n"
-            "stress 3 xy\n"
+            "stress 6 XY\n"
             "displacement [0.3, -0.25, 0.0]\n"
-            "point [466003.4, 6691603.45, 0.0]\n"
+            "point [3.3, 2.75, 0.0]\n"
             "magnitude 0.390512\n"
             "step 30\n"
             "contacts 2 4 1\n"
-            "line [466007.4, 6691607.45, 0.0, 466005.4, 6691607.45, 0.0]\n");
+            "line [7.3, 6.75, 0.0, 5.3, 6.75, 0.0]\n");
+}
+
+// The n-th piece of Python in docs/result-file.md.
+std::string documented_python(int n) {
+  const std::string page = read_file(std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "docs" / "result-file.md");
+  std::size_t begin = 0;
+  for (int k = 0; k < n; ++k) begin = page.find("```python\n", begin) + 10;
+  return page.substr(begin, page.find("```", begin) - begin);
 }
 
 // The example of docs/result-file.md, on a file whose run has ended and on one whose run has not.
 TEST(ResultFileDocs, ThePythonExampleRuns) {
   if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
-  const std::string page = read_file(std::filesystem::path(KEYBLOCK_SOURCE_DIR) / "docs" / "result-file.md");
-  const std::size_t begin = page.find("```python\n") + 10, end = page.find("```", begin);
-  ASSERT_NE(end, std::string::npos);
-  const std::string script = page.substr(begin, end - begin);
+  const std::string script = documented_python(1);
   const FreshFolder folder;
   SampleRun sample;
   ResultWriter writer(folder, 0.0);
@@ -319,6 +330,91 @@ TEST(ResultFileDocs, ThePythonExampleRuns) {
   result = python(folder, script, folder.string());
   EXPECT_EQ(result.status, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("block 0 has fallen; it has 3 vertices and 0 holes"));
+}
+
+TEST(ResultFileDocs, OutlinesOfBlocksInFourLines) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const std::string lines = documented_python(2);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 4);
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const PythonResult result =
+      python(folder,
+             "import sys, h5py\nf = h5py.File(sys.argv[1] + '/result.h5', 'r')\n" + lines +
+                 "print([ring.tolist() for ring in outlines(1)], len(outlines(0)), outlines(2)[0].shape)\n",
+             folder.string());
+  EXPECT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(result.output,
+            "[[[3.0, 3.0], [7.0, 3.0], [7.0, 7.0], [3.0, 7.0]], "
+            "[[4.5, 4.5], [4.5, 5.5], [5.5, 5.5], [5.5, 4.5]]] 1 (3, 2)\n");
+}
+
+TEST(ResultFileDocs, EveryDatasetSaysItsUnitAndItsNames) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const PythonResult result = python(folder, R"(
+import sys, h5py
+f = h5py.File(sys.argv[1] + "/result.h5", "r")
+def look(name, item):
+    if not isinstance(item, h5py.Dataset): return
+    a = item.attrs
+    number = item.dtype.kind != "S" and not name in ("stages", "run", "summary")
+    if "description" not in a or "unit" not in a or (len(a["unit"]) > 0) != number: print("missing at", name)
+    if "columns" in a and len(a["columns"]) != item.shape[-1]: print("columns of", name)
+f.visititems(look)
+for name in ("frames/status", "contacts/state", "model/edge_kind", "contacts/edge_kind", "model/block_fixed"):
+    print(name, ", ".join(f[name].attrs["values"].astype("U")))
+for name in ("frames/stress", "frames/velocity", "contacts/shear_force", "histories/values"):
+    print(name, f[name].attrs["unit"].decode())
+print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["steps/energy_names"][:]).decode())
+)",
+                                     folder.string());
+  EXPECT_EQ(result.status, 0) << result.output;
+  EXPECT_EQ(result.output,
+            "frames/status in place, loosened, fallen, excavated\n"
+            "contacts/state open, sliding, locked\n"
+            "model/edge_kind free, joint set, trace map, excavation, domain\n"
+            "contacts/edge_kind free, joint set, trace map, excavation, domain\n"
+            "model/block_fixed free, fixed\n"
+            "frames/stress Pa\n"
+            "frames/velocity m/s\n"
+            "contacts/shear_force N/m\n"
+            "histories/values m, m, m/s, m/s, Pa, Pa, Pa\n"
+            "True\n");
+}
+
+// Those of earlier versions have no velocities and do not know the stress normal to the section.
+TEST(ResultFileDocs, FilesWithoutTheNewerDatasetsAreReadAndExported) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const PythonResult result = python(folder, R"(
+import sys, h5py
+with h5py.File(sys.argv[1] + "/result.h5", "r+") as f:
+    del f["frames/velocity"], f["model/block_stress_ratio_zz"]
+)",
+                                     folder.string());
+  ASSERT_EQ(result.status, 0) << result.output;
+  const RunData data = read_run(folder);
+  ASSERT_FALSE(data.frames.empty());
+  EXPECT_TRUE(data.frames.front().velocity.empty());
+  EXPECT_EQ(data.frames.front().stress, sample.expected().frames.front().stress);
+  EXPECT_EQ(data.model.blocks.back().stress_ratio_zz, 0.0);
+  export_run(data, folder / "vtk", ExportFormat::vtk);
+  EXPECT_THAT(read_file(folder / "vtk/centres_00000.vtp"), testing::Not(HasSubstr("velocity")));
 }
 
 }  // namespace

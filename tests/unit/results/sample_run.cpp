@@ -50,6 +50,7 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
     EXPECT_EQ(a.blocks[k].excavations, b.blocks[k].excavations);
     EXPECT_TRUE(same(a.blocks[k].centroid, b.blocks[k].centroid));
     EXPECT_EQ(a.blocks[k].ring_start, b.blocks[k].ring_start);
+    EXPECT_TRUE(same(a.blocks[k].stress_ratio_zz, b.blocks[k].stress_ratio_zz));
   }
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.edge_label, b.edge_label);
@@ -94,6 +95,10 @@ void expect_equal(const simulation::Frame& a, const simulation::Frame& b) {
   }
   for (std::size_t k = 0; k < a.stress.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(same(a.stress[k][i], b.stress[k][i]));
+  }
+  ASSERT_EQ(a.velocity.size(), b.velocity.size());
+  for (std::size_t k = 0; k < a.velocity.size(); ++k) {
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(same(a.velocity[k][i], b.velocity[k][i]));
   }
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.order, b.order);
@@ -199,6 +204,7 @@ SampleRun::SampleRun() {
   model.blocks = {{"base", 1, true, 0.5, 2270.0, {}, {1.0 / 3.0, 1.0 / 3.0}, {0, 3}},
                   {"", 2, false, 15.0, 2600.5, {0, 1}, {5.0, 5.0}, {3, 7, 11}},
                   {"slider", 1, false, 0.5, 2270.0, {1}, {7.0, 0.1}, {11, 14}}};
+  model.blocks.back().stress_ratio_zz = 0.1 + 0.2;
   model.vertices = {{0, 0},     {1, 0},     {0, 1},     {3, 3},     {7, 3}, {7, 7}, {3, 7},
                     {4.5, 4.5}, {4.5, 5.5}, {5.5, 5.5}, {5.5, 4.5}, {7, 0}, {8, 0}, {7, 1}};
   for (std::size_t k = 0; k < model.vertices.size(); ++k) {
@@ -231,6 +237,8 @@ simulation::Frame SampleRun::frame(int stage, long step) {
     frame.stress.push_back(
         {static_cast<float>(noise(step, 100 + k)), -0.0F, std::numeric_limits<float>::denorm_min()});
     frame.status.push_back(static_cast<simulation::BlockStatus>((step + k) % 4));
+    frame.velocity.push_back(
+        {static_cast<float>(noise(step, 200 + k)), static_cast<float>(noise(step, 300 + k))});
     frame.order.push_back(static_cast<std::int16_t>(1 + (step + k) % 300));
   }
   return frame;

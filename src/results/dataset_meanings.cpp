@@ -1,0 +1,143 @@
+#include <string>
+#include <vector>
+
+#include "results/block_shape.h"
+#include "results/record_fields.h"
+#include "results/result_tables.h"
+
+namespace keyblock::results {
+namespace {
+
+using Names = std::vector<std::string>;
+
+struct Meaning {
+  const char* dataset;
+  const char* unit;  ///< "1": a number without a unit; "": text
+  const char* description;
+  Names columns{};  ///< of the last dimension
+  Names values{};   ///< by number
+};
+
+template <class Enum>
+Names names_up_to(Enum last, std::string (*name)(Enum)) {
+  Names names;
+  for (int k = 0; k <= static_cast<int>(last); ++k) names.push_back(name(static_cast<Enum>(k)));
+  return names;
+}
+
+Names energy_names() {
+  Names names;
+  for (const auto& [name, member] : energy_fields) names.emplace_back(name);
+  return names;
+}
+
+std::vector<Meaning> of_the_model() {
+  const Names kinds = names_up_to(cutting::EdgeKind::domain, edge_kind_name);
+  return {{"scenario", "", "the scenario that was run, TOML"},
+          {"model/record", "", "names, outlines, limits and what cutting did, JSON"},
+          {"model/vertices", "m", "reference positions of the display vertices", {"x", "y"}},
+          {"model/edge_kind",
+           "1",
+           "what the edge from each vertex to the next of its ring is a piece of",
+           {},
+           kinds},
+          {"model/edge_index", "1", "which joint set, trace map or excavation of edge_kind"},
+          {"model/block_rings", "1",
+           "entries [block_rings[b], block_rings[b + 1]) of ring_start belong to block b"},
+          {"model/ring_start", "1",
+           "ring r of block b: vertices [ring_start[a + r], ring_start[a + r + 1]), a = block_rings[b]"},
+          {"model/block_name", "", "names; empty for cut blocks"},
+          {"model/block_order", "1", "order of the displacement polynomial at the start"},
+          {"model/block_fixed", "1", "whether the block is fixed", {}, {"free", "fixed"}},
+          {"model/block_area", "m2", "reference area"},
+          {"model/block_density", "kg/m3", "mass per volume"},
+          {"model/block_centroid", "m", "reference position of the centroid", {"x", "y"}},
+          {"model/block_stress_ratio_zz", "1",
+           "stress zz over xx + yy: 0 in plane stress, Poisson's ratio in plane strain"},
+          {"model/block_excavations", "1",
+           "entries [block_excavations[b], block_excavations[b + 1]) of excavation belong to block b"},
+          {"model/excavation", "1", "numbers of excavations"}};
+}
+
+std::vector<Meaning> of_frames() {
+  return {{"frames/time", "s", "simulated time; static steps take none"},
+          {"frames/stage", "1", "stage, from 0"},
+          {"frames/step", "1", "step of the run"},
+          {"frames/displacement", "m", "of every display vertex since the start", {"x", "y"}},
+          {"frames/velocity", "m/s", "of the mass centre of every block", {"x", "y"}},
+          {"frames/stress", "Pa", "mean Cauchy stress of every block, tension positive", {"xx", "yy", "xy"}},
+          {"frames/status",
+           "1",
+           "of every block",
+           {},
+           names_up_to(simulation::BlockStatus::excavated, status_name)},
+          {"frames/order", "1", "order of the displacement polynomial of every block"}};
+}
+
+std::vector<Meaning> of_contacts() {
+  return {
+      {"contacts/time", "s", "simulated time of each snapshot"},
+      {"contacts/stage", "1", "stage, from 0"},
+      {"contacts/step", "1", "step of the run"},
+      {"contacts/end", "1", "contacts of snapshot k are the rows [end[k - 1], end[k]), from 0 for the first"},
+      {"contacts/block_a", "1", "block with the vertex"},
+      {"contacts/block_b", "1", "block with the edge"},
+      {"contacts/state",
+       "1",
+       "state of the contact",
+       {},
+       names_up_to(simulation::ContactState::locked, contact_state_name)},
+      {"contacts/position", "m", "where", {"x", "y"}},
+      {"contacts/normal", "1", "unit vector out of block_b", {"x", "y"}},
+      {"contacts/length", "m", "of joint that belongs to the contact"},
+      {"contacts/gap", "m", "as the law of the joint has it, negative where it is pressed"},
+      {"contacts/slip", "m", "shear displacement of block_a against block_b since the excavation"},
+      {"contacts/normal_force", "N/m", "per metre of thickness, compression positive"},
+      {"contacts/shear_force", "N/m", "per metre of thickness; on block_a along (normal_y, -normal_x)"},
+      {"contacts/edge_kind",
+       "1",
+       "what the edge is a piece of",
+       {},
+       names_up_to(cutting::EdgeKind::domain, edge_kind_name)},
+      {"contacts/edge_index", "1", "which joint set, trace map or excavation of edge_kind"}};
+}
+
+std::vector<Meaning> of_rows() {
+  return {{"histories/names", "", "names of the chosen points"},
+          {"histories/time", "s", "simulated time"},
+          {"histories/step", "1", "step of the run"},
+          {"histories/values",
+           "m, m, m/s, m/s, Pa, Pa, Pa",
+           "of every chosen point",
+           {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"}},
+          {"steps/time", "s", "simulated time"},
+          {"steps/stage", "1", "stage, from 0"},
+          {"steps/step", "1", "step of the run"},
+          {"steps/iterations", "1", "open-close iterations"},
+          {"steps/closed_contacts", "1", "contacts closed in the end"},
+          {"steps/step_size", "s", "smallest part of the step; static: pseudo time step"},
+          {"steps/penetration", "m", "largest depth that the contact code sees"},
+          {"steps/max_displacement", "m", "largest of the step"},
+          {"steps/energy", "J/m",
+           "terms of the energy balance per metre of thickness; residual_ratio has no unit", energy_names()},
+          {"steps/energy_names", "", "names of the columns of energy"},
+          {"stages", "", "a JSON object per line, bytes"},
+          {"run", "", "a line of JSON at the end of the run, bytes"},
+          {"summary", "", "the text of summary.json, bytes"}};
+}
+
+}  // namespace
+
+void describe_datasets(hid_t file) {
+  for (const auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows()}) {
+    for (const Meaning& meaning : meanings) {
+      const hdf5::Handle dataset = hdf5::open_dataset(file, meaning.dataset);
+      hdf5::write_attribute(dataset, "unit", std::string(meaning.unit));
+      hdf5::write_attribute(dataset, "description", std::string(meaning.description));
+      if (!meaning.columns.empty()) hdf5::write_attribute(dataset, "columns", meaning.columns);
+      if (!meaning.values.empty()) hdf5::write_attribute(dataset, "values", meaning.values);
+    }
+  }
+}
+
+}  // namespace keyblock::results

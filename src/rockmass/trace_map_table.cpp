@@ -1,0 +1,320 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "rockmass/trace_map_reader.h"
+
+namespace keyblock::rockmass {
+namespace {
+
+struct Cell {
+  std::string text;
+  int column = 1;  ///< where it begins in the line, in bytes from 1
+};
+
+constexpr char any_space = ' ';  // as a separator: any number of spaces and tabs
+/// Those that come first are tried first.
+constexpr std::array<char, 4> separators{',', ';', '\t', any_space};
+
+/// Cells of one line; a quoted one may hold the separator, and a doubled quote for a quote.
+std::vector<Cell> cells_of(std::string_view line, char separator) {
+  std::vector<Cell> cells;
+  std::size_t begin = 0;
+  bool quoted = false;
+  std::string text;
+  for (std::size_t k = 0; k <= line.size(); ++k) {
+    const bool between =
+        k == line.size() || line[k] == separator || (separator == any_space && line[k] == '\t');
+    if (k == line.size() || (between && !quoted)) {
+      const auto lead = line.substr(begin, k - begin).find_first_not_of(" \t");
+      Cell cell{std::string(trimmed(text)),
+                static_cast<int>(begin + (lead == std::string_view::npos ? 0 : lead)) + 1};
+      if (separator != any_space || !cell.text.empty()) cells.push_back(std::move(cell));
+      begin = k + 1;
+      text.clear();
+    } else if (line[k] == '"') {
+      if (quoted && k + 1 < line.size() && line[k + 1] == '"') {
+        text += line[++k];
+      } else {
+        quoted = !quoted;
+      }
+    } else {
+      text += line[k];
+    }
+  }
+  return cells;
+}
+
+/// Where commas separate no cells, one may stand for the decimal point.
+std::optional<double> finite_number(std::string text, char separator) {
+  if (separator != ',' && text.find('.') == std::string::npos)
+    std::replace(text.begin(), text.end(), ',', '.');
+  double value = 0.0;
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::vector<std::string> names_in(const std::vector<Cell>& cells) {
+  std::vector<std::string> names;
+  for (const Cell& cell : cells) names.push_back(lower(cell.text));
+  return names;
+}
+
+std::optional<std::size_t> place_of(const std::vector<std::string>& names,
+                                    std::initializer_list<std::string_view> wanted) {
+  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  });
+  return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
+}
+
+/// `x y x y …`, with numbers or without.
+bool is_header_of_points(const std::vector<std::string>& names) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k].empty() || names[k].front() != (k % 2 == 0 ? 'x' : 'y') ||
+        names[k].find_first_not_of("_0123456789", 1) != std::string::npos)
+      return false;
+  }
+  return names.size() >= 4 && names.size() % 2 == 0;
+}
+
+bool are_points(std::vector<Cell> cells, char separator) {
+  while (!cells.empty() && cells.back().text.empty()) cells.pop_back();
+  return cells.size() >= 4 && cells.size() % 2 == 0 &&
+         std::all_of(cells.begin(), cells.end(),
+                     [&](const Cell& cell) { return finite_number(cell.text, separator).has_value(); });
+}
+
+class TableReader {
+ public:
+  explicit TableReader(MapReader& map) : map_(map) {}
+
+  void read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    int number = 0;
+    while (!text.empty()) {
+      const std::string_view line = take_line(text);
+      ++number;
+      if (trimmed(line).empty()) continue;
+      if (kind_ != Kind::unknown) {
+        row(line, number);
+      } else if (!line.starts_with('#') && !begin(line, number)) {
+        return;
+      }
+    }
+    if (kind_ == Kind::unknown) map_.mistake(1, 1, "", "an empty file", header_expected);
+    finish();
+  }
+
+ private:
+  enum class Kind { unknown, vertices, points, wkt };
+
+  struct Polyline {
+    std::string name;
+    int line = 0;          ///< of its first row
+    int last_line = 0;     ///< of its last one so far
+    bool complete = true;  ///< no row of it had a mistake
+    std::vector<Vec2> vertices;
+  };
+
+  /// What kind of table the first line begins.
+  bool begin(std::string_view line, int number) {
+    for (const char separator : separators) {
+      separator_ = separator;
+      const std::vector<Cell> cells = cells_of(line, separator);
+      const std::vector<std::string> names = names_in(cells);
+      columns_ = cells.size();
+      const auto x = place_of(names, {"x", "lon", "long", "lng", "longitude"});
+      const auto y = place_of(names, {"y", "lat", "latitude"});
+      if (const auto trace = place_of(names, {"trace"}); trace && x && y) {
+        places_ = {*trace, *x, *y};
+        if (names[*x] != "x" && names[*y] != "y")
+          map_.names_system(number, cells[*x].column, "", "longitude, latitude");
+        return header_of_vertices(names, cells, number);
+      }
+      if (const auto wkt = place_of(names, {"wkt", "wkt_geom", "geometry", "geom", "the_geom"})) {
+        kind_ = Kind::wkt;
+        places_ = {*wkt, *wkt, *wkt};
+        return true;
+      }
+      if (is_header_of_points(names)) {
+        kind_ = Kind::points;
+        return true;
+      }
+      if (!are_points(cells, separator)) continue;
+      kind_ = Kind::points;
+      headerless_ = true;
+      row_of_points(cells, number);
+      return true;
+    }
+    missing_columns(line, number);
+    return false;
+  }
+
+  bool header_of_vertices(const std::vector<std::string>& names, const std::vector<Cell>& cells, int number) {
+    bool complete = true;
+    for (const std::size_t place : places_) {
+      const auto again =
+          std::find(names.begin() + static_cast<std::ptrdiff_t>(place) + 1, names.end(), names[place]);
+      if (again == names.end()) continue;
+      map_.mistake(number, cells[static_cast<std::size_t>(again - names.begin())].column, names[place],
+                   "the column again", "every column once");
+      complete = false;
+    }
+    kind_ = Kind::vertices;
+    return complete;
+  }
+
+  void missing_columns(std::string_view line, int number) {
+    const bool has_tabs = line.find('\t') != std::string_view::npos;
+    const char separator = line.find(',') != std::string_view::npos   ? ','
+                           : line.find(';') != std::string_view::npos ? ';'
+                           : has_tabs                                 ? '\t'
+                                                                      : any_space;
+    const std::vector<std::string> names = names_in(cells_of(line, separator));
+    for (const char* name : {"trace", "x", "y"}) {
+      if (place_of(names, {name})) continue;
+      map_.mistake(number, 1, name, "no such column in \"" + shortened(trimmed(line)) + '"', header_expected,
+                   "without a header, a line is a trace: x y x y …");
+    }
+  }
+
+  void row(std::string_view line, int number) {
+    const std::vector<Cell> cells = cells_of(line, separator_);
+    if (kind_ == Kind::points) return row_of_points(cells, number);
+    const std::size_t needed = *std::max_element(places_.begin(), places_.end()) + 1;
+    if (cells.size() < needed) {
+      map_.mistake(number, 1, "", fmt::format("{} cells", cells.size()), fmt::format("{} or more", needed));
+    } else if (kind_ == Kind::wkt) {
+      const Cell& cell = cells[places_[0]];
+      if (!cell.text.empty()) read_wkt(cell.text, map_, number, cell.column);
+    } else {
+      row_of_vertex(cells, number);
+    }
+  }
+
+  void row_of_vertex(const std::vector<Cell>& cells, int number) {
+    Polyline& trace = trace_of(cells[places_[0]], number);
+    if (cells.size() > columns_) {
+      map_.mistake(number, cells[columns_].column, "", fmt::format("{} cells", cells.size()),
+                   fmt::format("at most {}, the columns of the header", columns_));
+      trace.complete = false;
+      return;
+    }
+    const std::optional<double> x = coordinate(cells[places_[1]], "x", number),
+                                y = coordinate(cells[places_[2]], "y", number);
+    if (x && y) {
+      trace.vertices.push_back({*x, *y});
+    } else {
+      trace.complete = false;
+    }
+  }
+
+  void row_of_points(std::vector<Cell> cells, int number) {
+    while (!cells.empty() && cells.back().text.empty()) cells.pop_back();
+    const bool whole = cells.size() >= 4 && cells.size() % 2 == 0;
+    if (!whole)
+      map_.mistake(number, 1, "", fmt::format("{} cells", cells.size()),
+                   "x y x y …, of two vertices or more");
+    traces_.push_back({"", number, number, whole, {}});
+    for (std::size_t k = 0; whole && k < cells.size(); k += 2) {
+      const std::optional<double> x = coordinate(cells[k], "x", number),
+                                  y = coordinate(cells[k + 1], "y", number);
+      traces_.back().complete = traces_.back().complete && x && y;
+      if (x && y) traces_.back().vertices.push_back({*x, *y});
+    }
+  }
+
+  std::optional<double> coordinate(const Cell& cell, const char* name, int number) {
+    const std::optional<double> value = finite_number(cell.text, separator_);
+    if (!value) map_.mistake(number, cell.column, name, '"' + cell.text + '"', "a finite number");
+    return value;
+  }
+
+  Polyline& trace_of(const Cell& name, int number) {
+    const auto [place, is_new] = by_name_.try_emplace(name.text, traces_.size());
+    if (is_new) traces_.push_back({name.text, number, number, true, {}});
+    Polyline& trace = traces_[place->second];
+    if (place->second != current_ && !is_new) {
+      map_.mistake(number, name.column, "trace",
+                   fmt::format("\"{}\" again, after rows of \"{}\"", name.text, traces_[current_].name),
+                   fmt::format("rows of a trace that follow each other; the one before is in line {}",
+                               trace.last_line));
+      trace.complete = false;
+    }
+    current_ = place->second;
+    trace.last_line = number;
+    return trace;
+  }
+
+  /// Rows `number x y z` without a header look like traces of two vertices: their first values are whole numbers that ascend by
+  /// one, each several times.
+  [[nodiscard]] bool seem_numbered() const {
+    std::size_t repeated = 0;
+    for (std::size_t k = 0; k < traces_.size(); ++k) {
+      if (traces_[k].vertices.size() != 2) return false;
+      const double first = traces_[k].vertices[0].x;
+      const double before = k == 0 ? first - 1.0 : traces_[k - 1].vertices[0].x;
+      if (first != std::floor(first) || (first != before && first != before + 1.0)) return false;
+      if (first == before) {
+        ++repeated;
+      } else if (k > 0 && repeated == 0) {
+        return false;
+      } else {
+        repeated = 0;
+      }
+    }
+    return repeated > 0 && traces_.front().vertices[0].x != traces_.back().vertices[0].x;
+  }
+
+  void finish() {
+    if (kind_ == Kind::points && headerless_ && seem_numbered()) {
+      map_.mistake(traces_.front().line, 1, "",
+                   "rows without a header that begin with the number of their trace", header_expected,
+                   "if they are traces of two vertices each, begin with the line: x1 y1 x2 y2");
+    }
+    for (const Polyline& trace : traces_) {
+      if (!trace.complete) continue;
+      if (auto found = map_.add(trace.vertices)) {
+        map_.mistake(trace.line, 1, trace.name.empty() ? "" : "trace " + trace.name, std::move(*found),
+                     MapReader::trace_expected);
+      }
+    }
+  }
+
+  static constexpr const char* header_expected = "a header with the columns trace, x, y";
+  MapReader& map_;
+  Kind kind_ = Kind::unknown;
+  bool headerless_ = false;
+  char separator_ = ',';
+  std::array<std::size_t, 3> places_{};  ///< of trace, x, y; of the geometry
+  std::size_t columns_ = 0;              ///< of the header
+  std::vector<Polyline> traces_;
+  std::size_t current_ = 0;  ///< the trace of the last row
+  std::map<std::string, std::size_t> by_name_;
+};
+
+}  // namespace
+
+void read_trace_table(std::string_view text, MapReader& map) {
+  TableReader(map).read(text);
+}
+
+}  // namespace keyblock::rockmass

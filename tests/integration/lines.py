@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Lines as other programs write them, and blocks that overlap: what `check`, `cut` and `run` say."""
+
+import json
+import shutil
+import unittest
+
+from program import ROOT, Scenario
+
+DATA = ROOT / "tests/data/lines"
+
+DOMAIN = """
+[domain]
+x = {x}
+y = {y}
+boundary = "{boundary}"
+[rock]
+density = 2650.0
+young = 2.0e10
+poisson = 0.25
+[joints]
+friction = 35.0
+"""
+
+MAP = """
+[[trace_map]]
+name = "map"
+file = "{file}"
+"""
+
+
+class Lines(Scenario):
+    def lines(self, more, x="[0.0, 10.0]", y="[0.0, 10.0]", boundary="free"):
+        (self.folder / "lines.toml").write_text(DOMAIN.format(x=x, y=y, boundary=boundary) + more)
+        return "lines.toml"
+
+    def mapped(self, file, **domain):
+        shutil.copy(DATA / file, self.folder)
+        return self.lines(MAP.format(file=file), **domain)
+
+    def test_tables_of_spreadsheets(self):
+        for file in ("tabs.csv", "capitals.csv"):
+            self.assertIn("4 blocks from 2 of 2 traces", self.keyblock("cut", self.mapped(file), "-o", "cut").stdout)
+
+    def test_degrees_are_refused_with_advice(self):
+        scenario = self.mapped("degrees.geojson", x="[26.39, 26.391]", y="[60.3549, 60.3556]")
+        done = self.keyblock("check", scenario, expect=1)
+        self.assertRegex(done.stderr, r"degrees\.geojson:6:12: .* in degrees; .*ogr2ogr")
+
+    def test_a_drawing_is_named(self):
+        done = self.keyblock("check", self.mapped("lines.dxf"), expect=1)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertRegex(done.stderr, r"lines\.dxf: found a drawing \(DXF\); expected GeoJSON, WKT, .*ogr2ogr")
+
+    def test_points(self):
+        scenario = self.lines("""
+[[trace_map]]
+name = "fault"
+points = [[0.0, 5.0], [10.0, 5.0]]
+[[trace_map]]
+name = "bend"
+points = [[5.0, 0.0], [5.0, 5.0], [6.0, 10.0]]
+""")
+        self.assertIn("4 blocks", self.keyblock("check", scenario).stdout)
+        moved = self.keyblock("check", scenario, "--set", "trace_map.fault.points=[[0.0, 6.0], [10.0, 6.0]]")
+        self.assertIn("4 blocks", moved.stdout)
+
+    def test_a_patch_of_small_blocks_keeps_them(self):
+        scenario = self.mapped("patch.csv", x="[0.0, 200.0]", y="[0.0, 200.0]")
+        done = self.keyblock("cut", scenario, "-o", "cut")
+        self.assertIn("362 blocks from 40 of 40 traces", done.stdout)
+        self.assertNotIn("are slivers", done.stdout)
+        self.assertEqual(json.loads((self.folder / "cut/summary.json").read_text())["merged_slivers"], 0)
+
+    def test_many_merged_blocks_are_told(self):
+        scenario = self.mapped("patch.csv", x="[0.0, 200.0]", y="[0.0, 200.0]")
+        wide = ("--set", "cutting.sliver_area=0.1")
+        said = "241 of 362 blocks are slivers and part of their neighbours, 21.7 m2 of 40000 m2 in all"
+        self.assertIn(said, self.keyblock("check", scenario, *wide).stdout)
+        self.assertIn(said, self.keyblock("cut", scenario, "-o", "cut", *wide).stdout)
+        stage = "[time]\nstep = 0.01\n[[stage]]\nname = \"rest\"\nkind = \"rest\"\nduration = 0.01\n"
+        with (self.folder / "lines.toml").open("a") as file:
+            file.write(stage)
+        self.assertIn(said, self.keyblock("run", scenario, "-o", "run", *wide).stdout)
+
+    def test_blocks_in_the_frame_and_in_the_domain_are_told(self):
+        block = "[[block]]\nname = \"b\"\nouter = [[-1.0, {0}], [1.0, {0}], [1.0, {1}], [-1.0, {1}]]\n"
+        sets = {"x": "[-5.0, 5.0]", "y": "[-5.0, 5.0]", "boundary": "frame"}
+        done = self.keyblock("check", self.lines(block.format(5.0, 7.0), **sets))
+        self.assertIn("block.b and the frame around the domain overlap by 0.5 m at [0, 5.25]", done.stderr)
+        done = self.keyblock("check", self.lines(block.format(4.0, 5.0), **sets))
+        self.assertIn("a block of the domain and block.b overlap by 1 m", done.stderr)
+        done = self.keyblock("check", self.lines(block.format(6.0, 7.0), **sets))
+        self.assertNotIn("overlap", done.stderr)
+        sets["boundary"] = "free"
+        self.assertNotIn("overlap", self.keyblock("check", self.lines(block.format(5.0, 7.0), **sets)).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

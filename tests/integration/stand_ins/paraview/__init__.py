@@ -1,0 +1,1 @@
+"""Stands for ParaView's module where only VTK is there."""
