@@ -261,7 +261,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
         const Lanes zero{}, y = at_c(springs_->y), mu = at_c(springs_->friction);
         const Lanes normal = where(y > at_c(springs_->floor), at_c(springs_->kn) * y, zero);
         // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const Lanes wanted = contact::shear_strength(mu, normal, at_c(springs_->cohesion)),
+        const Lanes wanted = contact::shear_strength(mu, normal, at_c(springs_->constant)),
                     elastic = at_c(springs_->ks) * at_c(springs_->w), bound_now = at_c(springs_->bound),
                     change = largest(least(elastic, wanted), -wanted) -
                              largest(least(elastic, bound_now), -bound_now);
@@ -272,7 +272,7 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
   const auto bound = [&](std::size_t c) {
-    return contact::shear_strength(springs_->friction[c], springs_->force(c).normal, springs_->cohesion[c]);
+    return contact::shear_strength(springs_->friction[c], springs_->force(c).normal, springs_->constant[c]);
   };
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).
@@ -348,7 +348,7 @@ bool OpenClose::renew_bonds(const StepProblem& problem, std::span<const contact:
     if (!contacts[c].memory.bonded || contacts[c].fused) continue;
     const Force before = springs_->force(c);
     const double strength =
-                     contact::shear_strength(springs_->friction[c], before.normal, springs_->cohesion[c]),
+                     contact::shear_strength(springs_->friction[c], before.normal, springs_->constant[c]),
                  bound = springs_->bound[c], elastic = std::abs(springs_->ks[c] * springs_->w[c]);
     if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled * bound) continue;
     springs_->bound[c] = strength;
@@ -367,7 +367,7 @@ bool OpenClose::break_bonds(const StepProblem& problem, std::span<contact::Conta
     const bool holds = std::abs(springs_->ks[c] * springs_->w[c]) <= springs_->bound[c];
     if (-before.normal <= contacts[c].tension && holds) continue;
     contacts[c].memory.bonded = false;
-    springs_->cohesion[c] = 0.0;
+    springs_->constant[c] = 0.0;
     springs_->set_law(c, contacts[c].friction_coefficient * std::max(0.0, before.normal), false);
     take_force(problem, c, before);
     any = true;

@@ -283,6 +283,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   const Profile::Scope scope(profile_, Phase::update);
   remember(state, drive, report);
   if (!drive.is_static) {
+    state.last_step = drive.step;
     history_.add(increment_, drive.step, quiet_, team_);
   } else {
     history_.forget();
@@ -329,6 +330,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   Drive drive;
   drive.step = t1 - t0;
   drive.end_time = t1;
+  drive.owed_share = state.last_step / drive.step;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
   const bool converged = attempt(state, drive, model_.solver, report);

@@ -12,7 +12,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000c;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'000d;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -64,6 +64,7 @@ template <typename Archive, typename RunStateOrConst>
 void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.time);
   archive(s.mechanics.step);
+  archive(s.mechanics.last_step);
   archive(s.mechanics.position);
   archive(s.mechanics.velocity);
   archive(s.mechanics.acceleration);

@@ -151,6 +151,7 @@ TEST(Run, AStageThatIsResumedWithinBeganWhenItDid) {
   options.stop = &stopper.stop;
   ASSERT_TRUE(run(setup, options, stopper).interrupted);
   ASSERT_GT(read_checkpoint(folder, setup).stage_step, 0);
+  EXPECT_NEAR(read_checkpoint(folder, setup).mechanics.last_step, setup.time_step, 1e-9);
   options.stop = nullptr;
   options.resume = true;
   const RunRecord resumed = run(setup, options, nobody);
