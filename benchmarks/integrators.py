@@ -31,6 +31,8 @@ RULES = {
     "generalized-α, 0": ["solver.integrator=generalized-alpha", "solver.spectral_radius=0"],
     "generalized-α, 0.3": ["solver.integrator=generalized-alpha", "solver.spectral_radius=0.3"],
     "generalized-α, 0.8": ["solver.integrator=generalized-alpha", "solver.spectral_radius=0.8"],
+    "shi, Δt 0.5 ms": ["time.step=0.0005"],
+    "generalized-α, 0, Δt 0.5 ms": ["solver.integrator=generalized-alpha", "solver.spectral_radius=0", "time.step=0.0005"],
     "average acceleration": ["solver.integrator=average-acceleration"],
 }
 
