@@ -40,8 +40,6 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
       rule_(model.blocks.size()),
       in_impact_(model.blocks.size(), 0),
       prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
-      impact_speed_(norm(model.gravity) > 0.0 ? 0.1 * std::sqrt(norm(model.gravity) * model.block_size)
-                                              : HUGE_VAL),
       static_ways_(model.blocks.size(), 0.0) {
   double mass = 0.0;
   for (const Block& block : model.blocks) {

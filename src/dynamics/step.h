@@ -160,6 +160,7 @@ class Stepper {
     return {load_first(&state.velocity[first], count), load_first(&state.acceleration[first], count),
             load_first(&state.force[first], count)};
   }
+  [[nodiscard]] double impact_speed(const Drive& drive) const;
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
@@ -225,7 +226,6 @@ class Stepper {
   std::vector<double> turned_energy_;    ///< J per thickness, per contact, scratch
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
-  double impact_speed_;                  ///< m/s
   /// J per thickness, that a contact may do over what turning makes it miss; HUGE_VAL: without gravity there is no such measure.
   double turn_work_ = HUGE_VAL;
   std::vector<ContactAccounts> accounts_;  ///< scratch
