@@ -15,7 +15,7 @@ enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 /// consistent set of units works.
 struct SolverOptions {
   TimeIntegration integrator = TimeIntegration::shi;
-  double spectral_radius = 0.8;  ///< at infinite frequency, of generalized-α
+  double spectral_radius = 0.0;  ///< at infinite frequency, of generalized-α
   /// Shi: weight of the end of the step in the family M(1+θ)/Δt², v ← (1+θ)D/Δt − θv: 1 Shi, 0 backward Euler.
   double theta = 1.0;
   /// Damping of elastic vibration, as shares of critical: of the rock at the first elastic frequency of each block

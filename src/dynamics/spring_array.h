@@ -141,10 +141,11 @@ class SpringArray {
   /// N/m per thickness, of the stiffest normal spring; 0: there is none.
   [[nodiscard]] double largest_stiffness(ThreadTeam& team) const {
     constexpr std::size_t width = lane_count;
-    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width, [&](std::size_t group) {
-      const std::size_t c = group * width;
-      return largest(where(first_lanes(size_ - c), load(&kn[c]), Lanes{}));
-    });
+    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width,
+                      [&](std::size_t group) {
+                        const std::size_t c = group * width;
+                        return largest(where(first_lanes(size_ - c), load(&kn[c]), Lanes{}));
+                      });
   }
   /// On the straight line that goes on from a piece.
   [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {

@@ -11,6 +11,7 @@
 #include "dynamics/earlier_look.h"
 #include "dynamics/force_balance.h"
 #include "dynamics/increment_history.h"
+#include "dynamics/intrusions.h"
 #include "dynamics/model.h"
 #include "dynamics/open_close.h"
 #include "dynamics/state.h"
@@ -138,6 +139,7 @@ class Stepper {
     products_.reset();
   }
   void measure_spin(const State& state);
+  bool comes_inside(const State& state);
   /// How what blocks turned by in the step compares with what its contacts know of it.
   enum class Turns { are_known, are_others, are_too_far };
   Turns look_at_turns(const State& state, bool is_static);
@@ -235,6 +237,7 @@ class Stepper {
   };
   std::vector<BlockWork> block_work_;  ///< scratch
   std::vector<double> static_ways_;    ///< m, per block
+  Intrusions intrusions_;
   ForceBalance balance_;
 };
 

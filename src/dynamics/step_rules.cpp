@@ -40,8 +40,8 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   if (drive.is_static || options.restitution >= elastic) return false;
   // Multipliers are stiffer than any spring: what is left of a velocity into a contact would ring for ever.
   const bool rigid = options.contact == ContactMethod::augmented_lagrangian;
-  const double least = rigid ? std::min(impact_speed(drive), 1e-4 * norm(model_.gravity) * drive.step)
-                             : impact_speed(drive);
+  const double least =
+      rigid ? std::min(impact_speed(drive), 1e-4 * norm(model_.gravity) * drive.step) : impact_speed(drive);
   // A point of an edge, and a little beyond its ends, is not much faster than its vertices: half an edge beyond, three times as fast at
   // most against another.
   if (prescribed_.empty() && !problem_.has_distant() &&

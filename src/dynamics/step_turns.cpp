@@ -174,6 +174,20 @@ double Stepper::keep_turned_shear(State& state) {
 
 /// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
 /// it went.
+/// Whether a block comes to lie in another one where no contact holds it.
+bool Stepper::comes_inside(const State& state) {
+  const SpringArray& springs = problem_.springs();
+  const std::function<Vec2(std::size_t)> end = [&](std::size_t v) { return at_end(state, v); };
+  const std::function<bool(int, int)> holds = [&](int vertex, int block) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (contacts_[c].vertex == vertex && contacts_[c].block_b == block && springs.force(c).normal > 0.0)
+        return true;
+    }
+    return false;
+  };
+  return intrusions_.any({model_.surface, open_close_.displacement(), end, holds}, state.contacts);
+}
+
 bool Stepper::moved_too_far() {
   std::atomic<bool> any = false;
   const std::span<const Vec2> went = open_close_.displacement();
