@@ -349,6 +349,7 @@ class StepProblem {
                      std::size_t first);
   [[nodiscard]] Lanes ways_to_rest(const State& state, const Drive& drive,
                                    std::span<const contact::Contact> contacts, std::size_t first) const;
+  [[nodiscard]] Vec2 moved_at_start(const State& state, const Drive& drive, std::size_t b) const;
   [[nodiscard]] double way_to_rest(const State& state, const Drive& drive, const contact::Contact& contact,
                                    const Row& row) const;
 

@@ -98,12 +98,23 @@ void StepProblem::build_row(const Drive& drive, const contact::Contact& contact,
   row.moved = drive.prescribed_between(contact);
 }
 
+/// m, Δt times the velocity at the start of the step of a fixed block that is moved. What it goes in a step is the mean velocity of that.
+Vec2 StepProblem::moved_at_start(const State& state, const Drive& drive, std::size_t b) const {
+  if (drive.prescribed.empty() || model_->moves(b)) return {};
+  const Block& block = model_->blocks[b];
+  const Vec2 before =
+      Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
+  return 0.5 * (drive.prescribed[b] + drive.step * before);
+}
+
 /// m along the tangent: what the sides of a contact that slides go against each other in the step until they have the same velocity.
 double StepProblem::way_to_rest(const State& state, const Drive& drive, const contact::Contact& contact,
                                 const Row& row) const {
   const Integrator& rule = drive.rule[at(row.unknown_a >= 0 ? contact.block_a : contact.block_b)];
   const double dt = drive.step;
-  Vec2 way = rule.rest_share() * (dt * relative(row, state.velocity) + drive.prescribed_between(contact));
+  Vec2 way = rule.rest_share() *
+             (dt * relative(row, state.velocity) + moved_at_start(state, drive, at(contact.block_a)) -
+              moved_at_start(state, drive, at(contact.block_b)));
   if (rule.rest_share_of_acceleration() != 0.0)
     way += rule.rest_share_of_acceleration() * dt * dt * relative(row, state.acceleration);
   const double along = dot(row.tangent(), way);
