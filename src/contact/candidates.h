@@ -27,8 +27,8 @@ struct Memory {
   double stiffness = 0.0;     ///< N/m per thickness, of the normal spring in the last step
   double shear = 0.0;         ///< m, elastic shear displacement
   double normal_force = 0.0;  ///< N per thickness, compression positive
-  /// N per thickness; times μ it bounds the friction of the next step: the normal force, negative in a bond's tension, while sliding
-  /// extrapolated, so that friction does not lag behind it.
+  /// N per thickness; times μ it bounds the friction of the next step: the normal force, negative in a bond's tension, and what the
+  /// bounds of the steps before have missed of it while the contact slid, as a force over the last one. So friction loses no impulse.
   double bounding_force = 0.0;
   double multiplier = 0.0;  ///< m, augmented Lagrangian: normal force over stiffness, in place of penetration
   double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid

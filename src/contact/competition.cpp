@@ -131,7 +131,12 @@ Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* c
   }
   // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
   // tangents of the two lines run against each other, and normal and tangent turn together.
-  const bool hands_over = winner != nullptr && holder != nullptr && parallel && winner != holder;
+  const auto alike = [&](const Rival& f, const Rival& other) {
+    return std::abs(dot(line(f).tangent, line(other).tangent)) > Tolerances::cosine_alike;
+  };
+  const bool hands_over =
+      winner != nullptr && holder != nullptr && winner != holder &&
+      (parallel || (force(*holder) > 0.0 && winner->memory < 0 && alike(*winner, *holder)));
   if (hands_over) winner->memory = holder->memory;
   return {winner, parallel, hands_over, left_out};
 }

@@ -13,6 +13,14 @@ struct LawLanes {
 };
 struct MemoryLanes {
   Lanes offset, stiffness, shear, normal_force, bounding_force, multiplier, drift, stored;
+
+  /// What of the force that bounds friction is owed from the steps before, and what is not. A contact that only pulls owes nothing.
+  [[nodiscard]] Lanes owed() const {
+    return where(normal_force > Lanes{}, bounding_force - normal_force, Lanes{});
+  }
+  [[nodiscard]] Lanes bounding_normal() const {
+    return where(normal_force > Lanes{}, normal_force, bounding_force);
+  }
 };
 static_assert(offsetof(Contact, tension) - offsetof(Contact, gap) == (lane_count - 1) * sizeof(double));
 static_assert(offsetof(Memory, stored) - offsetof(Memory, offset) == (lane_count - 1) * sizeof(double));

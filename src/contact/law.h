@@ -82,17 +82,19 @@ class BasicSpring {
   struct Balance {
     Number stored{}, friction{}, damping{}, numerical{};
   };
-  [[nodiscard]] Balance balance(Number y, Number w) const {
+  /// slipped: m, slip of the step that w does not have. Where the shear force comes to act along it, it is no friction.
+  [[nodiscard]] Balance balance(Number y, Number w, Number slipped = Number()) const {
     const Number x = penetration(y), normal = normal_force(y), shear = shear_force(w),
                  elastic = elastic_shear(w);
     const Number x_force = where(tensile_ | (x > zero), elastic_normal_ * x, zero);
     Balance b;
     b.stored = 0.5 * x_force * x +
                where(closed(y), 0.5 * elastic_shear_ * elastic * elastic, zero);  // else shear is forgotten
-    b.friction = magnitude(shear) * magnitude(w - shear / shear_);
+    b.friction = magnitude(shear) * magnitude(w - shear / shear_) +
+                 where(shear * slipped > zero, shear * slipped, zero);
     b.damping = (normal - x_force) * (x - start_depth_) +
                 (shear - elastic_shear_ * elastic) * (elastic - start_shear_);
-    const Number work = -normal * (y - depth_) - shear * (w - origin_);
+    const Number work = -normal * (y - depth_) - shear * (w + slipped - origin_);
     b.numerical = stored_at_start() - work - b.stored - b.friction - b.damping;
     return b;
   }

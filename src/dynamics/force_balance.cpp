@@ -92,7 +92,7 @@ void ForceBalance::measure(const Model& model, StepProblem& problem) {
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
     springs.bound[c] =
-        contact::shear_strength(springs.friction[c], springs.force(c).normal, springs.cohesion[c]);
+        contact::shear_strength(springs.friction[c], springs.force(c).normal, springs.constant[c]);
   }
   zero_.assign(model.coefficients, 0.0);
   gradient_.resize(model.coefficients);

@@ -42,6 +42,14 @@ class Integrator {
   [[nodiscard]] double acceleration() const { return acceleration_; }  ///< c_a
   [[nodiscard]] double force() const { return force_; }                ///< c_F
 
+  /// D of a step with v′ = 0 is this share of Δt v, and the next of Δt² a.
+  [[nodiscard]] double rest_share() const {
+    return family_ == Family::shi ? theta_ / inertia_ : 1.0 - beta_ / gamma_;
+  }
+  [[nodiscard]] double rest_share_of_acceleration() const {
+    return family_ == Family::shi ? 0.0 : 0.5 - beta_ / gamma_;
+  }
+
   /// The motion at the end of a step of length dt and increment D.
   [[nodiscard]] Motion end(const Motion& start, Lanes d, double dt) const {
     const Lanes jump = (d / dt - start.velocity) / dt;

@@ -15,22 +15,9 @@ namespace {
 constexpr double forcing = 0.003, forcing_near = 0.03;
 constexpr double rough_share =
     0.5;  // of what new bounds put out of balance, where the next look at them is taken
-constexpr double least_share = 0.25;          // of the way to a new bound
-constexpr int undamped_updates = 8;           // of bounds, before all contacts go a smaller share …
-constexpr double least_damping = 1.0 / 64.0;  // … and how small it gets
-constexpr int most_bond_updates = 20;         // in a step, lest two bonds hand a strength to and fro
-// Of the inertia behind a contact, in a step of multipliers: enough for eight contacts that push a rigid block, and the least.
-constexpr double first_multiplier_share = 0.25, least_multiplier_share = 1e-3;
-
-/// Two sums over the same.
-struct Sums {
-  Lanes first{}, second{};
-  Sums& operator+=(const Sums& other) {
-    first += other.first;
-    second += other.second;
-    return *this;
-  }
-};
+constexpr int most_bond_updates = 20;  // in a step, lest two bonds hand a strength to and fro
+// Of the inertia behind a contact, in a step of multipliers: enough for eight contacts that push a rigid block.
+constexpr double first_multiplier_share = 0.25;
 
 }  // namespace
 
@@ -245,136 +232,6 @@ bool OpenClose::minimize(const StepProblem& problem, linalg::BlockSolver& solver
   return false;
 }
 
-/// Takes over what a change of a spring, which had the force `before`, does to its piece and to the gradient.
-void OpenClose::take_force(const StepProblem& problem, std::size_t c, Force before) {
-  springs_->piece[c] = springs_->piece_at(c, springs_->y[c], springs_->w[c]);
-  add_force(problem, c, springs_->force(c) - before, 1.0, gradient_);
-  gradient_changed();
-}
-
-bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
-  const auto [errors, scales] = sum_of<Sums>(
-      *team_, (springs_->size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
-      [&](std::size_t group) {
-        const std::size_t c = group * lane_count;
-        const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
-        const Lanes zero{}, y = at_c(springs_->y), mu = at_c(springs_->friction);
-        const Lanes normal = where(y > at_c(springs_->floor), at_c(springs_->kn) * y, zero);
-        // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const Lanes wanted = contact::shear_strength(mu, normal, at_c(springs_->cohesion)),
-                    elastic = at_c(springs_->ks) * at_c(springs_->w), bound_now = at_c(springs_->bound),
-                    change = largest(least(elastic, wanted), -wanted) -
-                             largest(least(elastic, bound_now), -bound_now);
-        const auto counts = (mu >= zero) & first_lanes(springs_->size() - c);
-        return Sums{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
-      });
-  const double error = sum(errors), scale = sum(scales);
-  const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
-  if (ratio <= tolerance) return false;
-  const auto bound = [&](std::size_t c) {
-    return contact::shear_strength(springs_->friction[c], springs_->force(c).normal, springs_->cohesion[c]);
-  };
-  // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
-  // shows to be right for it (secant).
-  const bool first = bound_steps_.empty();
-  bound_steps_.resize(springs_->size());
-  // More of them may do so in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates of
-  // a static step have not settled it, all go half as far whenever the error does not fall by a half.
-  if (problem.is_static() && ++bound_updates_ > undamped_updates && ratio > 0.5 * bound_error_)
-    bound_damping_ = std::max(0.5 * bound_damping_, least_damping);
-  bound_error_ = ratio;
-  for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (springs_->friction[c] < 0.0) continue;
-    const double missing = bound(c) - springs_->bound[c];
-    const double gained = bound_steps_[c].missing - missing;
-    double share = 1.0;
-    if (!first && bound_steps_[c].taken * gained > 0.0)
-      share = std::clamp(bound_steps_[c].taken / gained, least_share, 1.0);
-    share *= bound_damping_;
-    bound_steps_[c] = {missing, share * missing};
-    const Force before = springs_->force(c);
-    springs_->bound[c] += share * missing;
-    take_force(problem, c, before);
-  }
-  return true;
-}
-
-/// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when
-/// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
-/// left alone.
-bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
-  double worst = 0.0;
-  shift_.assign(springs_->size(), {});
-  for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (!springs_->piece[c].closed) continue;
-    // n·r and t·r, but for what multipliers have added.
-    const StepProblem::Row& row = problem.rows()[c];
-    const double normal = springs_->y0[c] - springs_->y[c] + dot(row.normal, row.moved),
-                 slip = springs_->w[c] - springs_->w0[c] + dot(row.tangent(), row.moved);
-    const double penetration = -(contacts[c].gap + normal) - std::max(0.0, contacts[c].memory.offset);
-    const double drift = springs_->piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
-    worst = std::max({worst, std::abs(penetration), std::abs(drift)});
-    const double inertia = multiplier_share_ * problem.inertia_between(contacts[c]);
-    // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
-    const double multiplier =
-        springs_->is_tensile(c) ? HUGE_VAL : std::max(0.0, springs_->y[c] - penetration);
-    shift_[c] = {std::max(penetration * (1.0 + inertia / springs_->kn[c]), -multiplier),
-                 drift * (1.0 + inertia / springs_->ks[c])};
-  }
-  if (worst <= tolerance) return false;
-  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for.
-  const bool overshoots = worst > worst_ && multiplier_share_ > least_multiplier_share;
-  if (overshoots) multiplier_share_ /= std::min(1.0 + worst / worst_, 4.0);
-  // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
-  stalls_ = !overshoots && worst > 0.97 * worst_ ? stalls_ + 1 : 0;
-  worst_ = worst;
-  if (stalls_ == 3) return false;
-  for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (shift_[c] == Vec2{}) continue;
-    const Force before = springs_->force(c);
-    springs_->shift(c, shift_[c].x, shift_[c].y);
-    take_force(problem, c, before);
-  }
-  return true;
-}
-
-/// Bonds whose shear force passes what they bear now, or what the step began with, where these differ, get what they bear now. Whether
-/// there are any: a bound of before the load came would have them break that hold.
-bool OpenClose::renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts) {
-  constexpr double settled = 1e-3;
-  if (!problem.may_break()) return false;
-  bool any = false;
-  for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (!contacts[c].memory.bonded || contacts[c].fused) continue;
-    const Force before = springs_->force(c);
-    const double strength =
-                     contact::shear_strength(springs_->friction[c], before.normal, springs_->cohesion[c]),
-                 bound = springs_->bound[c], elastic = std::abs(springs_->ks[c] * springs_->w[c]);
-    if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled * bound) continue;
-    springs_->bound[c] = strength;
-    take_force(problem, c, before);
-    any = true;
-  }
-  return any;
-}
-
-bool OpenClose::break_bonds(const StepProblem& problem, std::span<contact::Contact> contacts) {
-  if (!problem.may_break()) return false;
-  bool any = false;
-  for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (!contacts[c].memory.bonded || contacts[c].fused) continue;
-    const Force before = springs_->force(c);
-    const bool holds = std::abs(springs_->ks[c] * springs_->w[c]) <= springs_->bound[c];
-    if (-before.normal <= contacts[c].tension && holds) continue;
-    contacts[c].memory.bonded = false;
-    springs_->cohesion[c] = 0.0;
-    springs_->set_law(c, contacts[c].friction_coefficient * std::max(0.0, before.normal), false);
-    take_force(problem, c, before);
-    any = true;
-  }
-  return any;
-}
-
 /// Forgets what was known within the last step.
 void OpenClose::begin(const StepProblem& problem, linalg::BlockSolver& solver, std::size_t coefficients) {
   r_.resize(problem.rows().size());
@@ -420,6 +277,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, StepContacts step_contact
       break;
     }
     warm = true;
+    if (let_reverse(problem)) continue;
     if (bond_updates < most_bond_updates && renew_bonds(problem, contacts)) {
       ++bond_updates;
       continue;

@@ -213,6 +213,9 @@ class OpenClose {
   static void add_force(const StepProblem& problem, std::size_t c, Force force, double scale,
                         std::span<double> out);
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
+  void sum_bounds(const StepProblem& problem);
+  [[nodiscard]] bool reverses(const StepProblem& problem, std::size_t c) const;
+  bool let_reverse(const StepProblem& problem);
   bool update_bounds(StepProblem& problem, double tolerance);
   bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
   bool renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts);
@@ -273,11 +276,12 @@ class OpenClose {
   std::vector<Vec2> displacement_;  ///< m, of vertices: of D, or of the direction of search
   std::vector<Vec2> vertex_force_;  ///< scratch
   std::vector<Vec2> r_;
-  bool knows_relative_ = false;    ///< r_ is that of the springs
-  std::vector<Vec2> shift_;        ///< m, of springs: normal, shear
-  double worst_ = 0.0;             ///< m, largest penetration or drift at the last update of multipliers
-  int stalls_ = 0;                 ///< updates in a row that did not make it smaller
-  double multiplier_share_ = 0.0;  ///< of the inertia behind a contact, in the step of Uzawa's iteration
+  bool knows_relative_ = false;        ///< r_ is that of the springs
+  std::vector<Vec2> shift_;            ///< m, of springs: normal, shear
+  std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
+  double worst_ = 0.0;                 ///< m, largest penetration or drift at the last update of multipliers
+  int stalls_ = 0;                     ///< updates in a row that did not make it smaller
+  double multiplier_share_ = 0.0;      ///< of the inertia behind a contact, in the step of Uzawa's iteration
   /// Of a bound, N per thickness: by how much it was wrong, and the change it got for it.
   struct BoundStep {
     double missing = 0.0, taken = 0.0;

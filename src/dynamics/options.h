@@ -15,7 +15,7 @@ enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 /// consistent set of units works.
 struct SolverOptions {
   TimeIntegration integrator = TimeIntegration::shi;
-  double spectral_radius = 0.8;  ///< at infinite frequency, of generalized-α
+  double spectral_radius = 0.0;  ///< at infinite frequency, of generalized-α
   /// Shi: weight of the end of the step in the family M(1+θ)/Δt², v ← (1+θ)D/Δt − θv: 1 Shi, 0 backward Euler.
   double theta = 1.0;
   /// Damping of elastic vibration, as shares of critical: of the rock at the first elastic frequency of each block
@@ -34,8 +34,7 @@ struct SolverOptions {
   int max_halvings = 6;
   /// Coulomb bounds are those of the last step unless new ones would change the shear forces by more than
   /// `bound_tolerance` of the bounds (L2 over all contacts): a first contact, an impact. They are then taken anew until
-  /// less than `bound_accuracy` changes, at most `max_bound_updates` times. The lag of one step otherwise costs about
-  /// 0.05 % of a shaken slide.
+  /// less than `bound_accuracy` changes, at most `max_bound_updates` times. What is missed otherwise is owed (contact::Memory).
   double bound_tolerance = 1e-2;
   double bound_accuracy = 1e-4;
   int max_bound_updates = 8;

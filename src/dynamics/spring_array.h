@@ -42,7 +42,7 @@ class SpringArray {
   void resize(std::size_t n) {
     size_ = n;
     for (std::vector<double>* v :
-         {&kn, &ks, &bound, &floor, &friction, &cohesion, &y0, &w0, &y, &w, &dy, &dw})
+         {&kn, &ks, &bound, &floor, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
       v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
     piece.resize(n);
     bounds_updated = false;
@@ -138,6 +138,15 @@ class SpringArray {
           return largest(where(first_lanes(size_ - c), largest(force, -force), zero));
         });
   }
+  /// N/m per thickness, of the stiffest normal spring; 0: there is none.
+  [[nodiscard]] double largest_stiffness(ThreadTeam& team) const {
+    constexpr std::size_t width = lane_count;
+    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width,
+                      [&](std::size_t group) {
+                        const std::size_t c = group * width;
+                        return largest(where(first_lanes(size_ - c), load(&kn[c]), Lanes{}));
+                      });
+  }
   /// On the straight line that goes on from a piece.
   [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {
     return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
@@ -154,12 +163,14 @@ class SpringArray {
   std::vector<double> kn, ks;        ///< N/m per thickness
   std::vector<double> bound, floor;  ///< N per thickness; m
   std::vector<double> friction;      ///< μ; −1: the bound is not Coulomb's
-  std::vector<double> cohesion;      ///< N per thickness, of bonds
-  std::vector<double> y0, w0;        ///< m, at D = 0
-  std::vector<double> y, w;          ///< m, now
-  std::vector<double> dy, dw;        ///< m, of the direction of search
-  std::vector<Piece> piece;          ///< of (y, w)
-  bool bounds_updated = false;       ///< bounds are no more those of the last step
+  /// N per thickness, of the bound μN + this: the cohesion of a bond, the friction that a contact owes.
+  std::vector<double> constant;
+  std::vector<double> y0, w0;   ///< m, at D = 0
+  std::vector<double> slipped;  ///< m, slip of the step that w does not have
+  std::vector<double> y, w;     ///< m, now
+  std::vector<double> dy, dw;   ///< m, of the direction of search
+  std::vector<Piece> piece;     ///< of (y, w)
+  bool bounds_updated = false;  ///< bounds are no more those of the last step
 
  private:
   std::size_t size_ = 0;

@@ -20,6 +20,8 @@ struct EnergyLedger {
 struct State {
   double time = 0.0;  ///< s; static steps count none
   long step = 0;
+  double last_step =
+      0.0;  ///< s, length of the last dynamic step, which may be one of several halves; 0: none
   std::vector<double> position;  ///< coefficients a, by Block::first
   std::vector<double> velocity;
   /// Acceleration and sum of forces over mass of every coefficient at the end of the last step, for rules that need them;

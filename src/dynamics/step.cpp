@@ -15,6 +15,13 @@ std::vector<double> penalties(const Model& model) {
   for (const Block& block : model.blocks) stiffness.push_back(model.solver.penalty * block.material.young);
   return stiffness;
 }
+
+std::vector<double> areas_of(const std::vector<Block>& blocks) {
+  std::vector<double> areas;
+  areas.reserve(blocks.size());
+  for (const Block& block : blocks) areas.push_back(block.area);
+  return areas;
+}
 }  // namespace
 
 Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::atomic<bool>* stop)
@@ -40,9 +47,8 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
       rule_(model.blocks.size()),
       in_impact_(model.blocks.size(), 0),
       prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
-      impact_speed_(norm(model.gravity) > 0.0 ? 0.1 * std::sqrt(norm(model.gravity) * model.block_size)
-                                              : HUGE_VAL),
-      static_ways_(model.blocks.size(), 0.0) {
+      static_ways_(model.blocks.size(), 0.0),
+      intrusions_(areas_of(model.blocks)) {
   double mass = 0.0;
   for (const Block& block : model.blocks) {
     if (block.unknown < 0) continue;
@@ -283,6 +289,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   const Profile::Scope scope(profile_, Phase::update);
   remember(state, drive, report);
   if (!drive.is_static) {
+    state.last_step = drive.step;
     history_.add(increment_, drive.step, quiet_, team_);
   } else {
     history_.forget();
@@ -329,9 +336,10 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   Drive drive;
   drive.step = t1 - t0;
   drive.end_time = t1;
+  drive.owed_share = state.last_step / drive.step;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
-  const bool converged = attempt(state, drive, model_.solver, report);
+  const bool converged = attempt(state, drive, model_.solver, report) && !comes_inside(state);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
     report.halvings = std::max(report.halvings, halvings);

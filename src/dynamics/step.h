@@ -11,6 +11,7 @@
 #include "dynamics/earlier_look.h"
 #include "dynamics/force_balance.h"
 #include "dynamics/increment_history.h"
+#include "dynamics/intrusions.h"
 #include "dynamics/model.h"
 #include "dynamics/open_close.h"
 #include "dynamics/state.h"
@@ -138,6 +139,7 @@ class Stepper {
     products_.reset();
   }
   void measure_spin(const State& state);
+  bool comes_inside(const State& state);
   /// How what blocks turned by in the step compares with what its contacts know of it.
   enum class Turns { are_known, are_others, are_too_far };
   Turns look_at_turns(const State& state, bool is_static);
@@ -160,6 +162,7 @@ class Stepper {
     return {load_first(&state.velocity[first], count), load_first(&state.acceleration[first], count),
             load_first(&state.force[first], count)};
   }
+  [[nodiscard]] double impact_speed(const Drive& drive) const;
   bool meet_impacts(const State& state, const Drive& drive);
   void accept(State& state, const Drive& drive, StepReport& report);
   void account(State& state, const Drive& drive);
@@ -225,7 +228,6 @@ class Stepper {
   std::vector<double> turned_energy_;    ///< J per thickness, per contact, scratch
   std::vector<std::uint8_t> in_impact_;  ///< per block, of the last attempt
   std::vector<Vec2> prescribed_;         ///< m, per block, in the step; empty: no fixed block is moved
-  double impact_speed_;                  ///< m/s
   /// J per thickness, that a contact may do over what turning makes it miss; HUGE_VAL: without gravity there is no such measure.
   double turn_work_ = HUGE_VAL;
   std::vector<ContactAccounts> accounts_;  ///< scratch
@@ -235,6 +237,7 @@ class Stepper {
   };
   std::vector<BlockWork> block_work_;  ///< scratch
   std::vector<double> static_ways_;    ///< m, per block
+  Intrusions intrusions_;
   ForceBalance balance_;
 };
 

@@ -38,32 +38,34 @@ void Stepper::remember_contacts(std::size_t first, std::size_t count, const Driv
     turned_normal[i] = drive.turned[first + i].x;
     turned_shear[i] = drive.turned[first + i].y;
   }
-  const Lanes bound = at_first(springs.bound), y = at_first(springs.y), w = at_first(springs.w);
-  const contact::SpringLanes s(
-      contact::SpringLanes::Constants{.normal_stiffness = law.normal_stiffness,
-                                      .shear_stiffness = law.shear_stiffness,
-                                      .depth = law.depth,
-                                      .shear = memory.shear,
-                                      .bound = bound,
-                                      .tensile = at_first(springs.floor) < 0.0},
-      contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
-                                    at_first(springs.y0) + moved_normal, at_first(springs.w0) - moved_shear});
+  const Lanes bound = at_first(springs.bound), y = at_first(springs.y), w = at_first(springs.w),
+              slipped = at_first(springs.slipped);
+  const contact::SpringLanes s(contact::SpringLanes::Constants{.normal_stiffness = law.normal_stiffness,
+                                                               .shear_stiffness = law.shear_stiffness,
+                                                               .depth = law.depth,
+                                                               .shear = memory.shear,
+                                                               .bound = bound,
+                                                               .tensile = at_first(springs.floor) < 0.0},
+                               contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
+                                                             at_first(springs.y0) + moved_normal,
+                                                             at_first(springs.w0) - moved_shear + slipped});
   const Lanes zero{}, normal = s.normal_force(y), shear = s.shear_force(w);
   const auto closed = s.closed(y), locked = s.locked(w);
-  accounts = {.balance = s.balance(y, w),
+  accounts = {.balance = s.balance(y, w, slipped),
               .stored_before = memory.stored,
               .input = -(normal * (moved_normal - turned_normal) - shear * (moved_shear - turned_shear)),
               .turned = normal * turned_normal - shear * turned_shear,
               .penetration = s.penetration(y),
               .closed = where(closed, broadcast(1.0), zero)};
   accounts.leave_out_beyond(count);
-  const Lanes pressure = where(normal > zero, normal, zero), change = pressure - memory.normal_force;
+  const Lanes pressure = where(normal > zero, normal, zero);
   memory.normal_force = pressure;
   memory.bounding_force = normal;
   if (!drive.is_static && model_.solver.contact == ContactMethod::penalty) {
-    const Lanes ahead = pressure + change;
-    memory.bounding_force =
-        where(closed & ~locked & (bound > zero), where(ahead > zero, ahead, zero), normal);
+    const Lanes friction = at_first(springs.friction), constant = at_first(springs.constant);
+    const auto slides = closed & ~locked & (friction > zero);
+    const Lanes owed = pressure - (bound - constant) / where(slides, friction, broadcast(1.0));
+    memory.bounding_force = where(slides, pressure + owed, normal);
   }
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;

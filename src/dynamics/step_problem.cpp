@@ -72,7 +72,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   }
   build_blocks(state, drive);
   add_supports(state, drive);
-  build_rows(drive, contacts, pairs, for_contacts);
+  build_rows(state, drive, contacts, pairs, for_contacts);
 }
 
 /// Blocks of order 2 under so much pressure that the eigenvalues of their geometric stiffness are looked for: as many at once as there

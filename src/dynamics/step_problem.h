@@ -26,6 +26,7 @@ struct Drive {
   double step = 0.0;         ///< s, Δt
   double end_time = 0.0;     ///< s, at which loads and supports are taken
   Vec2 ground_acceleration;  ///< m/s², mean over the step
+  double owed_share = 0.0;   ///< length of the last dynamic step over that of this one; static: 0
   bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
   /// Static only: factor on the inertia of each block.
   std::span<const double> inertia_scale;
@@ -340,11 +341,17 @@ class StepProblem {
                                        double spin, double* turn) const;
   void build_blocks(const State& state, const Drive& drive);
   void add_supports(const State& state, const Drive& drive);
-  void build_rows(const Drive& drive, std::span<const contact::Contact> contacts, std::span<const int> pairs,
-                  const ForContacts& for_contacts);
+  void build_rows(const State& state, const Drive& drive, std::span<const contact::Contact> contacts,
+                  std::span<const int> pairs, const ForContacts& for_contacts);
   void build_row(const Drive& drive, const contact::Contact& contact, std::size_t c);
   void find_owners();
-  void build_springs(const Drive& drive, std::span<const contact::Contact> contacts, std::size_t first);
+  void build_springs(const State& state, const Drive& drive, std::span<const contact::Contact> contacts,
+                     std::size_t first);
+  [[nodiscard]] Lanes ways_to_rest(const State& state, const Drive& drive,
+                                   std::span<const contact::Contact> contacts, std::size_t first) const;
+  [[nodiscard]] Vec2 moved_at_start(const State& state, const Drive& drive, std::size_t b) const;
+  [[nodiscard]] double way_to_rest(const State& state, const Drive& drive, const contact::Contact& contact,
+                                   const Row& row) const;
 
   const Model* model_ = nullptr;
   const contact::Surface* surface_ = nullptr;

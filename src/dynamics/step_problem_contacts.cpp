@@ -10,8 +10,9 @@
 
 namespace keyblock::dynamics {
 
-void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contact> contacts,
-                             std::span<const int> pairs, const ForContacts& for_contacts) {
+void StepProblem::build_rows(const State& state, const Drive& drive,
+                             std::span<const contact::Contact> contacts, std::span<const int> pairs,
+                             const ForContacts& for_contacts) {
   rows_.resize(contacts.size());
   if (most_vertices_ > 0) {
     on_curves_.resize(contacts.size());
@@ -34,7 +35,7 @@ void StepProblem::build_rows(const Drive& drive, std::span<const contact::Contac
         distant = distant || std::abs(rows_[k].position - 0.5) > 1.0;
         if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
       }
-      build_springs(drive, contacts.subspan(first, last - first), first);
+      build_springs(state, drive, contacts.subspan(first, last - first), first);
     }
     if (any) may_break = true;
     if (without) lacks_room = true;
@@ -97,9 +98,45 @@ void StepProblem::build_row(const Drive& drive, const contact::Contact& contact,
   row.moved = drive.prescribed_between(contact);
 }
 
+/// m, Δt times the velocity at the start of the step of a fixed block that is moved. What it goes in a step is the mean velocity of that.
+Vec2 StepProblem::moved_at_start(const State& state, const Drive& drive, std::size_t b) const {
+  if (drive.prescribed.empty() || model_->moves(b)) return {};
+  const Block& block = model_->blocks[b];
+  const Vec2 before =
+      Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
+  return 0.5 * (drive.prescribed[b] + drive.step * before);
+}
+
+/// m along the tangent: what the sides of a contact that slides go against each other in the step until they have the same velocity.
+double StepProblem::way_to_rest(const State& state, const Drive& drive, const contact::Contact& contact,
+                                const Row& row) const {
+  const Integrator& rule = drive.rule[at(row.unknown_a >= 0 ? contact.block_a : contact.block_b)];
+  const double dt = drive.step;
+  Vec2 way = rule.rest_share() *
+             (dt * relative(row, state.velocity) + moved_at_start(state, drive, at(contact.block_a)) -
+              moved_at_start(state, drive, at(contact.block_b)));
+  if (rule.rest_share_of_acceleration() != 0.0)
+    way += rule.rest_share_of_acceleration() * dt * dt * relative(row, state.acceleration);
+  const double along = dot(row.tangent(), way);
+  return along * contact.memory.shear > 0.0 ? along : 0.0;
+}
+
+/// The same of several contacts, zero of those that do not slide. Their springs are not to hold them before: what was left of the
+/// velocity would be sent back, and swing at the frequency of the steps.
+Lanes StepProblem::ways_to_rest(const State& state, const Drive& drive,
+                                std::span<const contact::Contact> contacts, std::size_t first) const {
+  Lanes ways{};
+  if (drive.is_static || model_->solver.contact != ContactMethod::penalty) return ways;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].memory.state == contact::State::sliding)
+      ways[i] = way_to_rest(state, drive, contacts[i], rows_[first + i]);
+  }
+  return ways;
+}
+
 /// Of as many contacts as there are lanes, or fewer, the first of them being contact `first`.
-void StepProblem::build_springs(const Drive& drive, std::span<const contact::Contact> contacts,
-                                std::size_t first) {
+void StepProblem::build_springs(const State& state, const Drive& drive,
+                                std::span<const contact::Contact> contacts, std::size_t first) {
   const contact::LawLanes law = contact::laws_of(contacts);
   const contact::MemoryLanes memory = contact::memories_of(contacts);
   const Lanes a =
@@ -112,8 +149,10 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
       contact::lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
   const auto tensile = fused | (bonded & (law.tension > 0.0));
   const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model_->solver.contact_damping / drive.step);
-  const Lanes bound = where(fused, broadcast(HUGE_VAL),
-                            contact::shear_strength(law.friction, memory.bounding_force, law.cohesion));
+  const Lanes normal = memory.bounding_normal(),
+              constant = law.cohesion + law.friction * (drive.owed_share * memory.owed());
+  const Lanes bound =
+      where(fused, broadcast(HUGE_VAL), contact::shear_strength(law.friction, normal, constant));
   const contact::SpringLanes spring(contact::SpringLanes::Constants{
       law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
       damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
@@ -127,17 +166,19 @@ void StepProblem::build_springs(const Drive& drive, std::span<const contact::Con
   keep(springs_.bound, bound);
   keep(springs_.floor, where(tensile, broadcast(-HUGE_VAL), Lanes{}));
   keep(springs_.friction, where(fused, broadcast(-1.0), law.friction));
-  keep(springs_.cohesion, law.cohesion);
+  keep(springs_.constant, constant);
   // The pieces that acted in the last step. What is fused never slides, whatever it did.
-  const auto was = [&](contact::State state) {
-    return contact::lanes_where(contacts, [&](const contact::Contact& c) { return c.memory.state == state; });
+  const auto was = [&](contact::State what) {
+    return contact::lanes_where(contacts, [&](const contact::Contact& c) { return c.memory.state == what; });
   };
   const auto slips = (bound > 0.0) & ~(was(contact::State::locked) | fused),
              forward = slips & (spring.shear() > 0.0), backward = slips & (spring.shear() < 0.0),
              none = ~(bound > 0.0) | (slips & ~forward & ~backward);
   springs_.set_pieces(first, count,
                       SpringArray::codes_of(tensile | ~was(contact::State::open), none, forward, backward));
-  Lanes y = spring.depth(), w = spring.shear();
+  const Lanes slipped = ways_to_rest(state, drive, contacts, first);
+  keep(springs_.slipped, slipped);
+  Lanes y = spring.depth(), w = spring.shear() - slipped;
   if (drive.moves_contacts()) {
     for (std::size_t i = 0; i < count; ++i) {
       const Row& row = rows_[first + i];
@@ -160,7 +201,7 @@ contact::Spring StepProblem::spring(const contact::Contact& contact, std::size_t
            .bound = springs_.bound[c],
            .tensile = springs_.is_tensile(c)},
           {springs_.kn[c], springs_.ks[c], springs_.y0[c] + dot(row.normal, row.moved),
-           springs_.w0[c] - dot(row.tangent(), row.moved)}};
+           springs_.w0[c] - dot(row.tangent(), row.moved) + springs_.slipped[c]}};
 }
 
 double StepProblem::reduced_mass(const contact::Contact& c) const {

@@ -21,6 +21,16 @@ void Stepper::choose_rules(const State& state, const Drive& drive) {
   std::fill(in_impact_.begin(), in_impact_.end(), std::uint8_t{0});
 }
 
+/// m/s, speed of approach from which on blocks strike each other: that of a fall by 0.005 of the block size. Without gravity it is a
+/// hundredth of the fastest block's speed, where that is more than noise.
+double Stepper::impact_speed(const Drive& drive) const {
+  const double g = norm(model_.gravity);
+  if (g > 0.0) return 0.1 * std::sqrt(g * model_.block_size);
+  constexpr double share = 0.01, noise = 1e-6;  // noise: of the block size, way in a step
+  return std::max(share * *std::max_element(speed_.begin(), speed_.end()),
+                  noise * model_.block_size / drive.step);
+}
+
 /// Impacts that the step does not resolve: the blocks come to rest against each other within it, D ≈ 0, and the rule
 /// v ← (1+θ)D/Δt − θv would send them back with θ times the speed they came with. Lowers θ of blocks that are pressed upon
 /// while they approach faster than the speed of an impact; true when there is a new one.
@@ -31,7 +41,7 @@ bool Stepper::meet_impacts(const State& state, const Drive& drive) {
   // Multipliers are stiffer than any spring: what is left of a velocity into a contact would ring for ever.
   const bool rigid = options.contact == ContactMethod::augmented_lagrangian;
   const double least =
-      rigid ? std::min(impact_speed_, 1e-4 * norm(model_.gravity) * drive.step) : impact_speed_;
+      rigid ? std::min(impact_speed(drive), 1e-4 * norm(model_.gravity) * drive.step) : impact_speed(drive);
   // A point of an edge, and a little beyond its ends, is not much faster than its vertices: half an edge beyond, three times as fast at
   // most against another.
   if (prescribed_.empty() && !problem_.has_distant() &&

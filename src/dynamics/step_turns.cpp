@@ -89,14 +89,17 @@ Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
   const double moved = std::sqrt(largest_squared_norm(team_, open_close_.relative()));
   const SpringArray& springs = problem_.springs();
   const double work = turn_work_ == HUGE_VAL ? kinetic_share * kinetic_energy(state) : turn_work_;
-  const auto tolerated = [&](double force) {
-    return is_static || force == 0.0 ? tolerances_.turn
-                                     : std::clamp(work / force, least_missed, tolerances_.turn);
+  // The work of the force over what is missed, and a tenth of it for what the spring stores by that alone.
+  const auto tolerated = [&](double force, double stiffness) {
+    if (is_static || force == 0.0) return tolerances_.turn;
+    const double missed = std::min(work / force, std::sqrt(0.2 * work / stiffness));
+    return std::clamp(missed, least_missed, tolerances_.turn);
   };
   const double missed_at_most = turn * (turn * largest_radius_ + moved);
   const bool has_bonds = problem_.may_break() && !is_static;
   if (turned_.empty() && (!has_bonds || missed_at_most <= least_bond_missed()) &&
-      missed_at_most <= tolerated(springs.largest_normal_force(team_)))
+      (missed_at_most <= least_missed ||
+       missed_at_most <= tolerated(springs.largest_normal_force(team_), springs.largest_stiffness(team_))))
     return Turns::are_known;  // as in most steps
   turned_now_.assign(contacts_.size(), {});
   bool are_known = true;
@@ -107,7 +110,7 @@ Stepper::Turns Stepper::look_at_turns(const State& state, bool is_static) {
     const double spin = std::max(std::abs(spin_[a]), std::abs(spin_[b])),
                  force = std::abs(springs.force(c).normal);
     const BondMissed bond = has_bonds ? bond_missed(c) : BondMissed{};
-    const double most_missed = std::min(tolerated(force), bond.across);
+    const double most_missed = std::min(tolerated(force, springs.kn[c]), bond.across);
     const double at_most = 0.5 * (spin_[a] * spin_[a] * model_.blocks[a].radius +
                                   spin_[b] * spin_[b] * model_.blocks[b].radius) +
                            std::abs(spin_[b] * (has_bonds ? norm(r) : dot(row.tangent(), r)));
@@ -171,6 +174,20 @@ double Stepper::keep_turned_shear(State& state) {
 
 /// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
 /// it went.
+/// Whether a block comes to lie in another one where no contact holds it.
+bool Stepper::comes_inside(const State& state) {
+  const SpringArray& springs = problem_.springs();
+  const std::function<Vec2(std::size_t)> end = [&](std::size_t v) { return at_end(state, v); };
+  const std::function<bool(int, int)> holds = [&](int vertex, int block) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (contacts_[c].vertex == vertex && contacts_[c].block_b == block && springs.force(c).normal > 0.0)
+        return true;
+    }
+    return false;
+  };
+  return intrusions_.any({model_.surface, open_close_.displacement(), end, holds}, state.contacts);
+}
+
 bool Stepper::moved_too_far() {
   std::atomic<bool> any = false;
   const std::span<const Vec2> went = open_close_.displacement();

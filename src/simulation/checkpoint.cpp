@@ -66,6 +66,7 @@ template <typename Archive, typename RunStateOrConst>
 void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.time);
   archive(s.mechanics.step);
+  archive(s.mechanics.last_step);
   archive(s.mechanics.position);
   archive(s.mechanics.velocity);
   archive(s.mechanics.acceleration);

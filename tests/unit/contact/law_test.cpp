@@ -53,6 +53,13 @@ TEST(Spring, EnergyIsAccountedForAndNothingIsGained) {
           EXPECT_NEAR(s.stored_at_start(), b.stored + work + b.friction + b.damping + b.numerical, 1e-12);
         }
         EXPECT_GE(b.friction + b.damping + b.numerical, -1e-12);
+        // Slip that the stretch does not have takes its share of the work.
+        for (const double slipped : {-0.3, 0.2}) {
+          const Spring::Balance more = s.balance(y, w, slipped);
+          EXPECT_GE(more.friction, b.friction);
+          EXPECT_NEAR(more.friction + more.numerical, b.friction + b.numerical + s.shear_force(w) * slipped,
+                      1e-12);
+        }
       }
     }
   }

@@ -14,19 +14,6 @@
 namespace keyblock::simulation {
 namespace {
 
-/// Horizontal ground acceleration A sin ωt, integrated exactly over a step.
-class Sine final : public dynamics::GroundAcceleration {
- public:
-  Sine(double amplitude, double frequency) : a_(amplitude), omega_(2.0 * std::numbers::pi * frequency) {}
-  [[nodiscard]] Vec2 mean(double t0, double t1) const override {
-    return {a_ * (std::cos(omega_ * t0) - std::cos(omega_ * t1)) / (omega_ * (t1 - t0)), 0.0};
-  }
-  [[nodiscard]] Vec2 at(double t) const override { return {a_ * std::sin(omega_ * t), 0.0}; }
-
- private:
-  double a_, omega_;
-};
-
 /// Displacements of a mass on a spring with ω Δt = omega_dt, after each of `steps` steps, in units of Δt.
 std::vector<double> on_a_spring(dynamics::TimeIntegration integrator, double radius, double omega_dt,
                                 int steps) {
@@ -133,7 +120,7 @@ TEST(ShakenIncline, SlidesAsNewmarkSays) {
     Simulator s(scene);
     const Vec2 from = s.centroid(1);
     // The incline runs down to the left; a ground acceleration to the right throws the block to the left.
-    const Sine ground(amplitude, 1.0);
+    const Sine ground({amplitude, 0.0}, 1.0);
     s.run(3.0, dt, &ground);
     const Vec2 down{-std::cos(alpha * degree), -std::sin(alpha * degree)};
     EXPECT_NEAR(dot(s.centroid(1) - from, down) / (3.0 * 0.313620), 1.0, 5e-3) << dt;
@@ -206,7 +193,7 @@ TEST(Threads, GiveTheSameBits) {
         scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
     }
     Simulator s(scene, threads);
-    const Sine ground(0.6 * g, 2.0);
+    const Sine ground({0.6 * g, 0.0}, 2.0);
     s.run(duration, 0.002, &ground);
     EXPECT_EQ(s.unconverged, 0);
     return std::tuple(s.state.position, s.state.ledger.numerical, s.state.ledger.friction);
@@ -230,7 +217,7 @@ TEST(LinearSolver, DirectOracleGivesTheSameMotion) {
         scene.rectangle({1.0 * column + 0.25 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 1 + row % 2);
     }
     Simulator s(scene);
-    const Sine ground(0.3 * g, 2.0);
+    const Sine ground({0.3 * g, 0.0}, 2.0);
     s.run(0.2, 0.002, &ground);
     return s.state.position;
   };
@@ -249,7 +236,7 @@ TEST(Step, EndsTheRunWhenABlockHasNoPosition) {
     scene.rectangle({0.0, 0.5}, 1.0, 0.5);
     Simulator s(scene);
     s.run(0.002, 0.002);
-    const Sine ground(std::numeric_limits<double>::quiet_NaN(), 2.0);
+    const Sine ground({std::numeric_limits<double>::quiet_NaN(), 0.0}, 2.0);
     EXPECT_THROW(s.run(0.002, 0.002, &ground), RunError);
   }
 }
@@ -267,7 +254,7 @@ TEST(LinearSolver, FactorsOfFewerDigitsGiveTheSameMotion) {
         scene.rectangle({1.0 * column + 0.25 * (row % 2), 0.5 * row}, 1.0, 0.5, 0.0, false, 2);
     }
     Simulator s(scene);
-    const Sine ground(2.0 * g, 10.0);
+    const Sine ground({2.0 * g, 0.0}, 10.0);
     s.run(0.02, 0.002, &ground);
     EXPECT_EQ(s.unconverged, 0);
     return std::pair(s.state.position, s.state.velocity);
@@ -297,7 +284,7 @@ TEST(LinearSolver, SystemsNearFewBlocksGiveTheSameMotion) {
     const int stone = scene.rectangle({2.0, 1.505}, 0.3, 0.2, 20.0);
     scene.setup.properties[static_cast<std::size_t>(stone)].velocity = {0.5, -3.0};
     Simulator s(scene);
-    const Sine ground(0.2 * g, 2.0);
+    const Sine ground({0.2 * g, 0.0}, 2.0);
     s.run(0.04, 0.002, &ground);
     EXPECT_EQ(s.unconverged, 0);
     return s.state.position;
@@ -332,7 +319,7 @@ TEST(LinearSolver, KeptFactorsGiveTheSameMotion) {
       scene.setup.properties[static_cast<std::size_t>(block)].spin = 3.0;
     }
     Simulator s(scene);
-    const Sine ground(0.05 * g, 2.0);
+    const Sine ground({0.05 * g, 0.0}, 2.0);
     for (int k = 0; k < steps; ++k) {
       if (!keep) s.stepper.forget_history();
       s.run(0.002, 0.002, &ground);

@@ -43,6 +43,28 @@ TEST(Impact, ReboundsUpToTheRestitutionWhereTheStepDoesNotResolveIt) {
   EXPECT_GT(largest_rebound(1.0), 0.6);  // Shi's rule alone: by the moment within the step
 }
 
+// Without gravity there is no weight that a speed could be measured by; the fastest block is the measure.
+TEST(Impact, ReboundsUpToTheRestitutionWithoutGravity) {
+  for (const double speed : {0.01, 5.0}) {
+    for (int k = 0; k < 12; ++k) {
+      Scene scene(3e9, 30.0);
+      scene.setup.gravity = {0.0, 0.0};
+      scene.setup.solver.restitution = 0.2;
+      scene.rectangle({-1.0, -1.0}, 3.0, 1.0, 0.0, true);
+      const int stone = scene.rectangle({0.0, 0.05 + 0.1 * speed * 0.002 * k}, 0.1, 0.1);
+      scene.setup.properties[static_cast<std::size_t>(stone)].velocity = {0.0, -speed};
+      Simulator s(scene);
+      double fastest_up = 0.0;
+      for (int step = 0; step < 50 + static_cast<int>(0.05 / speed / 0.002); ++step) {
+        s.run(0.002, 0.002);
+        fastest_up = std::max(fastest_up, s.velocity(1).y);
+      }
+      EXPECT_LE(fastest_up, 0.2 * speed) << speed << ' ' << k;
+      EXPECT_LT(std::abs(s.velocity(1).y), speed) << "it meets the floor";
+    }
+  }
+}
+
 // Corners of spinning blocks leave the straight way within a step, and edges turn away below them. Whatever is missed there
 // would be found as penetration, and thrown out, in the next step.
 TEST(Impact, SpinningBlocksGainNoEnergy) {

@@ -90,6 +90,21 @@ struct LastHistory final : RunObserver {
   }
 };
 
+/// Ground acceleration A sin ωt, integrated exactly over a step.
+class Sine final : public dynamics::GroundAcceleration {
+ public:
+  Sine(Vec2 amplitude, double frequency) : a_(amplitude), omega_(2.0 * std::numbers::pi * frequency) {}
+  [[nodiscard]] double omega() const { return omega_; }  ///< rad/s
+  [[nodiscard]] Vec2 mean(double t0, double t1) const override {
+    return (std::cos(omega_ * t0) - std::cos(omega_ * t1)) / (omega_ * (t1 - t0)) * a_;
+  }
+  [[nodiscard]] Vec2 at(double t) const override { return std::sin(omega_ * t) * a_; }
+
+ private:
+  Vec2 a_;
+  double omega_;
+};
+
 /// A scene set in motion.
 struct Simulator {
   explicit Simulator(const Scene& scene, int threads = 1)

@@ -195,6 +195,53 @@ TEST_P(Incline, StackOfNineKeepsItsPlace) {
 
 INSTANTIATE_TEST_SUITE_P(Steps, Incline, ::testing::ValuesIn(all_steps));
 
+/// What a block has slid down 45° with φ = 30° in 1 s while it was shaken across, over what the impulse of the normal force allows: all
+/// that friction does is tan φ times what the normal force does, and that is known from where the block is. Steps are as long as these in
+/// turn.
+double slid_by_impulse(const std::vector<double>& steps) {
+  constexpr double alpha = 45.0, phi = 30.0, amplitude = 3.0;
+  const Vec2 out{-std::sin(alpha * degree), std::cos(alpha * degree)};
+  const Sine ground(amplitude * out, 5.0);
+  Simulator s(incline(alpha, phi));
+  const Vec2 from = s.centroid(1);
+  for (std::size_t k = 0; s.state.time < 1.0 - 1e-9; ++k)
+    s.run(steps[k % steps.size()], steps[k % steps.size()], &ground);
+  const double friction = std::tan(phi * degree), t = s.state.time,
+               across = amplitude / ground.omega() * (t - std::sin(ground.omega() * t) / ground.omega());
+  const double expected = 0.5 * g * (std::sin(alpha * degree) - std::cos(alpha * degree) * friction) * t * t -
+                          friction * (across + dot(s.centroid(1) - from, out));
+  EXPECT_EQ(s.unconverged, 0);
+  return slid(s, from, alpha) / expected;
+}
+
+TEST_P(Incline, LosesNoFrictionWhileTheNormalForceSwings) {
+  EXPECT_NEAR(slid_by_impulse({GetParam()}), 1.0, 1e-4);
+}
+
+// What a contact owes is an impulse: in a shorter step it is a larger force.
+TEST(Sliding, LosesNoFrictionInStepsOfOtherLengths) {
+  EXPECT_NEAR(slid_by_impulse({0.005, 0.00125, 0.00125, 0.005, 0.00125}), 1.0, 1e-4);
+}
+
+// Steps do not hit the moment at which a block comes to rest. It neither goes on nor is what is left of its velocity sent to and fro.
+TEST_P(Incline, ComesToRestWithoutARest) {
+  const double dt = GetParam(), speed = 1.0, deceleration = g * std::tan(20.0 * degree);
+  for (const double theta : {1.0, 0.5}) {
+    Scene scene = incline(0.0, 20.0);
+    scene.setup.properties.back().velocity = {-speed, 0.0};
+    scene.setup.solver.theta = theta;
+    Simulator s(scene);
+    const Vec2 from = s.centroid(1);
+    s.run(0.4, dt);
+    const double lag =
+        0.5 * (1.0 - theta) / (1.0 + theta) * speed * dt;  // of the rule, under constant acceleration
+    EXPECT_NEAR(slid(s, from, 0.0), 0.5 * speed * speed / deceleration - lag,
+                0.5 * deceleration * dt * dt + 1e-5)
+        << theta;
+    EXPECT_LT(norm(s.velocity(1)), 0.01 * deceleration * dt + 1e-6) << theta;
+  }
+}
+
 // Over joints between blocks side by side, by more than an end zone in a step: the corner in front comes to lie a few micrometres behind
 // the side of the next block, at the end of some steps, as it lies behind its face.
 TEST(Sliding, FastOverJointsIsAsOnOneFace) {

@@ -1,0 +1,70 @@
+#include "dynamics/intrusions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/index.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+/// m, how deep p lies in a block whose vertices are where position() says; 0: it lies outside.
+template <typename Position>
+double depth_in(const contact::Surface& surface, int block, Vec2 p, const Position& position) {
+  double nearest = std::numeric_limits<double>::infinity();
+  bool inside = false;
+  const std::size_t first = at(surface.block_begin[at(block)]), last = at(surface.block_begin[at(block) + 1]);
+  for (std::size_t v = first; v < last; ++v) {
+    const Vec2 a = position(v), b = position(at(surface.next[v]));
+    nearest = std::min(nearest, contact::distance_to_segment(p, a, b));
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) inside = !inside;
+  }
+  return inside ? nearest : 0.0;
+}
+
+}  // namespace
+
+void Intrusions::measure(const Step& step) {
+  const contact::Surface& surface = step.surface;
+  mean_.resize(area_.size());
+  differs_.resize(area_.size());
+  for (std::size_t b = 0; b < area_.size(); ++b) {
+    const std::size_t first = at(surface.block_begin[b]), last = at(surface.block_begin[b + 1]);
+    double differs = 0.0;
+    for (std::size_t v = first; v < last; ++v)
+      differs = std::max(differs, squared_norm(step.went[v] - step.went[first]));
+    mean_[b] = step.went[first];
+    differs_[b] = std::sqrt(differs);
+  }
+}
+
+bool Intrusions::comes_in(const Step& step, int vertex, int block, double deepest) const {
+  const Vec2 end = step.at_end(at(vertex));
+  const double now = depth_in(step.surface, block, end, step.at_end);
+  if (now <= deepest || step.holds(vertex, block)) return false;
+  const double before = depth_in(step.surface, block, step.surface.position[at(vertex)],
+                                 [&](std::size_t v) { return step.surface.position[v]; });
+  return now - before > least_added * deepest;
+}
+
+bool Intrusions::any(const Step& step, const contact::CandidateList& candidates) {
+  measure(step);
+  for (std::size_t p = 0; p < candidates.block_pairs.size(); ++p) {
+    const contact::BlockPair& pair = candidates.block_pairs[p];
+    const std::size_t a = at(pair.block_a), b = at(pair.block_b);
+    const double deepest = most_share * std::sqrt(std::min(area_[a], area_[b]));
+    if (norm(mean_[a] - mean_[b]) + differs_[a] + differs_[b] <= least_added * deepest) continue;
+    int last = -1;
+    for (std::size_t k = at(pair.first); k < candidates.end_of_pair(p); ++k) {
+      const contact::Candidate& candidate = candidates.pairs[k];
+      if (candidate.vertex == last) continue;  // they come by vertex
+      last = candidate.vertex;
+      if (comes_in(step, candidate.vertex, candidate.block_b, deepest)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace keyblock::dynamics

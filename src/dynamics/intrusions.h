@@ -1,0 +1,44 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "contact/candidates.h"
+#include "contact/surface.h"
+#include "geometry/vec2.h"
+
+namespace keyblock::dynamics {
+
+/// Blocks that a step takes into others where no contact holds them: what contact detection has missed, because the step is too long for the
+/// speed and the turn of the blocks. It knows of no contact rule; it only asks where vertices come to lie.
+class Intrusions {
+ public:
+  /// Of the smaller block's size, √ of its area: how deep a vertex may come to lie in another block.
+  static constexpr double most_share = 0.02;
+  /// Of that depth: what the step itself must add. What lay there before is not for a shorter step to mend.
+  static constexpr double least_added = 0.5;
+
+  /// area: m², of each block.
+  explicit Intrusions(std::vector<double> area) : area_(std::move(area)) {}
+
+  /// A step, as it would end.
+  struct Step {
+    const contact::Surface& surface;                 ///< at its start
+    std::span<const Vec2> went;                      ///< m, per vertex, in the step
+    const std::function<Vec2(std::size_t)>& at_end;  ///< m, where a vertex comes to be
+    const std::function<bool(int vertex, int block)>&
+        holds;  ///< whether a contact presses on the vertex there
+  };
+  /// Whether there is one among these pairs of blocks.
+  [[nodiscard]] bool any(const Step& step, const contact::CandidateList& candidates);
+
+ private:
+  void measure(const Step& step);
+  [[nodiscard]] bool comes_in(const Step& step, int vertex, int block, double deepest) const;
+
+  std::vector<double> area_;
+  std::vector<Vec2> mean_;       ///< m, per block: what its first vertex goes
+  std::vector<double> differs_;  ///< m, per block: by how much another one's way differs from that at most
+};
+
+}  // namespace keyblock::dynamics
