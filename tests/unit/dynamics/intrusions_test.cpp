@@ -27,7 +27,9 @@ struct Squares {
     for (std::size_t v = 4; v < 8; ++v) at_start.position[v].x -= nearer;
     std::vector<Vec2> went(8);
     for (std::size_t v = 4; v < 8; ++v) went[v] = {-x, 0.0};
-    const std::function<Vec2(std::size_t)> at_end = [&](std::size_t v) { return at_start.position[v] + went[v]; };
+    const std::function<Vec2(std::size_t)> at_end = [&](std::size_t v) {
+      return at_start.position[v] + went[v];
+    };
     const std::function<bool(int, int)> holds = [&](int, int) { return is_held; };
     return Intrusions({1.0, 1.0}).any({at_start, went, at_end, holds}, candidates);
   }
