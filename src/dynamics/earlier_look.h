@@ -20,6 +20,7 @@ class EarlierLook {
     for (const contact::Contact& c : contacts) candidates_.push_back(c.candidate);
     piece_ = springs.piece;
     bound_ = springs.bound;
+    slipped_ = springs.slipped;
     bounds_updated_ = springs.bounds_updated;
   }
 
@@ -33,6 +34,7 @@ class EarlierLook {
       if (candidates_[k] != contacts[c].candidate || contacts[c].memory.bonded) continue;
       springs.piece[c] = piece_[k];
       springs.bound[c] = bound_[k];
+      if (slipped_[k] == 0.0) springs.hold_from_start(c);
     }
     springs.bounds_updated = bounds_updated_;
   }
@@ -40,7 +42,7 @@ class EarlierLook {
  private:
   std::vector<int> candidates_;  ///< of its contacts; empty: there was no earlier look
   std::vector<SpringArray::Piece> piece_;
-  std::vector<double> bound_;
+  std::vector<double> bound_, slipped_;
   bool bounds_updated_ = false;
 };
 

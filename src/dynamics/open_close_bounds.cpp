@@ -72,11 +72,9 @@ bool OpenClose::let_reverse(const StepProblem& problem) {
   if (!any) return false;
   any = false;
   for (std::size_t c = 0; c < springs_->size(); ++c) {
-    const double slipped = springs_->slipped[c];
-    if (slipped == 0.0 || !reverses(problem, c)) continue;
+    if (springs_->slipped[c] == 0.0 || !reverses(problem, c)) continue;
     const Force before = springs_->force(c);
-    springs_->shift(c, 0.0, slipped);
-    springs_->slipped[c] = 0.0;
+    springs_->hold_from_start(c);
     take_force(problem, c, before);
     any = true;
   }

@@ -63,6 +63,11 @@ class SpringArray {
     y[c] += penetration;
     w[c] += shear;
   }
+  /// The shear spring holds from where the step begins, not from where a velocity ends (StepProblem::ways_to_rest).
+  void hold_from_start(std::size_t c) {
+    shift(c, 0.0, slipped[c]);
+    slipped[c] = 0.0;
+  }
   /// Goes on along the direction of search; `piece` stays that of where it was.
   void go(double alpha, std::size_t begin, std::size_t end) {
     const auto add = [&](std::vector<double>& to, const std::vector<double>& change, std::size_t c,

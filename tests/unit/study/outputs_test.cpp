@@ -119,7 +119,7 @@ TEST_F(Outputs, StudyJsonSaysWhatTheStatisticsAre) {
   const auto& c = json["combinations"][6];
   EXPECT_EQ(c["values"], (nlohmann::json{"1.0", "1"}));
   const auto& fallen = c["measures"]["fallen_area_m2"];
-  const auto& expected = summary.combinations[6].measures[1].description;
+  const auto& expected = summary.combinations[6].measures[*find_measure("fallen_area_m2")].description;
   EXPECT_NEAR(fallen["mean"]["value"].get<double>(), expected.mean.value, 1e-5 * expected.mean.value);
   EXPECT_LT(fallen["mean"]["low"].get<double>(), fallen["mean"]["high"].get<double>());
   EXPECT_EQ(fallen["quantiles"][2]["p"], 0.5);
