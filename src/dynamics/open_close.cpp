@@ -277,7 +277,7 @@ OpenCloseResult OpenClose::solve(StepProblem& problem, StepContacts step_contact
       break;
     }
     warm = true;
-    if (let_reverse(problem)) continue;
+    if (let_reverse(problem, options.bound_tolerance)) continue;
     if (bond_updates < most_bond_updates && renew_bonds(problem, contacts)) {
       ++bond_updates;
       continue;

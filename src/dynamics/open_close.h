@@ -215,7 +215,7 @@ class OpenClose {
   [[nodiscard]] Force bend(std::size_t c, double alpha) const;
   void sum_bounds(const StepProblem& problem);
   [[nodiscard]] bool reverses(const StepProblem& problem, std::size_t c) const;
-  bool let_reverse(const StepProblem& problem);
+  bool let_reverse(const StepProblem& problem, double tolerance);
   bool update_bounds(StepProblem& problem, double tolerance);
   bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
   bool renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts);
@@ -279,6 +279,7 @@ class OpenClose {
   bool knows_relative_ = false;        ///< r_ is that of the springs
   std::vector<Vec2> shift_;            ///< m, of springs: normal, shear
   std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
+  std::vector<std::size_t> reversed_;  ///< contacts; scratch
   double worst_ = 0.0;                 ///< m, largest penetration or drift at the last update of multipliers
   int stalls_ = 0;                     ///< updates in a row that did not make it smaller
   double multiplier_share_ = 0.0;      ///< of the inertia behind a contact, in the step of Uzawa's iteration

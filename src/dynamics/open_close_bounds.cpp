@@ -58,27 +58,40 @@ bool OpenClose::reverses(const StepProblem& problem, std::size_t c) const {
 }
 
 /// A spring that holds from where the velocity ends (StepProblem::ways_to_rest) would turn the friction of a contact that does not rest there
-/// always too late or too early. Such a contact gets a spring that turns where the way of the step does. Whether there are any.
-bool OpenClose::let_reverse(const StepProblem& problem) {
-  bool any = false;
+/// always too late or too early. Such contacts get springs that turn where the way of the step does, if that changes the shear forces by
+/// more than `tolerance` of the bounds (L2 over all contacts). Whether they did.
+bool OpenClose::let_reverse(const StepProblem& problem, double tolerance) {
+  reversed_.clear();
+  double change = 0.0;
+  bool knows_bounds = false;
   for (std::size_t c = 0; c < springs_->size(); ++c) {
     const double slipped = springs_->slipped[c];
-    const Force before = springs_->force(c);
     if (slipped == 0.0 ||
-        (springs_->piece[c].shear != SpringArray::Shear::held && before.shear * slipped > 0.0))
+        (springs_->piece[c].shear != SpringArray::Shear::held && springs_->force(c).shear * slipped > 0.0))
       continue;
-    if (!std::exchange(any, true)) sum_bounds(problem);
+    if (!std::exchange(knows_bounds, true)) sum_bounds(problem);
+    if (!reverses(problem, c)) continue;
+    const double gained =
+        springs_->force_at(c, springs_->y[c], springs_->w[c] + slipped).shear - springs_->force(c).shear;
+    if (gained == 0.0) {
+      springs_->hold_from_start(c);
+      continue;
+    }
+    reversed_.push_back(c);
+    change += gained * gained;
   }
-  if (!any) return false;
-  any = false;
+  if (reversed_.empty()) return false;
+  double scale = 0.0;
   for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (springs_->slipped[c] == 0.0 || !reverses(problem, c)) continue;
+    if (springs_->friction[c] >= 0.0) scale += springs_->bound[c] * springs_->bound[c];
+  }
+  if (change <= tolerance * tolerance * scale) return false;
+  for (const std::size_t c : reversed_) {
     const Force before = springs_->force(c);
     springs_->hold_from_start(c);
     take_force(problem, c, before);
-    any = true;
   }
-  return any;
+  return true;
 }
 
 bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
