@@ -241,7 +241,7 @@ TEST(Export, VtkSeriesHasTimesThatAscend) {
   EXPECT_EQ(files[4], folder / "forces.pvd");
   EXPECT_EQ(files[5], folder / "view.py");
   EXPECT_EQ(files.size(), 6U + 3 * 6 + 2 * 3);
-  for (const int series : {2, 3}) EXPECT_EQ(series_times(files[series]), series_times(files[0]));
+  for (const std::size_t series : {2U, 3U}) EXPECT_EQ(series_times(files[series]), series_times(files[0]));
   EXPECT_EQ(series_times(files[4]), series_times(files[1]));
   const std::vector<double> times = series_times(files[0]);
   ASSERT_EQ(times.size(), 6U);
