@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -197,20 +195,19 @@ TEST_F(Outputs, AFolderThatCannotBeWrittenIsARunError) {
   EXPECT_THROW(write_outputs(directory / "missing", made_up::synthetic_study({.realizations = 2})), RunError);
 }
 
-// 10,000 runs × 100 combinations; generous, as machines differ and the sanitizers are slow.
-TEST_F(Outputs, TenThousandRunsTakeSeconds) {
+// 10,000 runs × 100 combinations. How long that takes depends on the machine, and is no test.
+TEST_F(Outputs, TenThousandRunsMakeFilesThatOpen) {
   made_up::SyntheticStudyOptions options{.realizations = 100, .variants = false, .failures = false};
   options.scales.clear();
   for (int k = 1; k <= 50; ++k) options.scales.push_back(std::to_string(0.02 * k));
   const StudyData study = made_up::synthetic_study(options);
   ASSERT_EQ(study.runs.size(), 10'000U);
-  const std::clock_t begin = std::clock();  // of the processor: other work on the machine does not count
   write_outputs(directory, study);
-  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  std::printf("10,000 runs: %.2f s; study.json %.1f MB, report.html %.1f MB\n", seconds,
-              1e-6 * static_cast<double>(fs::file_size(directory / "study.json")),
-              1e-6 * static_cast<double>(fs::file_size(directory / "report.html")));
-  EXPECT_LT(seconds, 60.0);
+  const auto megabytes = [&](const char* name) {
+    return 1e-6 * static_cast<double>(fs::file_size(directory / name));
+  };
+  EXPECT_LT(megabytes("study.json"), 20.0);
+  EXPECT_LT(megabytes("report.html"), 8.0);
 }
 
 }  // namespace
