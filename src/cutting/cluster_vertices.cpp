@@ -40,13 +40,8 @@ class ClusterPass {
       : graph_(graph),
         reach_(reach),
         local_(graph, local_size),
-        incident_(graph.points.size()),
-        stale_(graph.faces.size(), false) {
-    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
-      incident_[index(graph.edges[e].from)].push_back(static_cast<int>(e));
-      incident_[index(graph.edges[e].to)].push_back(static_cast<int>(e));
-    }
-  }
+        incident_(graph.edges_of_vertices()),
+        stale_(graph.faces.size(), false) {}
 
   /// Number of vertices moved.
   int run() {

@@ -79,6 +79,15 @@ void PlanarGraph::remove_dead_ends(std::vector<GraphEdge>& removed) {
   edges.resize(kept);
 }
 
+std::vector<std::vector<int>> PlanarGraph::edges_of_vertices() const {
+  std::vector<std::vector<int>> incident(points.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    incident[static_cast<std::size_t>(edges[e].from)].push_back(static_cast<int>(e));
+    incident[static_cast<std::size_t>(edges[e].to)].push_back(static_cast<int>(e));
+  }
+  return incident;
+}
+
 std::vector<GraphEdge> PlanarGraph::remove_trees() {
   std::vector<GraphEdge> removed;
   remove_dead_ends(removed);

@@ -46,6 +46,9 @@ class PlanarGraph {
     return grid * norm(to_vec2(point(e.to)) - to_vec2(point(e.from)));
   }
 
+  /// Indices of the edges that begin or end at each vertex, ascending.
+  [[nodiscard]] std::vector<std::vector<int>> edges_of_vertices() const;
+
   /// Takes away dead ends (edges to a vertex that has no other, again and again) and bridges (edges with the same
   /// face on both sides). Returns what was taken.
   std::vector<GraphEdge> remove_trees();

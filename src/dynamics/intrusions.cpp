@@ -28,14 +28,15 @@ double depth_in(const contact::Surface& surface, int block, Vec2 p, const Positi
 
 void Intrusions::measure(const Step& step) {
   const contact::Surface& surface = step.surface;
-  mean_.resize(area_.size());
+  first_.resize(area_.size());
   differs_.resize(area_.size());
   for (std::size_t b = 0; b < area_.size(); ++b) {
     const std::size_t first = at(surface.block_begin[b]), last = at(surface.block_begin[b + 1]);
     double differs = 0.0;
     for (std::size_t v = first; v < last; ++v)
       differs = std::max(differs, squared_norm(step.went[v] - step.went[first]));
-    mean_[b] = step.went[first];
+    first_[b] = step.went[first];
+    if (!step.prescribed.empty()) first_[b] += step.prescribed[b];
     differs_[b] = std::sqrt(differs);
   }
 }
@@ -55,7 +56,7 @@ bool Intrusions::any(const Step& step, const contact::CandidateList& candidates)
     const contact::BlockPair& pair = candidates.block_pairs[p];
     const std::size_t a = at(pair.block_a), b = at(pair.block_b);
     const double deepest = most_share * std::sqrt(std::min(area_[a], area_[b]));
-    if (norm(mean_[a] - mean_[b]) + differs_[a] + differs_[b] <= least_added * deepest) continue;
+    if (norm(first_[a] - first_[b]) + differs_[a] + differs_[b] <= least_added * deepest) continue;
     int last = -1;
     for (std::size_t k = at(pair.first); k < candidates.end_of_pair(p); ++k) {
       const contact::Candidate& candidate = candidates.pairs[k];

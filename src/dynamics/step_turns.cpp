@@ -185,7 +185,8 @@ bool Stepper::comes_inside(const State& state) {
     }
     return false;
   };
-  return intrusions_.any({model_.surface, open_close_.displacement(), end, holds}, state.contacts);
+  return intrusions_.any({model_.surface, open_close_.displacement(), prescribed_, end, holds},
+                         state.contacts);
 }
 
 bool Stepper::moved_too_far() {

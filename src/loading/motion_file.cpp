@@ -34,21 +34,11 @@ constexpr double largest_acceleration = 1e9;
 constexpr double largest_file = 200e6;  // bytes
 constexpr std::size_t longest_line = 1'000'000;
 
-[[noreturn]] void refuse(const std::string& file, std::string found, std::string expected,
-                         std::string hint = {}) {
-  Diagnostic diagnostic;
-  diagnostic.where.file = file;
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  diagnostic.hint = std::move(hint);
-  throw InputError(std::move(diagnostic));
-}
-
 void check_samples(const std::vector<MotionComponent>& components) {
   for (const MotionComponent& component : components) {
     const std::size_t peak = component.peak_index();
     if (std::abs(component.acceleration[peak]) <= largest_acceleration) continue;
-    refuse(
+    refuse_file(
         component.file,
         fmt::format("an acceleration of {:.3g} {} in sample {}",
                     component.acceleration[peak] / component.file_unit_in_si, component.file_unit, peak + 1),
@@ -63,19 +53,19 @@ void check_size(const std::filesystem::path& path) {
   const char* kind = S_ISDIR(status.st_mode)   ? "a folder"
                      : S_ISREG(status.st_mode) ? nullptr
                                                : "a device or pipe";
-  if (kind != nullptr) refuse(path.string(), kind, "a file with a record of ground motion");
+  if (kind != nullptr) refuse_file(path.string(), kind, "a file with a record of ground motion");
   const auto size = static_cast<double>(status.st_size);
   if (size > largest_file)
-    refuse(path.string(), fmt::format("a file of {:.0f} MB", size / 1e6),
-           fmt::format("at most {:.0f} MB; records are far smaller", largest_file / 1e6));
+    refuse_file(path.string(), fmt::format("a file of {:.0f} MB", size / 1e6),
+                fmt::format("at most {:.0f} MB; records are far smaller", largest_file / 1e6));
 }
 
 void check_lines(const std::string& file, std::string_view content) {
   for (std::size_t begin = 0; begin < content.size();) {
     const std::size_t end = std::min(content.find_first_of("\r\n", begin), content.size());
     if (end - begin > longest_line)
-      refuse(file, fmt::format("a line of {} characters", end - begin),
-             fmt::format("lines of at most {} characters", longest_line));
+      refuse_file(file, fmt::format("a line of {} characters", end - begin),
+                  fmt::format("lines of at most {} characters", longest_line));
     begin = end + 1;
   }
 }
@@ -89,7 +79,7 @@ void check_is_text(const std::string& file, std::string_view content) {
       {"\xFF\xFE", "UTF-16; save it as UTF-8"},
       {"\xFE\xFF", "UTF-16; save it as UTF-8"}};
   for (const auto& [magic, meaning] : known) {
-    if (content.starts_with(magic)) refuse(file, "a file that is no plain text", "a text file", meaning);
+    if (content.starts_with(magic)) refuse_file(file, "a file that is no plain text", "a text file", meaning);
   }
   constexpr std::size_t looked_at = 1 << 16;
   const std::string_view head = content.substr(0, looked_at);
@@ -97,8 +87,8 @@ void check_is_text(const std::string& file, std::string_view content) {
   const bool sequence = head.size() > 8 &&
                         head.substr(0, 6).find_first_not_of("0123456789 ") == std::string_view::npos &&
                         std::string_view("DRQM").find(head[6]) != std::string_view::npos;
-  refuse(file, "a binary file", "a text file",
-         sequence ? "it seems to be miniSEED; write the samples as a table of text" : "");
+  refuse_file(file, "a binary file", "a text file",
+              sequence ? "it seems to be miniSEED; write the samples as a table of text" : "");
 }
 
 void check_unit(const MotionText& text, const MotionReading& reading,

@@ -169,8 +169,12 @@ void MotionText::fail(std::size_t line, std::string expected) const {
 }
 
 void MotionText::refuse(std::string found, std::string expected, std::string hint) const {
+  refuse_file(file_, std::move(found), std::move(expected), std::move(hint));
+}
+
+void refuse_file(const std::string& file, std::string found, std::string expected, std::string hint) {
   Diagnostic diagnostic;
-  diagnostic.where.file = file_;
+  diagnostic.where.file = file;
   diagnostic.found = std::move(found);
   diagnostic.expected = std::move(expected);
   diagnostic.hint = std::move(hint);

@@ -57,6 +57,10 @@ class MotionText {
   std::vector<std::string_view> lines_;
 };
 
+/// Throws an InputError about the file as a whole.
+[[noreturn]] void refuse_file(const std::string& file, std::string found, std::string expected,
+                              std::string hint = {});
+
 std::string_view trim(std::string_view text);
 /// Runs of blanks become one blank.
 std::string squeeze(std::string_view text);

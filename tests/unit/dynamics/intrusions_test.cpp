@@ -31,7 +31,7 @@ struct Squares {
       return at_start.position[v] + went[v];
     };
     const std::function<bool(int, int)> holds = [&](int, int) { return is_held; };
-    return Intrusions({1.0, 1.0}).any({at_start, went, at_end, holds}, candidates);
+    return Intrusions({1.0, 1.0}).any({at_start, went, {}, at_end, holds}, candidates);
   }
 
   contact::Surface surface;
@@ -54,6 +54,17 @@ TEST(Intrusions, AreNotWhatAContactHolds) {
 TEST(Intrusions, AreNotWhatLayThereBefore) {
   EXPECT_FALSE(Squares().come_in(0.001, 0.2));
   EXPECT_TRUE(Squares().come_in(0.05, 0.2)) << "and goes on";
+}
+
+TEST(Intrusions, AreThoseOfFixedBlocksThatAreMoved) {
+  const Squares squares;
+  const std::vector<Vec2> went(8), prescribed{{}, {-0.2, 0.0}};
+  const std::function<Vec2(std::size_t)> at_end = [&](std::size_t v) {
+    return squares.surface.position[v] + prescribed[v / 4];
+  };
+  const std::function<bool(int, int)> holds = [](int, int) { return false; };
+  EXPECT_TRUE(
+      Intrusions({1.0, 1.0}).any({squares.surface, went, prescribed, at_end, holds}, squares.candidates));
 }
 
 }  // namespace

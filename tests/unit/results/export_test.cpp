@@ -332,16 +332,19 @@ TEST(ResultFileDocs, ThePythonExampleRuns) {
   EXPECT_THAT(result.output, HasSubstr("block 0 has fallen; it has 3 vertices and 0 holes"));
 }
 
+/// The folder of a run that has ended.
+void write_sample(const std::filesystem::path& folder) {
+  SampleRun sample;
+  ResultWriter writer(folder);
+  sample.play(writer);
+}
+
 TEST(ResultFileDocs, OutlinesOfBlocksInFourLines) {
   if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
   const std::string lines = documented_python(2);
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 4);
   const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
+  write_sample(folder);
   const PythonResult result =
       python(folder,
              "import sys, h5py\nf = h5py.File(sys.argv[1] + '/result.h5', 'r')\n" + lines +
@@ -356,11 +359,7 @@ TEST(ResultFileDocs, OutlinesOfBlocksInFourLines) {
 TEST(ResultFileDocs, EveryDatasetSaysItsUnitAndItsNames) {
   if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
   const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
+  write_sample(folder);
   const PythonResult result = python(folder, R"(
 import sys, h5py
 f = h5py.File(sys.argv[1] + "/result.h5", "r")
@@ -396,11 +395,7 @@ print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["s
 TEST(ResultFileDocs, FilesWithoutTheNewerDatasetsAreReadAndExported) {
   if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
   const FreshFolder folder;
-  SampleRun sample;
-  {
-    ResultWriter writer(folder);
-    sample.play(writer);
-  }
+  write_sample(folder);
   const PythonResult result = python(folder, R"(
 import sys, h5py
 with h5py.File(sys.argv[1] + "/result.h5", "r+") as f:
@@ -411,7 +406,7 @@ with h5py.File(sys.argv[1] + "/result.h5", "r+") as f:
   const RunData data = read_run(folder);
   ASSERT_FALSE(data.frames.empty());
   EXPECT_TRUE(data.frames.front().velocity.empty());
-  EXPECT_EQ(data.frames.front().stress, sample.expected().frames.front().stress);
+  EXPECT_EQ(data.frames.front().stress, SampleRun().expected().frames.front().stress);
   EXPECT_EQ(data.model.blocks.back().stress_ratio_zz, 0.0);
   export_run(data, folder / "vtk", ExportFormat::vtk);
   EXPECT_THAT(read_file(folder / "vtk/centres_00000.vtp"), testing::Not(HasSubstr("velocity")));
