@@ -1,4 +1,5 @@
 import { areApart, type Box } from "./box";
+import { Camera, type Frame } from "./camera";
 import { css, textWidths } from "./dom";
 import type { BlockField, Fields, JointField } from "./fields";
 import { count } from "./format";
@@ -41,10 +42,8 @@ export class SectionView {
   private width = 0;
   private height = 0;
   private ratio = 1;
-  private centerX = 0;
-  private centerY = 0;
-  private zoom = 1;
   private readonly extent: Box;
+  private readonly camera: Camera;
   /** The camera while drawing: pixel = (ax + scaleNow x, ay − scaleNow y). */
   private ax = 0;
   private ay = 0;
@@ -68,7 +67,7 @@ export class SectionView {
     this.since = new Float32Array(2 * run.vertexCount);
     this.drawn = new Float32Array(2 * run.vertexCount);
     this.extent = run.extent;
-    this.fit();
+    this.camera = new Camera(this.extent);
     this.readTheme();
   }
 
@@ -96,57 +95,34 @@ export class SectionView {
   }
 
   fit(): void {
-    this.zoom = 1;
+    this.camera.fit();
     this.axisLeft = leastAxisLeft;
-    this.centerX = 0.5 * (this.extent.minX + this.extent.maxX);
-    this.centerY = 0.5 * (this.extent.minY + this.extent.maxY);
   }
 
-  /** Pixels per metre. */
-  private get scale(): number {
-    const { minX, maxX, minY, maxY } = this.extent;
-    const inner = this.inner();
-    return this.zoom * Math.min(inner.width / (maxX - minX), inner.height / (maxY - minY));
-  }
-
-  private inner(): { left: number; top: number; width: number; height: number } {
+  private inner(): Frame {
     if (!this.options.axes) return { left: 0, top: 0, width: this.width, height: this.height };
     const left = this.axisLeft;
     return { left, top: 8, width: this.width - left - 8, height: this.height - axisBottom - 8 };
   }
 
   toPixel(x: number, y: number): [number, number] {
-    const { left, top, width, height } = this.inner();
-    return [
-      left + 0.5 * width + this.scale * (x - this.centerX),
-      top + 0.5 * height - this.scale * (y - this.centerY),
-    ];
+    return this.camera.toPixel(this.inner(), x, y);
   }
 
   toModel(px: number, py: number): [number, number] {
-    const { left, top, width, height } = this.inner();
-    return [
-      this.centerX + (px - left - 0.5 * width) / this.scale,
-      this.centerY - (py - top - 0.5 * height) / this.scale,
-    ];
+    return this.camera.toModel(this.inner(), px, py);
   }
 
-  /** Zooms by a factor so that the point under a pixel stays there. */
   zoomAt(px: number, py: number, factor: number): void {
-    const [x, y] = this.toModel(px, py);
-    this.zoomCentred(factor);
-    const [x1, y1] = this.toModel(px, py);
-    this.centerX += x - x1;
-    this.centerY += y - y1;
+    this.camera.zoomAt(this.inner(), px, py, factor);
   }
 
   zoomCentred(factor: number): void {
-    this.zoom = Math.min(Math.max(this.zoom * factor, 0.5), 200);
+    this.camera.zoomCentred(factor);
   }
 
   pan(dx: number, dy: number): void {
-    this.centerX -= dx / this.scale;
-    this.centerY += dy / this.scale;
+    this.camera.pan(this.inner(), dx, dy);
   }
 
   /** Centres a block as it is drawn now. */
@@ -154,9 +130,7 @@ export class SectionView {
     this.update();
     const ring = this.run.firstRing[block];
     const v = this.run.ringBegin[ring];
-    this.centerX = this.drawn[v];
-    this.centerY = this.drawn[this.run.vertexCount + v];
-    this.zoom = Math.max(this.zoom, 3);
+    this.camera.show(this.drawn[v], this.drawn[this.run.vertexCount + v], 3);
   }
 
   /** Displacements at the moment of the look, and before. */
@@ -225,7 +199,7 @@ export class SectionView {
     this.update();
     if (this.options.axes) this.makeRoomForLabels();
     const { context: c } = this;
-    this.scaleNow = this.scale;
+    this.scaleNow = this.camera.scale(this.inner());
     [this.ax, this.ay] = this.toPixel(0, 0);
     const inner = this.inner();
     c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
@@ -383,7 +357,7 @@ export class SectionView {
 
   /** Says how many blocks are not in the picture, unless the reader has zoomed. */
   private drawOutside(): void {
-    if (this.zoom !== 1) return;
+    if (this.camera.isZoomed) return;
     const { run, drawn, context: c } = this;
     const { left, top, width, height } = this.inner();
     const [minX, minY] = this.toModel(left, top + height);
