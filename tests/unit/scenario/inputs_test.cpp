@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "../fresh_folder.h"
 #include "scenario_text.h"
 
 namespace keyblock::scenario {
@@ -57,7 +58,8 @@ TEST(Motions, OtherDirectionsThanTheFileSaysAreWarnedOf) {
 // A scenario of two blocks with a motion of these keys, and a file for it.
 std::vector<loading::GroundMotion> motions_of(const std::string& keys, std::vector<std::string>& warnings,
                                               const std::string& content = "0 1 10\n0.5 2 20\n1.0 3 30\n") {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "motion.txt";
+  const FreshFolder own;
+  const std::filesystem::path file = own / "motion.txt";
   std::ofstream(file) << content;
   std::string text = keys;
   for (std::size_t at = text.find("FILE"); at != std::string::npos; at = text.find("FILE"))

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../fresh_folder.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario_text.h"
@@ -202,7 +203,8 @@ TEST(Warnings, OfStepsThatAreLongForTheMotion) {
   // A ramp does not swing.
   EXPECT_THAT(warnings_of(shaken, {"motion.sine.x=[[0, 0], [0.001, 1], [5, 1]]"}), IsEmpty());
   // A record has a step of its own.
-  const std::filesystem::path record = std::filesystem::path(testing::TempDir()) / "slow.csv";
+  const FreshFolder own;
+  const std::filesystem::path record = own / "slow.csv";
   std::ofstream file(record);
   file << "time s,acceleration m/s2\n";
   for (int k = 0; k <= 400; ++k) file << 0.01 * k << "," << std::sin(k * 0.01) << "\n";
@@ -283,7 +285,8 @@ TEST(Warnings, OfRockThatIsNotThere) {
 }
 
 TEST(Warnings, OfTraceMapsElsewhere) {
-  const std::filesystem::path map = std::filesystem::path(testing::TempDir()) / "elsewhere.csv";
+  const FreshFolder own;
+  const std::filesystem::path map = own / "elsewhere.csv";
   std::ofstream(map) << "trace,x,y\n1,100,100\n1,101,102\n";
   const std::string text =
       runnable_domain + "[[trace_map]]\nname = \"map\"\nfile = \"" + map.string() + "\"\n";
