@@ -28,9 +28,9 @@ double depth_in(const contact::Surface& surface, int block, Vec2 p, const Positi
 
 void Intrusions::measure(const Step& step) {
   const contact::Surface& surface = step.surface;
-  first_.resize(area_.size());
-  differs_.resize(area_.size());
-  for (std::size_t b = 0; b < area_.size(); ++b) {
+  first_.resize(size_.size());
+  differs_.resize(size_.size());
+  for (std::size_t b = 0; b < size_.size(); ++b) {
     const std::size_t first = at(surface.block_begin[b]), last = at(surface.block_begin[b + 1]);
     double differs = 0.0;
     for (std::size_t v = first; v < last; ++v)
@@ -55,8 +55,9 @@ bool Intrusions::any(const Step& step, const contact::CandidateList& candidates)
   for (std::size_t p = 0; p < candidates.block_pairs.size(); ++p) {
     const contact::BlockPair& pair = candidates.block_pairs[p];
     const std::size_t a = at(pair.block_a), b = at(pair.block_b);
-    const double deepest = most_share * std::sqrt(std::min(area_[a], area_[b]));
-    if (norm(first_[a] - first_[b]) + differs_[a] + differs_[b] <= least_added * deepest) continue;
+    const double deepest = most_share * std::min(size_[a], size_[b]),
+                 left = least_added * deepest - differs_[a] - differs_[b];
+    if (left >= 0.0 && squared_norm(first_[a] - first_[b]) <= left * left) continue;
     int last = -1;
     for (std::size_t k = at(pair.first); k < candidates.end_of_pair(p); ++k) {
       const contact::Candidate& candidate = candidates.pairs[k];

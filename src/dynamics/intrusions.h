@@ -18,8 +18,8 @@ class Intrusions {
   /// Of that depth: what the step itself must add. What lay there before is not for a shorter step to mend.
   static constexpr double least_added = 0.5;
 
-  /// area: m², of each block.
-  explicit Intrusions(std::vector<double> area) : area_(std::move(area)) {}
+  /// size: m, √ of the area of each block.
+  explicit Intrusions(std::vector<double> size) : size_(std::move(size)) {}
 
   /// A step, as it would end.
   struct Step {
@@ -37,7 +37,7 @@ class Intrusions {
   void measure(const Step& step);
   [[nodiscard]] bool comes_in(const Step& step, int vertex, int block, double deepest) const;
 
-  std::vector<double> area_;
+  std::vector<double> size_;
   std::vector<Vec2> first_;      ///< m, per block: what its first vertex goes
   std::vector<double> differs_;  ///< m, per block: by how much another one's way differs from that at most
 };

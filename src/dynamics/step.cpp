@@ -16,11 +16,12 @@ std::vector<double> penalties(const Model& model) {
   return stiffness;
 }
 
-std::vector<double> areas_of(const std::vector<Block>& blocks) {
-  std::vector<double> areas;
-  areas.reserve(blocks.size());
-  for (const Block& block : blocks) areas.push_back(block.area);
-  return areas;
+/// m, √ of the area of each block.
+std::vector<double> sizes_of(const std::vector<Block>& blocks) {
+  std::vector<double> sizes;
+  sizes.reserve(blocks.size());
+  for (const Block& block : blocks) sizes.push_back(std::sqrt(block.area));
+  return sizes;
 }
 }  // namespace
 
@@ -48,7 +49,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
       in_impact_(model.blocks.size(), 0),
       prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
       static_ways_(model.blocks.size(), 0.0),
-      intrusions_(areas_of(model.blocks)) {
+      intrusions_(sizes_of(model.blocks)) {
   double mass = 0.0;
   for (const Block& block : model.blocks) {
     if (block.unknown < 0) continue;
