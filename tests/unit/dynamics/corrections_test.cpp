@@ -9,7 +9,7 @@
 namespace keyblock::dynamics {
 namespace {
 
-constexpr int blocks = 12, size = 6, unknowns = blocks * size;
+constexpr int block_count = 12, block_size = 6, unknowns = block_count * block_size;
 
 /// Masses on a chain: block k is coupled with block k + 1.
 struct Chain {
@@ -18,17 +18,17 @@ struct Chain {
 
   Chain() {
     std::vector<std::pair<int, int>> pairs;
-    for (int k = 0; k + 1 < blocks; ++k) pairs.emplace_back(k, k + 1);
-    solver->analyse(std::vector<int>(blocks, size), pairs);
+    for (int k = 0; k + 1 < block_count; ++k) pairs.emplace_back(k, k + 1);
+    solver->analyse(std::vector<int>(block_count, block_size), pairs);
     solver->clear();
-    for (int k = 0; k < blocks; ++k) {
-      for (int u = 0; u < size; ++u) add(k, u, k, u, 1.0);
+    for (int k = 0; k < block_count; ++k) {
+      for (int u = 0; u < block_size; ++u) add(k, u, k, u, 1.0);
     }
   }
   void add(int i, int u, int j, int v, double value) {
-    dense(size * i + u, size * j + v) += value;
+    dense(block_size * i + u, block_size * j + v) += value;
     if (i == j) {
-      solver->diagonal(i)[v * linalg::padded_rows(size) + u] += value;
+      solver->diagonal(i)[v * linalg::padded_rows(block_size) + u] += value;
     } else if (i + 1 == j) {
       const linalg::BlockSlot slot = solver->slot(i);
       const int row = slot.row == i ? u : v, column = slot.row == i ? v : u;
@@ -46,9 +46,9 @@ struct Spring {
 
   [[nodiscard]] Eigen::VectorXd derivative() const {
     Eigen::VectorXd v = Eigen::VectorXd::Zero(unknowns);
-    for (int u = 0; u < size; ++u) {
-      v[size * block + u] = a[static_cast<std::size_t>(u)];
-      v[size * (block + 1) + u] = b[static_cast<std::size_t>(u)];
+    for (int u = 0; u < block_size; ++u) {
+      v[block_size * block + u] = a[static_cast<std::size_t>(u)];
+      v[block_size * (block + 1) + u] = b[static_cast<std::size_t>(u)];
     }
     return v;
   }
@@ -64,8 +64,8 @@ TEST(Corrections, ReachTheMinimum) {
     std::vector<Spring> springs;
     for (int s = 0; s < 40; ++s) {
       Spring spring;
-      spring.block = static_cast<int>(random() % (blocks - 1));
-      for (int u = 0; u < size; ++u) {
+      spring.block = static_cast<int>(random() % (block_count - 1));
+      for (int u = 0; u < block_size; ++u) {
         spring.a.push_back(uniform(random));
         spring.b.push_back(uniform(random));
       }
@@ -85,7 +85,8 @@ TEST(Corrections, ReachTheMinimum) {
         for (int i = 0; i < unknowns; ++i) {
           for (int j = 0; j < unknowns; ++j) {
             if (v[i] != 0.0 && v[j] != 0.0)
-              chain.add(i / size, i % size, j / size, j % size, law.stiffness * v[i] * v[j]);
+              chain.add(i / block_size, i % block_size, j / block_size, j % block_size,
+                        law.stiffness * v[i] * v[j]);
           }
         }
       }
