@@ -26,6 +26,10 @@ double depth_in(const contact::Surface& surface, int block, Vec2 p, const Positi
 
 }  // namespace
 
+Intrusions::Intrusions(std::vector<double> sizes)
+    : size_(std::move(sizes)),
+      least_size_(size_.empty() ? 0.0 : *std::min_element(size_.begin(), size_.end())) {}
+
 void Intrusions::measure(const Step& step) {
   const contact::Surface& surface = step.surface;
   first_.resize(size_.size());
@@ -50,7 +54,16 @@ bool Intrusions::comes_in(const Step& step, int vertex, int block, double deepes
   return now - before > least_added * deepest;
 }
 
+/// Whether no vertex goes far enough in the step to come into any block: most steps end here.
+bool Intrusions::all_go_little(const Step& step) const {
+  double farthest = 0.0, moved = 0.0;
+  for (const Vec2& way : step.went) farthest = std::max(farthest, squared_norm(way));
+  for (const Vec2& way : step.prescribed) moved = std::max(moved, squared_norm(way));
+  return 2.0 * (std::sqrt(farthest) + std::sqrt(moved)) <= least_added * most_share * least_size_;
+}
+
 bool Intrusions::any(const Step& step, const contact::CandidateList& candidates) {
+  if (all_go_little(step)) return false;
   measure(step);
   for (std::size_t p = 0; p < candidates.block_pairs.size(); ++p) {
     const contact::BlockPair& pair = candidates.block_pairs[p];

@@ -18,8 +18,8 @@ class Intrusions {
   /// Of that depth: what the step itself must add. What lay there before is not for a shorter step to mend.
   static constexpr double least_added = 0.5;
 
-  /// size: m, √ of the area of each block.
-  explicit Intrusions(std::vector<double> size) : size_(std::move(size)) {}
+  /// sizes: m, √ of the area of each block.
+  explicit Intrusions(std::vector<double> sizes);
 
   /// A step, as it would end.
   struct Step {
@@ -34,10 +34,12 @@ class Intrusions {
   [[nodiscard]] bool any(const Step& step, const contact::CandidateList& candidates);
 
  private:
+  [[nodiscard]] bool all_go_little(const Step& step) const;
   void measure(const Step& step);
   [[nodiscard]] bool comes_in(const Step& step, int vertex, int block, double deepest) const;
 
   std::vector<double> size_;
+  double least_size_;
   std::vector<Vec2> first_;      ///< m, per block: what its first vertex goes
   std::vector<double> differs_;  ///< m, per block: by how much another one's way differs from that at most
 };

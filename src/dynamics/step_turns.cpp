@@ -172,8 +172,6 @@ double Stepper::keep_turned_shear(State& state) {
   return std::accumulate(turned_energy_.begin(), turned_energy_.end(), 0.0);
 }
 
-/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
-/// it went.
 /// Whether a block comes to lie in another one where no contact holds it.
 bool Stepper::comes_inside(const State& state) {
   const SpringArray& springs = problem_.springs();
@@ -189,6 +187,8 @@ bool Stepper::comes_inside(const State& state) {
                          state.contacts);
 }
 
+/// Whether a block moved or turned beyond what its contacts were looked for with; that is then raised, and the block expected to go where
+/// it went.
 bool Stepper::moved_too_far() {
   std::atomic<bool> any = false;
   const std::span<const Vec2> went = open_close_.displacement();
