@@ -217,6 +217,9 @@ class OpenClose {
   [[nodiscard]] bool reverses(const StepProblem& problem, std::size_t c) const;
   bool let_reverse(const StepProblem& problem, double tolerance);
   bool update_bounds(StepProblem& problem, double tolerance);
+  [[nodiscard]] Vec2 violation(const StepProblem& problem, const contact::Contact& contact,
+                               std::size_t c) const;
+  void shift_forces(const StepProblem& problem, double share);
   bool augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance);
   bool renew_bonds(const StepProblem& problem, std::span<const contact::Contact> contacts);
   bool break_bonds(const StepProblem& problem, std::span<contact::Contact> contacts);
@@ -281,6 +284,7 @@ class OpenClose {
   std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
   std::vector<std::size_t> reversed_;  ///< contacts; scratch
   double worst_ = 0.0;                 ///< m, largest penetration or drift at the last update of multipliers
+  double worst_without_ = 0.0;         ///< m, the same before the first of them
   int stalls_ = 0;                     ///< updates in a row that did not make it smaller
   double multiplier_share_ = 0.0;      ///< of the inertia behind a contact, in the step of Uzawa's iteration
   /// Of a bound, N per thickness: by how much it was wrong, and the change it got for it.

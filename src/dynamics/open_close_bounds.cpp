@@ -13,6 +13,8 @@ constexpr double least_share = 0.25;          // of the way to a new bound
 constexpr int undamped_updates = 8;           // of bounds, before all contacts go a smaller share …
 constexpr double least_damping = 1.0 / 64.0;  // … and how small it gets
 constexpr double least_multiplier_share = 1e-3;
+// Of the block size: penetration that updates of multipliers may leave on their way.
+constexpr double most_transient = 1e-3;
 
 /// Two sums over the same.
 struct Sums {
@@ -141,42 +143,66 @@ bool OpenClose::update_bounds(StepProblem& problem, double tolerance) {
   return true;
 }
 
+/// n·r and t·r of a closed contact, except for what multipliers have added: how deep it lies in, m, and how far it has drifted from where
+/// it holds, m.
+Vec2 OpenClose::violation(const StepProblem& problem, const contact::Contact& contact, std::size_t c) const {
+  const StepProblem::Row& row = problem.rows()[c];
+  const double normal = springs_->y0[c] - springs_->y[c] + dot(row.normal, row.moved),
+               slip = springs_->w[c] - springs_->w0[c] + dot(row.tangent(), row.moved);
+  const double penetration = -(contact.gap + normal) - std::max(0.0, contact.memory.offset);
+  return {penetration, springs_->piece[c].shear == Shear::held ? contact.memory.drift + slip : 0.0};
+}
+
+/// Adds the shifts, times a share, to the forces that belong to no displacement.
+void OpenClose::shift_forces(const StepProblem& problem, double share) {
+  for (std::size_t c = 0; c < springs_->size(); ++c) {
+    if (shift_[c] == Vec2{}) continue;
+    const Force before = springs_->force(c);
+    springs_->shift(c, share * shift_[c].x, share * shift_[c].y);
+    take_force(problem, c, before);
+  }
+}
+
 /// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when
 /// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
 /// left alone.
 bool OpenClose::augment(StepProblem& problem, std::span<contact::Contact> contacts, double tolerance) {
+  std::vector<Vec2> off(springs_->size());
   double worst = 0.0;
-  shift_.assign(springs_->size(), {});
   for (std::size_t c = 0; c < springs_->size(); ++c) {
     if (!springs_->piece[c].closed) continue;
-    // n·r and t·r, but for what multipliers have added.
-    const StepProblem::Row& row = problem.rows()[c];
-    const double normal = springs_->y0[c] - springs_->y[c] + dot(row.normal, row.moved),
-                 slip = springs_->w[c] - springs_->w0[c] + dot(row.tangent(), row.moved);
-    const double penetration = -(contacts[c].gap + normal) - std::max(0.0, contacts[c].memory.offset);
-    const double drift = springs_->piece[c].shear == Shear::held ? contacts[c].memory.drift + slip : 0.0;
-    worst = std::max({worst, std::abs(penetration), std::abs(drift)});
-    const double inertia = multiplier_share_ * problem.inertia_between(contacts[c]);
-    // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
-    const double multiplier =
-        springs_->is_tensile(c) ? HUGE_VAL : std::max(0.0, springs_->y[c] - penetration);
-    shift_[c] = {std::max(penetration * (1.0 + inertia / springs_->kn[c]), -multiplier),
-                 drift * (1.0 + inertia / springs_->ks[c])};
+    off[c] = violation(problem, contacts[c], c);
+    worst = std::max({worst, std::abs(off[c].x), std::abs(off[c].y)});
   }
   if (worst <= tolerance) return false;
-  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for.
+  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for. Where it runs
+  // away, far beyond what springs without multipliers leave, most of the last shift is taken back.
+  if (std::isinf(worst_)) worst_without_ = worst;
   const bool overshoots = worst > worst_ && multiplier_share_ > least_multiplier_share;
-  if (overshoots) multiplier_share_ /= std::min(1.0 + worst / worst_, 4.0);
+  if (overshoots) {
+    const double left = 1.0 / std::min(1.0 + worst / worst_, 4.0);
+    multiplier_share_ *= left;
+    stalls_ = 0;
+    if (worst > std::max(4.0 * worst_without_, most_transient * problem.block_size())) {
+      shift_forces(problem, left - 1.0);
+      for (Vec2& shift : shift_) shift = left * shift;
+      return true;
+    }
+  }
   // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
   stalls_ = !overshoots && worst > 0.97 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;
   if (stalls_ == 3) return false;
+  shift_.assign(springs_->size(), {});
   for (std::size_t c = 0; c < springs_->size(); ++c) {
-    if (shift_[c] == Vec2{}) continue;
-    const Force before = springs_->force(c);
-    springs_->shift(c, shift_[c].x, shift_[c].y);
-    take_force(problem, c, before);
+    if (!springs_->piece[c].closed) continue;
+    const double inertia = multiplier_share_ * problem.inertia_between(contacts[c]);
+    // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
+    const double multiplier = springs_->is_tensile(c) ? HUGE_VAL : std::max(0.0, springs_->y[c] - off[c].x);
+    shift_[c] = {std::max(off[c].x * (1.0 + inertia / springs_->kn[c]), -multiplier),
+                 off[c].y * (1.0 + inertia / springs_->ks[c])};
   }
+  shift_forces(problem, 1.0);
   return true;
 }
 

@@ -260,7 +260,8 @@ bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, 
     report.iterations += result.iterations;
     quiet_ = result.bends == 0;
     if (!result.finite)
-      throw RunError("the forces of the step to " + std::to_string(drive.end_time) + " s are not finite");
+      throw RunError("the forces of the step to " + std::to_string(drive.end_time) +
+                     " s are not finite; a shorter time.step, order 1, or stiffer rock may help");
     if (result.linear_failed && !must_be_direct) {
       must_be_direct = true;
       continue;
@@ -326,7 +327,9 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     if (!model_.moves(b)) continue;
     if (!std::isfinite(state.moved[b])) {
       throw RunError("block " + std::to_string(b) + " has no finite position after the step to " +
-                     std::to_string(drive.end_time) + " s");
+                     std::to_string(drive.end_time) +
+                     " s, which does not converge; a shorter time.step, order 1, or solver.contact = "
+                     "\"penalty\" may help");
     }
     report.max_displacement = std::max(report.max_displacement, state.moved[b]);
   }
