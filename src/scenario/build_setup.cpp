@@ -13,6 +13,7 @@
 #include "scenario/polygon_checks.h"
 #include "scenario/shaking_checks.h"
 #include "scenario/stage_steps.h"
+#include "simulation/feasibility.h"
 #include "simulation/history_block.h"
 
 namespace keyblock::scenario {
@@ -212,6 +213,13 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.solver = scenario.solver;
   add_block_warnings(scenario, blocks, notes);
   add_shaking_warnings(scenario, setup.motions, notes);
+  if (const simulation::JointClosure soft = simulation::largest_closure(setup);
+      soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
+    notes.push_back(fmt::format(
+        "joints of normal_stiffness = {:.4g} Pa/m are soft: weight or stress of {:.3g} Pa closes "
+        "them by {:.2g} m, {:.2g} % of the block size; blocks that still sink may be called falling",
+        soft.stiffness, soft.stress, soft.closure, 100.0 * soft.share()));
+  }
   if (const auto reason = closure_is_lower_bound(scenario, setup)) {
     setup.closure_is_lower_bound = true;
     if (!scenario.accepted.order_1)

@@ -85,7 +85,7 @@ TEST(GivingUp, RockThatIsTooSoft) {
   EXPECT_THAT(
       failure_of(block_on_ground(8.0)),
       HasSubstr("the rock is too soft to be computed: young = 8 Pa of block 'b1', and weight or stress of "
-                "3.83e+04 Pa deform it by 4.8e+03 times its size (density 2600 kg/m3, height 1.5 m)"));
+                "1.28e+04 Pa deform it by 1.6e+03 times its size (density 2600 kg/m3, height 0.5 m)"));
   EXPECT_EQ(failure_of(block_on_ground(1e9)), "");
   RunSetup weightless = block_on_ground(8.0);
   weightless.gravity = {};
@@ -99,6 +99,25 @@ TEST(GivingUp, RockThatIsTooSoft) {
   EXPECT_FALSE(yields_without_limit(weightless));
   weightless.properties[0].material.young = 1.0;  // fixed
   EXPECT_FALSE(yields_without_limit(weightless));
+}
+
+TEST(GivingUp, JointsThatAreTooSoft) {
+  RunSetup setup = block_on_ground();
+  const double stress = 2600.0 * g * 0.5, size = std::sqrt(0.5);
+  const auto with_closure = [&](double share) {
+    setup.joints.standard.normal_stiffness = stress / (share * size);
+    return failure_of(setup);
+  };
+  EXPECT_EQ(with_closure(0.08), "");
+  EXPECT_NEAR(largest_closure(setup).share(), 0.08, 1e-12);
+  EXPECT_THAT(with_closure(0.5),
+              HasSubstr("the joints are too soft to be computed: normal_stiffness = 3.607e+04 "
+                        "Pa/m, and weight or stress of 1.28e+04 Pa closes them by 0.35 m, "
+                        "where blocks are 0.71 m large"));
+  setup.joints.standard.normal_stiffness.reset();
+  setup.joints.trace_maps.resize(1);
+  setup.joints.trace_maps[0].normal_stiffness = 1.0;
+  EXPECT_THAT(failure_of(setup), HasSubstr("too soft"));
 }
 
 // No step converges: the run does not go on to the end of its stage, and says what is odd in the input.
