@@ -11,13 +11,13 @@ double Corrections::Law::bend(double stretch) const {
   return std::clamp(stiffness * stretch, low, high) - (line_force + line_stiffness * stretch);
 }
 
-int Corrections::Law::piece(double stretch) const {
+int Corrections::Law::branch(double stretch) const {
   const double elastic = stiffness * stretch;
   return elastic <= low ? -1 : elastic >= high ? 1 : 0;
 }
 
 double Corrections::Law::bend_stiffness(double stretch) const {
-  return (piece(stretch) == 0 ? stiffness : 0.0) - line_stiffness;
+  return (branch(stretch) == 0 ? stiffness : 0.0) - line_stiffness;
 }
 
 void Corrections::add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, linalg::HalfSolver::Part b) {
@@ -83,7 +83,7 @@ bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double
   stretch_.resize(size_);
   stiffness_.resize(size_);
   missing_.resize(size_);
-  piece_.resize(size_);
+  branch_.resize(size_);
   step_.resize(size_);
   force_.assign(size_, 0.0);
   for (std::size_t s = 0; s < size_; ++s) stretch_[s] = stretch[s] + solver.product(half_[s], half);
@@ -92,7 +92,7 @@ bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double
     for (std::size_t s = 0; s < size_; ++s) {
       missing_[s] = laws[s].bend(stretch_[s]) - force_[s];
       stiffness_[s] = laws[s].bend_stiffness(stretch_[s]);
-      piece_[s] = laws[s].piece(stretch_[s]);
+      branch_[s] = laws[s].branch(stretch_[s]);
       missing = std::max(missing, std::abs(missing_[s]));
       largest = std::max({largest, std::abs(force_[s]), laws[s].stiffness * std::abs(stretch_[s])});
     }
@@ -115,7 +115,7 @@ bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double
     for (std::size_t s = 0; s < size_; ++s) {
       force_[s] += alpha * direction_[s];
       stretch_[s] -= alpha * step_[s];
-      same = same && laws[s].piece(stretch_[s]) == piece_[s];
+      same = same && laws[s].branch(stretch_[s]) == branch_[s];
     }
     if (same) return true;  // the function is quadratic up to here
   }

@@ -25,7 +25,7 @@ class Corrections {
     [[nodiscard]] double bend(double stretch) const;
     [[nodiscard]] double bend_stiffness(double stretch) const;
     /// −1, 1: at `low`, at `high`; 0: the spring acts.
-    [[nodiscard]] int piece(double stretch) const;
+    [[nodiscard]] int branch(double stretch) const;
   };
 
   void clear() { size_ = 0; }
@@ -52,7 +52,7 @@ class Corrections {
   std::vector<double> force_;               ///< φ
   // Scratch.
   std::vector<double> stretch_, stiffness_, missing_;  ///< e; ∂β/∂e; β − φ
-  std::vector<int> piece_;
+  std::vector<int> branch_;
   std::vector<double> direction_, step_;  ///< of φ; what it takes off e
   std::vector<std::size_t> bent_;         ///< springs with ∂β/∂e ≠ 0
   std::vector<double> triangle_, right_;

@@ -9,7 +9,7 @@
 namespace keyblock::dynamics {
 
 /// The springs at the end of a look at a step that has to be taken again, with other rules of integration, a longer reach or other
-/// gaps: the pieces and the friction bounds that it came to are nearer to those of the next look than what contacts remember of the
+/// gaps: the branches and the friction bounds that it came to are nearer to those of the next look than what contacts remember of the
 /// last step.
 class EarlierLook {
  public:
@@ -18,7 +18,7 @@ class EarlierLook {
   void keep(std::span<const contact::Contact> contacts, const SpringArray& springs) {
     candidates_.clear();
     for (const contact::Contact& c : contacts) candidates_.push_back(c.candidate);
-    piece_ = springs.piece;
+    branch_ = springs.branch;
     bound_ = springs.bound;
     slipped_ = springs.slipped;
     bounds_updated_ = springs.bounds_updated;
@@ -32,7 +32,7 @@ class EarlierLook {
       while (k < candidates_.size() && candidates_[k] < contacts[c].candidate) ++k;
       if (k == candidates_.size()) break;
       if (candidates_[k] != contacts[c].candidate || contacts[c].memory.bonded) continue;
-      springs.piece[c] = piece_[k];
+      springs.branch[c] = branch_[k];
       springs.bound[c] = bound_[k];
       if (slipped_[k] == 0.0) springs.hold_from_start(c);
     }
@@ -41,7 +41,7 @@ class EarlierLook {
 
  private:
   std::vector<int> candidates_;  ///< of its contacts; empty: there was no earlier look
-  std::vector<SpringArray::Piece> piece_;
+  std::vector<SpringArray::Branch> branch_;
   std::vector<double> bound_, slipped_;
   bool bounds_updated_ = false;
 };

@@ -11,6 +11,15 @@ enum class ContactMethod { penalty, augmented_lagrangian };
 /// Rules of time integration; integrator.h has the formulas.
 enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 
+/// What makes a step faster and changes where it ends by no more than its tolerance. Each can be switched off.
+struct Accelerators {
+  bool kept_factor = true;        ///< KeptFactor
+  bool low_rank_update = true;    ///< LowRankUpdate
+  bool local_solve = true;        ///< LocalSolve
+  bool increment_history = true;  ///< IncrementHistory: increments go on as the last ones did
+  bool earlier_attempt = true;    ///< an attempt begins with the springs of the attempt before it
+};
+
 /// How a step is solved. Defaults suit rock at engineering scale; every length is relative to the model, so that any
 /// consistent set of units works.
 struct SolverOptions {
@@ -46,6 +55,7 @@ struct SolverOptions {
   double penetration_tolerance = 1e-10;
   int max_multiplier_updates = 200;
   LinearSolver linear = LinearSolver::automatic;
+  Accelerators accelerators;
 };
 
 }  // namespace keyblock::dynamics

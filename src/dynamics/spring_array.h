@@ -21,17 +21,17 @@ namespace keyblock::dynamics {
 class SpringArray {
  public:
   enum class Shear : std::int8_t { backward = -1, held = 0, forward = 1, none = 2 };
-  /// The piece of the two piecewise linear laws that a contact is on.
-  struct Piece {
+  /// The branch of the two piecewise linear laws that a contact is on.
+  struct Branch {
     bool closed = false;        ///< the normal spring acts
     Shear shear = Shear::none;  ///< held: the shear spring acts; forward, backward: at the bound; none: T = 0
     /// Whether the same springs act.
-    [[nodiscard]] bool same_springs(Piece other) const {
+    [[nodiscard]] bool same_springs(Branch other) const {
       return closed == other.closed && (shear == Shear::held) == (other.shear == Shear::held);
     }
-    friend bool operator==(Piece, Piece) = default;
+    friend bool operator==(Branch, Branch) = default;
   };
-  static_assert(sizeof(Piece) == sizeof(std::uint16_t) && std::has_unique_object_representations_v<Piece>);
+  static_assert(sizeof(Branch) == sizeof(std::uint16_t) && std::has_unique_object_representations_v<Branch>);
   /// N and T.
   struct Force {
     double normal = 0.0, shear = 0.0;
@@ -44,7 +44,7 @@ class SpringArray {
     for (std::vector<double>* v :
          {&kn, &ks, &bound, &floor, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
       v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
-    piece.resize(n);
+    branch.resize(n);
     bounds_updated = false;
   }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -68,7 +68,7 @@ class SpringArray {
     shift(c, 0.0, slipped[c]);
     slipped[c] = 0.0;
   }
-  /// Goes on along the direction of search; `piece` stays that of where it was.
+  /// Goes on along the direction of search; `branch` stays that of where it was.
   void go(double alpha, std::size_t begin, std::size_t end) {
     const auto add = [&](std::vector<double>& to, const std::vector<double>& change, std::size_t c,
                          int count) {
@@ -80,7 +80,7 @@ class SpringArray {
     });
   }
 
-  [[nodiscard]] Piece piece_at(std::size_t c, double penetration, double displacement) const {
+  [[nodiscard]] Branch branch_at(std::size_t c, double penetration, double displacement) const {
     const double elastic = ks[c] * displacement;
     return {penetration > floor[c], bound[c] <= 0.0       ? Shear::none
                                     : elastic > bound[c]  ? Shear::forward
@@ -90,32 +90,32 @@ class SpringArray {
   /// As codes, of as many contacts as there are lanes; `held` where the shear spring is none of the others.
   [[nodiscard]] static LaneCondition codes_of(LaneCondition closed, LaneCondition none, LaneCondition forward,
                                               LaneCondition backward) {
-    const auto code = [](Piece p) { return std::int64_t{std::bit_cast<std::uint16_t>(p)}; };
+    const auto code = [](Branch p) { return std::int64_t{std::bit_cast<std::uint16_t>(p)}; };
     return (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
            (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
   }
   /// Those of `count` contacts from c on.
-  void set_pieces(std::size_t c, std::size_t count, LaneCondition pieces) {
+  void set_branches(std::size_t c, std::size_t count, LaneCondition branches) {
     std::uint16_t codes[lane_count];
-    store_codes(codes, pieces);
-    std::memcpy(static_cast<void*>(&piece[c]), &codes, count * sizeof(Piece));
+    store_codes(codes, branches);
+    std::memcpy(static_cast<void*>(&branch[c]), &codes, count * sizeof(Branch));
   }
-  /// piece_at of as many contacts as there are lanes, from c on.
-  [[nodiscard]] LaneCondition pieces_at(std::size_t c, Lanes penetration, Lanes displacement) const {
+  /// branch_at of as many contacts as there are lanes, from c on.
+  [[nodiscard]] LaneCondition branches_at(std::size_t c, Lanes penetration, Lanes displacement) const {
     const Lanes elastic = load(&ks[c]) * displacement, most = load(&bound[c]);
     const auto none = most <= 0.0, forward = ~none & (elastic > most),
                backward = ~none & ~forward & (elastic < -most);
     return codes_of(penetration > load(&floor[c]), none, forward, backward);
   }
-  /// Whether one of them leaves its `piece` by α along the direction of search; beyond the last one it may say so of none.
+  /// Whether one of them leaves its `branch` by α along the direction of search; beyond the last one it may say so of none.
   [[nodiscard]] bool any_leaves(std::size_t c, double alpha) const {
     const Lanes a = broadcast(alpha);
-    const auto now = pieces_at(c, load(&y[c]) + a * load(&dy[c]), load(&w[c]) + a * load(&dw[c]));
+    const auto now = branches_at(c, load(&y[c]) + a * load(&dy[c]), load(&w[c]) + a * load(&dw[c]));
     std::uint16_t codes[lane_count] = {};
     if (c + lane_count <= size_) {
-      std::memcpy(&codes, &piece[c], sizeof(codes));
+      std::memcpy(&codes, &branch[c], sizeof(codes));
     } else {
-      std::memcpy(&codes, &piece[c], (size_ - c) * sizeof(Piece));
+      std::memcpy(&codes, &branch[c], (size_ - c) * sizeof(Branch));
     }
     return any(now != lane_codes(codes));
   }
@@ -125,7 +125,7 @@ class SpringArray {
     const Lanes penetration = load(&y0[c]) - normal, displacement = load(&w0[c]) + tangent;
     store_first(&y[c], penetration, static_cast<int>(count));
     store_first(&w[c], displacement, static_cast<int>(count));
-    set_pieces(c, count, pieces_at(c, penetration, displacement));
+    set_branches(c, count, branches_at(c, penetration, displacement));
   }
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
     return {penetration > floor[c] ? kn[c] * penetration : 0.0,
@@ -152,16 +152,16 @@ class SpringArray {
                         return largest(where(first_lanes(size_ - c), load(&kn[c]), Lanes{}));
                       });
   }
-  /// On the straight line that goes on from a piece.
-  [[nodiscard]] Force force_on(std::size_t c, Piece p, double penetration, double displacement) const {
+  /// On the straight line that goes on from a branch.
+  [[nodiscard]] Force force_on(std::size_t c, Branch p, double penetration, double displacement) const {
     return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
                                                   : p.shear == Shear::none
                                                       ? 0.0
                                                       : static_cast<int>(p.shear) * bound[c]};
   }
-  /// Stiffness of a piece.
-  [[nodiscard]] double normal_stiffness(std::size_t c, Piece p) const { return p.closed ? kn[c] : 0.0; }
-  [[nodiscard]] double shear_stiffness(std::size_t c, Piece p) const {
+  /// Stiffness of a branch.
+  [[nodiscard]] double normal_stiffness(std::size_t c, Branch p) const { return p.closed ? kn[c] : 0.0; }
+  [[nodiscard]] double shear_stiffness(std::size_t c, Branch p) const {
     return p.shear == Shear::held ? ks[c] : 0.0;
   }
 
@@ -174,7 +174,7 @@ class SpringArray {
   std::vector<double> slipped;  ///< m, slip of the step that w does not have
   std::vector<double> y, w;     ///< m, now
   std::vector<double> dy, dw;   ///< m, of the direction of search
-  std::vector<Piece> piece;     ///< of (y, w)
+  std::vector<Branch> branch;   ///< of (y, w)
   bool bounds_updated = false;  ///< bounds are no more those of the last step
 
  private:

@@ -255,10 +255,11 @@ bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, 
       }
     }
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
-    const OpenCloseResult result = open_close_.solve(problem_, {contacts_, contacts_version_}, chosen,
-                                                     options, team_, profile_, increment_, meets_impacts);
+    const OpenCloseResult result =
+        open_close_.solve({problem_, {contacts_, contacts_version_}, chosen, options, team_, profile_},
+                          increment_, meets_impacts);
     report.iterations += result.iterations;
-    quiet_ = result.bends == 0;
+    quiet_ = result.changes == 0;
     if (!result.finite)
       throw RunError("the forces of the step to " + std::to_string(drive.end_time) +
                      " s are not finite; a shorter time.step, order 1, or stiffer rock may help");

@@ -219,7 +219,7 @@ class Stepper {
   std::vector<double> way_ahead_;           ///< m, per block
   std::vector<double> increment_;
   IncrementHistory history_;      ///< of dynamic steps
-  bool quiet_ = false;            ///< no contact changed its piece in it
+  bool quiet_ = false;            ///< no contact changed its branch in it
   std::vector<double> speed_;     ///< m/s, per block: largest of its vertices at the start of the step
   std::vector<double> spin_;      ///< rad, per block, of the last attempt
   std::vector<Integrator> rule_;  ///< per block, of the last attempt

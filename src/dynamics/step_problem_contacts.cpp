@@ -174,8 +174,8 @@ void StepProblem::build_springs(const State& state, const Drive& drive,
   const auto slips = (bound > 0.0) & ~(was(contact::State::locked) | fused),
              forward = slips & (spring.shear() > 0.0), backward = slips & (spring.shear() < 0.0),
              none = ~(bound > 0.0) | (slips & ~forward & ~backward);
-  springs_.set_pieces(first, count,
-                      SpringArray::codes_of(tensile | ~was(contact::State::open), none, forward, backward));
+  springs_.set_branches(first, count,
+                        SpringArray::codes_of(tensile | ~was(contact::State::open), none, forward, backward));
   const Lanes slipped = ways_to_rest(state, drive, contacts, first);
   keep(springs_.slipped, slipped);
   Lanes y = spring.depth(), w = spring.shear() - slipped;

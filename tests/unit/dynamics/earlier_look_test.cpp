@@ -8,7 +8,7 @@ namespace keyblock::dynamics {
 namespace {
 
 using Shear = SpringArray::Shear;
-constexpr SpringArray::Piece open{}, held{true, Shear::held}, slips{true, Shear::forward};
+constexpr SpringArray::Branch open{}, held{true, Shear::held}, slips{true, Shear::forward};
 
 std::vector<contact::Contact> contacts_of(const std::vector<int>& candidates) {
   std::vector<contact::Contact> contacts(candidates.size());
@@ -16,10 +16,10 @@ std::vector<contact::Contact> contacts_of(const std::vector<int>& candidates) {
   return contacts;
 }
 
-SpringArray springs_of(const std::vector<SpringArray::Piece>& pieces, const std::vector<double>& bounds) {
+SpringArray springs_of(const std::vector<SpringArray::Branch>& branches, const std::vector<double>& bounds) {
   SpringArray springs;
-  springs.resize(pieces.size());
-  springs.piece = pieces;
+  springs.resize(branches.size());
+  springs.branch = branches;
   for (std::size_t c = 0; c < bounds.size(); ++c) springs.bound[c] = bounds[c];
   return springs;
 }
@@ -35,19 +35,19 @@ TEST(EarlierLook, SpringsOfTheSameContactsGoOn) {
   auto contacts = contacts_of({3, 4, 9, 12});
   SpringArray springs = fresh;
   look.give(contacts, springs);
-  EXPECT_EQ(springs.piece, (std::vector{held, open, slips, open}));
+  EXPECT_EQ(springs.branch, (std::vector{held, open, slips, open}));
   EXPECT_EQ(std::vector(springs.bound.begin(), springs.bound.begin() + 4), (std::vector{1.0, 7.0, 3.0, 7.0}));
   EXPECT_TRUE(springs.bounds_updated);
 
   contacts[0].memory.bonded = true;
   springs = fresh;
   look.give(contacts, springs);
-  EXPECT_EQ(springs.piece, (std::vector{open, open, slips, open})) << "a bond is begun anew";
+  EXPECT_EQ(springs.branch, (std::vector{open, open, slips, open})) << "a bond is begun anew";
 
   look.forget();
   springs = fresh;
   look.give(contacts, springs);
-  EXPECT_EQ(springs.piece, fresh.piece);
+  EXPECT_EQ(springs.branch, fresh.branch);
   EXPECT_EQ(springs.bound, fresh.bound);
   EXPECT_FALSE(springs.bounds_updated);
 }

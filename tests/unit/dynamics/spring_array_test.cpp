@@ -9,7 +9,7 @@
 namespace keyblock::dynamics {
 namespace {
 
-/// Contacts of all kinds, each on the piece where it is, going some way.
+/// Contacts of all kinds, each on the branch where it is, going some way.
 SpringArray some_springs(std::size_t n, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -23,7 +23,7 @@ SpringArray some_springs(std::size_t n, unsigned seed) {
     springs.w[c] = uniform(random);
     springs.dy[c] = 0.1 * uniform(random);
     springs.dw[c] = 0.1 * uniform(random);
-    springs.piece[c] = springs.piece_at(c, springs.y[c], springs.w[c]);
+    springs.branch[c] = springs.branch_at(c, springs.y[c], springs.w[c]);
   }
   return springs;
 }
@@ -38,9 +38,9 @@ TEST(SpringArray, SaysWhereContactsLeaveTheirPiece) {
       for (std::size_t first = 0; first < n; first += lane_count) {
         bool any = false;
         for (std::size_t c = first; c < first + lane_count; ++c) {
-          const auto piece =
-              springs.piece_at(c, springs.y[c] + alpha * springs.dy[c], springs.w[c] + alpha * springs.dw[c]);
-          any = any || piece != springs.piece[c];
+          const auto branch =
+              springs.branch_at(c, springs.y[c] + alpha * springs.dy[c], springs.w[c] + alpha * springs.dw[c]);
+          any = any || branch != springs.branch[c];
         }
         EXPECT_EQ(springs.any_leaves(first, alpha), any) << seed << " " << alpha << " " << first;
         (any ? leaving : staying) += 1;
@@ -72,7 +72,7 @@ TEST(SpringArray, StretchesAsManyAsItIsToldTo) {
                    w = is_stretched ? springs.w0[c] + tangent[c] : before.w[c];
       EXPECT_EQ(springs.y[c], y) << seed << " " << c;
       EXPECT_EQ(springs.w[c], w) << seed << " " << c;
-      EXPECT_EQ(springs.piece[c], is_stretched ? springs.piece_at(c, y, w) : before.piece[c])
+      EXPECT_EQ(springs.branch[c], is_stretched ? springs.branch_at(c, y, w) : before.branch[c])
           << seed << " " << c;
     }
   }

@@ -122,10 +122,10 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
     const StepProblem::Row& row = problem.rows()[c];
     const Vec2 r = problem.relative(row, d);
     const SpringArray& of_contact = problem.springs();
-    const SpringArray::Piece piece = of_contact.piece_at(c, of_contact.y0[c] - dot(row.normal, r),
+    const SpringArray::Branch branch = of_contact.branch_at(c, of_contact.y0[c] - dot(row.normal, r),
                                                          of_contact.w0[c] + dot(row.tangent(), r));
-    springs.push_back({c, StepProblem::Place(contacts[c]), of_contact.normal_stiffness(c, piece),
-                       of_contact.shear_stiffness(c, piece)});
+    springs.push_back({c, StepProblem::Place(contacts[c]), of_contact.normal_stiffness(c, branch),
+                       of_contact.shear_stiffness(c, branch)});
   }
   problem.add_springs(springs, *solver);
   ASSERT_TRUE(solver->factor());
@@ -245,7 +245,7 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
     OpenClose iteration;
     const OpenCloseResult result =
-        iteration.solve(problem, {contacts}, *solver, s.model.solver, s.team, s.profile, d);
+        iteration.solve({problem, {contacts}, *solver, s.model.solver, s.team, s.profile}, d);
     EXPECT_TRUE(result.converged);
     EXPECT_GT(result.iterations, 1);
     problem.gradient(d, g);
@@ -286,7 +286,7 @@ TEST(StepProblem, EndsInBalanceWhereContactsBendInOnePlace) {
     std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
     OpenClose iteration;
     const OpenCloseResult result =
-        iteration.solve(problem, {contacts}, *solver, s.model.solver, s.team, s.profile, d);
+        iteration.solve({problem, {contacts}, *solver, s.model.solver, s.team, s.profile}, d);
     EXPECT_TRUE(result.converged) << step;
     EXPECT_GT(result.iterations, 3) << step;
     problem.gradient(d, g);
@@ -314,7 +314,7 @@ TEST_P(StepProblemOrder, AnotherLookGoesOnFromTheOneBefore) {
     d.assign(s.model.coefficients, 0.0);
     OpenClose iteration;
     const OpenCloseResult result =
-        iteration.solve(problem, {contacts}, *solver, s.model.solver, s.team, s.profile, d, gives_up);
+        iteration.solve({problem, {contacts}, *solver, s.model.solver, s.team, s.profile}, d, gives_up);
     earlier.keep(contacts, problem.springs());
     return result;
   };

@@ -1,0 +1,70 @@
+#pragma once
+#include <cstddef>
+
+/// The numbers by which a step is solved, in one place: what each is a share of, and what a larger or smaller one does. None of them changes
+/// where a converged step ends by more than the tolerance of the step.
+namespace keyblock::dynamics::step_numbers {
+
+// ── linear systems ───────────────────────────────────────────────────────────────────────────────────────────────────
+
+/// Of the tolerance of a step, what its linear systems may leave over. Larger: an iteration more to converge; smaller: more digits than
+/// are looked at.
+inline constexpr double linear_share = 0.3;
+/// Of what is out of balance, what a linear system of all blocks may leave over: contacts change their branch afterwards anyway.
+inline constexpr double forcing = 0.003;
+/// The same of a local solve, after which contacts change again.
+inline constexpr double forcing_local = 0.03;
+/// Times the tolerance, out of balance: up to there one system of all blocks is all that is needed where no contact changed its branch.
+inline constexpr double calm = 100.0;
+
+// ── local solves ─────────────────────────────────────────────────────────────────────────────────────────────────────
+
+/// Of what is enough, what blocks outside a local solve may be out of balance by.
+inline constexpr double elsewhere_share = 0.5;
+
+// ── low-rank updates and kept factors ────────────────────────────────────────────────────────────────────────────────
+
+/// Springs, beyond which a factorization takes less than the update.
+inline constexpr std::size_t most_corrected = 64;
+/// As many as are expected in the next step, with which a factor is worth keeping.
+inline constexpr std::size_t most_kept = 32;
+/// More refinements than these take what a factorization does.
+inline constexpr int most_refinements = 3;
+/// Of the tolerance of a step, what the factor of an earlier step may leave over: next to nothing, as one refinement takes three digits.
+inline constexpr double kept_share = 0.003;
+/// Steps without a kept factor, at most, after it has failed again and again.
+inline constexpr int longest_wait = 32;
+/// Contacts in a row that may be gone before contacts of two steps are taken for different ones.
+inline constexpr std::size_t most_gone = 64;
+/// Tries with a low-rank update in a minimization.
+inline constexpr int most_tries = 4;
+
+// ── bounds of friction ───────────────────────────────────────────────────────────────────────────────────────────────
+
+/// Of what new bounds put out of balance, where bounds are looked at next.
+inline constexpr double rough_share = 0.5;
+/// Of the way to a new bound, what a contact goes at the least.
+inline constexpr double least_bound_share = 0.25;
+/// Updates of bounds in a static step before all contacts go a smaller share of their way …
+inline constexpr int undamped_updates = 8;
+/// … and how small it gets.
+inline constexpr double least_damping = 1.0 / 64.0;
+
+// ── bonds ────────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+/// Updates of what bonds bear in a step, lest two bonds hand a strength to and fro.
+inline constexpr int most_bond_updates = 20;
+/// Of a bond's strength, up to which it counts as known.
+inline constexpr double settled_strength = 1e-3;
+
+// ── multipliers ──────────────────────────────────────────────────────────────────────────────────────────────────────
+
+/// Of the inertia behind a contact, in the first update: enough for eight contacts that push a rigid block.
+inline constexpr double first_multiplier_share = 0.25;
+/// How small that share gets.
+inline constexpr double least_multiplier_share = 1e-3;
+/// Of the block size, penetration that updates may leave on their way; beyond it, and four times what springs leave without multipliers,
+/// most of an update is taken back.
+inline constexpr double most_transient = 1e-3;
+
+}  // namespace keyblock::dynamics::step_numbers
