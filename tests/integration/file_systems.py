@@ -27,7 +27,7 @@ class NoLocks(Scenario):
 
     def test_a_file_in_use_is_not_written(self):
         # That somebody else holds a lock is another answer.
-        with self.without_locks(errno.EAGAIN), mock.patch.dict(os.environ, {"NO_LOCKS_FOR": "result.h5.tmp"}):
+        with self.without_locks(errno.EAGAIN), mock.patch.dict(os.environ, {"NO_LOCKS_FOR": "/result.h5."}):
             done = self.keyblock("run", self.scenario, "-o", "used", expect=2)
         self.assertIn("unable to lock file", done.stderr)
 
