@@ -68,11 +68,16 @@ void make_folder(const fs::path& folder) {
   check_folder_takes_files(folder);
 }
 
-void make_plain_folder(const fs::path& folder) {
+void check_is_no_link(const fs::path& folder) {
   std::error_code error;
-  const fs::file_status there = fs::symlink_status(folder, error);
-  if (fs::is_symlink(there)) refuse(folder, "a link", "a folder of its own, as keyblock makes it");
-  if (!fs::exists(there)) fs::create_directory(folder, error);
+  if (fs::is_symlink(fs::symlink_status(folder, error)))
+    refuse(folder, "a link", "a folder of its own, as keyblock makes it");
+}
+
+void make_plain_folder(const fs::path& folder) {
+  check_is_no_link(folder);
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(folder, error))) fs::create_directory(folder, error);
   if (!fs::is_directory(fs::symlink_status(folder, error)))
     refuse(folder, error ? error.message() : "a file", "a folder, or a place where one can be made");
 }

@@ -10,7 +10,10 @@ bool file_exists(const std::filesystem::path& path);
 /// Makes the folder if it is not there. Throws InputError when it cannot be made, is no folder, or cannot be written to.
 void make_folder(const std::filesystem::path& folder);
 
-/// The same in a folder that is there, for what keyblock cleans on its own account: a link is refused as a file is.
+/// For a folder of the program within one of its own: what lies behind a link there is somebody else's. Throws InputError.
+void check_is_no_link(const std::filesystem::path& folder);
+
+/// Makes one in a folder that is there, for what keyblock cleans on its own account: a link is refused as a file is.
 void make_plain_folder(const std::filesystem::path& folder);
 
 /// Throws InputError unless a file of this name can be written: before work whose result would be lost.
