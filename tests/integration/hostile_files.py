@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Files and names that somebody has made up: they destroy nothing of the user, and say what is wrong with them."""
 
+import csv
 import json
 import os
 import unittest
@@ -37,6 +38,13 @@ class FolderOfARun(Scenario):
         self.assertEqual(mine.read_text(), "mine")
         self.assertEqual([p.name for p in mine.parent.glob("*.tmp")], ["result.h5.tmp"])
 
+    def test_an_export_does_not_follow_a_link(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        (self.folder / "elsewhere").mkdir()
+        (self.folder / "out/csv").symlink_to("../elsewhere")
+        self.assertIn("found a link", self.keyblock("export", "out", "--format", "csv", expect=1).stderr)
+        self.assertEqual(list((self.folder / "elsewhere").iterdir()), [])
+
     def test_a_pipe_in_the_place_of_an_input(self):
         os.mkfifo(self.folder / "pipe")
         for words in ("run pipe -o out", "check pipe", "check /dev/zero"):
@@ -58,6 +66,71 @@ class FolderOfARun(Scenario):
                 error = self.keyblock(*words.split(), expect=1).stderr
                 self.assertIn(found, error)
                 self.assertNotIn("internal error", error)
+
+
+# A spreadsheet would run the first two, a browser the third, a terminal the last.
+NAMES = """=cmd|' /C calc'!A0 +1+2 </script><script>alert(1)</script> \\u001B]0;owned\\u0007\\u001B[2J\\u009B31m"""
+NAMED = INCLINE.replace('"A block on an incline"', f'"{NAMES}"').replace('"slider"', f'"{NAMES}"').replace('name = "s"', f'name = "{NAMES}"')
+NAMED = NAMED.replace('name = "slide"', f'name = "{NAMES}"')
+
+
+class Names(Study):
+    def cells(self, path):
+        with open(path, newline="") as file:
+            return [cell for row in csv.reader(file) for cell in row]
+
+    def assert_no_cell_runs(self, path):
+        cells = self.cells(path)
+        self.assertTrue(any(cell.startswith("'=cmd|") for cell in cells), path)
+        for cell in cells:
+            if cell[:1] in tuple("=+-@\t\r"):
+                float(cell)
+
+    def assert_harmless(self, done):
+        self.assertRegex(done.stdout + done.stderr, r"\\(x1b|u001B)\]0;owned")
+        for text in (done.stdout, done.stderr):
+            self.assertEqual([c for c in text if (c < " " or "\x7f" <= c < "\xa0") and c not in "\n\t"], [])
+
+    def test_spreadsheets_do_not_run_cells(self):
+        self.write("named.toml", NAMED)
+        self.keyblock("run", "named.toml", "-o", "run")
+        self.keyblock("export", "run", "--format", "csv")
+        for name in ("run/histories.csv", "run/csv/histories.csv", "run/csv/blocks.csv"):
+            self.assert_no_cell_runs(self.folder / name)
+        study = '[study]\n[[study.vary]]\nkeys = ["joints.friction", "gravity"]\nvalues = [[10, [0, -9.81]], [20, [0, -5.0]]]\n'
+        self.write("study.toml", NAMED + study)
+        self.run_study("study.toml")
+        self.assert_no_cell_runs(self.out / "runs.csv")
+
+    def test_terminals_do_not_obey_names(self):
+        self.write("named.toml", NAMED)
+        self.assert_harmless(self.keyblock("run", "named.toml", "-o", "run", "--set", "time.step=0.2"))
+        self.write("wrong.toml", NAMED.replace("density = 2600.0", f'density = "{NAMES}"'))
+        self.assert_harmless(self.keyblock("check", "wrong.toml", expect=1))
+        (self.folder / "\x1b]0;owned\x07.toml").write_text(NAMED)
+        self.assert_harmless(self.keyblock("check", "\x1b]0;owned\x07.toml"))
+
+
+class FilesOfARunThatHasEnded(Scenario):
+    def test_a_damaged_result_says_what_to_do(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        with open(self.folder / "out/result.h5", "r+") as file:
+            file.truncate(5000)
+        error = self.keyblock("run", "incline.toml", "-o", "out", "--resume", expect=1).stderr
+        self.assertIn("result.h5", error)
+        self.assertIn("run without --resume to begin anew", error)
+        self.keyblock("run", "incline.toml", "-o", "out")
+        self.assertIn("has ended", self.keyblock("run", "incline.toml", "-o", "out", "--resume").stdout)
+
+    def test_empty_files_are_written_again(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        names = ("report.html", "histories.csv")
+        before = [(self.folder / "out" / name).read_bytes() for name in names]
+        for change in (lambda path: path.write_text(""), lambda path: path.unlink()):
+            for name in names:
+                change(self.folder / "out" / name)
+            self.keyblock("run", "incline.toml", "-o", "out", "--resume")
+            self.assertEqual([(self.folder / "out" / name).read_bytes() for name in names], before)
 
 
 class FolderOfAStudy(Study):
