@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "harmless_output.h"
 #include "scenario/key_path.h"
 
 namespace keyblock::app {
@@ -94,6 +95,7 @@ void finish_output() {
 int run_command_line(int argc, const char* const* argv) {
   // What would grow beyond the limit for files is an error of writing like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
+  const HarmlessOutput output(std::cout), errors(std::cerr);
   try {
     CLI::App app;
     int exit_code = done;

@@ -13,6 +13,7 @@
 #include "dynamics/step.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
+#include "simulation/checkpoint_checks.h"
 #include "simulation/damage.h"
 #include "simulation/feasibility.h"
 #include "simulation/order_control.h"
@@ -134,9 +135,14 @@ void Runner::begin() {
 }
 
 void Runner::resume() {
+  const auto check = [&](const std::string& mistake) {
+    if (!mistake.empty()) refuse_checkpoint(options_.directory, mistake, "a checkpoint of this run");
+  };
   now_ = read_checkpoint(options_.directory, setup_);
+  check(mistake_in_orders(now_.orders, setup_, model_));
   orders_.memory() = now_.orders;
   orders_.restore(model_);
+  check(mistake_in_state(now_, setup_, model_));
   model_.surface.present = now_.present;
   orders_changed();
   gauge_.restore(std::move(now_.damage));

@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 using scenario::Scenario;
 
 constexpr double most_runs = 1e6;
-constexpr double most_cells = 1e6;
 constexpr int key_digits = 10;
 
 // Of what distinguishes the runs of one realization.
