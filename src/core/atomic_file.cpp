@@ -10,7 +10,6 @@
 #include <cstring>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "core/error.h"
 
@@ -85,34 +84,6 @@ void remove_stale_temporaries(const fs::path& path) {
     if (process <= 0 || entry.path() != temporary_path(path, process) || is_running(process)) continue;
     fs::remove(entry.path(), ignored);
   }
-}
-
-std::string read_file(const std::filesystem::path& path) {
-  const auto fail = [&] {
-    Diagnostic diagnostic;
-    diagnostic.where.file = path.string();
-    diagnostic.found = fmt::format("no readable file ({})", std::strerror(errno));
-    diagnostic.expected = "a file that can be read";
-    throw InputError(std::move(diagnostic));
-  };
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail();
-  std::string content;
-  std::vector<char> piece(1 << 20);
-  for (;;) {
-    const ssize_t n = ::read(descriptor, piece.data(), piece.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int reason = errno;
-      ::close(descriptor);
-      errno = reason;
-      fail();
-    }
-    if (n == 0) break;
-    content.append(piece.data(), static_cast<std::size_t>(n));
-  }
-  ::close(descriptor);
-  return content;
 }
 
 }  // namespace keyblock

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/read_file.h"
+
 namespace keyblock {
 
 /// A file that is written piece by piece under a temporary name beside `path`, and renamed when it is complete, so that no
@@ -33,8 +35,5 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 /// Takes away what processes that were killed have left of AtomicFiles of this path: temporary files of processes that this machine
 /// does not have. For those who hold the lock of the folder, as other machines may write there, too.
 void remove_stale_temporaries(const std::filesystem::path& path);
-
-/// The whole file as bytes. Throws InputError, with the reason of the system, when it cannot be read.
-std::string read_file(const std::filesystem::path& path);
 
 }  // namespace keyblock

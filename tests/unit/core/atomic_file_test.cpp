@@ -110,7 +110,7 @@ TEST_F(AtomicFileTest, ReadingWhatIsNoFileIsAnInputError) {
               Throws<InputError>(Property(&InputError::what, HasSubstr((folder_ / "gone").string()))));
   EXPECT_THAT(missing, Throws<InputError>(Property(&InputError::what, HasSubstr("No such file"))));
   const auto folder = [&] { static_cast<void>(read_file(folder_)); };
-  EXPECT_THAT(folder, Throws<InputError>(Property(&InputError::what, HasSubstr("Is a directory"))));
+  EXPECT_THAT(folder, Throws<InputError>(Property(&InputError::what, HasSubstr("found a folder"))));
 }
 
 }  // namespace
