@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/folder.h"
+#include "core/out_of_memory.h"
 #include "core/parallel.h"
 #include "interrupt.h"
 #include "outcome.h"
@@ -42,7 +43,8 @@ struct RunArguments {
 
 /// Everything but what the run says at its end: the page from what the result file holds.
 void write_report(const std::filesystem::path& folder) {
-  report::write_report(results::read_run(folder), folder);
+  with_memory_for([] { return std::string("the report; `keyblock report` writes it later"); },
+                  [&] { report::write_report(results::read_run(folder), folder); });
 }
 
 /// What a run that has ended wrote from its results, and what is there no more, or empty.

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <functional>
 
 #include "core/error.h"
+#include "core/out_of_memory.h"
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/step.h"
@@ -424,10 +426,14 @@ RunRecord Runner::run() {
     observer_.end(record);
   };
   try {
-    while (now_.stage < static_cast<int>(setup_.stages.size()) && !stopped()) run_stage();
+    while (now_.stage < static_cast<int>(setup_.stages.size()) && !stopped())
+      with_memory_for([&] { return memory_purpose(setup_); }, [&] { run_stage(); });
   } catch (const RunError&) {
     now_.record.interrupted = true;
-    finish();
+    try {
+      finish();
+    } catch (const std::exception&) {  // the first failure is the one to be told about
+    }
     throw;
   }
   finish();
@@ -438,7 +444,8 @@ RunRecord Runner::run() {
 
 RunRecord run(const RunSetup& setup, const RunOptions& options, RunObserver& observer) {
   if (const auto reason = yields_without_limit(setup)) throw RunError(*reason);
-  return Runner(setup, options, observer).run();
+  return with_memory_for([&] { return memory_purpose(setup); },
+                         [&] { return Runner(setup, options, observer).run(); });
 }
 
 }  // namespace keyblock::simulation

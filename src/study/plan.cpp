@@ -262,7 +262,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
                std::vector<std::string>* warnings) {
   Plan plan;
   plan.scenario = file;
-  plan.text = read_file(file);
+  plan.text = read_file(file, scenario::largest_scenario);
   plan.overrides = overrides;
   plan.version = version;
   const Scenario scenario = scenario::parse_scenario_text(plan.text, file, overrides);
