@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/out_of_memory.h"
 #include "core/parallel.h"
-#include "core/profile.h"
 #include "dynamics/step.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
