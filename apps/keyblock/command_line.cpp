@@ -7,11 +7,14 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/out_of_memory.h"
+#include "harmless_output.h"
 #include "scenario/key_path.h"
 
 namespace keyblock::app {
@@ -94,6 +97,7 @@ void finish_output() {
 int run_command_line(int argc, const char* const* argv) {
   // What would grow beyond the limit for files is an error of writing like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
+  const HarmlessOutput output(std::cout), errors(std::cerr);
   try {
     CLI::App app;
     int exit_code = done;
@@ -113,6 +117,9 @@ int run_command_line(int argc, const char* const* argv) {
     return run_failed;
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << "keyblock: " << error.what() << "\n";
+    return run_failed;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "keyblock: " << out_of_memory_text("") << "\n";
     return run_failed;
   } catch (const std::exception& error) {
     std::cerr << "keyblock: internal error: " << error.what()

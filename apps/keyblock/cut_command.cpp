@@ -47,7 +47,8 @@ void cut_scenario(const CutArguments& arguments) {
   print_warnings(arguments.scenario, warnings);
   // Hundreds of megabytes for many blocks: both files are put together and written at the same time.
   AtomicFile& geojson = out.add("blocks.geojson");
-  std::future<void> outlines = std::async(std::launch::async, [&] {
+  // Without a thread, as where memory is short, one after the other.
+  std::future<void> outlines = std::async([&] {
     geojson.write(cutting::to_geojson(model.system));
     geojson.close();
   });

@@ -28,6 +28,9 @@ const std::atomic<bool>& stop_on_interrupt() {
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  struct sigaction before {};
+  ::sigaction(SIGHUP, &action, &before);
+  if (before.sa_handler == SIG_IGN) ::sigaction(SIGHUP, &before, nullptr);
   return stop;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/own_file.h"
 #include "results/run_data.h"
 #include "simulation/checkpoint.h"
 
@@ -53,6 +54,17 @@ void check_keeps_input(const fs::path& folder, const std::vector<fs::path>& inpu
   }
 }
 
+// Of a run that is to be resumed. Where its results cannot be read, there is nothing to go on with.
+bool results_have_ended(const fs::path& folder) {
+  try {
+    return results::has_ended(folder);
+  } catch (const InputError& error) {
+    Diagnostic diagnostic = error.diagnostics().front();
+    diagnostic.hint = "run without --resume to begin anew";
+    throw InputError(std::move(diagnostic));
+  }
+}
+
 void check_is_no_study(const fs::path& folder) {
   if (file_exists(folder / "plan.json")) refuse(folder, "a study", "another folder", "");
 }
@@ -80,7 +92,7 @@ ResultFolder::ResultFolder(fs::path folder, const std::vector<fs::path>& inputs,
   check_state(use);
   for (const fs::path& file : files_of(folder_)) remove_stale_temporaries(file);
   has_ended_ =
-      use == Use::resume && same_ && file_exists(folder_ / result_name) && results::has_ended(folder_);
+      use == Use::resume && same_ && file_exists(folder_ / result_name) && results_have_ended(folder_);
   resumes_ = use == Use::resume && same_ && file_exists(simulation::checkpoint_path(folder_));
 }
 

@@ -11,12 +11,14 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/folder.h"
+#include "core/out_of_memory.h"
 #include "core/parallel.h"
 #include "interrupt.h"
 #include "outcome.h"
 #include "progress.h"
 #include "report/report.h"
 #include "result_folder.h"
+#include "results/csv.h"
 #include "results/result_writer.h"
 #include "results/run_data.h"
 #include "scenario/build.h"
@@ -41,7 +43,21 @@ struct RunArguments {
 
 /// Everything but what the run says at its end: the page from what the result file holds.
 void write_report(const std::filesystem::path& folder) {
-  report::write_report(results::read_run(folder), folder);
+  with_memory_for([] { return std::string("the report; `keyblock report` writes it later"); },
+                  [&] { report::write_report(results::read_run(folder), folder); });
+}
+
+/// What a run that has ended wrote from its results, and what is there no more, or empty.
+void restore_conclusions(const std::filesystem::path& folder) {
+  const auto is_gone = [&](const char* name) {
+    return !file_exists(folder / name) || std::filesystem::is_empty(folder / name);
+  };
+  const bool report = is_gone("report.html"), histories = is_gone("histories.csv");
+  if (!report && !histories) return;
+  const results::RunData data = results::read_run(folder);
+  if (report) report::write_report(data, folder);
+  if (histories && !data.model.history_names.empty())
+    results::write_histories_csv(folder, data.model.history_names, data.histories);
 }
 
 void say_where_report_is(const RunArguments& arguments) {
@@ -89,7 +105,7 @@ void run_scenario(RunArguments arguments) {
                                        : ResultFolder::Use::fresh);
   if (guard.has_ended()) {
     std::cout << arguments.folder << ": this run has ended; there is nothing to go on with\n";
-    if (!file_exists(std::filesystem::path(arguments.folder) / "report.html")) write_report(arguments.folder);
+    restore_conclusions(arguments.folder);
     say_where_report_is(arguments);
     return;
   }

@@ -5,9 +5,14 @@
 
 #include <utility>
 
+#include "core/text.h"
 #include "progress.h"
 
 namespace keyblock::app {
+
+namespace {
+constexpr std::size_t longest_failure = 4000;  // characters
+}
 
 std::string study_bar_line(const study::StudyProgress& p, const Terminal& terminal) {
   std::vector<Field> fields{{0, percent_text(p.fraction)}, {1, fmt::format("{}/{} done", p.done, p.total)}};
@@ -38,7 +43,7 @@ StudyDisplay StudyDisplay::to_standard_error() {
 void StudyDisplay::show(const study::StudyProgress& progress) {
   const Terminal terminal = terminal_();
   if (!progress.failure.empty()) {
-    const std::string line = progress.finished + " failed: " + progress.failure;
+    const std::string line = printable(progress.finished + " failed: " + progress.failure, longest_failure);
     write_((terminal.interactive ? redrawn_line(line) : line) + "\n");
   }
   if (terminal.interactive) {

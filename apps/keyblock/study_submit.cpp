@@ -13,6 +13,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/folder.h"
 #include "scenario_arguments.h"
 #include "study/collect.h"
 #include "study/folder.h"
@@ -49,7 +50,10 @@ std::string submit(const fs::path& script, const std::string& options) {
   const auto [text, code] =
       output_of(fmt::format("sbatch --parsable {} {}", options, study::shell_quoted(script.string())));
   if (code != 0) throw RunError(fmt::format("sbatch did not take {} (exit code {})", script.string(), code));
-  return text.substr(0, text.find_first_of(";\n"));
+  const std::string job = text.substr(0, text.find_first_of(";\n"));
+  if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos)
+    throw RunError(fmt::format("sbatch said no number of a job for {}", script.string()));
+  return job;
 }
 
 void submit_all(const fs::path& folder, const std::vector<study::ArrayScript>& scripts) {
@@ -63,12 +67,24 @@ void submit_all(const fs::path& folder, const std::vector<study::ArrayScript>& s
             << ": collects what they leave" << std::endl;
 }
 
+/// What would be written over must be a script of an earlier submission.
+void check_is_own(const fs::path& script) {
+  if (!file_exists(script) || study::is_own_script(read_own_file(script))) return;
+  Diagnostic diagnostic;
+  diagnostic.where.file = script.string();
+  diagnostic.found = "a file that is no script of keyblock";
+  diagnostic.expected = "another folder, or another name for the file";
+  throw InputError(std::move(diagnostic));
+}
+
 /// Scripts of an earlier submission that took more arrays would run what they were not meant for.
 void remove_scripts(const fs::path& folder) {
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (study::is_array_script(entry.path().filename().string())) found.push_back(entry.path());
   }
+  for (const fs::path& path : found) check_is_own(path);
+  check_is_own(folder / "collect.sbatch");
   for (const fs::path& path : found) fs::remove(path);
 }
 
@@ -79,6 +95,7 @@ void submit_study(SubmitArguments& arguments) {
   print_warnings(arguments.scenario, warnings);
   const auto limit = study::max_array_size(output_of("scontrol show config 2>/dev/null").first);
   if (limit) arguments.slurm.most_elements = *limit;
+  arguments.slurm.program = fs::read_symlink("/proc/self/exe").string();
   study::check_can_submit(fs::absolute(arguments.folder), arguments.slurm);
   const auto lock = study::lock_study(arguments.folder);
   study::enter_plan(arguments.folder, plan, arguments.resume);
@@ -95,8 +112,7 @@ void submit_study(SubmitArguments& arguments) {
               << std::endl;
     return;
   }
-  arguments.slurm.program = fs::read_symlink("/proc/self/exe").string();
-  fs::create_directories(folder / "slurm");
+  make_plain_folder(folder / "slurm");
   const auto scripts = study::array_scripts(folder, runs, arguments.slurm);
   for (const study::ArrayScript& script : scripts) write_file_atomically(folder / script.name, script.text);
   write_file_atomically(folder / "collect.sbatch", study::collect_script(folder, arguments.slurm));

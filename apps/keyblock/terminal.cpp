@@ -3,7 +3,10 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+
+#include "core/text.h"
 
 namespace keyblock::app {
 namespace {
@@ -57,15 +60,12 @@ int column_count(std::string_view text) {
 
 std::string one_line(std::string_view text, int columns, bool unicode) {
   std::string line;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F) {
-      line += '?';
-    } else if (byte < 0x80 || unicode) {
-      line += c;
-    } else if (starts_code_point(c)) {
-      line += '?';
-    }
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    const std::string_view character = text.substr(at, std::max<std::size_t>(length, 1));
+    const bool is_shown = length == 1 || (length > 1 && unicode);
+    line += is_shown && !is_control(character) ? character : "?";
+    at += character.size();
   }
   if (column_count(line) <= columns) return line;
   if (columns < 1) return "";

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/folder.h"
 #include "interrupt.h"
+#include "progress.h"
 #include "scenario/key_path.h"
 #include "terminal.h"
 #include "verification/report.h"
@@ -82,9 +83,8 @@ verification::VerifyProgress progress_line() {
                     const verification::RunSpec& run) {
     const std::string text =
         fmt::format("{} of {} simulations; last: {}, {}", done, count, file.name, run.name);
-    std::cerr << "\r\x1b[K";
-    if (done < count) std::cerr << one_line(text, terminal.width - 1, terminal.unicode);
-    std::cerr << std::flush;
+    write_to_standard_error("\r\x1b[K" +
+                            (done < count ? one_line(text, terminal.width - 1, terminal.unicode) : ""));
   };
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/index.h"
 #include "core/known_size.h"
@@ -10,6 +11,7 @@
 namespace keyblock::block {
 
 void rotation(double w, double& cosine, double& sine) {
+  if (std::isinf(w)) w = std::numeric_limits<double>::quiet_NaN();  // halves of it stay as large
   int halvings = 0;
   while (std::abs(w) > 0.125) {
     w *= 0.5;

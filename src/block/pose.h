@@ -5,7 +5,7 @@
 
 namespace keyblock::block {
 
-/// cos w and sin w from series in +, − and × alone, so that every machine gets the same bits. Any w.
+/// cos w and sin w from series in +, − and × alone, so that every machine gets the same bits. Any w; no number where w is none.
 void rotation(double w, double& cosine, double& sine);
 
 /// Area and mean spin of a block of any order, and the pose update that keeps rotation exact.

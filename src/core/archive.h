@@ -2,6 +2,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -61,38 +62,59 @@ class ArchiveWriter {
   std::string buffer_;
 };
 
-/// Reads what ArchiveWriter wrote. Throws std::out_of_range at a premature end.
+/// The data end before what they say they hold, or hold what no value is.
+class ArchiveError : public std::runtime_error {
+ public:
+  ArchiveError() : std::runtime_error("archive") {}
+};
+
+/// Reads what ArchiveWriter wrote, or anybody else: no more memory is asked for than the data fill. Throws ArchiveError. Values are
+/// bytes as they stand there; only that bools and optionals are such is seen to.
 class ArchiveReader {
  public:
   explicit ArchiveReader(std::string_view data) : data_(data) {}
   template <typename T>
   requires std::is_trivially_copyable_v<T>
   void operator()(T& value) { std::memcpy(&value, take(sizeof(T)), sizeof(T)); }
+  void operator()(bool& value) { value = flag(*take(1)); }
+  /// Whether there is a value stands behind it.
+  template <typename T>
+  requires std::is_trivially_copyable_v<T>
+  void operator()(std::optional<T>& value) {
+    const char* bytes = take(sizeof(value));
+    flag(bytes[sizeof(T)]);
+    std::memcpy(&value, bytes, sizeof(value));
+  }
   template <typename A, typename B>
   void operator()(std::pair<A, B>& pair) {
     (*this)(pair.first);
     (*this)(pair.second);
   }
   void operator()(std::string& text) {
-    const std::size_t size = read_size();
+    const std::size_t size = read_size(1);
     text.assign(take(size), size);
   }
   template <typename T>
   void operator()(std::vector<T>& values) {
-    const std::size_t size = read_size();
-    if (size > data_.size()) throw std::out_of_range("archive");
-    values.resize(size);
+    values.resize(read_size(sizeof(T)));
     for (T& value : values) (*this)(value);
   }
+  [[nodiscard]] bool at_end() const { return data_.empty(); }
 
  private:
-  std::size_t read_size() {
+  static bool flag(char byte) {
+    if (static_cast<unsigned char>(byte) > 1) throw ArchiveError();
+    return byte != 0;
+  }
+  /// Of things that take so many bytes each.
+  std::size_t read_size(std::size_t bytes) {
     std::uint64_t size = 0;
     (*this)(size);
+    if (size > data_.size() / bytes) throw ArchiveError();
     return size;
   }
   const char* take(std::size_t size) {
-    if (size > data_.size()) throw std::out_of_range("archive");
+    if (size > data_.size()) throw ArchiveError();
     const char* start = data_.data();
     data_.remove_prefix(size);
     return start;

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/read_file.h"
+
 namespace keyblock {
 
 /// A file that is written piece by piece under a temporary name beside `path`, and renamed when it is complete, so that no
@@ -15,8 +17,11 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view bytes);
-  /// No more is written. May be left out before `commit`.
+  /// No more is written. May be left out before `publish` and `commit`.
   void close();
+  /// Gives the file its name. A link of that name is replaced, not followed.
+  void publish();
+  /// The same; the name outlasts a loss of power.
   void commit();
 
  private:
@@ -29,12 +34,5 @@ class AtomicFile {
 
 /// AtomicFile of a content that is there already.
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
-
-/// Takes away what processes that were killed have left of AtomicFiles of this path: temporary files of processes that this machine
-/// does not have. For those who hold the lock of the folder, as other machines may write there, too.
-void remove_stale_temporaries(const std::filesystem::path& path);
-
-/// The whole file as bytes. Throws InputError, with the reason of the system, when it cannot be read.
-std::string read_file(const std::filesystem::path& path);
 
 }  // namespace keyblock

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "core/text.h"
 
 namespace keyblock {
@@ -25,14 +28,17 @@ std::string Diagnostic::to_string() const {
 }
 
 namespace {
-std::string join(const std::vector<Diagnostic>& diagnostics) {
+std::string join(const std::vector<Diagnostic>& diagnostics, std::size_t more) {
+  const std::size_t listed = std::min(diagnostics.size(), InputError::most_listed);
+  more += diagnostics.size() - listed;
   std::string text;
-  for (const Diagnostic& d : diagnostics) text += (text.empty() ? "" : "\n") + d.to_string();
+  for (std::size_t k = 0; k < listed; ++k) text += (k == 0 ? "" : "\n") + diagnostics[k].to_string();
+  if (more > 0) text += fmt::format("\nand {} more {}", more, more == 1 ? "mistake" : "mistakes");
   return text;
 }
 }  // namespace
 
-InputError::InputError(std::vector<Diagnostic> diagnostics)
-    : std::runtime_error(join(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+InputError::InputError(std::vector<Diagnostic> diagnostics, std::size_t more)
+    : std::runtime_error(join(diagnostics, more)), diagnostics_(std::move(diagnostics)) {}
 
 }  // namespace keyblock

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,10 +24,13 @@ struct Diagnostic {
   [[nodiscard]] std::string to_string() const;
 };
 
-/// The user's input is wrong (exit code 1). Carries every mistake found, not only the first.
+/// The user's input is wrong (exit code 1). Carries every mistake found, not only the first; its text lists the first 50.
 class InputError : public std::runtime_error {
  public:
-  explicit InputError(std::vector<Diagnostic> diagnostics);
+  static constexpr std::size_t most_listed = 50;
+
+  /// `more` mistakes were found beside these.
+  explicit InputError(std::vector<Diagnostic> diagnostics, std::size_t more = 0);
   explicit InputError(Diagnostic diagnostic) : InputError(std::vector{std::move(diagnostic)}) {}
   [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/folder.h"
+#include "core/own_file.h"
 
 namespace keyblock {
 
@@ -51,8 +52,9 @@ fs::path FileSet::write(const std::string& name, std::string_view content) {
 }
 
 void FileSet::commit() {
-  for (AtomicFile& file : files_) file.commit();
+  for (AtomicFile& file : files_) file.publish();
   made_.clear();
+  if (!files_.empty()) sync_folder_of(folder_ / ".");
 }
 
 }  // namespace keyblock

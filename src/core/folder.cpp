@@ -6,11 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -20,6 +20,9 @@ namespace keyblock {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view lock_begin = "process ";
+constexpr int longest_lock = 512;  // bytes
 
 [[noreturn]] void refuse(const fs::path& place, std::string found, std::string expected) {
   Diagnostic diagnostic;
@@ -43,7 +46,7 @@ std::string host_name() {
 bool is_file_of_name(int file, const fs::path& path) {
   struct stat opened = {};
   struct stat named = {};
-  return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+  return ::fstat(file, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
          opened.st_ino == named.st_ino;
 }
 
@@ -65,6 +68,20 @@ void make_folder(const fs::path& folder) {
   check_folder_takes_files(folder);
 }
 
+void check_is_no_link(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_symlink(fs::symlink_status(folder, error)))
+    refuse(folder, "a link", "a folder of its own, as keyblock makes it");
+}
+
+void make_plain_folder(const fs::path& folder) {
+  check_is_no_link(folder);
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(folder, error))) fs::create_directory(folder, error);
+  if (!fs::is_directory(fs::symlink_status(folder, error)))
+    refuse(folder, error ? error.message() : "a file", "a folder, or a place where one can be made");
+}
+
 void check_can_write(const fs::path& file) {
   std::error_code error;
   if (fs::is_directory(file, error)) refuse(file, "a folder", "the name of a file");
@@ -74,29 +91,62 @@ void check_can_write(const fs::path& file) {
 }
 
 FileLock::FileLock(fs::path path, Afterwards afterwards) : path_(std::move(path)), afterwards_(afterwards) {
+  try {
+    lock();
+  } catch (...) {
+    if (file_ >= 0) ::close(file_);
+    throw;
+  }
+}
+
+void FileLock::lock() {
   do {
     if (file_ >= 0) ::close(file_);
-    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    constexpr mode_t mode = 0644;
+    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, mode);
+    if (file_ < 0 && (errno == ELOOP || errno == EISDIR))
+      refuse_foreign(errno == ELOOP ? "a link" : "a folder");
     if (file_ < 0) throw RunError(fmt::format("{}: cannot create: {}", path_.string(), std::strerror(errno)));
     held_ = ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   } while (held_ && !is_file_of_name(file_, path_));
   if (!held_) return;
-  const std::string text = fmt::format("process {} on {}\n", ::getpid(), host_name());
+  check_is_lock();
+  const std::string text = fmt::format("{}{} on {}\n", lock_begin, ::getpid(), host_name());
   // Only for people; a full disk does not matter.
-  static_cast<void>(::ftruncate(file_, 0) == 0 && ::write(file_, text.data(), text.size()) > 0);
+  static_cast<void>(::ftruncate(file_, 0) == 0 && ::pwrite(file_, text.data(), text.size(), 0) > 0);
+}
+
+// A lock is empty where the disk was full, or its process was killed between two calls.
+void FileLock::check_is_lock() const {
+  struct stat status {};
+  if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) refuse_foreign("no regular file");
+  const std::string text = content();
+  const bool is_lock = text.starts_with(lock_begin) && std::count(text.begin(), text.end(), '\n') <= 1;
+  if (status.st_size > longest_lock || !(text.empty() || is_lock)) refuse_foreign("a file of somebody else");
+}
+
+void FileLock::refuse_foreign(const char* found) const {
+  refuse(path_, found, "the lock of keyblock, or nothing of this name; rename it, or take another folder");
+}
+
+std::string FileLock::content() const {
+  std::string text(longest_lock, '\0');
+  const ssize_t n = ::pread(file_, text.data(), text.size(), 0);
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+  return text;
 }
 
 FileLock::~FileLock() {
   std::error_code ignored;
-  if (held_ && afterwards_ == Afterwards::remove_file) fs::remove(path_, ignored);
+  if (held_ && afterwards_ == Afterwards::remove_file && is_file_of_name(file_, path_))
+    fs::remove(path_, ignored);
   if (file_ >= 0) ::close(file_);
 }
 
 std::string FileLock::holder() const {
-  std::ifstream in(path_);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text = content();
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text.empty() ? "another process" : text;
+  return text.starts_with(lock_begin) ? text : "another process";
 }
 
 }  // namespace keyblock

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace keyblock {
 namespace {
 
@@ -40,20 +42,60 @@ std::size_t find_invalid_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
+bool is_control(std::string_view character) {
+  const auto byte = [&](std::size_t k) {
+    return static_cast<unsigned>(static_cast<unsigned char>(character[k]));
+  };
+  switch (character.size()) {
+    case 1:
+      return byte(0) < 0x20U || byte(0) == 0x7FU;
+    case 2:
+      return byte(0) == 0xC2U && byte(1) < 0xA0U;
+    case 3: {
+      const unsigned code = (byte(0) & 0x0FU) << 12U | (byte(1) & 0x3FU) << 6U | (byte(2) & 0x3FU);
+      return (code >= 0x2028U && code <= 0x202EU) || (code >= 0x2066U && code <= 0x2069U);
+    }
+    default:
+      return false;
+  }
+}
+
+namespace {
+
+// Calls add(shown, as it stands) for every character, which is shown escaped where it is a control character or none at all, as long as
+// that returns true.
+template <class Add>
+void for_characters(std::string_view text, const Add& add) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    const std::string_view character = text.substr(at, std::max<std::size_t>(length, 1));
+    at += character.size();
+    std::string code;
+    if (length == 0 || is_control(character)) {
+      for (const char c : character) code += escaped(c);
+    }
+    if (!add(code.empty() ? character : code, character)) return;
+  }
+}
+
+}  // namespace
+
+std::string harmless(std::string_view text) {
+  std::string out;
+  for_characters(text, [&](std::string_view shown, std::string_view character) {
+    out += character == "\n" || character == "\t" ? character : shown;
+    return true;
+  });
+  return out;
+}
+
 std::string printable(std::string_view text, std::size_t longest) {
   std::string out;
   std::size_t count = 0;
-  for (std::size_t at = 0; at < text.size(); ++count) {
-    if (count == longest) return out + "…";
-    const std::size_t length = utf8_length(text, at);
-    const auto c = static_cast<unsigned char>(text[at]);
-    if (length == 0 || c < 0x20U || c == 0x7FU) {
-      out += escaped(text[at]);
-    } else {
-      out += text.substr(at, length);
-    }
-    at += length == 0 ? 1 : length;
-  }
+  for_characters(text, [&](std::string_view shown, std::string_view /*character*/) {
+    out += count == longest ? "…" : shown;
+    return count++ < longest;
+  });
   return out;
 }
 

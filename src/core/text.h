@@ -12,6 +12,14 @@ std::size_t utf8_length(std::string_view text, std::size_t at);
 /// Offset of the first byte that belongs to no UTF-8 character, or npos.
 std::size_t find_invalid_utf8(std::string_view text);
 
+/// Whether a terminal obeys a UTF-8 character in place of showing it: control characters (C0, DEL, C1), line separators, and those that turn
+/// the direction of writing, by which text looks like other text.
+bool is_control(std::string_view character);
+
+/// Text of several lines without what a terminal obeys but line breaks and tabs: control characters and bytes that are no UTF-8 are
+/// written as \x1b.
+std::string harmless(std::string_view text);
+
 /// Text as it may stand on one line of a message, whatever it holds: control characters and bytes that are no UTF-8 are
 /// written as \n, \t, \r and \x1b. What is longer than `longest` characters ends there, with `…`.
 std::string printable(std::string_view text, std::size_t longest);

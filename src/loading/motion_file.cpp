@@ -1,7 +1,6 @@
 #include "loading/motion_file.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +30,6 @@ constexpr const MotionFormat* formats[] = {&smc_format,  &csmip_format, &cosmos_
 // m/s². What is summed and squared of larger ones would not stay finite.
 constexpr double largest_acceleration = 1e9;
 
-constexpr double largest_file = 200e6;  // bytes
 constexpr std::size_t longest_line = 1'000'000;
 
 void check_samples(const std::vector<MotionComponent>& components) {
@@ -44,20 +42,6 @@ void check_samples(const std::vector<MotionComponent>& components) {
                     component.acceleration[peak] / component.file_unit_in_si, component.file_unit, peak + 1),
         fmt::format("at most {:.0e} m/s2", largest_acceleration));
   }
-}
-
-// Before a file is opened: a pipe would wait for its writer, and a device need not end.
-void check_size(const std::filesystem::path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return;  // reading says why
-  const char* kind = S_ISDIR(status.st_mode)   ? "a folder"
-                     : S_ISREG(status.st_mode) ? nullptr
-                                               : "a device or pipe";
-  if (kind != nullptr) refuse_file(path.string(), kind, "a file with a record of ground motion");
-  const auto size = static_cast<double>(status.st_size);
-  if (size > largest_file)
-    refuse_file(path.string(), fmt::format("a file of {:.0f} MB", size / 1e6),
-                fmt::format("at most {:.0f} MB; records are far smaller", largest_file / 1e6));
 }
 
 void check_lines(const std::string& file, std::string_view content) {
@@ -115,7 +99,6 @@ std::string motion_format_names() {
 
 std::vector<MotionComponent> read_motion_file(const std::filesystem::path& path,
                                               const MotionReading& reading) {
-  check_size(path);
   std::string content = read_file(path);
   check_is_text(path.string(), content);
   const MotionText text(path.string(), std::move(content));

@@ -1,6 +1,12 @@
 #include "results/block_shape.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "core/error.h"
 
 namespace keyblock::results {
 namespace {
@@ -52,7 +58,15 @@ std::vector<std::array<int, 3>> block_triangles(const simulation::ModelRecord& m
   };
   std::vector<std::array<int, 3>> triangles;
   const Polygon polygon = shape(model, block, [&](std::size_t k) { return model.vertices[k]; });
-  for (const auto& [a, b, c] : triangulate(polygon)) triangles.push_back({index(a), index(b), index(c)});
+  try {
+    for (const auto& [a, b, c] : triangulate(polygon)) triangles.push_back({index(a), index(b), index(c)});
+  } catch (const std::invalid_argument&) {
+    Diagnostic diagnostic;
+    diagnostic.where.file = "result.h5";
+    diagnostic.found = fmt::format("block {}, whose outline crosses itself", block);
+    diagnostic.expected = "outlines of blocks";
+    throw InputError(std::move(diagnostic));
+  }
   return triangles;
 }
 

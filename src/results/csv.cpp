@@ -2,17 +2,48 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <iterator>
+#include <system_error>
 
 #include "core/atomic_file.h"
 
 namespace keyblock::results {
 
+namespace {
+
+bool is_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error != std::errc::invalid_argument && end == text.data() + text.size();
+}
+
+// One, or several as values that vary together: "-0.5, 1".
+bool are_numbers(std::string_view text) {
+  for (std::size_t comma = text.find(", "); comma != std::string_view::npos; comma = text.find(", ")) {
+    if (!is_number(text.substr(0, comma))) return false;
+    text.remove_prefix(comma + 2);
+  }
+  return is_number(text);
+}
+
+// Spreadsheets look past spaces.
+bool is_formula(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \n\v\f");
+  if (first == std::string_view::npos) return false;
+  constexpr std::string_view starts = "=+-@\t\r";
+  return starts.find(text[first]) != std::string_view::npos && !are_numbers(text.substr(first));
+}
+
+}  // namespace
+
 std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
+  const std::string inert = is_formula(text) ? "'" + std::string(text) : std::string(text);
+  if (inert.find_first_of(",;\"\n\r\t") == std::string::npos) return inert;
   std::string out = "\"";
-  for (const char c : text) {
+  for (const char c : inert) {
     if (c == '"') out += '"';
     out += c;
   }

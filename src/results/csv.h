@@ -8,7 +8,8 @@
 
 namespace keyblock::results {
 
-/// A field as RFC 4180 has it: in quotes where it holds a comma, a quote or a line break.
+/// A field of every CSV file: as RFC 4180 has it, in quotes where it holds a comma, a semicolon, a tab, a quote or a line break. Text that a
+/// spreadsheet would run as a formula (from =, +, -, @, a tab or a carriage return on) gets an apostrophe before it; numbers do not.
 std::string csv_field(std::string_view text);
 
 /// Names of the columns: `time`, then seven per history, as below.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -26,20 +27,28 @@ constexpr const char* list_name = "keyblock-export.json";
   throw InputError(std::move(diagnostic));
 }
 
-// Of a list that somebody has changed, only names of files in this very folder.
-bool is_plain(const std::string& name) {
-  return !name.empty() && name != "." && name != ".." && fs::path(name).filename() == name;
+constexpr std::pair<std::string_view, std::string_view> endings[] = {
+    {"vtk", ".vtu"}, {"vtk", ".vtp"}, {"vtk", ".pvd"},
+    {"vtk", ".py"},  {"csv", ".csv"}, {"geojson", ".geojson"}};
+
+// Of a list that somebody has changed, only names of files in this very folder that an export of this format writes.
+bool is_exported(const std::string& format, const std::string& name) {
+  const fs::path path(name);
+  if (path.filename() != name || path.stem().empty()) return false;
+  return std::find(std::begin(endings), std::end(endings),
+                   std::pair<std::string_view, std::string_view>(format, path.extension().string())) !=
+         std::end(endings);
 }
 
 // Empty where there is no list, or none that can be read.
 std::map<std::string, std::set<std::string>> read_list(const fs::path& folder) {
   std::map<std::string, std::set<std::string>> names;
   if (!file_exists(folder / list_name)) return names;
-  const auto json = nlohmann::json::parse(read_file(folder / list_name), nullptr, false);
+  const auto json = nlohmann::json::parse(read_own_file(folder / list_name), nullptr, false);
   if (!json.is_object()) return names;
   for (const auto& [format, files] : json.items()) {
     for (const auto& file : files) {
-      if (file.is_string() && is_plain(file.get<std::string>()))
+      if (file.is_string() && is_exported(format, file.get<std::string>()))
         names[format].insert(file.get<std::string>());
     }
   }

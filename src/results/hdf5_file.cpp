@@ -20,6 +20,7 @@ namespace {
 constexpr unsigned deflate_level = 1;
 // Chunks hold whole rows, about this many bytes of them.
 constexpr std::size_t chunk_bytes = 65536;
+constexpr hsize_t largest_file = hsize_t{1} << 50U;  // bytes
 
 // The first message from the inside, the cause: "unable to extend file: No space left on device".
 herr_t keep_message(unsigned n, const H5E_error2_t* error, void* text) {
@@ -120,6 +121,21 @@ hid_t file_type() {
   if constexpr (std::is_same_v<T, std::int16_t>) return H5T_STD_I16LE;
   if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_STD_U8LE;
   if constexpr (std::is_same_v<T, std::uint64_t>) return H5T_STD_U64LE;
+}
+
+// How many values a dataset has: no more than what stands in the file can be unpacked to, and the rows that a run which was killed
+// had made room for. Sizes that somebody has made up would ask for memory that nothing fills.
+std::size_t count_of(hid_t dataset, const std::vector<hsize_t>& shape, std::size_t value_bytes,
+                     const std::string& name) {
+  constexpr hsize_t best_compression = 1100, made_room_for = hsize_t{1} << 26U;
+  const hsize_t stored = std::min<hsize_t>(H5Dget_storage_size(dataset), largest_file);
+  const hsize_t most = (stored * best_compression + made_room_for) / value_bytes;
+  hsize_t count = 1;
+  for (const hsize_t n : shape) {
+    if (n != 0 && count > most / n) throw RunError(name + " is larger than what stands in the file");
+    count *= n;
+  }
+  return static_cast<std::size_t>(count);
 }
 
 // Of a file of the default driver.
@@ -278,10 +294,17 @@ Array<T> read_array(hid_t group, const std::string& name) {
   Array<T> array;
   array.shape.resize(static_cast<std::size_t>(rank));
   check(H5Sget_simple_extent_dims(space, array.shape.data(), nullptr), name);
-  array.values.resize(static_cast<std::size_t>(product(array.shape)));
+  array.values.resize(count_of(dataset, array.shape, sizeof(T), name));
   if (!array.values.empty()) {
     check(H5Dread(dataset, native_type<T>(), H5S_ALL, space, H5P_DEFAULT, array.values.data()), name);
   }
+  return array;
+}
+
+template <class T>
+Array<T> read_column(hid_t group, const std::string& name) {
+  Array<T> array = read_array<T>(group, name);
+  if (array.shape.size() != 1) throw RunError(name + " is no list of numbers");
   return array;
 }
 
@@ -294,7 +317,7 @@ std::vector<std::string> read_strings(hid_t group, const std::string& name) {
   const Handle type = string_type_of(stored, name);
   const auto count = static_cast<std::size_t>(points);
   const std::size_t size = H5Tget_size(type);
-  std::string texts(count * size, '\0');
+  std::string texts(count_of(dataset, {count, size}, 1, name), '\0');
   if (count > 0) check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), name);
   std::vector<std::string> values;
   for (std::size_t k = 0; k < count; ++k)
@@ -377,10 +400,16 @@ template void write_array(hid_t, const std::string&, const std::vector<hsize_t>&
 template void write_array(hid_t, const std::string&, const std::vector<hsize_t>&,
                           std::span<const std::uint8_t>);
 template Array<double> read_array(hid_t, const std::string&);
+template Array<double> read_column(hid_t, const std::string&);
 template Array<float> read_array(hid_t, const std::string&);
+template Array<float> read_column(hid_t, const std::string&);
 template Array<std::int64_t> read_array(hid_t, const std::string&);
+template Array<std::int64_t> read_column(hid_t, const std::string&);
 template Array<std::int32_t> read_array(hid_t, const std::string&);
+template Array<std::int32_t> read_column(hid_t, const std::string&);
 template Array<std::int16_t> read_array(hid_t, const std::string&);
+template Array<std::int16_t> read_column(hid_t, const std::string&);
 template Array<std::uint8_t> read_array(hid_t, const std::string&);
+template Array<std::uint8_t> read_column(hid_t, const std::string&);
 
 }  // namespace keyblock::results::hdf5

@@ -11,7 +11,8 @@
 #include <vector>
 
 /// A thin owner for each thing of the HDF5 C API, for the sources of this folder only (the header is heavy).
-/// Every function throws RunError with HDF5's own words when a call fails.
+/// Every function throws RunError with HDF5's own words when a call fails, and those that read also when a file says that it holds more
+/// than it can.
 namespace keyblock::results::hdf5 {
 
 /// Closes what it holds.
@@ -109,6 +110,9 @@ struct Array {
 };
 template <class T>
 Array<T> read_array(hid_t group, const std::string& name);
+/// Throws RunError unless every row is one value.
+template <class T>
+Array<T> read_column(hid_t group, const std::string& name);
 std::vector<std::string> read_strings(hid_t group, const std::string& name);
 
 /// A dataset that grows by rows, compressed and with checksums. Rows gather in memory until flush(). A row of doubles that was

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
@@ -8,6 +10,7 @@ namespace keyblock::results {
 namespace {
 
 using hdf5::read_array;
+using hdf5::read_column;
 using hdf5::write_array;
 
 template <class T>
@@ -42,7 +45,8 @@ struct Lists {
 };
 
 Lists read_lists(hid_t group, const std::string& start, const std::string& values, std::size_t count) {
-  Lists lists{read_array<std::int32_t>(group, start).values, read_array<std::int32_t>(group, values).values};
+  Lists lists{read_column<std::int32_t>(group, start).values,
+              read_column<std::int32_t>(group, values).values};
   bool fits = lists.start.size() == count + 1 && lists.start.front() == 0 &&
               static_cast<std::size_t>(lists.start.back()) == lists.values.size();
   for (std::size_t k = 0; fits && k < count; ++k) fits = lists.start[k] <= lists.start[k + 1];
@@ -55,6 +59,9 @@ void check_places(const simulation::ModelRecord& model) {
   constexpr int least_vertices = 3;  // of a ring
   if (model.edge_label.size() != model.vertices.size())
     throw RunError("model/edge_kind and model/vertices differ in length");
+  for (const Vec2 p : model.vertices)
+    if (!std::isfinite(p.x) || !std::isfinite(p.y))
+      throw RunError("model/vertices holds what is no finite number");
   for (const auto& block : model.blocks) {
     const std::vector<int>& start = block.ring_start;
     bool rings = start.size() >= 2 && start.front() >= 0 &&
@@ -128,13 +135,13 @@ simulation::ModelRecord read_model(hid_t file) {
   read_model_json(record[0], model);
   model.scenario = scenario[0];
   const auto name = hdf5::read_strings(group, "block_name");
-  const auto order = read_array<std::int32_t>(group, "block_order");
-  const auto fixed = read_array<std::uint8_t>(group, "block_fixed");
-  const auto area = read_array<double>(group, "block_area"),
-             density = read_array<double>(group, "block_density");
+  const auto order = read_column<std::int32_t>(group, "block_order");
+  const auto fixed = read_column<std::uint8_t>(group, "block_fixed");
+  const auto area = read_column<double>(group, "block_area"),
+             density = read_column<double>(group, "block_density");
   // Files of version 0.1 may have none.
   const auto ratio_zz = H5Lexists(group, "block_stress_ratio_zz", H5P_DEFAULT) > 0
-                            ? read_array<double>(group, "block_stress_ratio_zz")
+                            ? read_column<double>(group, "block_stress_ratio_zz")
                             : hdf5::Array<double>{{name.size()}, std::vector<double>(name.size())};
   const auto centroid = read_points(group, "block_centroid");
   const std::size_t count = name.size();
@@ -149,8 +156,8 @@ simulation::ModelRecord read_model(hid_t file) {
                             excavations.list(b), centroid[b], rings.list(b), ratio_zz.values[b]});
   }
   model.vertices = read_points(group, "vertices");
-  const auto edge_kind = read_array<std::uint8_t>(group, "edge_kind");
-  const auto edge_index = read_array<std::int16_t>(group, "edge_index");
+  const auto edge_kind = read_column<std::uint8_t>(group, "edge_kind");
+  const auto edge_index = read_column<std::int16_t>(group, "edge_index");
   if (edge_kind.rows() != edge_index.rows())
     throw RunError("model/edge_kind and model/edge_index differ in length");
   for (std::size_t k = 0; k < edge_kind.rows(); ++k) {

@@ -132,10 +132,46 @@ int unknowns(const RunData& data) {
   return sum;
 }
 
+constexpr long most_steps = 1'000'000'000'000'000;
+
+void check_steps(long steps, const char* what) {
+  if (steps < 0 || steps > most_steps)
+    throw RunError(fmt::format("{} has a number of steps that cannot be", what));
+}
+
+template <class Row>
+void check_places(const std::vector<Row>& rows, const char* what) {
+  for (const Row& row : rows) {
+    check_steps(row.step, what);
+    if (row.stage < 0) throw RunError(fmt::format("{} has a stage that cannot be", what));
+  }
+}
+
+// Whether the stages and the end of a run are those of the model.
+void check_record(const RunData& data) {
+  const auto is_block = [&](int b) {
+    return b >= 0 && static_cast<std::size_t>(b) < data.model.blocks.size();
+  };
+  const simulation::OverlapRecord& overlap = data.run.max_overlap;
+  bool fits = (overlap.block_a < 0 && overlap.block_b < 0) ||
+              (is_block(overlap.block_a) && is_block(overlap.block_b));
+  check_steps(data.run.steps, "run");
+  for (const simulation::StageRecord& stage : data.run.stages) {
+    check_steps(stage.steps, "stages");
+    fits = fits && stage.motion_time.size() == stage.motion.size() &&
+           std::all_of(stage.moving.begin(), stage.moving.end(),
+                       [&](const auto& m) { return is_block(m.block); }) &&
+           std::all_of(stage.fallen.begin(), stage.fallen.end(),
+                       [&](const auto& f) { return is_block(f.block); });
+  }
+  if (!fits) throw RunError("stages or run name blocks that the model does not have");
+}
+
 void read_run_record(hid_t file, RunData& data) {
   std::map<int, StageLine> stages;
   for (const std::string& text : TextColumn::read_lines(file, "stages")) {
     StageLine line = read_stage_json(text);
+    check_steps(line.stage.steps, "stages");
     stages[line.index] = std::move(line);
   }
   const auto run = TextColumn::read_lines(file, "run");
@@ -159,6 +195,10 @@ void read_run_record(hid_t file, RunData& data) {
 // Whether the rows are those of the model.
 void check_rows(const RunData& data) {
   const std::size_t blocks = data.model.blocks.size();
+  check_places(data.frames, "frames");
+  check_places(data.contacts, "contacts");
+  check_places(data.steps, "steps");
+  for (const simulation::HistoryRow& row : data.histories) check_steps(row.step, "histories");
   for (const simulation::Frame& frame : data.frames) {
     if (frame.displacement.size() != data.model.vertices.size() || frame.status.size() != blocks)
       throw RunError("frames and model differ in size");
@@ -203,6 +243,7 @@ RunData read_run(const std::filesystem::path& directory) {
     data.steps = StepTable::read(file);
     check_rows(data);
     read_run_record(file, data);
+    check_record(data);
     return data;
   });
 }

@@ -15,6 +15,7 @@ namespace {
 
 using hdf5::Array;
 using hdf5::read_array;
+using hdf5::read_column;
 
 constexpr std::size_t energy_terms = std::size(energy_fields);
 constexpr std::size_t history_values = 7;
@@ -97,7 +98,7 @@ void FrameTable::flush() {
 
 std::vector<simulation::Frame> FrameTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "frames");
-  const auto time = read_array<double>(group, "time");
+  const auto time = read_column<double>(group, "time");
   const auto displacement = read_array<float>(group, "displacement"),
              stress = read_array<float>(group, "stress");
   // Files of version 0.1 may have none.
@@ -105,8 +106,8 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
   const auto velocity = has_velocity ? read_array<float>(group, "velocity") : Array<float>{};
   const auto status = read_array<std::uint8_t>(group, "status");
   const auto order = read_array<std::int16_t>(group, "order");
-  const auto stage = read_array<std::int32_t>(group, "stage");
-  const auto step = read_array<std::int64_t>(group, "step");
+  const auto stage = read_column<std::int32_t>(group, "stage");
+  const auto step = read_column<std::int64_t>(group, "step");
   const std::size_t nv = displacement.width() / 2, nb = status.width();
   require(stress.width() == 3 * nb, "frames/stress");
   require(order.width() == nb, "frames/order");
@@ -189,19 +190,21 @@ void ContactTable::flush() {
 
 std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "contacts");
-  const auto time = read_array<double>(group, "time");
-  const auto stage = read_array<std::int32_t>(group, "stage");
-  const auto step = read_array<std::int64_t>(group, "step"), end = read_array<std::int64_t>(group, "end");
-  const auto block_a = read_array<std::int32_t>(group, "block_a"),
-             block_b = read_array<std::int32_t>(group, "block_b");
-  const auto state = read_array<std::uint8_t>(group, "state"),
-             edge_kind = read_array<std::uint8_t>(group, "edge_kind");
-  const auto edge_index = read_array<std::int16_t>(group, "edge_index");
+  const auto time = read_column<double>(group, "time");
+  const auto stage = read_column<std::int32_t>(group, "stage");
+  const auto step = read_column<std::int64_t>(group, "step"), end = read_column<std::int64_t>(group, "end");
+  const auto block_a = read_column<std::int32_t>(group, "block_a"),
+             block_b = read_column<std::int32_t>(group, "block_b");
+  const auto state = read_column<std::uint8_t>(group, "state"),
+             edge_kind = read_column<std::uint8_t>(group, "edge_kind");
+  const auto edge_index = read_column<std::int16_t>(group, "edge_index");
   const auto position = read_array<double>(group, "position"), normal = read_array<double>(group, "normal");
-  const auto length = read_array<double>(group, "length"), gap = read_array<double>(group, "gap");
-  const auto slip = read_array<double>(group, "slip"),
-             normal_force = read_array<double>(group, "normal_force");
-  const auto shear_force = read_array<double>(group, "shear_force");
+  const auto length = read_column<double>(group, "length"), gap = read_column<double>(group, "gap");
+  const auto slip = read_column<double>(group, "slip"),
+             normal_force = read_column<double>(group, "normal_force");
+  const auto shear_force = read_column<double>(group, "shear_force");
+  require(position.width() == 2, "contacts/position");
+  require(normal.width() == 2, "contacts/normal");
   const std::size_t rows = std::min({block_a.rows(), block_b.rows(), state.rows(), edge_kind.rows(),
                                      edge_index.rows(), position.rows(), normal.rows(), length.rows(),
                                      gap.rows(), slip.rows(), normal_force.rows(), shear_force.rows()});
@@ -255,8 +258,9 @@ void HistoryTable::flush() {
 
 std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "histories");
-  const auto time = read_array<double>(group, "time"), values = read_array<double>(group, "values");
-  const auto step = read_array<std::int64_t>(group, "step");
+  const auto time = read_column<double>(group, "time"), values = read_array<double>(group, "values");
+  const auto step = read_column<std::int64_t>(group, "step");
+  require(values.width() % history_values == 0, "histories/values");
   const std::size_t points = values.width() / history_values;
   std::vector<simulation::HistoryRow> rows(common_rows(time, {values.rows(), step.rows()}));
   const double* next = values.values.data();
@@ -309,14 +313,14 @@ void StepTable::flush() {
 
 std::vector<simulation::StepRow> StepTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "steps");
-  const auto time = read_array<double>(group, "time");
-  const auto stage = read_array<std::int32_t>(group, "stage"),
-             iterations = read_array<std::int32_t>(group, "iterations");
-  const auto closed_contacts = read_array<std::int32_t>(group, "closed_contacts");
-  const auto step = read_array<std::int64_t>(group, "step");
-  const auto step_size = read_array<double>(group, "step_size"),
-             penetration = read_array<double>(group, "penetration");
-  const auto max_displacement = read_array<double>(group, "max_displacement");
+  const auto time = read_column<double>(group, "time");
+  const auto stage = read_column<std::int32_t>(group, "stage"),
+             iterations = read_column<std::int32_t>(group, "iterations");
+  const auto closed_contacts = read_column<std::int32_t>(group, "closed_contacts");
+  const auto step = read_column<std::int64_t>(group, "step");
+  const auto step_size = read_column<double>(group, "step_size"),
+             penetration = read_column<double>(group, "penetration");
+  const auto max_displacement = read_column<double>(group, "max_displacement");
   const auto energy = read_array<double>(group, "energy");
   require(energy.width() == energy_terms, "steps/energy");
   std::vector<simulation::StepRow> rows(
@@ -349,7 +353,7 @@ void TextColumn::append_line(const std::string& line) {
 }
 
 std::string TextColumn::read(hid_t file, const std::string& name) {
-  const auto bytes = read_array<std::uint8_t>(file, name);
+  const auto bytes = read_column<std::uint8_t>(file, name);
   return {bytes.values.begin(), std::find(bytes.values.begin(), bytes.values.end(), std::uint8_t{0})};
 }
 

@@ -1,6 +1,7 @@
 #include "results/result_writer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/own_file.h"
 #include "results/csv.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
@@ -79,7 +81,7 @@ struct ResultWriter::State {
   };
 
   hdf5::QuietErrors quiet;
-  std::filesystem::path directory;
+  std::filesystem::path directory, temporary;
   std::chrono::duration<double> flush_interval{};
   simulation::ModelRecord model;
   std::optional<OpenFile> file;
@@ -90,7 +92,6 @@ struct ResultWriter::State {
   std::vector<std::string> waiting_stages;      // lines from before the first row
 
   [[nodiscard]] std::filesystem::path path() const { return directory / "result.h5"; }
-  [[nodiscard]] std::filesystem::path temporary_path() const { return directory / "result.h5.tmp"; }
   [[nodiscard]] bool flush_is_due() const;
   void copy_earlier();
   void publish();
@@ -112,7 +113,7 @@ struct ResultWriter::State {
 void ResultWriter::State::abandon() {
   file.reset();
   std::error_code ignored;
-  if (!published) std::filesystem::remove(temporary_path(), ignored);
+  if (!published) std::filesystem::remove(temporary, ignored);
 }
 
 bool ResultWriter::State::flush_is_due() const {
@@ -169,8 +170,9 @@ void ResultWriter::State::publish() {
   });
   if (before_publishing) before_publishing();
   std::error_code error;
-  std::filesystem::rename(temporary_path(), path(), error);
+  std::filesystem::rename(temporary, path(), error);
   if (error) throw RunError(fmt::format("{}: cannot rename: {}", path().string(), error.message()));
+  sync_folder_of(path());
   published = true;
 }
 
@@ -194,8 +196,11 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   if (error)
     throw RunError(fmt::format("{}: cannot create: {}", state_->directory.string(), error.message()));
   state_->model = model;
+  const NewFile made = create_temporary(state_->path());
+  ::close(made.descriptor);
+  state_->temporary = made.path;
   state_->change_file([&] {
-    state_->file.emplace(state_->temporary_path(), model);
+    state_->file.emplace(state_->temporary, model);
     describe_datasets(state_->file->file);
     state_->file->flush_whole();
   });

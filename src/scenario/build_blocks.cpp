@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/out_of_memory.h"
 #include "cutting/cut.h"
 #include "rockmass/intensity.h"
 #include "rockmass/trace_generator.h"
@@ -105,7 +106,9 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   input.tolerances = tolerances_of(scenario.cutting, window, model.traces);
   check_expected_blocks(scenario, input, window);
   try {
-    model.system = cutting::cut(input);
+    model.system =
+        with_memory_for([&] { return fmt::format("the cutting of {} traces", input.traces.size()); },
+                        [&] { return cutting::cut(input); });
   } catch (const InputError& error) {
     throw placed(scenario, error);
   }

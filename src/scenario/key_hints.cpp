@@ -102,7 +102,7 @@ class Places {
 };
 
 std::string hint_elsewhere(const std::string& written, const std::string& word) {
-  const Places places;
+  static const Places places;
   if (places.has_key(written)) return places.hint(written);
   for (const Synonym& synonym : synonyms()) {
     if (!synonym.anywhere || !has(words_of(synonym.words), word)) continue;

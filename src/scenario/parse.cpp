@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <tuple>
 
 #include "core/atomic_file.h"
 #include "core/text.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
+#include "scenario/mistakes.h"
 #include "scenario/override.h"
 #include "scenario/sections.h"
 #include "scenario/stage_steps.h"
@@ -18,7 +18,7 @@ namespace {
 
 struct Reading {
   Scenario scenario;
-  std::vector<Diagnostic> diagnostics;
+  Mistakes mistakes;
 };
 
 Reading read_document(const Value& document, const std::filesystem::path& file) {
@@ -28,36 +28,23 @@ Reading read_document(const Value& document, const std::filesystem::path& file) 
   TableReader root(context, &document);
   read_scenario(root, reading.scenario);
   root.finish();
-  reading.diagnostics = std::move(context.diagnostics);
+  reading.mistakes = std::move(context.mistakes);
   reading.scenario.positions = std::move(context.positions);
   reading.scenario.file = file.string();
   return reading;
 }
 
-bool same(const Diagnostic& a, const Diagnostic& b) {
-  return a.to_string() == b.to_string();
-}
-
-// Adds what is not there yet.
-void merge(std::vector<Diagnostic>& all, std::vector<Diagnostic> more) {
-  for (Diagnostic& diagnostic : more) {
-    const bool known =
-        std::any_of(all.begin(), all.end(), [&](const Diagnostic& d) { return same(d, diagnostic); });
-    if (!known) all.push_back(std::move(diagnostic));
-  }
-}
-
 // Puts one value of [[study.vary]], or several that vary together, into the scenario. False when a key leads nowhere.
 bool vary(const std::vector<const Value*>& keys, const std::vector<const Value*>& values, Value& document,
-          std::vector<Diagnostic>& diagnostics) {
+          Mistakes& mistakes) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
     try {
       if (const auto failed = apply_override(make_override(keys[k]->text, *values[k]), document)) {
-        merge(diagnostics, {*failed});
+        mistakes.add(*failed);
         return false;
       }
     } catch (const InputError& error) {
-      merge(diagnostics, error.diagnostics());
+      mistakes.add(error.diagnostics());
       return false;
     }
   }
@@ -111,22 +98,21 @@ std::vector<Axis> axes_of(const Value& document) {
 // A value may vary once, however its key is written, and not in [study] itself; values are put in in the order of the axes.
 class VariedKeys {
  public:
-  VariedKeys(const Value& document, std::vector<Diagnostic>& diagnostics)
-      : document_(document), diagnostics_(diagnostics) {}
+  VariedKeys(const Value& document, Mistakes& mistakes) : document_(document), mistakes_(mistakes) {}
 
   void add(const Value& key) {
     const auto path = parse_key_path(key.text);
     if (!path) return;
     if (path->front().key == "study")
-      merge(diagnostics_, {{key.where, key.text, "a key of [study]", "a key of what is studied", ""}});
+      mistakes_.add({key.where, key.text, "a key of [study]", "a key of what is studied", ""});
     std::vector<std::string> place = resolved_path(*path, document_);
     for (const auto& [other, text] : before_) {
       if (other == place) {
-        merge(diagnostics_, {{key.where, key.text, "a key that varies already", "every key once",
-                              text == key.text ? "" : "'" + text + "' is the same value"}});
+        mistakes_.add({key.where, key.text, "a key that varies already", "every key once",
+                       text == key.text ? "" : "'" + text + "' is the same value"});
       } else if (other.size() > place.size() && std::equal(place.begin(), place.end(), other.begin())) {
-        merge(diagnostics_, {{key.where, key.text, "a key that holds '" + text + "', which varies already",
-                              "it before that one, whose values it replaces", ""}});
+        mistakes_.add({key.where, key.text, "a key that holds '" + text + "', which varies already",
+                       "it before that one, whose values it replaces", ""});
       }
     }
     before_.emplace_back(std::move(place), key.text);
@@ -134,7 +120,7 @@ class VariedKeys {
 
  private:
   const Value& document_;
-  std::vector<Diagnostic>& diagnostics_;
+  Mistakes& mistakes_;
   std::vector<std::pair<std::vector<std::string>, std::string>> before_;
 };
 
@@ -143,17 +129,17 @@ void remove_study(Value& document) {
 }
 
 // Tries every value of [[study.vary]] alone.
-void check_study(const Value& document, const std::filesystem::path& file,
-                 std::vector<Diagnostic>& diagnostics) {
+void check_study(const Value& document, const std::filesystem::path& file, Mistakes& mistakes) {
   Value without_study = document;
   remove_study(without_study);
-  VariedKeys varied_keys(without_study, diagnostics);
+  VariedKeys varied_keys(without_study, mistakes);
   for (const Axis& axis : axes_of(document)) {
     for (const Value* key : axis.keys) varied_keys.add(*key);
     for (const auto& row : axis.rows) {
+      if (mistakes.full()) return;
       Value varied = without_study;
-      if (!vary(axis.keys, row, varied, diagnostics)) break;
-      merge(diagnostics, read_document(varied, file).diagnostics);
+      if (!vary(axis.keys, row, varied, mistakes)) break;
+      mistakes.add(read_document(varied, file).mistakes);
     }
   }
 }
@@ -166,13 +152,14 @@ bool concerns(const Diagnostic& diagnostic, const std::string& path) {
 
 // A scenario that is wrong is refused anyway; mistakes in the files of those motions and trace maps that are right are
 // then said at once, too.
-void add_mistakes_of_files(const Scenario& scenario, std::vector<Diagnostic>& diagnostics) {
+void add_mistakes_of_files(const Scenario& scenario, Mistakes& mistakes) {
   Scenario sound;
   sound.file = scenario.file;
   sound.positions = scenario.positions;
   sound.section_azimuth = scenario.section_azimuth.value_or(0.0);
+  const std::vector<Diagnostic>& before = mistakes.kept();
   const auto is_sound = [&](const auto& spec) {
-    return std::none_of(diagnostics.begin(), diagnostics.end(),
+    return std::none_of(before.begin(), before.end(),
                         [&](const Diagnostic& diagnostic) { return concerns(diagnostic, spec.path); });
   };
   std::copy_if(scenario.motions.begin(), scenario.motions.end(), std::back_inserter(sound.motions), is_sound);
@@ -181,18 +168,8 @@ void add_mistakes_of_files(const Scenario& scenario, std::vector<Diagnostic>& di
   try {
     check_inputs(sound);
   } catch (const InputError& error) {
-    merge(diagnostics, error.diagnostics());
+    mistakes.add(error.diagnostics());
   }
-}
-
-// Mistakes in the scenario in the order of the file, then overrides.
-void sort_by_position(std::vector<Diagnostic>& diagnostics, const std::string& file) {
-  const auto rank = [&](const Diagnostic& d) {
-    const int place = d.where.file == file ? 0 : d.where.line == 0 ? 1 : 2;
-    return place == 0 ? std::tuple(place, d.where.line, d.where.column) : std::tuple(place, 0, 0);
-  };
-  std::stable_sort(diagnostics.begin(), diagnostics.end(),
-                   [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
 }
 
 // What a run refuses before it cuts any block, beside what reading finds. What the files say is looked at once for all
@@ -245,17 +222,10 @@ std::string combination_text(const std::vector<Axis>& axes, const std::vector<st
 }
 
 // Adds the mistakes of a combination that no other has, each with the first that has it.
-void add_mistakes(const std::vector<Diagnostic>& mistakes, const std::string& combination,
-                  std::vector<Diagnostic>& all) {
-  for (Diagnostic mistake : mistakes) {
-    const bool known = std::any_of(all.begin(), all.end(), [&](const Diagnostic& other) {
-      return std::tie(other.key, other.found, other.expected) ==
-                 std::tie(mistake.key, mistake.found, mistake.expected) &&
-             other.where.line == mistake.where.line && other.where.column == mistake.where.column;
-    });
-    if (known) continue;
+void add_mistakes(const Mistakes& mistakes, const std::string& combination, Mistakes& all) {
+  for (Diagnostic mistake : mistakes.kept()) {
     if (!combination.empty()) mistake.hint += (mistake.hint.empty() ? "" : "; ") + combination;
-    all.push_back(std::move(mistake));
+    all.add(std::move(mistake));
   }
 }
 
@@ -276,16 +246,15 @@ void sort_keys(Value& value) {
   for (Value& item : value.items) sort_keys(item);
 }
 
-// The document with its overrides; what is wrong with these is added to `diagnostics`.
+// The document with its overrides; what is wrong with these is added to `mistakes`.
 Value overridden(std::string_view text, const std::filesystem::path& file,
-                 const std::vector<std::string>& overrides, std::vector<Diagnostic>& diagnostics) {
+                 const std::vector<std::string>& overrides, Mistakes& mistakes) {
   Value document = parse_toml(text, file.string());
   for (const std::string& override_ : overrides) {
     try {
-      if (const auto failed = apply_override(parse_override(override_), document))
-        diagnostics.push_back(*failed);
+      if (const auto failed = apply_override(parse_override(override_), document)) mistakes.add(*failed);
     } catch (const InputError& error) {
-      merge(diagnostics, error.diagnostics());
+      mistakes.add(error.diagnostics());
     }
   }
   return document;
@@ -295,16 +264,16 @@ Value overridden(std::string_view text, const std::filesystem::path& file,
 
 Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
                              const std::vector<std::string>& overrides, StudyTable study) {
-  std::vector<Diagnostic> diagnostics;
-  Value document = overridden(text, file, overrides, diagnostics);
+  Mistakes mistakes;
+  Value document = overridden(text, file, overrides, mistakes);
   if (study == StudyTable::leave_out) remove_study(document);
   Reading reading = read_document(document, file);
-  merge(diagnostics, std::move(reading.diagnostics));
-  check_study(document, file, diagnostics);
-  if (!diagnostics.empty()) {
-    add_mistakes_of_files(reading.scenario, diagnostics);
-    sort_by_position(diagnostics, file.string());
-    throw InputError(std::move(diagnostics));
+  mistakes.add(reading.mistakes);
+  check_study(document, file, mistakes);
+  if (!mistakes.empty()) {
+    add_mistakes_of_files(reading.scenario, mistakes);
+    mistakes.sort(file.string());
+    throw mistakes.error();
   }
   Scenario scenario = std::move(reading.scenario);
   scenario.text = text;
@@ -318,9 +287,9 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
 void read_combinations(std::string_view text, const std::filesystem::path& file,
                        const std::vector<std::string>& overrides,
                        const std::function<void(const Scenario&)>& each) {
-  std::vector<Diagnostic> diagnostics;
-  const Value document = overridden(text, file, overrides, diagnostics);
-  if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
+  Mistakes all;
+  const Value document = overridden(text, file, overrides, all);
+  if (!all.empty()) throw all.error();
   Value without_study = document;
   remove_study(without_study);
   const std::vector<Axis> axes = axes_of(document);
@@ -328,32 +297,32 @@ void read_combinations(std::string_view text, const std::filesystem::path& file,
   RunCheck check;
   do {
     Value varied = without_study;
-    std::vector<Diagnostic> mistakes;
+    Mistakes mistakes;
     for (std::size_t a = 0; a < axes.size(); ++a)
       vary(axes[a].keys, axes[a].rows.at(places[a]), varied, mistakes);
     const Reading reading = read_document(varied, file);
-    merge(mistakes, reading.diagnostics);
-    if (mistakes.empty()) mistakes = check.mistakes(reading.scenario, varied);
+    mistakes.add(reading.mistakes);
+    if (mistakes.empty()) mistakes.add(check.mistakes(reading.scenario, varied));
     if (mistakes.empty()) each(reading.scenario);
-    add_mistakes(mistakes, combination_text(axes, places), diagnostics);
-  } while (advance(axes, places));
-  if (diagnostics.empty()) return;
-  sort_by_position(diagnostics, file.string());
-  throw InputError(std::move(diagnostics));
+    add_mistakes(mistakes, combination_text(axes, places), all);
+  } while (!all.full() && advance(axes, places));
+  if (all.empty()) return;
+  all.sort(file.string());
+  throw all.error();
 }
 
 Value document_without_study(std::string_view text, const std::filesystem::path& file,
                              const std::vector<std::string>& overrides) {
-  std::vector<Diagnostic> diagnostics;
-  Value document = overridden(text, file, overrides, diagnostics);
-  if (!diagnostics.empty()) throw InputError(std::move(diagnostics));
+  Mistakes mistakes;
+  Value document = overridden(text, file, overrides, mistakes);
+  if (!mistakes.empty()) throw mistakes.error();
   remove_study(document);
   sort_keys(document);
   return document;
 }
 
 Scenario parse_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return parse_scenario_text(read_file(file), file, overrides);
+  return parse_scenario_text(read_file(file, largest_scenario), file, overrides);
 }
 
 SourcePosition Scenario::where(const std::string& key_path) const {

@@ -29,8 +29,7 @@ class Consistency {
  private:
   void fail(const std::string& path, std::string key, std::string found, std::string expected) {
     ReadContext& context = root_.context();
-    context.diagnostics.push_back(
-        {context.where(path), std::move(key), std::move(found), std::move(expected), ""});
+    context.mistakes.add({context.where(path), std::move(key), std::move(found), std::move(expected), ""});
   }
 
   void check_without_domain() {
@@ -79,7 +78,7 @@ class Consistency {
 
   // Residuals are measured by what has to be carried. A load that was not understood may be that.
   void check_weights() {
-    if (!root_.context().diagnostics.empty() || has_weights()) return;
+    if (!root_.context().mistakes.empty() || has_weights()) return;
     const auto& stages = scenario_.stages;
     const auto settling = std::find_if(stages.begin(), stages.end(), [](const simulation::Stage& stage) {
       return stage.kind == simulation::StageKind::settle;
@@ -103,7 +102,7 @@ class Consistency {
   // Outlines are cut into the domain, but not into explicit blocks: these are taken out whole or left. Shapes that were not
   // understood cannot be compared.
   void check_excavations() {
-    if (!root_.context().diagnostics.empty()) return;
+    if (!root_.context().mistakes.empty()) return;
     for (const ExcavationSpec& excavation : scenario_.excavations) {
       const Ring outline = excavation_outline(excavation);
       for (const BlockSpec& block : scenario_.blocks) {

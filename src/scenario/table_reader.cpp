@@ -79,7 +79,7 @@ const Value* TableReader::find(std::string_view key) const {
 
 void TableReader::fail_at(const Value& value, const std::string& path, std::string found,
                           std::string expected, std::string hint) {
-  context_.diagnostics.push_back({value.where, path, std::move(found), std::move(expected), std::move(hint)});
+  context_.mistakes.add({value.where, path, std::move(found), std::move(expected), std::move(hint)});
 }
 
 void TableReader::fail(std::string_view key, std::string found, std::string expected, std::string hint) {
@@ -97,10 +97,11 @@ void TableReader::finish() {
   if (table_ == nullptr) return;
   for (const Value& member : table_->items) {
     if (std::find(known_.begin(), known_.end(), member.key) != known_.end()) continue;
-    const std::string hint = key_hint(member.key, known_);
+    // Hints are looked for in every word that the program knows.
+    const std::string hint = context_.mistakes.full() ? std::string() : key_hint(member.key, known_);
     std::string keys;
     for (const std::string& key : known_) keys += (keys.empty() ? "" : ", ") + key;
-    context_.diagnostics.push_back(
+    context_.mistakes.add(
         {member.key_where, path_of(member.key), "an unknown key",
          hint.empty() ? "one of " + keys : "a key of " + (path_.empty() ? "the scenario" : path_), hint});
   }
@@ -126,8 +127,8 @@ const Value* TableReader::take(std::string_view key, const Rule& rule, const std
   const Value* value = find(key);
   if (!rule.applies) {
     if (value != nullptr) {
-      context_.diagnostics.push_back({value->key_where, path_of(key), "a key that is not used here",
-                                      fmt::format("it only with {}", rule.condition), ""});
+      context_.mistakes.add({value->key_where, path_of(key), "a key that is not used here",
+                             fmt::format("it only with {}", rule.condition), ""});
     }
     return nullptr;
   }

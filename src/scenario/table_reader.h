@@ -12,6 +12,7 @@
 
 #include "geometry/polygon.h"
 #include "scenario/key_reference.h"
+#include "scenario/mistakes.h"
 #include "scenario/value.h"
 
 namespace keyblock::scenario {
@@ -41,7 +42,7 @@ struct Word {
 
 /// What is gathered while a document is read.
 struct ReadContext {
-  std::vector<Diagnostic> diagnostics;
+  Mistakes mistakes;
   std::map<std::string, SourcePosition> positions;                          ///< of every value, by key path
   std::map<std::string, std::vector<std::string>, std::less<>> list_names;  ///< names of elements, by list
   std::filesystem::path directory;                                          ///< to which paths are relative
@@ -55,7 +56,7 @@ struct ReadContext {
 SourcePosition nearest_position(const std::map<std::string, SourcePosition>& positions, std::string key_path);
 
 /// Reads the keys of one table. Each call names a key, the variable to fill, and a Rule; the variable keeps its
-/// value, the default, when the key is not there or wrong. Whatever is wrong becomes a Diagnostic of the context and
+/// value, the default, when the key is not there or wrong. Whatever is wrong is added to the mistakes of the context and
 /// reading goes on. Keys that nobody asked for are reported in the end.
 ///
 /// The same calls describe the keys when the context has a reference: there is no document then, `read` functions

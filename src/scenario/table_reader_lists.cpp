@@ -216,7 +216,7 @@ bool TableReader::find_name(const Value& value, const std::string& path, std::st
     fail_at(value, path, describe(value),
             known.empty() ? fmt::format("{}the name of a [[{}]] (there is none)", or_word, list)
                           : fmt::format("{}the name of a [[{}]]: {}", or_word, list, list_words(known)),
-            suggestion(value.text, known));
+            context_.mistakes.full() ? "" : suggestion(value.text, known));
     return false;
   }
   name = value.text;

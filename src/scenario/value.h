@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -48,6 +49,9 @@ std::string canonical_toml(Value value);
 
 /// Where two documents differ, by key path: `rock.young: 3.0e9 there, 5.0e9 here`. Elements of lists are compared by place.
 std::vector<std::string> differences(const Value& there, const Value& here);
+
+/// bytes. What is larger are lists of points, which files of their own hold in a fraction of the memory.
+inline constexpr std::size_t largest_scenario = 20'000'000;
 
 /// Reads TOML. Positions name `file`. Throws InputError for a syntax error.
 Value parse_toml(std::string_view text, const std::string& file);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/archive.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -129,6 +131,18 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.record.max_area_change);
 }
 
+RunState read_state(ArchiveReader& archive, const RunSetup& setup) {
+  RunState state;
+  transfer(archive, state);
+  std::uint64_t stages = 0;
+  archive(stages);
+  if (stages > setup.stages.size()) throw ArchiveError();
+  state.record.stages.resize(stages);
+  for (StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
+  if (!archive.at_end()) throw ArchiveError();
+  return state;
+}
+
 }  // namespace
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& directory) {
@@ -147,37 +161,37 @@ void write_checkpoint(const std::filesystem::path& directory, const RunSetup& se
   file.commit();
 }
 
+void refuse_checkpoint(const std::filesystem::path& directory, std::string found, std::string expected) {
+  Diagnostic diagnostic;
+  diagnostic.where.file = checkpoint_path(directory).string();
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  diagnostic.hint = "run without --resume to begin anew";
+  throw InputError(std::move(diagnostic));
+}
+
 RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup& setup) {
-  const auto refuse = [&](const char* found, const char* expected) {
-    Diagnostic diagnostic;
-    diagnostic.where.file = checkpoint_path(directory).string();
-    diagnostic.found = found;
-    diagnostic.expected = expected;
-    diagnostic.hint = "run without --resume to begin anew";
-    throw InputError(std::move(diagnostic));
-  };
-  const std::string data = read_file(checkpoint_path(directory));
+  const std::string data = read_file(checkpoint_path(directory), any_size);
   std::uint64_t number = 0;
-  if (data.size() < 3 * sizeof(number)) refuse("a truncated file", "a checkpoint");
+  if (data.size() < 3 * sizeof(number)) refuse_checkpoint(directory, "a truncated file", "a checkpoint");
   const std::string_view content(data.data(), data.size() - sizeof(number));
   Hash hash;
   hash.add(content.data(), content.size());
   ArchiveReader(std::string_view(data).substr(content.size()))(number);
-  if (number != hash.value()) refuse("a damaged file", "a checkpoint");
+  if (number != hash.value()) refuse_checkpoint(directory, "a damaged file", "a checkpoint");
   ArchiveReader archive(content);
   archive(number);
-  if (number != format) refuse("another format", "a checkpoint of this version");
+  if (number != format) refuse_checkpoint(directory, "another format", "a checkpoint of this version");
   archive(number);
   if (number != fingerprint(setup)) {
-    refuse("the checkpoint of another scenario, realization or version", "one of the run to be resumed");
+    refuse_checkpoint(directory, "the checkpoint of another scenario, realization or version",
+                      "one of the run to be resumed");
   }
-  RunState state;
-  transfer(archive, state);
-  std::uint64_t stages = 0;
-  archive(stages);
-  state.record.stages.resize(stages);
-  for (StageRecord& stage : state.record.stages) transfer_stage(archive, stage);
-  return state;
+  try {
+    return read_state(archive, setup);
+  } catch (const ArchiveError&) {
+    refuse_checkpoint(directory, "a file that ends elsewhere than its counts say", "a checkpoint");
+  }
 }
 
 std::string state_hash(const dynamics::State& state) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "dynamics/state.h"
 #include "simulation/damage.h"
@@ -33,6 +34,10 @@ std::filesystem::path checkpoint_path(const std::filesystem::path& directory);
 /// belongs to another setup or version.
 void write_checkpoint(const std::filesystem::path& directory, const RunSetup& setup, const RunState& state);
 RunState read_checkpoint(const std::filesystem::path& directory, const RunSetup& setup);
+
+/// Throws InputError about the checkpoint in the folder, with what to do.
+[[noreturn]] void refuse_checkpoint(const std::filesystem::path& directory, std::string found,
+                                    std::string expected);
 
 /// Hash of positions, velocities and contact memory: equal for equal bits.
 std::string state_hash(const dynamics::State& state);

@@ -110,6 +110,10 @@ JointClosure largest_closure(const RunSetup& setup) {
   return result;
 }
 
+std::string memory_purpose(const RunSetup& setup) {
+  return fmt::format("a model of {} blocks", setup.system.blocks.size());
+}
+
 std::optional<std::string> yields_without_limit(const RunSetup& setup) {
   if (auto reason = soft_rock(setup)) return reason;
   return soft_joints(setup);

@@ -25,4 +25,7 @@ constexpr double soft_joint_closure = 0.02, most_joint_closure = 0.1;
 /// excavation releases, deforms by more than its own size; joints that it closes by a tenth of the block size.
 std::optional<std::string> yields_without_limit(const RunSetup& setup);
 
+/// What the memory of a run is for, where there is not enough of it.
+[[nodiscard]] std::string memory_purpose(const RunSetup& setup);
+
 }  // namespace keyblock::simulation

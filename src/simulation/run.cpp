@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <functional>
 
 #include "core/error.h"
+#include "core/out_of_memory.h"
 #include "core/parallel.h"
-#include "core/profile.h"
 #include "dynamics/step.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
+#include "simulation/checkpoint_checks.h"
 #include "simulation/damage.h"
 #include "simulation/feasibility.h"
 #include "simulation/order_control.h"
@@ -134,9 +136,14 @@ void Runner::begin() {
 }
 
 void Runner::resume() {
+  const auto check = [&](const std::string& mistake) {
+    if (!mistake.empty()) refuse_checkpoint(options_.directory, mistake, "a checkpoint of this run");
+  };
   now_ = read_checkpoint(options_.directory, setup_);
+  check(mistake_in_orders(now_.orders, setup_, model_));
   orders_.memory() = now_.orders;
   orders_.restore(model_);
+  check(mistake_in_state(now_, setup_, model_));
   model_.surface.present = now_.present;
   orders_changed();
   gauge_.restore(std::move(now_.damage));
@@ -418,10 +425,14 @@ RunRecord Runner::run() {
     observer_.end(record);
   };
   try {
-    while (now_.stage < static_cast<int>(setup_.stages.size()) && !stopped()) run_stage();
+    while (now_.stage < static_cast<int>(setup_.stages.size()) && !stopped())
+      with_memory_for([&] { return memory_purpose(setup_); }, [&] { run_stage(); });
   } catch (const RunError&) {
     now_.record.interrupted = true;
-    finish();
+    try {
+      finish();
+    } catch (const std::exception&) {  // the first failure is the one to be told about
+    }
     throw;
   }
   finish();
@@ -432,7 +443,8 @@ RunRecord Runner::run() {
 
 RunRecord run(const RunSetup& setup, const RunOptions& options, RunObserver& observer) {
   if (const auto reason = yields_without_limit(setup)) throw RunError(*reason);
-  return Runner(setup, options, observer).run();
+  return with_memory_for([&] { return memory_purpose(setup); },
+                         [&] { return Runner(setup, options, observer).run(); });
 }
 
 }  // namespace keyblock::simulation

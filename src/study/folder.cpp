@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/folder.h"
+#include "core/own_file.h"
 #include "scenario/parse.h"
 #include "study/plan_json.h"
 #include "study/refusal.h"
@@ -20,6 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_differences = 5;  // that are named
+
+constexpr const char* run_files[] = {"run.json",     "failed.json",   "thumbnail.svg", "report.html",
+                                     "summary.json", "histories.csv", "result.h5"};
 
 // What makes two plans those of different studies.
 std::vector<std::string> differences(const Plan& there, const Plan& here) {
@@ -78,6 +82,20 @@ void check_same_study(const fs::path& directory, const Plan& there, const Plan& 
   refuse(directory.string(), text, "a study that differs in nothing but [study]", "take another folder");
 }
 
+// In a folder without a plan: of a study whose plan was lost, or of somebody else.
+void check_holds_no_other_files(const fs::path& directory, const Plan& plan) {
+  const auto refuse_foreign = [&](const char* name) {
+    refuse((directory / name).string(), "a file that is of no study",
+           "another folder, or another name for the file");
+  };
+  if (file_exists(scenario_path(directory))) {
+    if (read_own_file(scenario_path(directory)) != plan.text) refuse_foreign("study.toml");
+    return;
+  }
+  for (const char* name : {"runs", "runs.csv", "study.json", "report.html"})
+    if (file_exists(directory / name)) refuse_foreign(name);
+}
+
 }  // namespace
 
 fs::path plan_path(const fs::path& directory) {
@@ -90,6 +108,23 @@ fs::path scenario_path(const fs::path& directory) {
 
 fs::path run_folder(const fs::path& directory, const std::string& key) {
   return directory / "runs" / key;
+}
+
+fs::path make_run_folder(const fs::path& directory, const std::string& key) {
+  make_plain_folder(directory / "runs");
+  const fs::path folder = run_folder(directory, key);
+  make_plain_folder(folder);
+  return folder;
+}
+
+void clean_run_folder(const fs::path& folder) {
+  for (const char* name : run_files) {
+    const fs::path file = folder / name;
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw RunError(fmt::format("{}: cannot remove: {}", file.string(), error.message()));
+    remove_stale_temporaries(file);
+  }
 }
 
 std::unique_ptr<FileLock> lock_study(const fs::path& directory) {
@@ -115,8 +150,10 @@ void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
     keep_files(there.files, plan);
   } else if (file_exists(directory / "result.h5")) {
     refuse(directory.string(), "the results of a run", "another folder");
+  } else {
+    check_holds_no_other_files(directory, plan);
   }
-  make_folder(directory / "runs");
+  make_plain_folder(directory / "runs");
   write_file_atomically(scenario_path(directory), plan.text);
   write_file_atomically(plan_path(directory), plan_json(plan, directory));
 }
@@ -143,7 +180,7 @@ RunState read_run_state(const fs::path& directory, const Plan& plan, const Plann
   const fs::path folder = run_folder(directory, run.key);
   const auto read = [&](const fs::path& path) {
     try {
-      state.result = read_run_json(read_file(path), run_input(plan));
+      state.result = read_run_json(read_own_file(path), run_input(plan));
       if (state.result.key != run.key) {
         state.problem = fmt::format("{}: found the run {}", path.string(), state.result.key);
         return false;
@@ -174,8 +211,7 @@ RunState read_run_state(const fs::path& directory, const Plan& plan, const Plann
 }
 
 void write_failure(const fs::path& directory, const Plan& plan, const RunResult& result) {
-  const fs::path folder = run_folder(directory, result.key);
-  make_folder(folder);
+  const fs::path folder = make_run_folder(directory, result.key);
   write_file_atomically(folder / "failed.json", run_json(result, run_input(plan)));
 }
 

@@ -21,6 +21,14 @@ std::filesystem::path plan_path(const std::filesystem::path& directory);
 std::filesystem::path scenario_path(const std::filesystem::path& directory);
 std::filesystem::path run_folder(const std::filesystem::path& directory, const std::string& key);
 
+/// Makes the folder of a run where it is missing, and returns it. Throws InputError when a link or a file is in its place: what lies
+/// behind a link is not the study's.
+std::filesystem::path make_run_folder(const std::filesystem::path& directory, const std::string& key);
+
+/// Takes away what an attempt at a run that did not end has left in its folder: files of the names above and their temporary ones,
+/// nothing else. Throws RunError.
+void clean_run_folder(const std::filesystem::path& folder);
+
 /// Locks the study for planning and running. Throws InputError when another process has it, or the folder cannot be made.
 std::unique_ptr<FileLock> lock_study(const std::filesystem::path& directory);
 

@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 using scenario::Scenario;
 
 constexpr double most_runs = 1e6;
-constexpr double most_cells = 1e6;
 constexpr int key_digits = 10;
 
 // Of what distinguishes the runs of one realization.
@@ -263,7 +262,7 @@ Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, 
                std::vector<std::string>* warnings) {
   Plan plan;
   plan.scenario = file;
-  plan.text = read_file(file);
+  plan.text = read_file(file, scenario::largest_scenario);
   plan.overrides = overrides;
   plan.version = version;
   const Scenario scenario = scenario::parse_scenario_text(plan.text, file, overrides);

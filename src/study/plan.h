@@ -12,6 +12,8 @@
 
 namespace keyblock::study {
 
+inline constexpr double most_cells = 1e6;  ///< of a map
+
 /// One run: a realization × a value on every axis × a variant.
 struct PlannedRun {
   std::string key;  ///< see run_key

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/folder.h"
 #include "study/folder.h"
+#include "study/plan_checks.h"
 #include "study/refusal.h"
 
 namespace keyblock::study {
@@ -19,6 +20,7 @@ using nlohmann::ordered_json;
 using scenario::Keep;
 
 constexpr int plan_format = 1;
+const std::string repair = "remove it and run the study again in this folder: what is done is not done again";
 constexpr std::pair<Keep, const char*> keeps[] = {
     {Keep::all, "all"}, {Keep::report, "report"}, {Keep::measures, "measures"}};
 
@@ -176,7 +178,7 @@ Plan read_plan(const fs::path& directory) {
   }
   Plan plan;
   try {
-    const ordered_json json = ordered_json::parse(read_file(path));
+    const ordered_json json = ordered_json::parse(read_own_file(path));
     if (json.at("format") != plan_format)
       refuse(path.string(), "another format", fmt::format("format {} of the plan of a study", plan_format));
     json.at("version").get_to(plan.version);
@@ -191,10 +193,11 @@ Plan read_plan(const fs::path& directory) {
     read_description(json, plan);
     read_runs(json.at("runs"), plan.runs);
   } catch (const nlohmann::json::exception&) {
-    refuse(path.string(), "a damaged file", "the plan of a study",
-           "remove it and run the study again in this folder: what is done is not done again");
+    refuse(path.string(), "a damaged file", "the plan of a study", repair);
   }
-  plan.text = read_file(scenario_path(directory));
+  if (const std::string found = mistake_in(plan); !found.empty())
+    refuse(path.string(), found, "the plan of a study as keyblock wrote it", repair);
+  plan.text = read_own_file(scenario_path(directory));
   check_copy(directory, plan);
   return plan;
 }

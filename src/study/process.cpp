@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/own_file.h"
 
 namespace keyblock::study {
 namespace {
@@ -57,8 +58,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::f
     throw RunError(fmt::format("no pipe to a run: {}", std::strerror(errno)));
   Descriptor read_end(ends[0], ""), write_end(ends[1], "");
   const Descriptor null(::open("/dev/null", O_RDONLY | O_CLOEXEC), "/dev/null");
-  const Descriptor log_file(::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644),
-                            log.string() + ": cannot create");
+  const Descriptor log_file(create_anew(log), log.string());
   std::vector<std::string> words = command;
   for (std::string& word : words) {
     if (word == "{}") word = std::to_string(write_end);

@@ -18,6 +18,8 @@ using simulation::BlockStatus;
 using simulation::StageKind;
 
 constexpr int run_format = 2;
+constexpr std::uint64_t largest_map = 4'000'000;  // cells
+const std::string expected_words = "the measures of a run as keyblock wrote them";
 const std::string checksum_mark = ",\"checksum\":\"";
 
 ordered_json stage_json(const StageMeasures& stage) {
@@ -53,8 +55,13 @@ ordered_json map_json(const std::vector<BlockStatus>& map) {
 
 std::vector<BlockStatus> read_map(const ordered_json& runs) {
   std::vector<BlockStatus> map;
-  for (std::size_t k = 0; k + 1 < runs.size(); k += 2)
-    map.insert(map.end(), runs[k + 1].get<std::size_t>(), static_cast<BlockStatus>(runs[k].get<int>()));
+  for (std::size_t k = 0; k + 1 < runs.size(); k += 2) {
+    const auto status = runs[k].get<std::int64_t>();
+    const auto count = runs[k + 1].get<std::uint64_t>();
+    if (status < 0 || status > static_cast<int>(BlockStatus::excavated) || count > largest_map - map.size())
+      refuse("", "a map of unknown states, or of too many cells", expected_words);
+    map.insert(map.end(), count, static_cast<BlockStatus>(status));
+  }
   return map;
 }
 
@@ -128,19 +135,18 @@ std::string run_json(const RunResult& run, const std::string& input) {
 }
 
 RunResult read_run_json(const std::string& text, const std::string& input) {
-  const std::string expected = "the measures of a run as keyblock wrote them";
   const std::size_t mark = text.rfind(checksum_mark);
-  if (mark == std::string::npos) refuse("", "a truncated file", expected);
+  if (mark == std::string::npos) refuse("", "a truncated file", expected_words);
   const std::string sum = text.substr(mark + checksum_mark.size());
   if (sum != hash_text(std::string_view(text).substr(0, mark)) + "\"}\n")
-    refuse("", "a file that was truncated or changed", expected);
+    refuse("", "a file that was truncated or changed", expected_words);
   try {
     const ordered_json json = ordered_json::parse(text);
     if (json.at("format") != run_format) refuse("", "another format", "format " + std::to_string(run_format));
     if (json.at("input") != input) refuse("", "the run of another study or version", "one of this study");
     return read_result(json);
   } catch (const nlohmann::json::exception& error) {
-    refuse("", error.what(), expected);
+    refuse("", error.what(), expected_words);
   }
 }
 

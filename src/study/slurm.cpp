@@ -7,6 +7,7 @@
 #include <charconv>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 #include "study/refusal.h"
 
@@ -20,9 +21,11 @@ std::string log_pattern(const std::filesystem::path& directory, const std::strin
   return text + "/slurm/" + name;
 }
 
+constexpr std::string_view script_begin = "#!/bin/bash\n#SBATCH --job-name=keyblock";
+
 // What both kinds of script begin with.
 std::string head(const std::string& job, const std::string& log, const SlurmOptions& options) {
-  std::string text = fmt::format("#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --output=\"{}\"\n", job, log);
+  std::string text = fmt::format("{}{}\n#SBATCH --output=\"{}\"\n", script_begin, job, log);
   text += "#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n";
   if (!options.time.empty()) text += "#SBATCH --time=" + options.time + "\n";
   if (!options.memory.empty()) text += "#SBATCH --mem=" + options.memory + "\n";
@@ -81,15 +84,41 @@ std::optional<std::size_t> max_array_size(const std::string& config) {
   return std::nullopt;
 }
 
+namespace {
+
+// In a line of options, sbatch splits words at spaces, takes quotes and backslashes away, and ends the line at a #.
+void check_option(const char* option, const std::string& text) {
+  const auto is_wrong = [](unsigned char c) {
+    return c <= ' ' || c == 0x7F ||
+           std::string_view("\"'\\#").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (std::none_of(text.begin(), text.end(), is_wrong)) return;
+  refuse(option, '"' + text + '"', "one word without spaces, line breaks, quotes, \\ and #");
+}
+
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x20 || byte == 0x7F;
+}
+
+}  // namespace
+
 void check_can_submit(const std::filesystem::path& directory, const SlurmOptions& options) {
   if (options.most_elements == 0) {
     refuse("", "MaxArraySize = 0 in the configuration of Slurm: it takes no job arrays",
            "a cluster that takes job arrays", "keyblock study run does all runs on one machine");
   }
-  if (directory.string().find_first_of("\"\\\n") != std::string::npos) {
-    refuse(directory.string(), "a double quote, a backslash or a line break in the path",
+  check_option("--time", options.time);
+  check_option("--mem", options.memory);
+  check_option("--partition", options.partition);
+  const std::string folder = directory.string();
+  if (folder.find_first_of("\"\\") != std::string::npos ||
+      std::any_of(folder.begin(), folder.end(), is_control)) {
+    refuse(folder, "a double quote, a backslash or a line break in the path",
            "a folder that sbatch can be told to write its logs to");
   }
+  if (std::any_of(options.program.begin(), options.program.end(), is_control))
+    refuse(options.program, "a line break in the path", "the program at another place");
 }
 
 std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
@@ -109,12 +138,16 @@ std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
     script.name = scripts.empty() ? "array.sbatch" : fmt::format("array-{}.sbatch", scripts.size() + 1);
     script.elements = index_ranges(elements);
     if (options.most_running > 0) script.elements += fmt::format("%{}", options.most_running);
-    script.text = head("keyblock", log_pattern(directory, "%A_%a.log"), options) +
+    script.text = head("", log_pattern(directory, "%A_%a.log"), options) +
                   "#SBATCH --array=" + script.elements + "\n\n" +
                   task_commands(directory, array * options.most_elements, runs.back(), options);
     scripts.push_back(std::move(script));
   }
   return scripts;
+}
+
+bool is_own_script(const std::string& text) {
+  return text.starts_with(script_begin);
 }
 
 bool is_array_script(const std::string& name) {
@@ -128,7 +161,7 @@ bool is_array_script(const std::string& name) {
 }
 
 std::string collect_script(const std::filesystem::path& directory, const SlurmOptions& options) {
-  return head("keyblock-collect", log_pattern(directory, "%j.log"), options) +
+  return head("-collect", log_pattern(directory, "%j.log"), options) +
          fmt::format("\nexec {} study collect {}\n", shell_quoted(options.program),
                      shell_quoted(directory.string()));
 }

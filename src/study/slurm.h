@@ -22,8 +22,8 @@ struct ArrayScript {
   std::string elements;  ///< as for --array: "3,7-20%4"
 };
 
-/// Throws InputError when Slurm takes no arrays (most_elements = 0), and for a path that `#SBATCH --output` cannot hold: with a
-/// double quote, a backslash or a line break.
+/// Throws InputError when Slurm takes no arrays (most_elements = 0), for options that are not one word, and for a path that
+/// `#SBATCH --output` cannot hold: with a double quote, a backslash or a control character.
 void check_can_submit(const std::filesystem::path& directory, const SlurmOptions& options);
 
 /// One script, or several, for these runs (ascending indices) of the study in `directory` (absolute), which can be submitted.
@@ -32,6 +32,9 @@ std::vector<ArrayScript> array_scripts(const std::filesystem::path& directory,
 
 /// Whether a file of that name in DIR is one of them, of this call or an earlier one.
 bool is_array_script(const std::string& name);
+
+/// Whether a file with this text is a script of this or another call, and no file of the user.
+bool is_own_script(const std::string& text);
 
 /// A script that gathers the study.
 std::string collect_script(const std::filesystem::path& directory, const SlurmOptions& options);

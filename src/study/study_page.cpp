@@ -1,11 +1,12 @@
 #include "study/study_page.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/error.h"
+#include "core/folder.h"
+#include "core/read_file.h"
 #include "report/array_pack.h"
 #include "report/page_template.h"
 #include "report/viewer_template.h"
@@ -16,14 +17,19 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr std::size_t largest_picture = 10'000'000;  // bytes
+
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// Empty when there is none.
+/// Empty when there is none that can be read.
 std::string read_picture(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  try {
+    return file_exists(file) ? read_own_file(file, largest_picture) : std::string();
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 /// Runs in the order in which their pictures are wanted.

@@ -55,14 +55,6 @@ scenario::Scenario scenario_of(const Plan& plan, const PlannedRun& run) {
   return scenario;
 }
 
-// What an attempt that did not end has left.
-void clean(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "lock" && name != "log.txt") fs::remove_all(entry.path());
-  }
-}
-
 class Task {
  public:
   Task(const fs::path& directory, const Plan& plan, const PlannedRun& run)
@@ -129,15 +121,12 @@ TaskOutcome run_task(const fs::path& directory, const Plan& plan, std::size_t in
                      const TaskOptions& options) {
   const PlannedRun& run = plan.runs.at(index);
   if (!run.wanted) return TaskOutcome::not_asked;
-  const fs::path folder = run_folder(directory, run.key);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw RunError(fmt::format("{}: cannot create: {}", folder.string(), error.message()));
+  const fs::path folder = make_run_folder(directory, run.key);
   const FileLock lock(folder / "lock");
   if (!lock.held()) throw RunError(fmt::format("{}: {} is at this run", run.key, lock.holder()));
   if (read_run_state(directory, plan, run).kind == RunState::Kind::done) return TaskOutcome::was_done;
   if (enough_without(directory, plan, run.realization)) return TaskOutcome::not_asked;
-  clean(folder);
+  clean_run_folder(folder);
   Task task(directory, plan, run);
   const auto failed = [&](const std::exception& reason) {
     task.result().error = reason.what();
@@ -146,9 +135,10 @@ TaskOutcome run_task(const fs::path& directory, const Plan& plan, std::size_t in
   try {
     const TaskOutcome outcome = task.run(run_setup(plan, run), options);
     if (outcome == TaskOutcome::interrupted) {
-      clean(folder);
+      clean_run_folder(folder);
     } else {
-      fs::remove(folder / "lock", error);
+      std::error_code ignored;
+      fs::remove(folder / "lock", ignored);
     }
     return outcome;
   } catch (const std::exception& reason) {

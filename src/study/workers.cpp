@@ -89,10 +89,7 @@ class Workers {
         ++next_;
         continue;
       }
-      const fs::path folder = run_folder(directory_, plan_.runs[k].key);
-      std::error_code error;
-      fs::create_directories(folder, error);
-      if (error) throw RunError(fmt::format("{}: cannot create: {}", folder.string(), error.message()));
+      const fs::path folder = make_run_folder(directory_, plan_.runs[k].key);
       std::vector<std::string> command = options_.command;
       for (const std::string& word :
            {directory_.string(), std::to_string(k), std::string("--progress-descriptor"), std::string("{}")})

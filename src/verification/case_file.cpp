@@ -240,7 +240,7 @@ void read_run(TableReader& t, RunSpec& run) {
 }  // namespace
 
 CaseFile read_case(const std::filesystem::path& file) {
-  const Value document = scenario::parse_toml(read_file(file), file.string());
+  const Value document = scenario::parse_toml(read_file(file, scenario::largest_scenario), file.string());
   scenario::ReadContext context;
   context.directory = file.parent_path();
   TableReader root(context, &document);
@@ -252,7 +252,7 @@ CaseFile read_case(const std::filesystem::path& file) {
   root.boolean("long", result.is_long, {});
   root.tables("run", result.runs, {.required = true}, [](TableReader& t, RunSpec& run) { read_run(t, run); });
   root.finish();
-  if (!context.diagnostics.empty()) throw InputError(std::move(context.diagnostics));
+  if (!context.mistakes.empty()) throw context.mistakes.error();
   return result;
 }
 

@@ -27,9 +27,32 @@ class NoLocks(Scenario):
 
     def test_a_file_in_use_is_not_written(self):
         # That somebody else holds a lock is another answer.
-        with self.without_locks(errno.EAGAIN), mock.patch.dict(os.environ, {"NO_LOCKS_FOR": "result.h5.tmp"}):
+        with self.without_locks(errno.EAGAIN), mock.patch.dict(os.environ, {"NO_LOCKS_FOR": "/result.h5."}):
             done = self.keyblock("run", self.scenario, "-o", "used", expect=2)
         self.assertIn("unable to lock file", done.stderr)
+
+
+class LossOfPower(Scenario):
+    """A new name of a file lasts once its folder is synced."""
+
+    def test_folders_are_synced_after_files_get_their_names(self):
+        self.keyblock("run", self.scenario, "-o", "out")
+        for words in ("run incline.toml -o other", "report out", "export out --format csv", "export out --format vtk", "cut incline.toml -o cut"):
+            log = self.folder / "log"
+            log.write_text("")
+            with mock.patch.dict(os.environ, {"LD_PRELOAD": os.environ["SYNC_LOG_LIBRARY"], "SYNC_LOG": str(log)}):
+                self.keyblock(*words.split())
+            waiting, renames, syncs = set(), 0, 0
+            for line in log.read_text().splitlines():
+                what, path = line.split(" ", 1)
+                folder = os.path.realpath(self.folder / path if what == "sync" else (self.folder / path).parent)
+                renames += what == "rename"
+                syncs += what == "sync"
+                waiting.add(folder) if what == "rename" else waiting.discard(folder)
+            self.assertGreater(renames, 0, words)
+            self.assertEqual(waiting, set(), words)
+            if "vtk" in words:  # hundreds of files that appear together
+                self.assertLess(syncs, renames / 4)
 
 
 if __name__ == "__main__":

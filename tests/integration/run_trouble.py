@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, Scenario
+from program import PROGRAM, ROOT, Scenario
 
 
 class LittleRoom(Scenario):
@@ -67,11 +67,11 @@ def lasting(duration):
 
 
 class Background(Scenario):
-    def start(self, folder, *options):
+    def start(self, folder, *options, **how):
         """A run that has begun to write its results."""
         run = subprocess.Popen(
             [PROGRAM, "run", "incline.toml", "-o", folder, *options],
-            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **how,
         )  # fmt: skip
         self.addCleanup(run.stdout.close)
         self.addCleanup(run.stderr.close)
@@ -153,6 +153,51 @@ class Interrupt(Background):
                 self.write(f"out/{name}", "half")
             self.keyblock("run", "incline.toml", "-o", "out", *options)
             self.assertFalse(names & {path.name for path in (self.folder / "out").iterdir()}, options)
+
+    def test_every_signal_to_end_stops_a_run_within_a_second(self):
+        for signal_ in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal_.name):
+                run = self.start(signal_.name, *lasting(1e5))
+                run.send_signal(signal_)
+                sent = time.monotonic()
+                _, errors = run.communicate(timeout=30)
+                self.assertEqual(run.returncode, 2, errors)
+                self.assertIn("interrupted; --resume goes on", errors)
+                self.assertLess(time.monotonic() - sent, 5.0)  # a second, and the report on a busy machine
+                self.assertTrue((self.folder / signal_.name / "report.html").exists())
+
+    def test_a_stop_within_a_static_stage(self):
+        # Friction that does not hold, and a tolerance that is not reached: the stage does not end by itself.
+        text = (self.folder / "incline.toml").read_text()
+        text = text.replace('kind = "rest"\nduration = 0.5', 'kind = "settle"\nmax_steps = 10000000\ntolerance = 1e-300')
+        self.write("incline.toml", text.replace("friction = 20.0", "friction = 45.0"))
+        run = self.start("static")
+        run.send_signal(signal.SIGHUP)
+        sent = time.monotonic()
+        _, errors = run.communicate(timeout=30)
+        self.assertEqual(run.returncode, 2, errors)
+        self.assertLess(time.monotonic() - sent, 5.0)
+        self.assertEqual(self.summary("static")["stages"][0]["name"], "slide")
+
+    def test_a_stop_while_joints_are_cut_ends_at_once(self):
+        cut = subprocess.Popen(
+            [PROGRAM, "cut", str(ROOT / "examples/01-tunnel.toml"), "-o", "cut", "--set", "domain.x=[-60.0, 60.0]", "--set", "domain.y=[-60.0, 60.0]"],
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        time.sleep(0.3)
+        self.assertIsNone(cut.poll())
+        cut.send_signal(signal.SIGHUP)
+        self.assertEqual(cut.wait(timeout=5), -signal.SIGHUP)
+        self.assertEqual(list((self.folder / "cut").iterdir()), [])
+
+    def test_a_hangup_that_is_ignored_stays_ignored(self):
+        run = self.start("nohup", *lasting(1e5), preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        run.send_signal(signal.SIGHUP)
+        time.sleep(0.5)
+        self.assertIsNone(run.poll())
+        run.send_signal(signal.SIGTERM)
+        _, errors = run.communicate(timeout=30)
+        self.assertEqual(run.returncode, 2, errors)
 
     def test_a_second_interrupt_ends_at_once(self):
         run = self.start("out", *lasting(1e5))

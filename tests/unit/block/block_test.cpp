@@ -346,5 +346,14 @@ TEST(Pose, RotationAgreesWithTheLibrary) {
   }
 }
 
+// Of a state that is none; halving it would not end.
+TEST(Pose, NoRotationByInfinity) {
+  for (const double w : {HUGE_VAL, -HUGE_VAL, std::nan("")}) {
+    double c = 0.0, s = 0.0;
+    rotation(w, c, s);
+    EXPECT_TRUE(std::isnan(c) && std::isnan(s));
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::block

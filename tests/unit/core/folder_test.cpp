@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -82,6 +83,39 @@ TEST_F(FileLockTest, WhoeverComesAfterTheFileIsGoneLocksItsSuccessor) {
   EXPECT_TRUE(second.held());
   first.reset();
   EXPECT_FALSE(FileLock(path_ / "lock").held());
+}
+
+TEST_F(FileLockTest, WhatIsNoLockStays) {
+  std::ofstream(path_ / "notes") << "my notes\n";
+  std::ofstream(path_ / "lines") << "process 1 on a\nprocess 2 on b\n";
+  std::ofstream(path_ / "long") << "process 1 on " << std::string(2000, 'x');
+  fs::create_symlink("notes", path_ / "link");
+  fs::create_symlink("gone", path_ / "hanging");
+  fs::create_directory(path_ / "folder");
+  ASSERT_EQ(::mkfifo((path_ / "pipe").c_str(), 0600), 0);
+  for (const char* name : {"notes", "lines", "long", "link", "hanging", "folder", "pipe"}) {
+    EXPECT_THROW(FileLock(path_ / name, FileLock::Afterwards::remove_file), InputError) << name;
+    EXPECT_TRUE(fs::exists(fs::symlink_status(path_ / name))) << name;
+  }
+  EXPECT_FALSE(fs::exists(path_ / "gone"));
+  EXPECT_EQ(fs::file_size(path_ / "notes"), 9U);
+  EXPECT_EQ(fs::file_size(path_ / "long"), 2013U);
+}
+
+TEST_F(FileLockTest, LocksOfProcessesThatAreGoneAreTaken) {
+  std::ofstream(path_ / "lock") << "process 1 on a\n";
+  std::ofstream(path_ / "empty");
+  EXPECT_TRUE(FileLock(path_ / "lock").held());
+  EXPECT_TRUE(FileLock(path_ / "empty").held());
+}
+
+TEST_F(MakeFolder, APlainOneIsNoLink) {
+  make_plain_folder(path_ / "a");
+  EXPECT_TRUE(fs::is_directory(path_ / "a"));
+  EXPECT_NO_THROW(make_plain_folder(path_ / "a"));
+  fs::create_directory_symlink("a", path_ / "link");
+  for (const char* name : {"link", "file", "loop", "gone/b"})
+    EXPECT_THROW(make_plain_folder(path_ / name), InputError) << name;
 }
 
 TEST_F(FileLockTest, NeedsAPlaceForItsFile) {

@@ -29,6 +29,17 @@ TEST(Printable, EscapesWhatATerminalWouldObey) {
   EXPECT_EQ(printable("\x1b[2J\x7f\xFC", 20), "\\x1b[2J\\x7f\\xfc");
 }
 
+TEST(Printable, EscapesControlCharactersOfSeveralBytesToo) {
+  EXPECT_EQ(printable("a\u009b31mb\u202ec\u2066d\u2028", 40),
+            "a\\xc2\\x9b31mb\\xe2\\x80\\xaec\\xe2\\x81\\xa6d\\xe2\\x80\\xa8");
+  EXPECT_EQ(printable("\u00a0\u2026\u20ac\u2065", 40), "\u00a0\u2026\u20ac\u2065");
+}
+
+TEST(Harmless, KeepsLinesAndTabsAndEscapesAllElseThatATerminalObeys) {
+  EXPECT_EQ(harmless("one\ttwo\nthree \u20ac\n"), "one\ttwo\nthree \u20ac\n");
+  EXPECT_EQ(harmless("\x1b]0;x\x07\r\xFC\u0085"), "\\x1b]0;x\\x07\\r\\xfc\\xc2\\x85");
+}
+
 TEST(Printable, EndsAfterSoManyCharacters) {
   EXPECT_EQ(printable("üüü", 3), "üüü");
   EXPECT_EQ(printable("üüüü", 3), "üüü…");

@@ -188,9 +188,15 @@ TEST(Export, OnlyFilesOfItsFolderAreRemoved) {
   const auto folder = fresh / "out";
   export_run(small_motions(), folder, ExportFormat::csv);
   write_file_atomically(fresh / "mine", "mine");
-  write_file_atomically(folder / "keyblock-export.json", R"({"csv": ["../mine", "..", 3], "vtk": 7})");
+  for (const char* name : {"thesis.txt", "mine.geojson", ".csv"})
+    write_file_atomically(folder / name, "mine");
+  write_file_atomically(
+      folder / "keyblock-export.json",
+      R"({"csv": ["../mine", "..", 3, "thesis.txt", "mine.geojson", ".csv"], "vtk": 7, "other": ["thesis.txt"]})");
   export_run(small_motions(), folder, ExportFormat::csv, true);
   EXPECT_EQ(read_file(fresh / "mine"), "mine");
+  for (const char* name : {"thesis.txt", "mine.geojson", ".csv"})
+    EXPECT_EQ(read_file(folder / name), "mine") << name;
 }
 
 TEST(Export, LongNamesOfStages) {

@@ -39,6 +39,10 @@ std::string error_of(const std::filesystem::path& folder) {
   return "no error";
 }
 
+std::filesystem::path temporary_in(const std::filesystem::path& folder) {
+  return folder / fmt::format("result.h5.{}.tmp", ::getpid());
+}
+
 TEST(ResultFile, ComesBackToTheLastBit) {
   const FreshFolder folder;
   SampleRun sample;
@@ -50,7 +54,7 @@ TEST(ResultFile, ComesBackToTheLastBit) {
   EXPECT_EQ(read_histories(folder).size(), 30U);
   EXPECT_TRUE(std::filesystem::exists(folder / "summary.json"));
   EXPECT_TRUE(std::filesystem::exists(folder / "histories.csv"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(temporary_in(folder)));
 }
 
 TEST(ResultFile, ARunHasEndedWhenAllIsWritten) {
@@ -277,6 +281,21 @@ TEST(ResultFile, CanBeReadWhileTheRunGoesOn) {
   EXPECT_TRUE(data.run.interrupted);
 }
 
+TEST(ResultFile, FilesOfTheUserUnderItsTemporaryNamesStay) {
+  const FreshFolder folder;
+  write_file_atomically(folder / "result.h5.tmp", "mine");
+  write_file_atomically(folder / "precious", "mine");
+  std::filesystem::create_symlink("precious", temporary_in(folder));
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  expect_equal(read_run(folder), sample.expected());
+  EXPECT_EQ(read_file(folder / "result.h5.tmp"), "mine");
+  EXPECT_EQ(read_file(folder / "precious"), "mine");
+}
+
 TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
   const FreshFolder folder;
   SampleRun sample;
@@ -284,7 +303,7 @@ TEST(ResultFile, TellsBeforeItTakesThePlaceOfAnother) {
   ResultWriter writer(folder);
   writer.before_publishing([&] {
     ++calls;
-    EXPECT_TRUE(std::filesystem::exists(folder / "result.h5.tmp"));
+    EXPECT_TRUE(std::filesystem::exists(temporary_in(folder)));
     EXPECT_FALSE(std::filesystem::exists(folder / "result.h5"));
   });
   sample.play(writer);

@@ -150,7 +150,7 @@ TEST(ResumedFile, ResumingAnotherModelIsRefusedAndLeavesTheResultsAlone) {
     EXPECT_THROW(other.play(writer, 19), InputError);
   }
   expect_equal(read_run(folder), sample.expected());
-  EXPECT_FALSE(std::filesystem::exists(folder / "result.h5.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(folder / fmt::format("result.h5.{}.tmp", ::getpid())));
 }
 
 }  // namespace

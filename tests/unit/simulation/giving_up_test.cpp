@@ -81,6 +81,30 @@ TEST(GivingUp, AStopThatWasAskedForBeforeEndsTheStep) {
   EXPECT_EQ(state.step, 1);
 }
 
+TEST(GivingUp, TheFirstOfTwoFailuresIsTold) {
+  struct FullDisk final : RunObserver {
+    void frame(const Frame&) override { throw RunError("no space left"); }
+    void end(const RunRecord&) override { throw RunError("the file is half written"); }
+  };
+  FullDisk disk;
+  const auto fails = [&] { run(block_on_ground(), {}, disk); };
+  EXPECT_THAT(fails,
+              testing::Throws<RunError>(testing::Property(&RunError::what, HasSubstr("no space left"))));
+}
+
+TEST(GivingUp, NoMoreMemoryKeepsTheResults) {
+  struct Greedy final : RunObserver {
+    bool ended = false;
+    void frame(const Frame&) override { throw std::bad_alloc(); }
+    void end(const RunRecord& record) override { ended = record.interrupted; }
+  };
+  Greedy greedy;
+  const auto fails = [&] { run(block_on_ground(), {}, greedy); };
+  EXPECT_THAT(fails, testing::Throws<RunError>(testing::Property(
+                         &RunError::what, HasSubstr("out of memory for a model of 2 blocks"))));
+  EXPECT_TRUE(greedy.ended);
+}
+
 TEST(GivingUp, RockThatIsTooSoft) {
   EXPECT_THAT(
       failure_of(block_on_ground(8.0)),

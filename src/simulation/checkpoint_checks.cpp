@@ -1,0 +1,203 @@
+#include "simulation/checkpoint_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "core/index.h"
+
+namespace keyblock::simulation {
+namespace {
+
+using dynamics::Model;
+using dynamics::State;
+
+constexpr long largest_count = 1'000'000'000'000'000;
+
+bool all_finite(std::span<const double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+bool are_counts(std::initializer_list<long> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](long n) { return n >= 0 && n <= largest_count; });
+}
+
+bool is_place(int number, std::size_t count) {
+  return number >= 0 && at(number) < count;
+}
+
+bool are_flags(std::span<const std::uint8_t> flags, std::uint8_t largest = 1) {
+  return std::all_of(flags.begin(), flags.end(), [&](std::uint8_t x) { return x <= largest; });
+}
+
+// A bool that was read as bytes may be none.
+bool is_bool(const bool& value) {
+  std::uint8_t byte = 0;
+  std::memcpy(&byte, &value, sizeof(byte));
+  return byte <= 1;
+}
+
+template <class Things, class Before>
+bool ascends(const Things& things, const Before& before) {
+  return std::adjacent_find(things.begin(), things.end(),
+                            [&](const auto& a, const auto& b) { return !before(a, b); }) == things.end();
+}
+
+bool is_candidate(const contact::Candidate& c, const contact::Surface& surface) {
+  const auto vertices = at(surface.vertices());
+  return is_place(c.vertex, vertices) && is_place(c.edge, vertices) &&
+         c.block_a == surface.block[at(c.vertex)] && c.block_b == surface.block[at(c.edge)] &&
+         c.block_a != c.block_b &&
+         !(surface.fixed[at(c.block_a)] != 0 && surface.fixed[at(c.block_b)] != 0) &&
+         std::isfinite(c.clearance);
+}
+
+bool comes_before(const contact::Candidate& x, const contact::Candidate& y) {
+  const auto key = [](const contact::Candidate& c) {
+    return std::tuple(std::min(c.block_a, c.block_b), std::max(c.block_a, c.block_b), c.vertex, c.edge);
+  };
+  return key(x) < key(y);
+}
+
+bool is_memory(const contact::Memory& m) {
+  const double numbers[] = {m.offset,     m.stiffness, m.shear,  m.normal_force, m.bounding_force,
+                            m.multiplier, m.drift,     m.stored, m.bond_length};
+  return m.state <= contact::State::locked && is_bool(m.bonded) && all_finite(numbers);
+}
+
+bool are_contacts(const contact::CandidateList& list, const contact::Surface& surface) {
+  return std::all_of(list.pairs.begin(), list.pairs.end(),
+                     [&](const contact::Candidate& c) { return is_candidate(c, surface); }) &&
+         ascends(list.pairs, comes_before) && ascends(list.tracked, std::less<>()) &&
+         std::all_of(list.tracked.begin(), list.tracked.end(),
+                     [&](int k) { return is_place(k, list.pairs.size()); }) &&
+         list.memory.size() == list.tracked.size() &&
+         std::all_of(list.memory.begin(), list.memory.end(), is_memory);
+}
+
+bool is_pattern(const std::vector<std::pair<int, int>>& pattern, const Model& model) {
+  int moving = 0;
+  for (const dynamics::Block& block : model.blocks) moving = std::max(moving, block.unknown + 1);
+  return ascends(pattern, std::less<>()) &&
+         std::all_of(pattern.begin(), pattern.end(), [&](const auto& pair) {
+           return pair.first >= 0 && pair.first < pair.second && pair.second < moving;
+         });
+}
+
+bool has_sizes(const State& s, const Model& model) {
+  const std::size_t blocks = model.blocks.size();
+  const bool keeps_accelerations = model.solver.integrator != dynamics::TimeIntegration::shi;
+  const std::size_t kept = keeps_accelerations ? model.coefficients : 0;
+  return s.position.size() == model.coefficients && s.velocity.size() == model.coefficients &&
+         s.acceleration.size() == kept && s.force.size() == kept &&
+         s.acceleration_known.size() == (keeps_accelerations ? blocks : 0) && s.moved.size() == blocks;
+}
+
+bool has_numbers(const State& s) {
+  const double numbers[] = {s.time,         s.last_step,        s.ledger.friction, s.ledger.damping,
+                            s.ledger.input, s.ledger.numerical, s.contact_energy,  s.support_energy};
+  return all_finite(numbers) && s.time >= 0.0 && s.last_step >= 0.0 && are_counts({s.step}) &&
+         all_finite(s.position) && all_finite(s.velocity) && all_finite(s.acceleration) &&
+         all_finite(s.force) && all_finite(s.moved) && are_flags(s.acceleration_known);
+}
+
+bool is_diameter(const Diameter& d, std::size_t blocks) {
+  return std::all_of(std::begin(d.blocks), std::end(d.blocks),
+                     [&](int b) { return b == -1 || is_place(b, blocks); });
+}
+
+bool is_damage(const DamageGauge::Memory& memory, const RunSetup& setup, const Model& model) {
+  const std::size_t blocks = model.blocks.size(), vertices = at(model.surface.vertices());
+  const DamageGauge::Reference& r = memory.reference;
+  const bool pieces =
+      std::all_of(memory.pieces.begin(), memory.pieces.end(), [&](const JointGauge::Piece& p) {
+        return is_place(p.vertex, vertices) && is_place(p.edge, vertices) && std::isfinite(p.along) &&
+               std::isfinite(p.length);
+      });
+  return r.open.size() == setup.excavations.size() && are_flags(r.open) &&
+         (r.start.empty() || r.start.size() == blocks) && r.turn.size() == r.start.size() &&
+         is_diameter(r.height, blocks) && is_diameter(r.width, blocks) && pieces &&
+         ascends(memory.pieces, [](const JointGauge::Piece& a, const JointGauge::Piece& b) {
+           return std::pair(a.vertex, a.edge) < std::pair(b.vertex, b.edge);
+         });
+}
+
+bool is_settler(const Settler::Memory& s, std::size_t blocks) {
+  const MovingBlocks::Memory& m = s.blocks;
+  const bool sizes = s.inertia_scale.size() == blocks && m.travel.size() == blocks &&
+                     m.nearest.size() == blocks && m.carried.size() == blocks && m.astray.size() == blocks &&
+                     m.state.size() == blocks;
+  constexpr std::uint8_t last_state = 2;
+  return sizes && std::isfinite(s.time_step) && s.time_step > 0.0 && std::isfinite(s.creep) &&
+         s.creep > 0.0 && are_counts({s.steps, s.quiet_steps, s.since_best, s.wait, m.candidates}) &&
+         at(m.candidates) <= blocks && are_flags(m.state, last_state) && all_finite(s.inertia_scale) &&
+         all_finite(m.travel) && all_finite(m.carried) && all_finite(m.astray) &&
+         std::all_of(s.inertia_scale.begin(), s.inertia_scale.end(), [](double x) { return x >= 1.0; });
+}
+
+bool is_record(const StageRecord& record, const Stage& stage, std::size_t blocks) {
+  const auto is_block = [&](const auto& entry) { return is_place(entry.block, blocks); };
+  const Stage& s = record.stage;
+  return s.name == stage.name && s.kind == stage.kind && s.excavate == stage.excavate &&
+         s.motion == stage.motion && are_counts({record.steps}) &&
+         std::all_of(record.moving.begin(), record.moving.end(), is_block) &&
+         std::all_of(record.fallen.begin(), record.fallen.end(),
+                     [&](const FallenBlock& f) { return is_block(f) && f.part <= WallPart::invert; }) &&
+         (!record.standing || *record.standing <= Standing::unsettled) &&
+         record.motion_time.size() == record.motion.size();
+}
+
+bool has_counts(const RunState& state) {
+  const OpenCloseStatistics& s = state.record.open_close;
+  const Reported& r = state.reported;
+  return are_counts({state.stage_step, state.iterations, s.max_iterations, s.retried_steps,
+                     s.unconverged_steps, s.last_converged_step, r.frames, r.contacts, r.histories, r.steps,
+                     r.stages}) &&
+         state.stage_step <= state.mechanics.step && s.last_converged_step <= state.mechanics.step &&
+         r.stages == state.stage && std::isfinite(state.stage_start) && std::isfinite(state.initial_energy) &&
+         std::isfinite(state.wall_time);
+}
+
+}  // namespace
+
+std::string mistake_in_orders(const OrderControl::Memory& memory, const RunSetup& setup, const Model& model) {
+  const std::size_t blocks = model.blocks.size();
+  const auto is_order = [&](std::size_t b) {
+    const int order = memory.orders[b];
+    const bool is_free = b < setup.properties.size() && setup.properties[b].automatic_order;
+    return order == model.blocks[b].basis.order() ||
+           (is_free && order >= 1 && order <= setup.automatic_order.highest_order);
+  };
+  const auto fits = [&](std::size_t size) { return size == 0 || size == blocks; };
+  bool known = fits(memory.orders.size()) && fits(memory.lowered.size()) && are_flags(memory.lowered);
+  for (std::size_t b = 0; known && b < memory.orders.size(); ++b) known = is_order(b);
+  return known ? "" : "orders of blocks that cannot be";
+}
+
+std::string mistake_in_state(const RunState& state, const RunSetup& setup, const Model& model) {
+  const std::size_t blocks = model.blocks.size();
+  if (state.stage < 0 || at(state.stage) > setup.stages.size() ||
+      state.record.stages.size() != at(state.stage) ||
+      (at(state.stage) == setup.stages.size() && state.stage_step != 0))
+    return "another number of stages";
+  if (!has_counts(state)) return "counts of steps that cannot be";
+  if (!has_sizes(state.mechanics, model) || state.present.size() != blocks || !are_flags(state.present))
+    return "a state of other blocks";
+  if (!has_numbers(state.mechanics)) return "positions or velocities that are no finite numbers";
+  if (!are_contacts(state.mechanics.contacts, model.surface) || !is_pattern(state.mechanics.pattern, model))
+    return "contacts that cannot be";
+  if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
+  const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
+  if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";
+  for (std::size_t k = 0; k < state.record.stages.size(); ++k)
+    if (!is_record(state.record.stages[k], setup.stages[k], blocks)) return "stages that are not of this run";
+  const OverlapRecord& overlap = state.record.max_overlap;
+  const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
+  return is_known(overlap.block_a) && is_known(overlap.block_b) ? "" : "an overlap of unknown blocks";
+}
+
+}  // namespace keyblock::simulation

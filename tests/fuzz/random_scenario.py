@@ -1,0 +1,175 @@
+"""Scenarios that are right, from a seed: tunnels in joint sets, grids of blocks, loose blocks; every rule of integration, orders 1 and 2,
+penalty and augmented Lagrangian. Small, so that a run takes a second."""
+
+import math
+import random
+
+
+def number(value):
+    return f"{value:.6g}"
+
+
+def points(ring):
+    return "[" + ", ".join(f"[{x:.4f}, {y:.4f}]" for x, y in ring) + "]"
+
+
+class Writer:
+    """One scenario. `kind` says which sort it is; `facts` what a table of results groups it by."""
+
+    def __init__(self, seed):
+        self.draw = random.Random(seed)
+        self.kind = self.draw.choice(["tunnel", "grid", "loose"])
+        self.tables = [f'title = "random {seed} {self.kind}"\nseed = {seed}']
+        self.size = 1.0  # of blocks, m
+        self.facts = {"kind": self.kind}
+
+    def uniform(self, low, high):
+        return self.draw.uniform(low, high)
+
+    def scale(self, low, high):
+        """As often between 1 and 10 as between 10 and 100."""
+        return math.exp(self.uniform(math.log(low), math.log(high)))
+
+    def chance(self, share):
+        return self.draw.random() < share
+
+    def add(self, title, **keys):
+        lines = [title]
+        for key, value in keys.items():
+            if value is None:
+                continue
+            text = value if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else number(value)
+            lines.append(f"{key} = {text}")
+        self.tables.append("\n".join(lines))
+
+    def materials(self):
+        young = self.scale(1e9, 5e10)
+        order = self.draw.choice([1, 1, 2])
+        self.facts["order"] = order
+        self.add(
+            "[rock]", density=self.uniform(2000, 3000), young=young, poisson=self.uniform(0.0, 0.35),
+            state=self.draw.choice(['"plane-strain"', '"plane-stress"']), order=order,
+        )  # fmt: skip
+        stiffness = young * self.scale(0.5, 40.0) if self.chance(0.5) else None
+        cohesion = self.scale(1e3, 1e6) if self.chance(0.3) else None
+        self.add(
+            "[joints]", friction=self.uniform(5, 60), cohesion=cohesion,
+            tension=0.1 * cohesion if cohesion and self.chance(0.5) else None, normal_stiffness=stiffness,
+        )  # fmt: skip
+
+    def solver(self):
+        rule = self.draw.choice(["shi", "average-acceleration", "generalized-alpha"])
+        contact = self.draw.choice(["penalty", "penalty", "augmented-lagrangian"])
+        self.facts |= {"integrator": rule, "contact": contact}
+        self.add(
+            "[solver]", integrator=f'"{rule}"', contact=f'"{contact}"',
+            spectral_radius=self.uniform(0, 1) if rule == "generalized-alpha" and self.chance(0.7) else None,
+            theta=self.uniform(0, 1) if rule == "shi" and self.chance(0.3) else None,
+            restitution=self.uniform(0, 1) if self.chance(0.5) else None,
+            face_contacts=self.draw.randint(2, 4) if self.chance(0.3) else None,
+        )  # fmt: skip
+        self.add("[time]", step=self.draw.choice([0.001, 0.002, 0.005]))
+
+    def joint_set(self, name, dip, extent):
+        mean = self.uniform(0.18, 0.35) * extent
+        self.size = min(self.size, mean)
+        shape = self.draw.choice(["constant", "uniform", "normal", "lognormal", "exponential"])
+        std = self.uniform(0.1, 0.4) * mean
+        spacing = f'{{ mean = {number(mean)}, std = {number(std)}, distribution = "{shape}" }}'
+        gap = f'{{ mean = {number(0.3 * mean)}, distribution = "exponential" }}' if self.chance(0.3) else "0"
+        self.add(
+            "[[joint_set]]", name=f'"{name}"', dip=dip, dip_direction=self.draw.choice([90, 270]), spacing=spacing,
+            dip_std=self.uniform(0, 5) if self.chance(0.3) else None,
+            length=f'{{ mean = {number(self.uniform(0.5, 2.0) * extent)}, distribution = "constant" }}', gap=gap,
+            friction=self.uniform(10, 50) if self.chance(0.3) else None,
+        )  # fmt: skip
+
+    def tunnel(self):
+        half = self.uniform(3, 6)
+        self.add("[section]", azimuth=90.0)
+        self.add("[domain]", x=f"[{-half:.3f}, {half:.3f}]", y=f"[{-half:.3f}, {half:.3f}]", boundary='"frame"')
+        self.joint_set("A", self.uniform(0, 40), 2 * half)
+        self.joint_set("B", self.uniform(50, 90), 2 * half)
+        if self.chance(0.3):
+            self.joint_set("C", self.uniform(20, 70), 2 * half)
+        if self.chance(0.5):
+            self.add("[[excavation]]", name='"E"', shape='"circle"', center="[0, 0]", diameter=self.uniform(0.5, 0.9) * half, chords=24)
+        else:
+            width = self.uniform(0.5, 0.9) * half
+            self.add("[[excavation]]", name='"E"', shape='"horseshoe"', invert=f"[0, {-0.5 * width:.3f}]", width=width, wall_height=0.4 * width, chords=24)
+        if self.chance(0.5):
+            self.add("[in_situ]", depth=self.uniform(5, 100), k0=self.uniform(0.3, 1.5))
+        return "E"
+
+    def grid(self):
+        """A wall of rectangles on a base."""
+        width, height = self.uniform(0.4, 1.5), self.uniform(0.3, 1.0)
+        columns, rows = self.draw.randint(1, 4), self.draw.randint(1, 4)
+        self.size = min(width, height)
+        self.base(2.0 * columns * width + 2.0)
+        bond = 0.5 * width if self.chance(0.5) else 0.0
+        for row in range(rows):
+            shift = bond if row % 2 else 0.0
+            for column in range(columns):
+                x, y = column * width + shift, row * height
+                ring = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+                self.add("[[block]]", name=f'"g{row}_{column}"', outer=points(ring))
+
+    def loose(self):
+        """Polygons that fall on a base, apart from each other at the start."""
+        count = self.draw.randint(1, 5)
+        slope = self.base(4.0 * count + 4.0)
+        for k in range(count):
+            radius = self.uniform(0.3, 0.9)
+            self.size = min(self.size, radius)
+            corners = self.draw.randint(3, 8)
+            start = self.uniform(0, 2 * math.pi)
+            turn = 2 * math.pi / corners
+            angles = [start + turn * (c + self.uniform(-0.3, 0.3)) for c in range(corners)]
+            x = 3.5 * k + self.uniform(-0.7, 0.7)
+            y = slope * x + self.uniform(1.3, 2.5)
+            ring = [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
+            self.add(
+                "[[block]]", name=f'"b{k}"', outer=points(ring),
+                velocity=f"[{self.uniform(-3, 3):.3f}, {self.uniform(-3, 1):.3f}]" if self.chance(0.5) else None,
+                spin=self.uniform(-2, 2) if self.chance(0.3) else None,
+                order=self.draw.randint(1, 4) if self.chance(0.2) else None,
+            )  # fmt: skip
+
+    def base(self, width):
+        """A fixed block below [0, 0]; returns its slope."""
+        slope = math.tan(math.radians(self.uniform(0, 25))) if self.kind == "loose" and self.chance(0.4) else 0.0
+        ring = [(-width, -slope * width), (-width, -slope * width - 1.0), (width, -slope * width - 1.0), (width, slope * width)]
+        if slope == 0.0:
+            ring = [(-width, 0.0), (-width, -1.0), (width, -1.0), (width, 0.0)]
+        self.add("[[block]]", name='"base"', outer=points(ring), fixed=True)
+        return slope
+
+    def stages(self, excavation):
+        shakes = self.chance(0.6)
+        if shakes:
+            frequency = self.uniform(1, 8)
+            sine = f"{{ amplitude = {number(self.uniform(0.5, 8))}, frequency = {number(frequency)}, cycles = {self.draw.randint(1, 3)} }}"
+            self.add("[[motion]]", name='"m"', **{self.draw.choice(["x", "y"]): sine})
+        names = f'["{excavation}"]' if excavation else None
+        if self.kind != "loose" or self.chance(0.2):
+            self.add("[[stage]]", name='"settle"', kind='"settle"', max_steps=150, excavate=names)
+            names = None
+        if shakes:
+            self.add("[[stage]]", name='"shake"', kind='"shake"', motion='"m"', duration=self.uniform(0.1, 0.4), excavate=names)
+        else:
+            self.add("[[stage]]", name='"rest"', kind='"rest"', duration=self.uniform(0.1, 0.6), excavate=names)
+
+    def write(self):
+        self.materials()
+        excavation = self.tunnel() if self.kind == "tunnel" else self.grid() if self.kind == "grid" else self.loose()
+        self.solver()
+        self.stages(excavation)
+        return "\n".join(self.tables) + "\n"
+
+
+def random_scenario(seed):
+    """The text of a scenario, what it is made of, and the size of its blocks in m: the same for the same seed."""
+    writer = Writer(seed)
+    text = writer.write()
+    return text, writer.facts, writer.size

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Runs random scenarios, and says how many ended and how well: errors by kind, energy residuals by rule of integration, overlaps."""
+
+import argparse
+import json
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+from random_scenario import random_scenario
+
+ROOT = Path(__file__).resolve().parents[2]
+MOST_RESIDUAL = 0.01
+MOST_OVERLAP = 0.01  # of the size of a block
+
+
+class Outcome:
+    """How one scenario went."""
+
+    def __init__(self, seed, facts, size):
+        self.seed, self.facts, self.size = seed, facts, size
+        self.error = ""  # empty: it ended
+        self.residual = self.overlap = self.seconds = 0.0
+        self.unconverged = 0
+
+    @property
+    def is_crash(self):
+        """What no scenario may do, whatever is in it."""
+        return re.match(r"signal|internal error|no answer|other bits", self.error) is not None
+
+    def faults(self):
+        found = [self.error] if self.error else []
+        if self.residual > MOST_RESIDUAL:
+            found.append(f"energy residual {100 * self.residual:.2f} %")
+        if self.overlap > MOST_OVERLAP:
+            found.append(f"overlap {100 * self.overlap:.2f} % of a block")
+        return found
+
+
+def run(program, scenario, folder, threads, seconds):
+    """The summary, or what went wrong."""
+    command = [program, "run", scenario, "-o", folder, "--threads", str(threads), "--force"]
+    # Of the processor: what else the machine does is no fault of the run.
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))  # noqa: E731
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, preexec_fn=limit)
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return None, f"no answer in {seconds} s"
+    if done.returncode < 0:
+        return None, f"signal {-done.returncode}"
+    if done.returncode == 3:
+        return None, "internal error: " + done.stderr.splitlines()[0]
+    if done.returncode != 0:
+        lines = [line for line in done.stderr.splitlines() if line and not line.startswith(("warning", scenario.name + ": warning"))]
+        return None, f"exit {done.returncode}: {lines[-1] if lines else ''}"
+    return json.loads((folder / "summary.json").read_text()), ""
+
+
+def try_seed(program, seed, seconds, with_two_threads):
+    text, facts, size = random_scenario(seed)
+    outcome = Outcome(seed, facts, size)
+    with tempfile.TemporaryDirectory(prefix="keyblock-random-") as name:
+        folder = Path(name)
+        scenario = folder / "scenario.toml"
+        scenario.write_text(text)
+        start = time.monotonic()
+        summary, outcome.error = run(program, scenario, folder / "out", 1, seconds)
+        outcome.seconds = time.monotonic() - start
+        if summary is None:
+            return outcome
+        outcome.residual = summary["energy"]["residual_ratio"]
+        outcome.overlap = summary["max_overlap_m"] / size
+        outcome.unconverged = summary["open_close"]["unconverged_steps"]
+        if with_two_threads:
+            second, outcome.error = run(program, scenario, folder / "two", 2, seconds)
+            if second is not None and second["state_hash"] != summary["state_hash"]:
+                outcome.error = "other bits with two threads"
+    return outcome
+
+
+def without_numbers(text):
+    """What errors of one kind have in common."""
+    return re.sub(r"[-+]?\d[\d.e+-]*", "#", re.sub(r"/\S*/", "", text))[:100]
+
+
+def table(outcomes):
+    ended = [o for o in outcomes if not o.error]
+    lines = [f"{len(outcomes)} scenarios, {len(ended)} ended, {sum(o.seconds for o in outcomes):.0f} s"]
+    for kind, count in Counter(without_numbers(o.error) for o in outcomes if o.error).most_common():
+        lines.append(f"  error: {count} × {kind}")
+    for fact in ("integrator", "contact", "order", "kind"):
+        for value in sorted({o.facts[fact] for o in ended}, key=str):
+            of_value = [o for o in ended if o.facts[fact] == value]
+            beyond = [o for o in of_value if o.residual > MOST_RESIDUAL]
+            deep = [o for o in of_value if o.overlap > MOST_OVERLAP]
+            unconverged = [o for o in of_value if o.unconverged > 0]
+            lines.append(
+                f"  {fact} {value}: {len(of_value)} ended; residual over 1 %: {len(beyond)}, largest {100 * max(o.residual for o in of_value):.3g} %; "
+                f"overlap over 1 % of a block: {len(deep)}, largest {100 * max(o.overlap for o in of_value):.3g} %; "
+                f"with unconverged steps: {len(unconverged)}"
+            )
+    return "\n".join(lines)
+
+
+def keep(outcome, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    text, _, _ = random_scenario(outcome.seed)
+    (folder / f"{outcome.seed}.toml").write_text(f"# {'; '.join(outcome.faults())}\n{text}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default=os.environ.get("KEYBLOCK", str(ROOT / "build/release/keyblock")))
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=1, help="the first seed")
+    parser.add_argument("--minutes", type=float, default=1e9, help="no new scenario after so many")
+    parser.add_argument("--seconds", type=int, default=60, help="of the processor, for one run")
+    parser.add_argument("--threads-every", type=int, default=5, help="every so many run again with two threads")
+    parser.add_argument("--keep", type=Path, help="folder for the scenarios that failed")
+    parser.add_argument("--strict", action="store_true", help="fail for any scenario with a fault, and not only for crashes")
+    parser.add_argument("--show", type=int, metavar="SEED", help="write this scenario and end")
+    arguments = parser.parse_args()
+    if arguments.show is not None:
+        print(random_scenario(arguments.show)[0], end="")
+        return 0
+    outcomes = []
+    end = time.monotonic() + 60.0 * arguments.minutes
+    for seed in range(arguments.first, arguments.first + arguments.count):
+        if time.monotonic() > end:
+            break
+        outcome = try_seed(arguments.program, seed, arguments.seconds, seed % arguments.threads_every == 0)
+        outcomes.append(outcome)
+        if outcome.faults():
+            print(f"seed {seed} ({', '.join(f'{k} {v}' for k, v in outcome.facts.items())}): {'; '.join(outcome.faults())}", flush=True)
+            if arguments.keep:
+                keep(outcome, arguments.keep)
+    print(table(outcomes))
+    return 1 if any(o.is_crash or (arguments.strict and o.faults()) for o in outcomes) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
