@@ -184,20 +184,20 @@ bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tole
     worst = std::max({worst, std::abs(violation_[c].x), std::abs(violation_[c].y)});
   }
   if (worst <= tolerance) return false;
-  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for. Where it runs
-  // away, far beyond what springs without multipliers leave, most of the last shift is taken back.
   if (std::isinf(worst_)) worst_without_ = worst;
-  const bool overshoots = worst > worst_ && multiplier_share_ > step_numbers::least_multiplier_share;
-  if (overshoots) {
-    const double left = 1.0 / std::min(1.0 + worst / worst_, 4.0);
+  // What runs away, far beyond what springs without multipliers leave, was shifted by too much: it is taken back, except for what fits.
+  if (worst > worst_ &&
+      worst > std::max(4.0 * worst_without_, step_numbers::most_transient * system.problem.block_size())) {
+    const double left = std::min(0.25, worst_ / worst);
     multiplier_share_ *= left;
+    shift_forces(system, iterate, left - 1.0);
+    for (Vec2& shift : shift_) shift = left * shift;
     stalls_ = 0;
-    if (worst > std::max(4.0 * worst_without_, step_numbers::most_transient * system.problem.block_size())) {
-      shift_forces(system, iterate, left - 1.0);
-      for (Vec2& shift : shift_) shift = left * shift;
-      return true;
-    }
+    return true;
   }
+  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for.
+  const bool overshoots = worst > worst_ && multiplier_share_ > step_numbers::least_multiplier_share;
+  if (overshoots) multiplier_share_ /= std::min(1.0 + worst / worst_, 4.0);
   // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
   stalls_ = !overshoots && worst > 0.97 * worst_ ? stalls_ + 1 : 0;
   worst_ = worst;

@@ -22,6 +22,10 @@ class HardRuns(Scenario):
         # Without care penetrations grow from update to update, and blocks fly away.
         self.ends("multipliers-order-2", 5e-3, 0.01)
 
+    def test_multipliers_of_blocks_that_are_held_fast(self):
+        # A share of the inertia of a block that a static step holds is 10 to the 9 springs.
+        self.ends("multipliers-excavation", 1e-4, 0.01)
+
     def test_stones_that_fall_on_soft_joints_in_long_steps(self):
         # Of a stone of 10 m2 that falls by 5 m the springs take 25 mm.
         self.ends("soft-joints", 0.025, 0.01)
