@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "core/folder.h"
 #include "core/out_of_memory.h"
 #include "core/parallel.h"
+#include "dynamics/options.h"
 #include "interrupt.h"
 #include "outcome.h"
 #include "progress.h"
@@ -39,6 +41,7 @@ struct RunArguments {
   bool resume = false;
   bool force = false;
   bool profile = false;
+  std::vector<std::string> without;  ///< names of accelerators
 };
 
 /// Everything but what the run says at its end: the page from what the result file holds.
@@ -98,6 +101,10 @@ void run_scenario(RunArguments arguments) {
   const scenario::Scenario scenario = arguments.scenario.read();
   simulation::RunSetup setup = scenario::build_setup(scenario, arguments.scenario.realization, &warnings);
   setup.version = KEYBLOCK_VERSION;
+  for (const auto& [name, member] : dynamics::accelerator_names) {
+    if (std::ranges::find(arguments.without, name) != arguments.without.end())
+      setup.solver.accelerators.*member = false;
+  }
   print_warnings(arguments.scenario, warnings);
   ResultFolder guard(arguments.folder, inputs_of(scenario), setup,
                      arguments.resume  ? ResultFolder::Use::resume
@@ -159,6 +166,13 @@ void add_run(CLI::App& app) {
                    "automatic, block, iterative; or direct, a library's, to check them by")
       ->check(CLI::IsMember({"automatic", "block", "iterative", "direct"}).description(""))
       ->type_name("NAME");
+  std::vector<std::string> accelerators;
+  for (const auto& [name, member] : dynamics::accelerator_names) accelerators.emplace_back(name);
+  command
+      ->add_option("--without", arguments->without, "Accelerators that are switched off, to look for a fault")
+      ->check(CLI::IsMember(accelerators).description(""))
+      ->type_name("NAME")
+      ->group("");  // for those who build the program
   command->footer(
       "Ctrl-C ends the run within the step at hand, with everything so far readable.\n\n"
       "Examples:\n"

@@ -229,6 +229,7 @@ Vec2 Detection::apart(const Surface& surface, const BlockPair& pair) {
 
 /// Blocks that go together, as where the rock sways, have not moved. Nor may they with where they go in this step.
 bool Detection::is_steady(const Surface& surface, const BlockPair& pair) const {
+  if (!uses_steady_pairs_) return false;
   const std::size_t a = at(pair.block_a), b = at(pair.block_b);
   double left = pair.steady - motion_.way[a] - motion_.way[b];
   const Vec2 moved = apart(surface, pair) - pair.apart;

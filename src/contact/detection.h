@@ -69,6 +69,8 @@ class Detection {
   /// Surface::joint.
   Detection(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
+  /// Has all pairs looked at in each step: slower, and the same contacts.
+  void leave_out_steady_pairs() { uses_steady_pairs_ = false; }
 
   /// How far every block may move. `turn` is at most `reach` over the radius of the block: clearances count on it.
   struct Motion {
@@ -308,6 +310,7 @@ class Detection {
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
+  bool uses_steady_pairs_ = true;
   // Scratch.
   std::vector<Corner> corners_;  ///< per vertex
   std::vector<Whole> wholes_;    ///< per edge; empty: no edge is divided

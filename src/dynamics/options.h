@@ -1,4 +1,5 @@
 #pragma once
+#include <utility>
 
 namespace keyblock::dynamics {
 
@@ -11,13 +12,31 @@ enum class ContactMethod { penalty, augmented_lagrangian };
 /// Rules of time integration; integrator.h has the formulas.
 enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 
-/// What makes a step faster and changes where it ends by no more than its tolerance. Each can be switched off.
+/// What makes a step faster and changes where it ends by no more than its tolerance. Each can be switched off, to see what it is worth and
+/// to look for a fault (`keyblock run --without NAME`). docs/performance.md has a table of what each saves.
 struct Accelerators {
-  bool kept_factor = true;        ///< KeptFactor
-  bool low_rank_update = true;    ///< LowRankUpdate
-  bool local_solve = true;        ///< LocalSolve
-  bool increment_history = true;  ///< IncrementHistory: increments go on as the last ones did
-  bool earlier_attempt = true;    ///< an attempt begins with the springs of the attempt before it
+  bool kept_factor = true;      ///< dynamics::KeptFactor
+  bool low_rank_update = true;  ///< dynamics::LowRankUpdate
+  bool local_solve = true;      ///< dynamics::LocalSolve
+  bool increment_history =
+      true;  ///< a step begins where the last increments lead to (dynamics::IncrementHistory)
+  bool earlier_attempt =
+      true;  ///< an attempt begins with the springs of the attempt before it (dynamics::EarlierLook)
+  bool early_impacts = true;  ///< impacts are looked for before the bounds of friction are found
+  bool steady_pairs = true;   ///< pairs of blocks that hardly moved keep their contacts (contact::Detection)
+  bool single_precision = true;  ///< factors in single precision where that is enough
+};
+
+/// Their names as a user gives them.
+inline constexpr std::pair<const char*, bool Accelerators::*> accelerator_names[] = {
+    {"kept-factor", &Accelerators::kept_factor},
+    {"low-rank-update", &Accelerators::low_rank_update},
+    {"local-solve", &Accelerators::local_solve},
+    {"increment-history", &Accelerators::increment_history},
+    {"earlier-attempt", &Accelerators::earlier_attempt},
+    {"early-impacts", &Accelerators::early_impacts},
+    {"steady-pairs", &Accelerators::steady_pairs},
+    {"single-precision", &Accelerators::single_precision},
 };
 
 /// How a step is solved. Defaults suit rock at engineering scale; every length is relative to the model, so that any

@@ -23,6 +23,13 @@ std::vector<double> sizes_of(const std::vector<Block>& blocks) {
   for (const Block& block : blocks) sizes.push_back(std::sqrt(block.area));
   return sizes;
 }
+
+std::unique_ptr<linalg::BlockSolver> make_direct_solver(const SolverOptions& options) {
+  if (options.linear == LinearSolver::direct) return linalg::make_cholmod();
+  return linalg::make_block_cholesky(options.accelerators.single_precision ? linalg::Precision::automatic
+                                                                           : linalg::Precision::full);
+}
+
 }  // namespace
 
 Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::atomic<bool>* stop)
@@ -33,8 +40,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
       candidates_(tolerances_),
       detection_(tolerances_, model.laws, penalties(model)),
       open_close_(stop),
-      direct_{model.solver.linear == LinearSolver::direct ? linalg::make_cholmod()
-                                                          : linalg::make_block_cholesky()},
+      direct_{make_direct_solver(model.solver)},
       iterative_{linalg::make_block_conjugate_residual(&team)},
       reach_(model.blocks.size(), 0.0),
       turn_(model.blocks.size(), 0.0),
@@ -50,6 +56,7 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
       prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
       static_ways_(model.blocks.size(), 0.0),
       intrusions_(sizes_of(model.blocks)) {
+  if (!model.solver.accelerators.steady_pairs) detection_.leave_out_steady_pairs();
   double mass = 0.0;
   for (const Block& block : model.blocks) {
     if (block.unknown < 0) continue;
@@ -227,7 +234,7 @@ void Stepper::build_problem(State& state, const Drive& drive, bool knows_contact
     make_room(state);
     problem_.set_pairs(contacts_, pair_of_candidate_);
   }
-  earlier_look_.give(contacts_, problem_.springs());
+  if (model_.solver.accelerators.earlier_attempt) earlier_look_.give(contacts_, problem_.springs());
 }
 
 bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report) {
@@ -248,16 +255,17 @@ bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, 
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
     if (look == 1 && turns == 0) {
       // Where there is a factor, only a curve through the last increments is a better beginning than none at all.
-      if (chosen.halves() == nullptr || history_.is_smooth()) {
+      if (model_.solver.accelerators.increment_history &&
+          (chosen.halves() == nullptr || history_.is_smooth())) {
         history_.extrapolate(drive.step, increment_, team_);
       } else {
         std::fill(increment_.begin(), increment_.end(), 0.0);
       }
     }
     const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
-    const OpenCloseResult result =
-        open_close_.solve({problem_, {contacts_, contacts_version_}, chosen, options, team_, profile_},
-                          increment_, meets_impacts);
+    const OpenCloseResult result = open_close_.solve(
+        {problem_, {contacts_, contacts_version_}, chosen, options, team_, profile_}, increment_,
+        options.accelerators.early_impacts ? meets_impacts : std::function<bool()>{});
     report.iterations += result.iterations;
     quiet_ = result.changes == 0;
     if (!result.finite)

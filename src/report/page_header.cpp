@@ -1,5 +1,5 @@
-#include <nlohmann/json.hpp>
 
+#include "core/checked_json.h"
 #include "report/page_data.h"
 #include "report/page_template.h"
 #include "results/json_parts.h"

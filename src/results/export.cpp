@@ -4,9 +4,9 @@
 
 #include <cctype>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/checked_json.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
 #include "results/export_folder.h"

@@ -1,8 +1,8 @@
 #include "results/json_parts.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "core/checked_json.h"
 #include "results/record_fields.h"
 #include "simulation/fallen.h"
 #include "simulation/standing.h"

@@ -1,9 +1,9 @@
 #include "results/record_json.h"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
+#include "core/checked_json.h"
 #include "core/error.h"
 #include "results/json_parts.h"
 

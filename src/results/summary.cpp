@@ -1,10 +1,10 @@
 #include "results/summary.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/atomic_file.h"
+#include "core/checked_json.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
 #include "simulation/verdict.h"

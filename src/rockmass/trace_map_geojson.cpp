@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/checked_json.h"
 #include "rockmass/trace_map_reader.h"
 
 namespace keyblock::rockmass {

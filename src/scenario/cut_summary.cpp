@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 
+#include "core/checked_json.h"
 #include "rockmass/intensity.h"
 #include "rockmass/section.h"
 

@@ -6,6 +6,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <tuple>
 
@@ -74,12 +75,18 @@ class Hazards {
       const char c = text_[at_];
       if (static_cast<unsigned char>(c) >= 0x80 || is_too_deep(c)) return at_;
       if (c == '#') at_ = std::min(text_.find('\n', at_), text_.size());
-      if (c == '"' || c == '\'') skip_string(c);
+      // Within a number or a name the parser finds a mistake at a quote.
+      if ((c == '"' || c == '\'') && !follows_bare_character()) skip_string(c);
     }
     return std::string_view::npos;
   }
 
  private:
+  [[nodiscard]] bool follows_bare_character() const {
+    const auto before = static_cast<unsigned char>(at_ > 0 ? text_[at_ - 1] : '\n');
+    return std::isalnum(before) != 0 || before == '_' || before == '-' || before == '+';
+  }
+
   // Counts the open brackets, and the points of a key.
   bool is_too_deep(char c) {
     if (c == '[' || c == '{') ++brackets_;

@@ -1,7 +1,6 @@
 #include "study/run_json.h"
 
-#include <nlohmann/json.hpp>
-
+#include "core/checked_json.h"
 #include "core/error.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"

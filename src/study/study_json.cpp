@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
+#include "core/checked_json.h"
 #include "study/fragility_words.h"
 
 namespace keyblock::study {

@@ -1,9 +1,9 @@
 #include "study/study_page.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/checked_json.h"
 #include "core/error.h"
 #include "core/folder.h"
 #include "core/read_file.h"

@@ -3,9 +3,9 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/checked_json.h"
 #include "core/error.h"
 #include "cutting/topology.h"
 #include "rockmass/section.h"

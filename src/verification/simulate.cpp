@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "core/checked_json.h"
 #include "core/error.h"
 #include "results/csv.h"
 #include "results/summary.h"

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "core/checked_json.h"
 #include "verification/report.h"
 
 namespace keyblock::verification {

@@ -50,6 +50,10 @@ def declaration_problems(root, modules):
             yield f"src/{folder}: not listed in src/CMakeLists.txt"
 
 
+# Stands for nlohmann/json.hpp everywhere: a program must have one conversion of numbers.
+CHECKED_JSON = "core/checked_json.h"
+
+
 def heavy_header(root, header):
     """The heavy third-party header that a header of ours includes, directly or not; None if there is none."""
     reached = set()
@@ -76,13 +80,15 @@ def include_problems(root, modules):
         for match in INCLUDE.finditer(path.read_text()):
             header = match["header"]
             used = header.split("/")[0]
+            if header == "nlohmann/json.hpp" and str(where) != f"src/{CHECKED_JSON}":
+                yield f"{where}: includes nlohmann/json.hpp in place of {CHECKED_JSON}"
             if match["quote"] == "<" or used not in modules:
                 continue
             if used not in allowed:
                 yield f"{where}: includes {header}, but {module} does not depend on {used}"
             elif not (root / "src" / header).is_file():
                 yield f"{where}: includes {header}, which does not exist"
-            elif used != module and (heavy := heavy_header(root, header)):
+            elif header != CHECKED_JSON and used != module and (heavy := heavy_header(root, header)):
                 yield f"{where}: includes {header}, which brings {heavy} along"
 
 
@@ -132,7 +138,7 @@ class Checker(unittest.TestCase):
         self.assertRegex(found[0], pattern)
 
     def test_a_clean_tree_passes(self):
-        self.write("src/c/c.cpp", '#include "c/c.h"\n#include "b/b.h"\n#include "a/a.h"\n#include <nlohmann/json.hpp>\n')
+        self.write("src/c/c.cpp", '#include "c/c.h"\n#include "b/b.h"\n#include "a/a.h"\n#include <toml++/toml.h>\n')
         self.assertEqual(problems(self.root), [])
 
     def test_upward_include(self):
@@ -157,14 +163,18 @@ class Checker(unittest.TestCase):
         self.assert_problem(r"src/d: not listed")
 
     def test_heavy_header(self):
-        self.write("src/b/private.h", "#include <nlohmann/json.hpp>\n")
+        self.write("src/b/private.h", "#include <H5Cpp.h>\n")
         self.write("src/b/b.cpp", '#include "b/private.h"\n')
         self.assertEqual(problems(self.root), [])
         self.write("src/b/b.h", '#include "b/private.h"\n')
         self.write("src/c/c.cpp", '#include "b/b.h"\n')
-        self.assert_problem(r"src/c/c\.cpp: includes b/b\.h, which brings nlohmann/json\.hpp along")
+        self.assert_problem(r"src/c/c\.cpp: includes b/b\.h, which brings H5Cpp\.h along")
         self.write("src/b/private.h", "#include <nlohmann/json_fwd.hpp>\n")
         self.assertEqual(problems(self.root), [])
+
+    def test_json_without_checks(self):
+        self.write("src/b/b.cpp", "#include <nlohmann/json.hpp>\n")
+        self.assert_problem(r"src/b/b\.cpp: includes nlohmann/json\.hpp in place of core/checked_json\.h")
 
     def test_page_without_a_module(self):
         self.write("docs/architecture.md", "`a/` `c/`")

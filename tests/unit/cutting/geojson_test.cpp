@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "core/checked_json.h"
 #include "cutting/cut.h"
 #include "cutting/picture.h"
 #include "tunnel.h"

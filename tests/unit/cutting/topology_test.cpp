@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "check_blocks.h"
+#include "core/checked_json.h"
 #include "rockmass/trace_map.h"
 
 namespace keyblock::cutting {

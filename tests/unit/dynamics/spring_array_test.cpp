@@ -38,8 +38,8 @@ TEST(SpringArray, SaysWhereContactsLeaveTheirPiece) {
       for (std::size_t first = 0; first < n; first += lane_count) {
         bool any = false;
         for (std::size_t c = first; c < first + lane_count; ++c) {
-          const auto branch =
-              springs.branch_at(c, springs.y[c] + alpha * springs.dy[c], springs.w[c] + alpha * springs.dw[c]);
+          const auto branch = springs.branch_at(c, springs.y[c] + alpha * springs.dy[c],
+                                                springs.w[c] + alpha * springs.dw[c]);
           any = any || branch != springs.branch[c];
         }
         EXPECT_EQ(springs.any_leaves(first, alpha), any) << seed << " " << alpha << " " << first;

@@ -7,12 +7,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <tuple>
 
 #include "../fresh_folder.h"
 #include "core/atomic_file.h"
+#include "core/checked_json.h"
 #include "core/error.h"
 #include "results/block_shape.h"
 #include "results/csv.h"

@@ -5,9 +5,9 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/checked_json.h"
 #include "results/csv.h"
 #include "sample_run.h"
 

@@ -87,6 +87,9 @@ d = '''
     EXPECT_EQ(error.diagnostics()[0].where.column, 2);
     EXPECT_EQ(error.diagnostics()[0].found, "the character 'ß' (U+00DF)");
   }
+  // No string begins within a number.
+  EXPECT_THROW(parse_toml("a = 2'600·\n", "f.toml"), InputError);
+  EXPECT_NO_THROW(parse_toml("a.\"·\" = ['·', '·']\n", ""));
 }
 
 TEST(Toml, OtherEncodingsAreNamed) {

@@ -123,7 +123,7 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
     const Vec2 r = problem.relative(row, d);
     const SpringArray& of_contact = problem.springs();
     const SpringArray::Branch branch = of_contact.branch_at(c, of_contact.y0[c] - dot(row.normal, r),
-                                                         of_contact.w0[c] + dot(row.tangent(), r));
+                                                            of_contact.w0[c] + dot(row.tangent(), r));
     springs.push_back({c, StepProblem::Place(contacts[c]), of_contact.normal_stiffness(c, branch),
                        of_contact.shear_stiffness(c, branch)});
   }
