@@ -104,7 +104,7 @@ TEST_F(FileLockTest, WhatIsNoLockStays) {
 
 TEST_F(FileLockTest, LocksOfProcessesThatAreGoneAreTaken) {
   std::ofstream(path_ / "lock") << "process 1 on a\n";
-  std::ofstream(path_ / "empty");
+  std::ofstream(path_ / "empty") << "";
   EXPECT_TRUE(FileLock(path_ / "lock").held());
   EXPECT_TRUE(FileLock(path_ / "empty").held());
 }

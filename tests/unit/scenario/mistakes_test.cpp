@@ -1,5 +1,6 @@
 #include "scenario/mistakes.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ TEST(Mistakes, ThoseAfterAThousandAreCounted) {
 // Were each compared with all others, these two would take minutes, and the time limit of the tests would end them.
 TEST(Mistakes, AScenarioFullOfThemIsReadAsFastAsOthers) {
   std::string text;
-  for (int k = 0; k < 8000; ++k) text += "k" + std::to_string(k) + " = 1\n";
+  for (int k = 0; k < 8000; ++k) text += fmt::format("k{} = 1\n", k);
   const auto read = [&] { static_cast<void>(parse_scenario_text(text, "many.toml")); };
   EXPECT_THAT(read, testing::Throws<InputError>(
                         testing::Property(&InputError::what, HasSubstr("\nand 7952 more mistakes"))));
@@ -54,9 +55,10 @@ TEST(Mistakes, AScenarioFullOfThemIsReadAsFastAsOthers) {
 TEST(Mistakes, UnknownNamesAmongManyNames) {
   std::string text;
   for (int k = 0; k < 3000; ++k) {
-    const std::string number = std::to_string(k);
-    text += "[[excavation]]\nname = \"e" + number + "\"\n[[stage]]\nname = \"s" + number +
-            "\"\nkind = \"settle\"\nexcavate = [\"x" + number + "\"]\n";
+    text += fmt::format(
+        "[[excavation]]\nname = \"e{0}\"\n[[stage]]\nname = \"s{0}\"\nkind = \"settle\"\nexcavate = "
+        "[\"x{0}\"]\n",
+        k);
   }
   const auto read = [&] { static_cast<void>(parse_scenario_text(text, "many.toml")); };
   EXPECT_THAT(read,
