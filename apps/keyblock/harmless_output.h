@@ -1,7 +1,7 @@
 #pragma once
 #include <ostream>
 #include <streambuf>
-#include <string>
+#include <string_view>
 
 namespace keyblock::app {
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,8 +29,8 @@ struct adl_serializer<Whole, std::enable_if_t<std::is_integral_v<Whole> && !std:
     if (json.is_number_float()) {
       const auto number = json.template get_ref<const double&>();
       // One beyond the largest is a power of two, which a double has exactly.
-      return number >= static_cast<double>(std::numeric_limits<Whole>::min()) &&
-             number < 2.0 * (static_cast<double>(std::numeric_limits<Whole>::max() / 2) + 1.0);
+      const double beyond = std::ldexp(1.0, std::numeric_limits<Whole>::digits);
+      return number >= static_cast<double>(std::numeric_limits<Whole>::min()) && number < beyond;
     }
     if (json.is_number_unsigned()) return std::in_range<Whole>(json.template get_ref<const std::uint64_t&>());
     if (json.is_number_integer()) return std::in_range<Whole>(json.template get_ref<const std::int64_t&>());

@@ -41,9 +41,7 @@ class Reader {
     std::string content;
     for (std::size_t size = 0;;) {
       // The file may grow while it is read.
-      content.resize(
-          size + std::clamp<std::size_t>(static_cast<std::size_t>(status.st_size), size + 1, size + piece) -
-          size);
+      content.resize(std::clamp(static_cast<std::size_t>(status.st_size), size + 1, size + piece));
       const ssize_t n = ::read(descriptor_, content.data() + size, content.size() - size);
       if (n < 0 && errno == EINTR) continue;
       if (n < 0) refuse_for_system();

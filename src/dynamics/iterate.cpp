@@ -41,6 +41,7 @@ void Iterate::add_force(const StepSystem& system, std::size_t c, Force force, do
   system.problem.add_contact_force(row, scale * row.gradient(force), gradient);
 }
 
+/// Of a spring that had the force `before` with its old law.
 void Iterate::take_force(const StepSystem& system, std::size_t c, Force before) {
   SpringArray& springs = system.springs();
   springs.branch[c] = springs.branch_at(c, springs.y[c], springs.w[c]);

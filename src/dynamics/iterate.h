@@ -27,8 +27,13 @@ class Iterate {
   void find_gradient(const StepSystem& system);
   /// gradient += scale · ∂ψ/∂D of a contact whose springs push with `force`.
   void add_force(const StepSystem& system, std::size_t c, Force force, double scale = 1.0);
-  /// Takes over what a change of a spring, which had the force `before`, does to its branch and to the gradient.
-  void take_force(const StepSystem& system, std::size_t c, Force before);
+  /// Changes the law of a spring, by change(), and what that does to its branch and to the gradient.
+  template <typename Change>
+  void change_spring(const StepSystem& system, std::size_t c, const Change& change) {
+    const Force before = system.springs().force(c);
+    change();
+    take_force(system, c, before);
+  }
   /// Forgets what is known of how far blocks are out of balance.
   void gradient_changed() {
     largest_ratio_.reset();
@@ -83,6 +88,8 @@ class Iterate {
   bool is_placed = false;          ///< `relative` is that at D
 
  private:
+  void take_force(const StepSystem& system, std::size_t c, Force before);
+
   std::vector<double> ratios_;
   bool knows_ratios_ = false;
   std::optional<double> largest_ratio_;

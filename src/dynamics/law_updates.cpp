@@ -36,6 +36,17 @@ Vec2 violation(const StepSystem& system, std::size_t c) {
           springs.branch[c].shear == SpringArray::Shear::held ? contact.memory.drift + slip : 0.0};
 }
 
+/// Calls changes(c) for the contacts whose bond may break. Whether it returned true for any.
+template <typename Changes>
+bool for_bonds(const StepSystem& system, const Changes& changes) {
+  bool any = false;
+  for (std::size_t c = 0; system.problem.may_break() && c < system.springs().size(); ++c) {
+    const contact::Contact& contact = system.contact(c);
+    if (contact.memory.bonded && !contact.fused) any = changes(c) || any;
+  }
+  return any;
+}
+
 }  // namespace
 
 void LawUpdates::begin() {
@@ -50,7 +61,7 @@ void LawUpdates::begin() {
 
 /// N per thickness, per block: what friction holds it with where its contacts slide.
 void LawUpdates::sum_bounds(const StepSystem& system) {
-  SpringArray& springs = system.springs();
+  const SpringArray& springs = system.springs();
   sliding_bound_.assign(system.problem.blocks(), 0.0);
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.slipped[c] == 0.0) continue;
@@ -62,7 +73,7 @@ void LawUpdates::sum_bounds(const StepSystem& system) {
 /// Whether a contact that slid, and whose spring holds from where its velocity ends, would not stay there: it slides the other way at the
 /// end of the step, or what it has to hold once the velocity is gone is more than friction can.
 bool LawUpdates::reverses(const StepSystem& system, std::size_t c) const {
-  SpringArray& springs = system.springs();
+  const SpringArray& springs = system.springs();
   const double slipped = springs.slipped[c], shear = springs.force(c).shear;
   if (springs.branch[c].shear != SpringArray::Shear::held) return shear * slipped < 0.0;
   const contact::Contact& contact = system.contact(c);
@@ -73,9 +84,6 @@ bool LawUpdates::reverses(const StepSystem& system, std::size_t c) const {
   return holds * slipped < 0.0 && std::abs(holds) > springs.bound[c];
 }
 
-/// A spring that holds from where the velocity ends (StepProblem::ways_to_rest) would turn the friction of a contact that does not rest there
-/// always too late or too early. Such contacts get springs that turn where the way of the step does, if that changes the shear forces by
-/// more than `tolerance` of the bounds (L2 over all contacts). Whether they did.
 bool LawUpdates::reverse_sliding(const StepSystem& system, Iterate& iterate, double tolerance) {
   SpringArray& springs = system.springs();
   reversed_.clear();
@@ -104,9 +112,7 @@ bool LawUpdates::reverse_sliding(const StepSystem& system, Iterate& iterate, dou
   }
   if (change <= tolerance * tolerance * scale) return false;
   for (const std::size_t c : reversed_) {
-    const Force before = springs.force(c);
-    springs.hold_from_start(c);
-    iterate.take_force(system, c, before);
+    iterate.change_spring(system, c, [&] { springs.hold_from_start(c); });
   }
   return true;
 }
@@ -153,9 +159,7 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
       share = std::clamp(bound_steps_[c].taken / gained, step_numbers::least_bound_share, 1.0);
     share *= bound_damping_;
     bound_steps_[c] = {missing, share * missing};
-    const Force before = springs.force(c);
-    springs.bound[c] += share * missing;
-    iterate.take_force(system, c, before);
+    iterate.change_spring(system, c, [&] { springs.bound[c] += share * missing; });
   }
   return true;
 }
@@ -165,17 +169,12 @@ void LawUpdates::shift_forces(const StepSystem& system, Iterate& iterate, double
   SpringArray& springs = system.springs();
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (shift_[c] == Vec2{}) continue;
-    const Force before = springs.force(c);
-    springs.shift(c, share * shift_[c].x, share * shift_[c].y);
-    iterate.take_force(system, c, before);
+    iterate.change_spring(system, c, [&] { springs.shift(c, share * shift_[c].x, share * shift_[c].y); });
   }
 }
 
-/// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when
-/// nothing penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls; springs are then
-/// left alone.
 bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tolerance) {
-  SpringArray& springs = system.springs();
+  const SpringArray& springs = system.springs();
   violation_.assign(springs.size(), {});
   double worst = 0.0;
   for (std::size_t c = 0; c < springs.size(); ++c) {
@@ -216,43 +215,34 @@ bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tole
   return true;
 }
 
-/// Bonds whose shear force passes what they bear now, or what the step began with, where these differ, get what they bear now. Whether
-/// there are any: a bound of before the load came would have them break that hold.
 bool LawUpdates::renew_bonds(const StepSystem& system, Iterate& iterate) {
+  using step_numbers::settled_strength;
   SpringArray& springs = system.springs();
-  if (!system.problem.may_break()) return false;
-  bool any = false;
-  for (std::size_t c = 0; c < springs.size(); ++c) {
-    if (!system.contact(c).memory.bonded || system.contact(c).fused) continue;
-    const Force before = springs.force(c);
-    const double strength = contact::shear_strength(springs.friction[c], before.normal, springs.constant[c]),
+  return for_bonds(system, [&](std::size_t c) {
+    const double strength = contact::shear_strength(springs.friction[c], springs.force(c).normal,
+                                                    springs.constant[c]),
                  bound = springs.bound[c], elastic = std::abs(springs.ks[c] * springs.w[c]);
-    if (elastic <= std::min(strength, bound) ||
-        std::abs(strength - bound) <= step_numbers::settled_strength * bound)
-      continue;
-    springs.bound[c] = strength;
-    iterate.take_force(system, c, before);
-    any = true;
-  }
-  return any;
+    if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled_strength * bound)
+      return false;
+    iterate.change_spring(system, c, [&] { springs.bound[c] = strength; });
+    return true;
+  });
 }
 
 bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
   SpringArray& springs = system.springs();
-  if (!system.problem.may_break()) return false;
-  bool any = false;
-  for (std::size_t c = 0; c < springs.size(); ++c) {
-    if (!system.contact(c).memory.bonded || system.contact(c).fused) continue;
-    const Force before = springs.force(c);
+  return for_bonds(system, [&](std::size_t c) {
+    contact::Contact& contact = system.contacts.contacts[c];
+    const double normal = springs.force(c).normal;
     const bool holds = std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
-    if (-before.normal <= system.contact(c).tension && holds) continue;
-    system.contacts.contacts[c].memory.bonded = false;
-    springs.constant[c] = 0.0;
-    springs.set_law(c, system.contact(c).friction_coefficient * std::max(0.0, before.normal), false);
-    iterate.take_force(system, c, before);
-    any = true;
-  }
-  return any;
+    if (-normal <= contact.tension && holds) return false;
+    contact.memory.bonded = false;
+    iterate.change_spring(system, c, [&] {
+      springs.constant[c] = 0.0;
+      springs.set_law(c, contact.friction_coefficient * std::max(0.0, normal), false);
+    });
+    return true;
+  });
 }
 
 }  // namespace keyblock::dynamics

@@ -21,7 +21,7 @@ struct Accelerators {
   bool increment_history =
       true;  ///< a step begins where the last increments lead to (dynamics::IncrementHistory)
   bool earlier_attempt =
-      true;  ///< an attempt begins with the springs of the attempt before it (dynamics::EarlierLook)
+      true;  ///< an attempt begins with the springs of the attempt before it (dynamics::EarlierAttempt)
   bool early_impacts = true;  ///< impacts are looked for before the bounds of friction are found
   bool steady_pairs = true;   ///< pairs of blocks that hardly moved keep their contacts (contact::Detection)
   bool single_precision = true;  ///< factors in single precision where that is enough

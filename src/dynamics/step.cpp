@@ -234,7 +234,7 @@ void Stepper::build_problem(State& state, const Drive& drive, bool knows_contact
     make_room(state);
     problem_.set_pairs(contacts_, pair_of_candidate_);
   }
-  if (model_.solver.accelerators.earlier_attempt) earlier_look_.give(contacts_, problem_.springs());
+  if (model_.solver.accelerators.earlier_attempt) earlier_attempt_.give(contacts_, problem_.springs());
 }
 
 bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report) {
@@ -246,10 +246,10 @@ bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, 
   constexpr int looks = 4, most_turns = 4;
   bool must_be_direct = false, same_contacts = false;
   int turns = 0;  // times the step was taken again because blocks turn
-  earlier_look_.forget();
+  earlier_attempt_.forget();
   turned_.clear();
   for (int look = 1;;) {
-    if (!same_contacts && detect(state, drive.is_static)) earlier_look_.forget();
+    if (!same_contacts && detect(state, drive.is_static)) earlier_attempt_.forget();
     drive.turned = turned_;
     build_problem(state, drive, same_contacts);
     linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
@@ -281,7 +281,7 @@ bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, 
     if (turned == Turns::are_too_far) return false;
     const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
     if (!moved && !impact && turned == Turns::are_known) return true;
-    earlier_look_.keep(contacts_, problem_.springs());
+    earlier_attempt_.keep(contacts_, problem_.springs());
     // Bonds that broke are for the next look to find again.
     same_contacts = !moved && !(impact && result.bond_broken);
     if (moved || impact) {

@@ -8,7 +8,7 @@
 #include "contact/detection.h"
 #include "core/parallel.h"
 #include "core/profile.h"
-#include "dynamics/earlier_look.h"
+#include "dynamics/earlier_attempt.h"
 #include "dynamics/force_balance.h"
 #include "dynamics/increment_history.h"
 #include "dynamics/intrusions.h"
@@ -196,7 +196,7 @@ class Stepper {
   contact::Candidates candidates_;
   contact::Detection detection_;
   StepProblem problem_;
-  EarlierLook earlier_look_;
+  EarlierAttempt earlier_attempt_;
   OpenClose open_close_;
   /// A solver, and whether it knows the pattern.
   struct Linear {

@@ -87,7 +87,7 @@ void Stepper::measure_balance(State& state) {
   prescribe(state, drive);
   predict_reach(state, drive);
   turned_.clear();
-  earlier_look_.forget();
+  earlier_attempt_.forget();
   detect(state, true);
   build_problem(state, drive, false);
   balance_.measure(model_, problem_);

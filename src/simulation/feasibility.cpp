@@ -49,7 +49,7 @@ std::vector<double> stresses(const RunSetup& setup, double height) {
   return stress;
 }
 
-/// Pa/m; 0: there is no joint but that of the default stiffness.
+/// Pa/m, of the joints that give a stiffness; infinite where none does.
 double softest_joint(const RunSetup& setup) {
   double softest = HUGE_VAL;
   const auto see = [&](const JointProperties& joint) {

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/text.h"
 #include "study/refusal.h"
 
 namespace keyblock::study {
@@ -96,9 +97,8 @@ void check_option(const char* option, const std::string& text) {
   refuse(option, '"' + text + '"', "one word without spaces, line breaks, quotes, \\ and #");
 }
 
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte < 0x20 || byte == 0x7F;
+bool has_control(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](const char& c) { return is_control({&c, 1}); });
 }
 
 }  // namespace
@@ -112,12 +112,11 @@ void check_can_submit(const std::filesystem::path& directory, const SlurmOptions
   check_option("--mem", options.memory);
   check_option("--partition", options.partition);
   const std::string folder = directory.string();
-  if (folder.find_first_of("\"\\") != std::string::npos ||
-      std::any_of(folder.begin(), folder.end(), is_control)) {
+  if (folder.find_first_of("\"\\") != std::string::npos || has_control(folder)) {
     refuse(folder, "a double quote, a backslash or a line break in the path",
            "a folder that sbatch can be told to write its logs to");
   }
-  if (std::any_of(options.program.begin(), options.program.end(), is_control))
+  if (has_control(options.program))
     refuse(options.program, "a line break in the path", "the program at another place");
 }
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "block/eigenvalue_floor.h"
-#include "dynamics/earlier_look.h"
+#include "dynamics/earlier_attempt.h"
 #include "dynamics/vertex_field.h"
 #include "scene.h"
 
@@ -303,7 +303,7 @@ TEST_P(StepProblemOrder, AnotherLookGoesOnFromTheOneBefore) {
   s.state.velocity[s.model.blocks[3].first + 1] -= 0.5;
   simulation::settle_bounds(s.model.solver);
   const NextStep next(s);
-  EarlierLook earlier;
+  EarlierAttempt earlier;
   const auto solve = [&](const std::function<bool()>& gives_up, std::vector<double>& d) {
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
     StepProblem problem;

@@ -8,10 +8,9 @@
 
 namespace keyblock::dynamics {
 
-/// The springs at the end of a look at a step that has to be taken again, with other rules of integration, a longer reach or other
-/// gaps: the branches and the friction bounds that it came to are nearer to those of the next look than what contacts remember of the
-/// last step.
-class EarlierLook {
+/// Accelerator: the springs at the end of an attempt at a step that has to be taken again, with other rules of integration, a longer reach or
+/// other gaps. Their branches and friction bounds are nearer to those of the next attempt than what contacts remember of the last step.
+class EarlierAttempt {
  public:
   void forget() { candidates_.clear(); }
 
@@ -24,7 +23,7 @@ class EarlierLook {
     bounds_updated_ = springs.bounds_updated;
   }
 
-  /// Bonds are begun anew: that they broke is for the next look to find.
+  /// Bonds are begun anew: that they broke is for the next attempt to find.
   void give(std::span<const contact::Contact> contacts, SpringArray& springs) const {
     if (candidates_.empty()) return;
     std::size_t k = 0;
@@ -40,7 +39,7 @@ class EarlierLook {
   }
 
  private:
-  std::vector<int> candidates_;  ///< of its contacts; empty: there was no earlier look
+  std::vector<int> candidates_;  ///< of its contacts; empty: there was no earlier attempt
   std::vector<SpringArray::Branch> branch_;
   std::vector<double> bound_, slipped_;
   bool bounds_updated_ = false;

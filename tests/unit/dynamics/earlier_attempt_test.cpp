@@ -1,4 +1,4 @@
-#include "dynamics/earlier_look.h"
+#include "dynamics/earlier_attempt.h"
 
 #include <gtest/gtest.h>
 
@@ -24,10 +24,10 @@ SpringArray springs_of(const std::vector<SpringArray::Branch>& branches, const s
   return springs;
 }
 
-TEST(EarlierLook, SpringsOfTheSameContactsGoOn) {
+TEST(EarlierAttempt, SpringsOfTheSameContactsGoOn) {
   SpringArray before = springs_of({held, slips, slips}, {1.0, 2.0, 3.0});
   before.bounds_updated = true;
-  EarlierLook look;
+  EarlierAttempt look;
   look.keep(contacts_of({3, 5, 9}), before);
 
   // 5 has gone, 4 and 12 have come.
