@@ -43,7 +43,7 @@ struct Tolerances {
   double rounding;
 
   /// Of the gap at the end of a step, what a contact may miss as its blocks turn and leave the straight way that the step is linear
-  /// in (0.03 mm). Beyond, or where it costs more work than it may (Stepper::look_at_turns), the step is taken again with what it
+  /// in (0.03 mm). Beyond, or where it costs more work than it may (dynamics::RotationCorrection), the step is taken again with what it
   /// missed. Larger: small spinning blocks are pressed into others by the rotation and thrown out again.
   double turn;
 

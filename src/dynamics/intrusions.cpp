@@ -82,4 +82,18 @@ bool Intrusions::any(const Step& step, const contact::CandidateList& candidates)
   return false;
 }
 
+bool comes_inside(const Attempt& attempt, const RotationCorrection& rotation, Intrusions& intrusions) {
+  const std::function<Vec2(std::size_t)> end = [&](std::size_t v) { return rotation.at_end(attempt, v); };
+  const std::function<bool(int, int)> holds = [&](int vertex, int block) {
+    for (std::size_t c = 0; c < attempt.contacts.size(); ++c) {
+      if (attempt.contacts[c].vertex == vertex && attempt.contacts[c].block_b == block &&
+          attempt.problem.springs().force(c).normal > 0.0)
+        return true;
+    }
+    return false;
+  };
+  return intrusions.any({attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, holds},
+                        attempt.state.contacts);
+}
+
 }  // namespace keyblock::dynamics

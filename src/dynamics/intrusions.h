@@ -5,6 +5,7 @@
 
 #include "contact/candidates.h"
 #include "contact/surface.h"
+#include "dynamics/rotation_correction.h"
 #include "geometry/vec2.h"
 
 namespace keyblock::dynamics {
@@ -43,5 +44,8 @@ class Intrusions {
   std::vector<Vec2> first_;      ///< m, per block: what its first vertex goes
   std::vector<double> differs_;  ///< m, per block: by how much another one's way differs from that at most
 };
+
+/// Whether a block comes to lie in another one where no contact holds it.
+bool comes_inside(const Attempt& attempt, const RotationCorrection& rotation, Intrusions& intrusions);
 
 }  // namespace keyblock::dynamics

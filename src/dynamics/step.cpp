@@ -5,16 +5,15 @@
 
 #include "core/error.h"
 #include "core/index.h"
+#include "dynamics/energy.h"
+#include "dynamics/initial_contacts.h"
+#include "dynamics/position_update.h"
+#include "dynamics/prescribed_motion.h"
+#include "dynamics/step_numbers.h"
 
 namespace keyblock::dynamics {
 
 namespace {
-
-std::vector<double> penalties(const Model& model) {
-  std::vector<double> stiffness;
-  for (const Block& block : model.blocks) stiffness.push_back(model.solver.penalty * block.material.young);
-  return stiffness;
-}
 
 /// m, √ of the area of each block.
 std::vector<double> sizes_of(const std::vector<Block>& blocks) {
@@ -24,10 +23,18 @@ std::vector<double> sizes_of(const std::vector<Block>& blocks) {
   return sizes;
 }
 
-std::unique_ptr<linalg::BlockSolver> make_direct_solver(const SolverOptions& options) {
-  if (options.linear == LinearSolver::direct) return linalg::make_cholmod();
-  return linalg::make_block_cholesky(options.accelerators.single_precision ? linalg::Precision::automatic
-                                                                           : linalg::Precision::full);
+/// The beginning of the first attempt. Where there is a factor, only a curve through the last increments is a better beginning than none.
+void guess(const IncrementHistory& history, linalg::BlockSolver& solver, const SolverOptions& options,
+           double step, std::span<double> increment, ThreadTeam& team) {
+  if (options.accelerators.increment_history && (solver.halves() == nullptr || history.is_smooth()))
+    return history.extrapolate(step, increment, team);
+  std::fill(increment.begin(), increment.end(), 0.0);
+}
+
+void check_finite(const OpenCloseResult& result, const Drive& drive) {
+  if (result.finite) return;
+  throw RunError("the forces of the step to " + std::to_string(drive.end_time) +
+                 " s are not finite; a shorter time.step, order 1, or stiffer rock may help");
 }
 
 }  // namespace
@@ -36,60 +43,18 @@ Stepper::Stepper(Model& model, ThreadTeam& team, Profile& profile, const std::at
     : model_(model),
       team_(team),
       profile_(profile),
-      tolerances_(model.block_size),
-      candidates_(tolerances_),
-      detection_(tolerances_, model.laws, penalties(model)),
+      motion_(model),
+      rules_(model.blocks.size()),
+      finder_(model, team),
+      systems_(model, team),
       open_close_(stop),
-      direct_{make_direct_solver(model.solver)},
-      iterative_{linalg::make_block_conjugate_residual(&team)},
-      reach_(model.blocks.size(), 0.0),
-      turn_(model.blocks.size(), 0.0),
-      way_(model.blocks.size(), 0.0),
-      is_far_(model.blocks.size(), 0),
-      ahead_(model.surface.position.size()),
-      way_ahead_(model.blocks.size(), 0.0),
+      rotation_(model, finder_.tolerances()),
+      intrusions_(sizes_of(model.blocks)),
       increment_(model.coefficients, 0.0),
-      speed_(model.blocks.size(), 0.0),
-      spin_(model.blocks.size(), 0.0),
-      rule_(model.blocks.size()),
-      in_impact_(model.blocks.size(), 0),
       prescribed_(model.motions.empty() ? 0 : model.blocks.size()),
-      static_ways_(model.blocks.size(), 0.0),
-      intrusions_(sizes_of(model.blocks)) {
-  if (!model.solver.accelerators.steady_pairs) detection_.leave_out_steady_pairs();
-  double mass = 0.0;
-  for (const Block& block : model.blocks) {
-    if (block.unknown < 0) continue;
-    unknown_sizes_.push_back(2 * block.size);
-    largest_radius_ = std::max(largest_radius_, block.radius);
-    mass += block.mass();
-  }
-  // A thousandth of what lifts a mean block by its size.
-  const double weight = norm(model.gravity) * mass / static_cast<double>(unknown_sizes_.size());
-  if (weight > 0.0) turn_work_ = 1e-3 * weight * model.block_size;
-}
+      travel_(model.blocks.size(), 0.0) {}
 
-void Stepper::place(State& state) {
-  contact::Surface& surface = model_.surface;
-  team_.for_range(model_.blocks.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const Block& block = model_.blocks[b];
-      const std::size_t first = at(surface.block_begin[b]);
-      double moved = 0.0, against_first = 0.0;
-      Vec2 of_first;
-      for_vertex_values(surface, b, block.size, &state.position[block.first], [&](std::size_t v, Vec2 x) {
-        const Vec2 u = x - surface.position[v];
-        if (v == first) of_first = u;
-        const double squared = squared_norm(u);
-        if (!(squared <= moved)) moved = squared;  // nor if it is not a number
-        against_first = std::max(against_first, squared_norm(u - of_first));
-        surface.position[v] = x;
-      });
-      state.moved[b] = std::sqrt(moved);
-      way_[b] += std::sqrt(against_first);
-    }
-  });
-}
+// ── between steps ────────────────────────────────────────────────────────────────────────────────────────────────────
 
 void Stepper::start(State& state) {
   state.moved.assign(model_.blocks.size(), 0.0);
@@ -98,251 +63,228 @@ void Stepper::start(State& state) {
     state.force.assign(model_.coefficients, 0.0);
     state.acceleration_known.assign(model_.blocks.size(), 0);
   }
-  place(state);
+  place_surface(model_, state, motion_, team_);
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
-  detect_at_rest(state);
-  for (contact::Contact& c : contacts_) {
-    contact::Memory& memory = c.memory;
-    if (std::abs(c.gap) > tolerances_.in_place || c.length <= tolerances_.rounding) continue;
-    const contact::JointLaw& law = model_.laws[at(model_.surface.joint[at(c.edge)])];
-    memory.bonded = law.may_bond();
-    if (memory.bonded) {
-      memory.bond_length = c.length;
-      memory.offset = -c.gap;  // a gap that is there does not pull
-    }
-    if (!model_.in_situ) continue;
-    // The joint carries the stress of the rock from the start: traction on block a is −σ n.
-    const int end = model_.surface.next[at(c.edge)];
-    const Vec2 where =
-        lerp(model_.surface.position[at(c.edge)], model_.surface.position[at(end)], c.position);
-    const block::Stress s = block::in_situ_at(model_.in_situ, where);
-    const Vec2 traction{s.xx * c.normal.x + s.xy * c.normal.y, s.xy * c.normal.x + s.yy * c.normal.y};
-    const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
-    const double bound =
-        law.fused ? HUGE_VAL
-                  : contact::shear_strength(law.friction_coefficient, normal, law.cohesion * c.length);
-    const double shear = std::clamp(dot(traction, c.tangent()) * c.length, -bound, bound);
-    memory.normal_force = memory.bounding_force = normal;
-    memory.offset = -c.gap - normal / c.normal_stiffness;
-    memory.shear = shear / c.shear_stiffness;
-    memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
-    if (model_.solver.contact == ContactMethod::augmented_lagrangian) continue;
-    memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
-    state.contact_energy += memory.stored;
-  }
-  contact::keep_memory(contacts_, state.contacts, team_);
-  make_room(state);
+  finder_.find_at_rest(motion_, state);
+  state.contact_energy += begin_contacts(model_, finder_.tolerances(), finder_.contacts());
+  contact::keep_memory(finder_.contacts(), state.contacts, team_);
+  systems_.make_room(model_, finder_.contacts(), state);
 }
 
 void Stepper::resume(State& state) {
   const std::vector<double> moved = state.moved;
-  place(state);
+  place_surface(model_, state, motion_, team_);
   state.moved = moved;
-  candidates_.invalidate();
-  forget_pattern();
+  finder_.invalidate();
+  systems_.forget();
 }
 
-std::vector<contact::Contact> Stepper::find_contacts(const State& state) {
-  contact::Candidates candidates(tolerances_);
-  const std::vector<double> still(model_.blocks.size(), 0.0);
-  contact::CandidateList list = state.contacts;
-  candidates.update(model_.surface, still, list, team_);
-  std::vector<contact::Contact> contacts;
-  detection_.find(model_.surface, {still, still, candidates.away(), way_}, list, team_, contacts);
-  return contacts;
+void Stepper::forget_history() {
+  finder_.invalidate();
+  open_close_.forget_factor();
+  history_.forget();
 }
 
 void Stepper::remove_absent(State& state) {
-  candidates_.invalidate();
   history_.forget();
-  std::fill(reach_.begin(), reach_.end(), 0.0);
-  candidates_.update(model_.surface, reach_, state.contacts, team_);
+  finder_.remove_absent(motion_, state);
   sum_stored_energy(state);
-  forget_pattern();
+  systems_.forget();
   state.pattern.clear();
 }
 
-/// Bound on how far each block moves and turns in the step: twice what its velocity makes of it, four times what the body force does.
-void Stepper::predict_reach(const State& state, const Drive& drive) {
-  const double acceleration = norm(model_.gravity - drive.ground_acceleration) * drive.step * drive.step;
-  for_blocks([&](std::size_t b) {
-    const Block& block = model_.blocks[b];
-    if (drive.is_static) {
-      reach_[b] = 2.0 * state.moved[b];
-      turn_[b] = reach_[b] / block.radius;
-      return;
+void Stepper::sum_stored_energy(State& state) const {
+  state.contact_energy = 0.0;
+  for (const contact::Memory& memory : state.contacts.memory) state.contact_energy += memory.stored;
+  state.support_energy = support_energy(model_, state, state.time);
+}
+
+void Stepper::measure_stored_energy(State& state) {
+  finder_.find_at_rest(motion_, state);
+  for (contact::Contact& c : finder_.contacts()) {
+    if (model_.solver.contact == ContactMethod::augmented_lagrangian) break;  // multipliers store nothing
+    const bool pulls = c.fused || (c.memory.bonded && c.tension > 0.0);
+    c.memory.stored = contact::Spring({.normal_stiffness = c.normal_stiffness,
+                                       .shear_stiffness = c.shear_stiffness,
+                                       .depth = c.depth,
+                                       .shear = c.memory.shear,
+                                       .tensile = pulls})
+                          .stored_at_start();
+  }
+  contact::keep_memory(finder_.contacts(), state.contacts, team_);
+  sum_stored_energy(state);
+}
+
+std::vector<ContactForce> Stepper::forces() const {
+  const SpringArray& springs = problem_.springs();
+  const std::size_t count = std::min(finder_.contacts().size(), springs.size());
+  std::vector<ContactForce> forces;
+  forces.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const SpringArray::Force force = springs.force(k);
+    if (!(springs.y[k] > springs.floor[k])) {
+      forces.push_back({force.normal, 0.0, contact::State::open});
+      continue;
     }
-    const std::size_t first = at(model_.surface.block_begin[b]);
-    double fastest = 0.0, against_first = 0.0;
-    for_vertex_values(model_.surface, b, block.size, &state.velocity[block.first],
-                      [&](std::size_t v, Vec2 velocity) {
-                        ahead_[v] = drive.step * velocity;
-                        fastest = std::max(fastest, squared_norm(velocity));
-                        against_first = std::max(against_first, squared_norm(ahead_[v] - ahead_[first]));
-                      });
-    speed_[b] = std::sqrt(fastest);
-    way_ahead_[b] = std::sqrt(against_first);
-    reach_[b] = 2.0 * speed_[b] * drive.step + 2.0 * acceleration;
-    const double spin = block.pose.mean_spin(&state.velocity[block.first], &state.position[block.first]);
-    turn_[b] = std::min(2.0 * std::abs(spin) * drive.step, reach_[b] / block.radius);
-  });
-  for (const PrescribedMotion& motion : model_.motions) {
-    const std::size_t b = at(motion.block);
-    const Vec2 moved = drive.prescribed[b];
-    reach_[b] = norm(moved);
-    for (std::size_t v = at(model_.surface.block_begin[b]); v < at(model_.surface.block_begin[b + 1]); ++v)
-      ahead_[v] = moved;
+    const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
+    forces.push_back({force.normal, force.shear, holds ? contact::State::locked : contact::State::sliding});
   }
+  return forces;
 }
 
-/// Contacts of blocks that stay where they are.
-void Stepper::detect_at_rest(State& state) {
-  std::fill(reach_.begin(), reach_.end(), 0.0);
-  std::fill(turn_.begin(), turn_.end(), 0.0);
-  candidates_.update(model_.surface, reach_, state.contacts, team_);
-  detection_.find(model_.surface, {reach_, turn_, candidates_.away(), way_}, state.contacts, team_,
-                  contacts_);
-  ++contacts_version_;
+double Stepper::gap(std::size_t k) const {
+  const contact::Contact& c = finder_.contacts()[k];
+  const StepProblem::Row& row = problem_.rows()[k];
+  const SpringArray& springs = problem_.springs();
+  // n·r; what multipliers have added is in both y₀ and y.
+  const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
+  const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
+  return c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
 }
 
-/// Which candidates are contacts in the step; build_problem() describes them. Whether the candidates are others.
-bool Stepper::detect(State& state, bool is_static) {
+// ── the stages of a step ─────────────────────────────────────────────────────────────────────────────────────────────
+
+void Stepper::predict(const State& state, Drive& drive) {
+  rules_.choose(model_, state, drive.is_static);
+  prescribe(model_, state, drive.end_time, prescribed_);
+  drive.rule = rules_.rule();
+  drive.prescribed = prescribed_;
+  motion_.predict(model_, state, drive, team_);
+  earlier_attempt_.forget();
+  rotation_.forget();
+}
+
+/// Which candidates are contacts; build() describes them.
+void Stepper::find(State& state, const Drive& drive) {
   const Profile::Scope scope(profile_, Phase::detection);
-  const bool changed = candidates_.update(model_.surface, reach_, state.contacts, team_);
-  contact::Detection::Motion motion{reach_, turn_, candidates_.away(), way_};
-  if (!is_static) {
-    motion.ahead = ahead_;
-    motion.way_ahead = way_ahead_;
-    motion.ahead_at_first = ahead_at_first_;
-  }
-  const std::size_t before = contacts_.size();
-  contacts_.resize(detection_.find_which(model_.surface, motion, state.contacts, team_));
-  if (contacts_.size() != before) ++contacts_version_;
-  if (changed || !knows_pairs_) find_pairs(state);
-  return changed;
+  const bool changed = finder_.find_which(motion_, drive.is_static, state);
+  if (changed || !systems_.knows_pairs()) systems_.find_pairs(model_, state);
+  if (changed) earlier_attempt_.forget();
 }
 
 /// Contacts that are not known yet are described on the way, while a cache has them.
-void Stepper::build_problem(State& state, const Drive& drive, bool knows_contacts) {
+void Stepper::build(State& state, const Drive& drive, bool knows_contacts) {
   const Profile::Scope scope(profile_, Phase::terms);
-  const auto describe = [&](const contact::Detection::OfSome& then) {
-    if (!detection_.describe(model_.surface, state.contacts, team_, contacts_, then)) ++contacts_version_;
-  };
-  problem_.build(model_, state, drive, model_.surface, contacts_, pair_of_candidate_, team_,
+  const auto describe = [&](const contact::Detection::OfSome& then) { finder_.describe(state, then); };
+  problem_.build(model_, state, drive, model_.surface, finder_.contacts(), systems_.pairs(), team_,
                  knows_contacts ? StepProblem::ForContacts{} : describe);
   if (problem_.lacks_room()) {
-    make_room(state);
-    problem_.set_pairs(contacts_, pair_of_candidate_);
+    systems_.make_room(model_, finder_.contacts(), state);
+    problem_.set_pairs(finder_.contacts(), systems_.pairs());
   }
-  if (model_.solver.accelerators.earlier_attempt) earlier_attempt_.give(contacts_, problem_.springs());
+  if (model_.solver.accelerators.earlier_attempt)
+    earlier_attempt_.give(finder_.contacts(), problem_.springs());
 }
 
+linalg::BlockSolver& Stepper::choose_solver(const State& state, bool is_static, bool must_be_direct) {
+  const Profile::Scope scope(profile_, Phase::assembly);
+  const LinearSystems::Chosen chosen = systems_.choose(model_, state, is_static, must_be_direct);
+  if (chosen.is_new) open_close_.forget_factor();
+  return chosen.solver;
+}
+
+Attempt Stepper::solution(const State& state, const Drive& drive) const {
+  return {model_,
+          state,
+          drive,
+          problem_,
+          finder_.contacts(),
+          increment_,
+          open_close_.displacement(),
+          open_close_.relative(),
+          team_};
+}
+
+Verdict Stepper::check(const Attempt& attempt, const OpenCloseResult& result, bool may_meet_impacts) {
+  rotation_.measure_spin(attempt);
+  if (!result.converged) return Verdict::not_converged;
+  const Verdict rotation = attempt.drive.is_trial ? Verdict::accepted : rotation_.check(attempt);
+  if (rotation == Verdict::rotated_too_far) return rotation;
+  // Both are looked for, as both say what the next attempt is made with.
+  const bool moved = motion_.is_exceeded(attempt, rotation_.spin(), finder_.tolerances()),
+             impact = result.given_up || (may_meet_impacts && rules_.meet_impacts(attempt, motion_.speed()));
+  if (moved) return Verdict::moved_too_far;
+  return impact ? Verdict::impact : rotation;
+}
+
+/// Whether a solution was found that the step can be taken with.
 bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report) {
-  choose_rules(state, drive);
-  drive.rule = rule_;
-  prescribe(state, drive);
-  predict_reach(state, drive);
-  ahead_at_first_.clear();
-  constexpr int looks = 4, most_turns = 4;
+  using namespace step_numbers;
+  predict(state, drive);
   bool must_be_direct = false, same_contacts = false;
-  int turns = 0;  // times the step was taken again because blocks turn
-  earlier_attempt_.forget();
-  turned_.clear();
-  for (int look = 1;;) {
-    if (!same_contacts && detect(state, drive.is_static)) earlier_attempt_.forget();
-    drive.turned = turned_;
-    build_problem(state, drive, same_contacts);
-    linalg::BlockSolver& chosen = solver(state, drive.is_static, must_be_direct);
-    if (look == 1 && turns == 0) {
-      // Where there is a factor, only a curve through the last increments is a better beginning than none at all.
-      if (model_.solver.accelerators.increment_history &&
-          (chosen.halves() == nullptr || history_.is_smooth())) {
-        history_.extrapolate(drive.step, increment_, team_);
-      } else {
-        std::fill(increment_.begin(), increment_.end(), 0.0);
-      }
-    }
-    const auto meets_impacts = [&] { return look < looks && meet_impacts(state, drive); };
-    const OpenCloseResult result = open_close_.solve(
-        {problem_, {contacts_, contacts_version_}, chosen, options, team_, profile_}, increment_,
-        options.accelerators.early_impacts ? meets_impacts : std::function<bool()>{});
+  for (int attempts = 1, rotations = 0;;) {
+    if (!same_contacts) find(state, drive);
+    drive.rotation = rotation_.known();
+    build(state, drive, same_contacts);
+    linalg::BlockSolver& solver = choose_solver(state, drive.is_static, must_be_direct);
+    if (attempts == 1 && rotations == 0) guess(history_, solver, options, drive.step, increment_, team_);
+    const bool may_meet_impacts = attempts < most_attempts;
+    const auto meets_impacts = [&] {
+      return may_meet_impacts && rules_.meet_impacts(solution(state, drive), motion_.speed());
+    };
+    const OpenCloseResult result =
+        open_close_.solve({problem_, finder_.of_step(), solver, options, team_, profile_}, increment_,
+                          options.accelerators.early_impacts ? meets_impacts : std::function<bool()>{});
     report.iterations += result.iterations;
     quiet_ = result.changes == 0;
-    if (!result.finite)
-      throw RunError("the forces of the step to " + std::to_string(drive.end_time) +
-                     " s are not finite; a shorter time.step, order 1, or stiffer rock may help");
-    if (result.linear_failed && !must_be_direct) {
-      must_be_direct = true;
-      continue;
+    check_finite(result, drive);
+    const Verdict verdict = result.linear_failed && !must_be_direct
+                                ? Verdict::solver_failed
+                                : check(solution(state, drive), result, may_meet_impacts);
+    switch (verdict) {
+      case Verdict::accepted:
+        return true;
+      case Verdict::not_converged:
+      case Verdict::rotated_too_far:
+        return false;
+      case Verdict::solver_failed:
+        must_be_direct = true;
+        continue;
+      case Verdict::rotated:
+        if (++rotations > most_rotations) return false;
+        rotation_.take_over();
+        same_contacts = true;
+        break;
+      case Verdict::moved_too_far:
+      case Verdict::impact:
+        // The last attempt is taken as it is, with the rotation correction that it was made with.
+        if (++attempts > most_attempts) return true;
+        rotation_.forget();
+        // Bonds that broke are for the next attempt to find again.
+        same_contacts = verdict == Verdict::impact && !result.bond_broken;
+        break;
     }
-    measure_spin(state);
-    if (!result.converged) return false;
-    const Turns turned = drive.is_trial ? Turns::are_known : look_at_turns(state, drive.is_static);
-    if (turned == Turns::are_too_far) return false;
-    const bool moved = moved_too_far(), impact = result.given_up || meets_impacts();
-    if (!moved && !impact && turned == Turns::are_known) return true;
-    earlier_attempt_.keep(contacts_, problem_.springs());
-    // Bonds that broke are for the next look to find again.
-    same_contacts = !moved && !(impact && result.bond_broken);
-    if (moved || impact) {
-      // The last look is taken as it is, with the turns that its contacts know of: accept() reads them.
-      if (++look > looks) return true;
-      turned_.clear();
-    } else {
-      if (drive.is_static || ++turns > most_turns) return false;
-      turned_.swap(turned_now_);
-    }
+    earlier_attempt_.keep(finder_.contacts(), problem_.springs());
   }
 }
 
 void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
-  account(state, drive);
+  const Attempt solved = solution(state, drive);
+  {
+    const Profile::Scope scope(profile_, Phase::energy);
+    accounts_.account_for_blocks(solved, rotation_.spin(), problem_, state);
+  }
   const Profile::Scope scope(profile_, Phase::update);
-  remember(state, drive, report);
+  const ContactTotals totals = accounts_.remember_contacts(solved, state);
+  report.penetration = std::max(report.penetration, totals.penetration);
+  report.closed_contacts = totals.closed;
   if (!drive.is_static) {
     state.last_step = drive.step;
     history_.add(increment_, drive.step, quiet_, team_);
   } else {
     history_.forget();
   }
-  for_blocks([&](std::size_t b) {
-    const Block& block = model_.blocks[b];
-    const double* d = &increment_[block.first];
-    double* v = &state.velocity[block.first];
-    with_known_size(block.size, [&](auto size) {
-      const Integrator rule = rule_[b];
-      in_lanes(2 * size, [&](int k, int count) {
-        const std::size_t i = block.first + at(k);
-        const Motion end = drive.is_static
-                               ? Motion{}
-                               : rule.end(motion(state, i, count), load_first(d + k, count), drive.step);
-        store_first(v + k, end.velocity, count);
-        if (state.acceleration.empty()) return;
-        store_first(&state.acceleration[i], end.acceleration, count);
-        store_first(&state.force[i], end.force, count);
-      });
-    });
-    const double w = spin_[b];
-    block.pose.update(w, d, &state.position[block.first], v);
-    if (state.acceleration.empty()) return;
-    block.pose.rotate(w, &state.acceleration[block.first]);
-    block.pose.rotate(w, &state.force[block.first]);
-    state.acceleration_known[b] = !drive.is_static && in_impact_[b] == 0;
-  });
-  move_prescribed(state, drive);
-  place(state);
-  account_for_turns(state, drive);
-  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-    if (!model_.moves(b)) continue;
-    if (!std::isfinite(state.moved[b])) {
-      throw RunError("block " + std::to_string(b) + " has no finite position after the step to " +
-                     std::to_string(drive.end_time) +
-                     " s, which does not converge; a shorter time.step, order 1, or solver.contact = "
-                     "\"penalty\" may help");
-    }
-    report.max_displacement = std::max(report.max_displacement, state.moved[b]);
-  }
+  move_blocks(solved, rotation_.spin(), rules_, state);
+  move_prescribed(model_, drive, state);
+  place_surface(model_, state, motion_, team_);
+  // What turning did to springs that the step was linear in, now that blocks are where they come to be.
+  const double gained = rotation_.keep_shear(solved, state.contacts.memory);
+  state.contact_energy += gained;
+  state.ledger.numerical -= gained + renew_support_energy(model_, drive.end_time, state);
+  report.max_displacement = std::max(report.max_displacement, largest_move(model_, state, drive.end_time));
 }
+
+// ── steps ────────────────────────────────────────────────────────────────────────────────────────────────────────────
 
 void Stepper::substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                       StepReport& report) {
@@ -352,7 +294,8 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.owed_share = state.last_step / drive.step;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
-  const bool converged = attempt(state, drive, model_.solver, report) && !comes_inside(state);
+  const bool converged = attempt(state, drive, model_.solver, report) &&
+                         !comes_inside(solution(state, drive), rotation_, intrusions_);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
     report.halvings = std::max(report.halvings, halvings);

@@ -17,6 +17,14 @@ inline constexpr double forcing_local = 0.03;
 /// Times the tolerance, out of balance: up to there one system of all blocks is all that is needed where no contact changed its branch.
 inline constexpr double calm = 100.0;
 
+/// Of the pairs of blocks that have contacts, how many pairs without contacts keep their room in the matrix. Larger: factors have more
+/// zeros; smaller: the pattern is analysed more often.
+inline constexpr double most_idle_share = 0.15;
+/// Block products of a factorization, for each block, that conjugate residuals are worth (docs/performance.md).
+inline constexpr double dynamic_iterations_worth = 120.0, static_iterations_worth = 450.0;
+/// Blocks, beyond which not even the order of elimination is looked for.
+inline constexpr std::size_t most_factored = 30'000;
+
 // ── local solves ─────────────────────────────────────────────────────────────────────────────────────────────────────
 
 /// Of what is enough, what blocks outside a local solve may be out of balance by.
@@ -50,12 +58,44 @@ inline constexpr int undamped_updates = 8;
 /// … and how small it gets.
 inline constexpr double least_damping = 1.0 / 64.0;
 
+/// Error of bounds in a static step, over its tolerance, and its limits. Bounds that lag by 1 % of all forces would leave a thousandth of the
+/// weight of single blocks out of balance, step after step.
+inline constexpr double static_bound_share = 1e-2, most_bound_error = 1e-7, least_bound_error = 1e-12;
+/// The error of bounds is an error of all contacts together, and may be the error of one small block. Where only bounds are left to be
+/// found, it has to be so much less, and this many updates are worth it.
+inline constexpr double settled_bound_share = 1e-4;
+inline constexpr int most_static_bound_updates = 40;
+/// Halvings of a static step beyond those of a dynamic one: pseudo time may have grown to many times what a block needs to pass through
+/// another one.
+inline constexpr int more_static_halvings = 14;
+
 // ── bonds ────────────────────────────────────────────────────────────────────────────────────────────────────────────
 
 /// Updates of what bonds bear in a step, lest two bonds hand a strength to and fro.
 inline constexpr int most_bond_updates = 20;
 /// Of a bond's strength, up to which it counts as known.
 inline constexpr double settled_strength = 1e-3;
+
+// ── attempts ─────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+/// Attempts at a step, at most, where blocks move too far or strike each other. The last one is taken as it is.
+inline constexpr int most_attempts = 4;
+/// Attempts with a new rotation correction, before the step is made shorter.
+inline constexpr int most_rotations = 4;
+
+// ── rotation correction ──────────────────────────────────────────────────────────────────────────────────────────────
+
+/// rad, that a block in contact turns by in a step at most. Larger: forces keep a direction that they no longer have.
+inline constexpr double most_rotation = 0.1;
+/// Of what lifts a mean block by its size, work that a contact may do over what turning makes it miss. Larger: energy comes and goes without
+/// account; smaller: more steps are taken again.
+inline constexpr double weight_work_share = 1e-3;
+/// The same of the kinetic energy, where there is no weight to measure work by.
+inline constexpr double kinetic_work_share = 1e-6;
+/// Of contact::Tolerances::turn, below which a correction is not worth an attempt whatever the forces.
+inline constexpr double least_rotation_share = 2e-5;
+/// Of the strength of a bond, what turning may seem to stretch it by.
+inline constexpr double bond_share = 0.01;
 
 // ── multipliers ──────────────────────────────────────────────────────────────────────────────────────────────────────
 

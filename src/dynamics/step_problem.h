@@ -37,10 +37,10 @@ struct Drive {
   std::span<const Vec2> prescribed;
   /// m, of each contact: by how much more than linear in D its vertex is from the point of the edge at the end of the step, as its blocks
   /// turn, across the edge (x) and, of a bond, along it (y); empty: by nothing.
-  std::span<const Vec2> turned;
+  std::span<const Vec2> rotation;
 
   /// Whether there is a known part of the relative displacement of contacts.
-  [[nodiscard]] bool moves_contacts() const { return !prescribed.empty() || !turned.empty(); }
+  [[nodiscard]] bool moves_contacts() const { return !prescribed.empty() || !rotation.empty(); }
   /// m, what block a is moved by less what block b is.
   [[nodiscard]] Vec2 prescribed_between(const contact::Contact& c) const {
     return prescribed.empty() ? Vec2{}
@@ -69,7 +69,7 @@ class StepProblem {
     int pair = of_fixed;       ///< of the solver's pattern, or of_fixed, or without_room
     double position;           ///< s
     Vec2 normal;
-    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b; Drive::turned
+    Vec2 moved;  ///< m, known part of r: prescribed displacement of a less that of b; Drive::rotation
 
     [[nodiscard]] Vec2 tangent() const { return contact::tangent_of(normal); }
     /// ∂ψ/∂r where the springs push with `force`.

@@ -28,8 +28,8 @@ void StepProblem::build_rows(const State& state, const Drive& drive,
       for (std::size_t k = first; k < last; ++k) {
         build_row(drive, contacts[k], k);
         rows_[k].pair = pairs[at(contacts[k].candidate)];
-        if (!drive.turned.empty())
-          rows_[k].moved += drive.turned[k].x * rows_[k].normal + drive.turned[k].y * rows_[k].tangent();
+        if (!drive.rotation.empty())
+          rows_[k].moved += drive.rotation[k].x * rows_[k].normal + drive.rotation[k].y * rows_[k].tangent();
         any = any || (contacts[k].memory.bonded && !contacts[k].fused);
         without = without || rows_[k].pair == without_room;
         distant = distant || std::abs(rows_[k].position - 0.5) > 1.0;

@@ -1,79 +1,103 @@
-// Which rule of time integration each block takes in a step.
+#include "dynamics/step_rules.h"
+
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
-#include "dynamics/step.h"
+#include "dynamics/worth_threads.h"
 
 namespace keyblock::dynamics {
 
-/// The rule of the scenario; Shi's as long as it needs an acceleration that is not known: in the first step, after an impact.
-void Stepper::choose_rules(const State& state, const Drive& drive) {
-  const SolverOptions& options = model_.solver;
+namespace {
+
+/// m/s, speed of approach from which on blocks strike each other: the speed of a fall by 0.005 of the block size. Without gravity it is a
+/// hundredth of the fastest block's speed, where that is more than noise.
+double impact_speed(const Model& model, std::span<const double> speed, double step) {
+  const double g = norm(model.gravity);
+  if (g > 0.0) return 0.1 * std::sqrt(g * model.block_size);
+  constexpr double share = 0.01, noise = 1e-6;  // noise: of the block size, way in a step
+  return std::max(share * *std::max_element(speed.begin(), speed.end()), noise * model.block_size / step);
+}
+
+/// m/s, the least speed of approach of an impact. Multipliers are stiffer than any spring: what is left of a velocity into a contact would
+/// ring for ever.
+double least_speed(const Attempt& attempt, std::span<const double> speed) {
+  const Model& model = attempt.model;
+  const double least = impact_speed(model, speed, attempt.drive.step);
+  if (model.solver.contact != ContactMethod::augmented_lagrangian) return least;
+  return std::min(least, 1e-4 * norm(model.gravity) * attempt.drive.step);
+}
+
+/// Contacts that may approach at `least`, m/s, or faster. A point of an edge, and a little beyond its ends, is not much faster than its
+/// vertices: half an edge beyond, three times as fast at most against another.
+void find_fast(const Attempt& attempt, std::span<const double> speed, double least,
+               std::vector<std::size_t>& fast) {
+  constexpr double rounding = 0.999;
+  const bool moves_fixed_blocks = !attempt.drive.prescribed.empty();
+  fast.clear();
+  if (!moves_fixed_blocks && !attempt.problem.has_distant() &&
+      3.0 * *std::max_element(speed.begin(), speed.end()) <= rounding * least)
+    return;
+  const auto may_be_fast = [&](std::size_t k) {
+    const StepProblem::Row& row = attempt.problem.rows()[k];
+    const contact::Contact& contact = attempt.contacts[k];
+    const double beyond = std::max({0.0, -row.position, row.position - 1.0});
+    return moves_fixed_blocks ||
+           speed[at(contact.block_a)] + (1.0 + 2.0 * beyond) * speed[at(contact.block_b)] > rounding * least;
+  };
+  find_all(attempt.team, attempt.contacts.size(), contacts_worth_threads, may_be_fast, fast);
+}
+
+/// Whether contact c presses, its blocks approach faster than `least`, m/s, and the step does not resolve what its spring does to them.
+bool is_impact(const Attempt& attempt, std::size_t c, double least) {
+  const contact::Contact& contact = attempt.contacts[c];
+  const StepProblem::Row& row = attempt.problem.rows()[c];
+  const double step = attempt.drive.step;
+  if (attempt.problem.springs().force(c).normal <= 0.0) return false;
+  const Vec2 speed = attempt.problem.relative(row, attempt.state.velocity) +
+                     attempt.drive.prescribed_between(contact) / step;
+  if (-dot(row.normal, speed) <= least) return false;
+  return attempt.model.solver.contact == ContactMethod::augmented_lagrangian ||
+         contact.normal_stiffness * step * step > attempt.problem.reduced_mass(contact);
+}
+
+}  // namespace
+
+void StepRules::choose(const Model& model, const State& state, bool is_static) {
+  const SolverOptions& options = model.solver;
   const Integrator shi = Integrator::shi(options.theta);
   Integrator chosen = shi;
   if (options.integrator == TimeIntegration::average_acceleration)
     chosen = Integrator::average_acceleration();
   if (options.integrator == TimeIntegration::generalized_alpha)
     chosen = Integrator::generalized_alpha(options.spectral_radius);
-  const bool dynamic = !drive.is_static && !state.acceleration_known.empty();
+  const bool dynamic = !is_static && !state.acceleration_known.empty();
   for (std::size_t b = 0; b < rule_.size(); ++b)
     rule_[b] = dynamic && state.acceleration_known[b] != 0 ? chosen : shi;
   std::fill(in_impact_.begin(), in_impact_.end(), std::uint8_t{0});
 }
 
-/// m/s, speed of approach from which on blocks strike each other: that of a fall by 0.005 of the block size. Without gravity it is a
-/// hundredth of the fastest block's speed, where that is more than noise.
-double Stepper::impact_speed(const Drive& drive) const {
-  const double g = norm(model_.gravity);
-  if (g > 0.0) return 0.1 * std::sqrt(g * model_.block_size);
-  constexpr double share = 0.01, noise = 1e-6;  // noise: of the block size, way in a step
-  return std::max(share * *std::max_element(speed_.begin(), speed_.end()),
-                  noise * model_.block_size / drive.step);
+void StepRules::slow(const Model& model, int block) {
+  const std::size_t b = at(block);
+  if (!model.moves(b) || in_impact_[b] != 0) return;
+  in_impact_[b] = 1;
+  rule_[b] = Integrator::shi(model.solver.restitution);
+  found_ = true;
 }
 
-/// Impacts that the step does not resolve: the blocks come to rest against each other within it, D ≈ 0, and the rule
-/// v ← (1+θ)D/Δt − θv would send them back with θ times the speed they came with. Lowers θ of blocks that are pressed upon
-/// while they approach faster than the speed of an impact; true when there is a new one.
-bool Stepper::meet_impacts(const State& state, const Drive& drive) {
-  const SolverOptions& options = model_.solver;
+bool StepRules::meet_impacts(const Attempt& attempt, std::span<const double> speed) {
+  const SolverOptions& options = attempt.model.solver;
   const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
-  if (drive.is_static || options.restitution >= elastic) return false;
-  // Multipliers are stiffer than any spring: what is left of a velocity into a contact would ring for ever.
-  const bool rigid = options.contact == ContactMethod::augmented_lagrangian;
-  const double least =
-      rigid ? std::min(impact_speed(drive), 1e-4 * norm(model_.gravity) * drive.step) : impact_speed(drive);
-  // A point of an edge, and a little beyond its ends, is not much faster than its vertices: half an edge beyond, three times as fast at
-  // most against another.
-  if (prescribed_.empty() && !problem_.has_distant() &&
-      3.0 * *std::max_element(speed_.begin(), speed_.end()) <= 0.999 * least)
-    return false;
-  const auto may_be_fast = [&](std::size_t k) {
-    const StepProblem::Row& row = problem_.rows()[k];
-    const double beyond = std::max({0.0, -row.position, row.position - 1.0});
-    return !prescribed_.empty() ||
-           speed_[at(contacts_[k].block_a)] + (1.0 + 2.0 * beyond) * speed_[at(contacts_[k].block_b)] >
-               0.999 * least;
-  };
-  std::vector<std::size_t> fast;
-  find_all(team_, contacts_.size(), contacts_worth_threads, may_be_fast, fast);
-  bool any = false;
-  for (const std::size_t c : fast) {
-    const StepProblem::Row& row = problem_.rows()[c];
-    if (problem_.springs().force(c).normal <= 0.0) continue;
-    const Vec2 speed =
-        problem_.relative(row, state.velocity) + drive.prescribed_between(contacts_[c]) / drive.step;
-    if (-dot(row.normal, speed) <= least) continue;
-    if (!rigid &&
-        contacts_[c].normal_stiffness * drive.step * drive.step <= problem_.reduced_mass(contacts_[c]))
-      continue;
-    for (const int b : {contacts_[c].block_a, contacts_[c].block_b}) {
-      if (!model_.moves(at(b)) || in_impact_[at(b)] != 0) continue;
-      in_impact_[at(b)] = 1;
-      rule_[at(b)] = Integrator::shi(options.restitution);
-      any = true;
-    }
+  if (attempt.drive.is_static || options.restitution >= elastic) return false;
+  const double least = least_speed(attempt, speed);
+  find_fast(attempt, speed, least, fast_);
+  found_ = false;
+  for (const std::size_t c : fast_) {
+    if (!is_impact(attempt, c, least)) continue;
+    slow(attempt.model, attempt.contacts[c].block_a);
+    slow(attempt.model, attempt.contacts[c].block_b);
   }
-  return any;
+  return found_;
 }
 
 }  // namespace keyblock::dynamics

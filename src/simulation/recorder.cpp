@@ -133,7 +133,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   frame.step = state.step;
   const auto contacts = stepper.contacts();
   const contact::Surface& surface = model_.surface;
-  const std::vector<dynamics::Stepper::Force> forces = stepper.forces();
+  const std::vector<dynamics::ContactForce> forces = stepper.forces();
   frame.contacts.reserve(forces.size());
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const contact::Contact& c = contacts[k];

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/out_of_memory.h"
 #include "core/parallel.h"
+#include "dynamics/energy.h"
 #include "dynamics/step.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint.h"
@@ -100,21 +101,21 @@ class Runner {
 };
 
 double Runner::total_energy() const {
-  return stepper_->kinetic_energy(now_.mechanics) + stepper_->strain_energy(now_.mechanics) +
-         stepper_->gravity_energy(now_.mechanics) + dynamics::Stepper::contact_energy(now_.mechanics);
+  return dynamics::kinetic_energy(model_, now_.mechanics) + dynamics::strain_energy(model_, now_.mechanics) +
+         dynamics::gravity_energy(model_, now_.mechanics) + dynamics::spring_energy(now_.mechanics);
 }
 
 Energy Runner::energy() const {
   const dynamics::EnergyLedger& ledger = now_.mechanics.ledger;
   Energy e;
-  e.kinetic = stepper_->kinetic_energy(now_.mechanics);
-  e.strain = stepper_->strain_energy(now_.mechanics);
-  e.contact = dynamics::Stepper::contact_energy(now_.mechanics);
+  e.kinetic = dynamics::kinetic_energy(model_, now_.mechanics);
+  e.strain = dynamics::strain_energy(model_, now_.mechanics);
+  e.contact = dynamics::spring_energy(now_.mechanics);
   e.friction = ledger.friction;
   e.damping = ledger.damping;
   e.numerical = ledger.numerical;
   e.input = ledger.input;
-  e.gravity = stepper_->gravity_energy(now_.mechanics) - now_.initial_energy;
+  e.gravity = dynamics::gravity_energy(model_, now_.mechanics) - now_.initial_energy;
   const double residual =
       e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
   double largest = 0.0;
@@ -323,7 +324,7 @@ void Runner::settle(StageRecord& record) {
   };
   if (now_.stage_step == 0) {
     // Static steps have no velocity.
-    now_.mechanics.ledger.numerical += stepper_->kinetic_energy(now_.mechanics);
+    now_.mechanics.ledger.numerical += dynamics::kinetic_energy(model_, now_.mechanics);
     std::fill(now_.mechanics.velocity.begin(), now_.mechanics.velocity.end(), 0.0);
     change_orders(&OrderControl::begin);
   }

@@ -100,7 +100,7 @@ bool Settler::try_far(dynamics::Stepper& stepper, dynamics::State& state, dynami
   if (report.taken) return true;
   memory_.wait = std::min(2 * memory_.wait, most_wait);
   if (!report.converged) return false;
-  const std::vector<double> ways(stepper.ways().begin(), stepper.ways().end());
+  const std::vector<double> ways(stepper.travel().begin(), stepper.travel().end());
   const int iterations = report.iterations;
   const double first = report.shortest;
   trial.step = shorter * first;
@@ -108,7 +108,7 @@ bool Settler::try_far(dynamics::Stepper& stepper, dynamics::State& state, dynami
   report = stepper.relax(state, trial);
   report.iterations += iterations;
   const double ratio = first * first / (report.shortest * report.shortest);
-  if (report.converged && moving_.suspect(ways, stepper.ways(), ratio))
+  if (report.converged && moving_.suspect(ways, stepper.travel(), ratio))
     memory_.since_best = first_wait - walk;
   return false;
 }
@@ -125,7 +125,7 @@ bool Settler::step(dynamics::Stepper& stepper, dynamics::State& state, dynamics:
                                    .settles_bounds = memory_.best_predicted <= tolerance_});
   }
   const dynamics::ForceBalance& balance = stepper.balance();
-  const bool news = moving_.go(balance, stepper.ways(), tolerance_);
+  const bool news = moving_.go(balance, stepper.travel(), tolerance_);
   memory_.worst_ratio = 0.0;
   double worst_predicted = 0.0;
   bool all_balance = report.converged;
@@ -139,7 +139,7 @@ bool Settler::step(dynamics::Stepper& stepper, dynamics::State& state, dynamics:
   memory_.trial_acceleration = balance.largest_acceleration(counts);
   ++memory_.steps;
   control(report, worst_predicted);
-  control_inertia(stepper.ways());
+  control_inertia(stepper.travel());
   if (news) begin_again();
   report.iterations += tried;
   memory_.quiet_steps = all_balance ? memory_.quiet_steps + 1 : 0;

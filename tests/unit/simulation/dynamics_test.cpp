@@ -99,11 +99,11 @@ TEST(Rotation, FullTurnKeepsAreaAndStress) {
       Simulator s(scene);
       const dynamics::Block& block = s.model.blocks[0];
       const double before = block.pose.area(&s.state.position[block.first]);
-      const double kinetic = s.stepper.kinetic_energy(s.state);
+      const double kinetic = dynamics::kinetic_energy(s.model, s.state);
       s.run(1.0, 1.0 / steps);
       EXPECT_NEAR(block.pose.area(&s.state.position[block.first]) / before, 1.0, 1e-9)
           << order << ' ' << steps;
-      EXPECT_NEAR(s.stepper.kinetic_energy(s.state) / kinetic, 1.0, 1e-9);
+      EXPECT_NEAR(dynamics::kinetic_energy(s.model, s.state) / kinetic, 1.0, 1e-9);
     }
   }
 }
@@ -136,7 +136,7 @@ TEST(Column, ContactForceAtDepthIsTheWeightAbove) {
   Simulator s(scene);
   const std::vector<double> scale(6, 1.0);
   for (int k = 0; k < 400; ++k) s.stepper.relax(s.state, {.step = 0.05, .inertia_scale = scale});
-  const std::vector<dynamics::Stepper::Force> forces = s.stepper.forces();
+  const std::vector<dynamics::ContactForce> forces = s.stepper.forces();
   std::vector<double> force(6, 0.0);
   for (std::size_t c = 0; c < s.stepper.contacts().size(); ++c) {
     const contact::Contact& contact = s.stepper.contacts()[c];

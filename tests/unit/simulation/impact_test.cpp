@@ -131,7 +131,7 @@ TEST(Turn, IsKnownToContactsAtTheEndOfTheStep) {
     EXPECT_GT(missed, 10.0 * tolerance);
     EXPECT_LT(largest_error,
               0.025);  // by the length of the step: a third to three fifths of it with half the step
-    EXPECT_LT(std::abs(s.residual()), 1e-3 * s.stepper.kinetic_energy(s.state));
+    EXPECT_LT(std::abs(s.residual()), 1e-3 * dynamics::kinetic_energy(s.model, s.state));
   }
 }
 
@@ -170,7 +170,7 @@ TEST(Turn, ABodyOfBondedBlocksStaysWhole) {
   Simulator s = spinning_body(corners, 3.0, 1e5, 1);
   s.run(3.0, 0.002);
   for (const contact::Memory& memory : s.state.contacts.memory) EXPECT_TRUE(memory.bonded);
-  for (const dynamics::Stepper::Force& force : s.stepper.forces()) EXPECT_LT(std::abs(force.normal), 2e4);
+  for (const dynamics::ContactForce& force : s.stepper.forces()) EXPECT_LT(std::abs(force.normal), 2e4);
 }
 
 // The same pole in steps of 0.06 s, which are cut where it turns by too much. One in which it does so only in its second half is cut there

@@ -115,8 +115,8 @@ TEST(OrderControl, EnergyOfSpringsIsThatOfWhereBlocksAreNow) {
   stepper.measure_stored_energy(s.state);
   const auto balance = [&] {
     const dynamics::EnergyLedger& ledger = s.state.ledger;
-    return stepper.kinetic_energy(s.state) + stepper.strain_energy(s.state) +
-           stepper.gravity_energy(s.state) + dynamics::Stepper::contact_energy(s.state) + ledger.friction +
+    return dynamics::kinetic_energy(s.model, s.state) + dynamics::strain_energy(s.model, s.state) +
+           dynamics::gravity_energy(s.model, s.state) + dynamics::spring_energy(s.state) + ledger.friction +
            ledger.damping + ledger.numerical - ledger.input;
   };
   const double before = balance(), stored = s.state.contact_energy;

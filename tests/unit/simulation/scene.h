@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "dynamics/energy.h"
 #include "dynamics/step.h"
 #include "overlap/overlap.h"
 #include "simulation/build_model.h"
@@ -139,8 +140,8 @@ struct Simulator {
     }
   }
   [[nodiscard]] double energy() const {
-    return stepper.kinetic_energy(state) + stepper.strain_energy(state) + stepper.gravity_energy(state) +
-           dynamics::Stepper::contact_energy(state);
+    return dynamics::kinetic_energy(model, state) + dynamics::strain_energy(model, state) +
+           dynamics::gravity_energy(model, state) + dynamics::spring_energy(state);
   }
   /// What the energy audit leaves unexplained, J.
   [[nodiscard]] double residual() const {

@@ -1,0 +1,55 @@
+#include "dynamics/energy.h"
+
+#include <cmath>
+
+#include "core/index.h"
+
+namespace keyblock::dynamics {
+
+double kinetic_energy(const Model& model, const State& state) {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (!model.moves(b)) continue;
+    const Block& block = model.blocks[b];
+    double squared = 0.0;
+    for (std::size_t k = block.first; k < block.first + 2 * at(block.size); ++k)
+      squared += state.velocity[k] * state.velocity[k];
+    sum += 0.5 * block.material.density * squared;
+  }
+  return sum;
+}
+
+double strain_energy(const Model& model, const State& state) {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (model.moves(b)) sum += model.blocks[b].elasticity.energy(&state.position[model.blocks[b].first]);
+  }
+  return sum;
+}
+
+double gravity_energy(const Model& model, const State& state) {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (!model.moves(b)) continue;
+    const Block& block = model.blocks[b];
+    const Vec2 now{state.position[block.first], state.position[block.first + 1]};
+    sum -= block.body_force() * dot(model.gravity, now - std::sqrt(block.area) * block.centroid);
+  }
+  return sum;
+}
+
+double support_energy(const Model& model, const State& state, double time) {
+  double sum = 0.0;
+  for (const GroundSpring& spring : model.springs) {
+    if (!model.moves(at(spring.block))) continue;
+    const std::size_t first = model.blocks[at(spring.block)].first + at(spring.axis);
+    double coordinate = 0.0;
+    for (std::size_t k = 0; k < spring.phi.size(); ++k)
+      coordinate += spring.phi[k] * state.position[first + 2 * k];
+    const double stretch = coordinate - spring.target(time);
+    sum += 0.5 * spring.stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
+}  // namespace keyblock::dynamics

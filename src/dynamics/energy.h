@@ -1,0 +1,22 @@
+#pragma once
+#include "dynamics/model.h"
+#include "dynamics/state.h"
+
+namespace keyblock::dynamics {
+
+// J per thickness, of the blocks that move, in a state.
+
+/// ½ Σ ρ v².
+double kinetic_energy(const Model& model, const State& state);
+/// Of the elastic strain of blocks.
+double strain_energy(const Model& model, const State& state);
+/// Against the positions before the run.
+double gravity_energy(const Model& model, const State& state);
+/// Of the springs to the ground, whose ends are where they are to be at this time, s.
+double support_energy(const Model& model, const State& state, double time);
+/// In the springs of contacts and of supports, as the last step summed it.
+inline double spring_energy(const State& state) {
+  return state.contact_energy + state.support_energy;
+}
+
+}  // namespace keyblock::dynamics

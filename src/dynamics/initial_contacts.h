@@ -1,0 +1,14 @@
+#pragma once
+#include <span>
+
+#include "contact/detection.h"
+#include "dynamics/model.h"
+
+namespace keyblock::dynamics {
+
+/// Before the first step: contacts where a joint is in place hold as bonds, where its law has cohesion or tension, and carry the stress of
+/// the rock. J per thickness, that their springs store.
+double begin_contacts(const Model& model, const contact::Tolerances& tolerances,
+                      std::span<contact::Contact> contacts);
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,107 @@
+#include "dynamics/linear_systems.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "core/index.h"
+#include "dynamics/step_numbers.h"
+#include "dynamics/step_problem.h"
+#include "linalg/minimum_degree.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+using Unknowns = std::pair<int, int>;  // Block::unknown of two blocks, the smaller first
+
+Unknowns unknowns_of(const Model& model, int a, int b) {
+  return std::minmax(model.blocks[at(a)].unknown, model.blocks[at(b)].unknown);
+}
+
+std::unique_ptr<linalg::BlockSolver> make_direct_solver(const SolverOptions& options) {
+  if (options.linear == LinearSolver::direct) return linalg::make_cholmod();
+  return linalg::make_block_cholesky(options.accelerators.single_precision ? linalg::Precision::automatic
+                                                                           : linalg::Precision::full);
+}
+
+}  // namespace
+
+LinearSystems::LinearSystems(const Model& model, ThreadTeam& team)
+    : direct_{make_direct_solver(model.solver)}, iterative_{linalg::make_block_conjugate_residual(&team)} {
+  for (const Block& block : model.blocks) {
+    if (block.unknown >= 0) unknown_sizes_.push_back(2 * block.size);
+  }
+}
+
+void LinearSystems::find_pairs(const Model& model, const State& state) {
+  const std::vector<contact::Candidate>& list = state.contacts.pairs;
+  pair_of_candidate_.resize(list.size());
+  auto next = state.pattern.begin();
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const Unknowns pair = unknowns_of(model, list[k].block_a, list[k].block_b);
+    if (pair.first < 0) {
+      pair_of_candidate_[k] = StepProblem::of_fixed;
+      continue;
+    }
+    while (next != state.pattern.end() && *next < pair) ++next;
+    pair_of_candidate_[k] = next != state.pattern.end() && *next == pair
+                                ? static_cast<int>(next - state.pattern.begin())
+                                : StepProblem::without_room;
+  }
+  knows_pairs_ = true;
+}
+
+void LinearSystems::make_room(const Model& model, std::span<const contact::Contact> contacts, State& state) {
+  std::vector<Unknowns> used;
+  for (const contact::Contact& c : contacts) {
+    const Unknowns pair = unknowns_of(model, c.block_a, c.block_b);
+    if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Unknowns> all;
+  std::set_union(used.begin(), used.end(), state.pattern.begin(), state.pattern.end(),
+                 std::back_inserter(all));
+  const bool is_idle = static_cast<double>(all.size() - used.size()) >
+                       step_numbers::most_idle_share * static_cast<double>(used.size());
+  state.pattern = is_idle ? std::move(used) : std::move(all);
+  forget();
+  find_pairs(model, state);
+}
+
+void LinearSystems::forget() {
+  knows_pairs_ = direct_.analysed = iterative_.analysed = false;
+  products_.reset();
+}
+
+/// Whether conjugate residuals take less than a factorization. Static steps have little inertia, and need many more iterations.
+bool LinearSystems::prefers_iterations(const State& state, bool is_static) {
+  using namespace step_numbers;
+  const std::size_t blocks = unknown_sizes_.size();
+  if (!products_) {
+    products_ = blocks > most_factored
+                    ? HUGE_VAL
+                    : linalg::approximate_minimum_degree(static_cast<int>(blocks), state.pattern).products;
+  }
+  const double worth = is_static ? static_iterations_worth : dynamic_iterations_worth;
+  return *products_ > worth * static_cast<double>(blocks);
+}
+
+LinearSystems::Chosen LinearSystems::choose(const Model& model, const State& state, bool is_static,
+                                            bool must_be_direct) {
+  const LinearSolver wanted = model.solver.linear;
+  // Multipliers ask for more digits than conjugate residuals are stopped at.
+  const bool may_iterate = !must_be_direct && model.solver.contact == ContactMethod::penalty;
+  const bool iterates =
+      may_iterate && (wanted == LinearSolver::iterative ||
+                      (wanted == LinearSolver::automatic && prefers_iterations(state, is_static)));
+  Linear& linear = iterates ? iterative_ : direct_;
+  const bool is_new = !linear.analysed;
+  if (is_new) linear.solver->analyse(unknown_sizes_, state.pattern);
+  linear.analysed = true;
+  return {*linear.solver, is_new};
+}
+
+}  // namespace keyblock::dynamics
