@@ -111,12 +111,16 @@ Vec2 RotationCorrection::at_end(const Attempt& attempt, std::size_t vertex) cons
   return centroid + moved + Vec2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
 }
 
-/// J per thickness, that a contact may do over what turning makes it miss. Static steps have no such measure.
-double RotationCorrection::tolerated_work(const Attempt& attempt) const {
+/// J per thickness, that a contact may do over what turning makes it miss. farthest: m, what the sides of a contact go against each other.
+/// A static step without gravity has no such measure.
+double RotationCorrection::tolerated_work(const Attempt& attempt, double farthest) const {
   using namespace step_numbers;
-  if (attempt.drive.is_static) return HUGE_VAL;
-  if (weight_ <= 0.0) return kinetic_work_share * kinetic_energy(attempt.model, attempt.state);
-  return weight_work_share * weight_ * attempt.model.block_size;
+  const bool is_static = attempt.drive.is_static;
+  if (weight_ <= 0.0)
+    return is_static ? HUGE_VAL : weightless_work_share * kinetic_energy(attempt.model, attempt.state);
+  if (is_static) return static_work_share * weight_ * farthest;
+  return std::min(weight_work_share * weight_ * attempt.model.block_size,
+                  moving_work_share * kinetic_energy(attempt.model, attempt.state));
 }
 
 /// m, change of δ: by the work of the force over it, and by a tenth of that work for what the spring stores by δ only.
@@ -141,7 +145,7 @@ Verdict RotationCorrection::check(const Attempt& attempt) {
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   const double moved = std::sqrt(largest_squared_norm(attempt.team, attempt.relative)),
-               work = tolerated_work(attempt);
+               work = tolerated_work(attempt, std::max(moved, turn * largest_radius_));
   if (is_surely_known(attempt, turn * (turn * largest_radius_ + moved), work)) return Verdict::accepted;
   found_.assign(attempt.contacts.size(), {});
   Verdict verdict = Verdict::accepted;
@@ -177,7 +181,8 @@ Verdict RotationCorrection::check_contact(const Attempt& attempt, std::size_t c,
   if ((std::abs(change.x) <= most_missed || stays_open) && std::abs(change.y) <= bond.along)
     return Verdict::accepted;
   // A static step is made shorter at once where δ is large: its length has no meaning.
-  const bool is_too_far = attempt.drive.is_static || spin > step_numbers::most_rotation;
+  const bool is_too_far =
+      spin > step_numbers::most_rotation || (attempt.drive.is_static && std::abs(change.x) > tolerance_);
   return is_too_far ? Verdict::rotated_too_far : Verdict::rotated;
 }
 

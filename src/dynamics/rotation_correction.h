@@ -43,7 +43,7 @@ class RotationCorrection {
   double keep_shear(const Attempt& attempt, std::span<contact::Memory> memory);
 
  private:
-  [[nodiscard]] double tolerated_work(const Attempt& attempt) const;
+  [[nodiscard]] double tolerated_work(const Attempt& attempt, double farthest) const;
   [[nodiscard]] double tolerated(double work, double force, double stiffness) const;
   [[nodiscard]] bool is_surely_known(const Attempt& attempt, double missed_at_most, double work) const;
   Verdict check_contact(const Attempt& attempt, std::size_t c, double work);

@@ -87,11 +87,13 @@ inline constexpr int most_rotations = 4;
 
 /// rad, that a block in contact turns by in a step at most. Larger: forces keep a direction that they no longer have.
 inline constexpr double most_rotation = 0.1;
-/// Of what lifts a mean block by its size, work that a contact may do over what turning makes it miss. Larger: energy comes and goes without
-/// account; smaller: more steps are taken again.
-inline constexpr double weight_work_share = 1e-3;
-/// The same of the kinetic energy, where there is no weight to measure work by.
-inline constexpr double kinetic_work_share = 1e-6;
+/// Work that a contact may do over what turning makes it miss. Larger: energy comes and goes without account; smaller: more steps are taken
+/// again. It is a share of what lifts a mean block by its size, and of the kinetic energy where this is less.
+inline constexpr double weight_work_share = 1e-3, moving_work_share = 5e-4;
+/// In a static step: of what lifts a mean block by what the sides of contacts go against each other.
+inline constexpr double static_work_share = 1e-4;
+/// Of the kinetic energy, where there is no weight to measure work by.
+inline constexpr double weightless_work_share = 1e-6;
 /// Of contact::Tolerances::turn, below which a correction is not worth an attempt whatever the forces.
 inline constexpr double least_rotation_share = 2e-5;
 /// Of the strength of a bond, what turning may seem to stretch it by.
