@@ -1,0 +1,15 @@
+#pragma once
+#include "dynamics/model.h"
+#include "dynamics/state.h"
+#include "simulation/record.h"
+
+namespace keyblock::simulation {
+
+/// J per thickness, that the system has stored: kinetic + strain + gravity + springs of contacts and supports.
+double stored_energy(const dynamics::Model& model, const dynamics::State& state);
+
+/// Where the energy of a run is and where it went. All potentials count from the start of the run, when `initial` was stored, J per
+/// thickness.
+Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, double initial);
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,13 @@
+#pragma once
+#include "dynamics/step.h"
+#include "simulation/damage.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// Takes the blocks of the excavations that a stage opens out of the model and of the state. The first excavation is where the gauge of
+/// damage starts. Energy that goes with the blocks is negative input.
+void excavate(const RunSetup& setup, const Stage& stage, dynamics::Model& model, dynamics::State& state,
+              dynamics::Stepper& stepper, DamageGauge& gauge);
+
+}  // namespace keyblock::simulation
