@@ -12,9 +12,8 @@
 #include "simulation/record.h"
 #include "simulation/reporter.h"
 #include "simulation/run_options.h"
-#include "simulation/settle.h"
 #include "simulation/setup.h"
-#include "simulation/stage_motion.h"
+#include "simulation/stage_at_hand.h"
 #include "simulation/stage_outlook.h"
 
 namespace keyblock::simulation {
@@ -63,15 +62,6 @@ class Runner {
   [[nodiscard]] int stage() const { return now_.stage; }
 
  private:
-  /// A stage that has begun and has not ended.
-  struct StageAtHand {
-    StageRecord record;
-    long most_steps = 0;
-    bool is_in_equilibrium = false;
-    std::optional<Settler> settler;     ///< of a static stage
-    std::optional<StageMotion> motion;  ///< of one that shakes
-  };
-
   void begin();
   void resume();
   void orders_changed();

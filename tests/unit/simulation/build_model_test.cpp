@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "../scene.h"
 #include "core/error.h"
-#include "scene.h"
 
 namespace keyblock::simulation {
 namespace {

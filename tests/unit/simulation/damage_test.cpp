@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../scene.h"
 #include "core/index.h"
-#include "scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <thread>
 
+#include "../scene.h"
 #include "core/error.h"
-#include "scene.h"
 #include "simulation/feasibility.h"
 
 namespace keyblock::simulation {

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "../fresh_folder.h"
+#include "../scene.h"
 #include "core/index.h"
-#include "scene.h"
 #include "simulation/damage_fields.h"
 
 namespace keyblock::simulation {

@@ -8,10 +8,10 @@
 
 #include "../fresh_folder.h"
 #include "../mutations.h"
+#include "../scene.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
-#include "scene.h"
 #include "simulation/checkpoint.h"
 
 namespace keyblock::simulation {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "../scene.h"
 #include "core/index.h"
-#include "scene.h"
 #include "simulation/fallen.h"
 
 namespace keyblock::simulation {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "../fresh_folder.h"
-#include "scene.h"
+#include "../scene.h"
 #include "simulation/run.h"
 
 namespace keyblock::simulation {

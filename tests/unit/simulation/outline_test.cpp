@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "../scene.h"
 #include "core/index.h"
 #include "geometry/quadrature.h"
-#include "scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scene.h"
+#include "../scene.h"
 
 namespace keyblock::simulation {
 namespace {

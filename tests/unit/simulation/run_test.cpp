@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "../fresh_folder.h"
+#include "../scene.h"
 #include "core/error.h"
-#include "scene.h"
 #include "simulation/checkpoint.h"
 
 namespace keyblock::simulation {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "../fresh_folder.h"
+#include "../scene.h"
 #include "core/error.h"
-#include "scene.h"
 #include "simulation/checkpoint.h"
 
 namespace keyblock::simulation {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene.h"
+#include "../scene.h"
 #include "simulation/run.h"
 #include "simulation/verdict.h"
 

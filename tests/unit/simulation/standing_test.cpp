@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "../scene.h"
 #include "core/index.h"
-#include "scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "../fresh_folder.h"
-#include "scene.h"
+#include "../scene.h"
 #include "simulation/run.h"
 
 namespace keyblock::simulation {

@@ -6,9 +6,9 @@
 #include <random>
 #include <span>
 
+#include "../scene.h"
 #include "core/index.h"
 #include "overlap/overlap.h"
-#include "scene.h"
 #include "simulation/damage.h"
 
 namespace keyblock::simulation {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene.h"
+#include "../scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "../scene.h"
 #include "overlap/overlap.h"
-#include "scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene.h"
+#include "../scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <vector>
 
+#include "../scene.h"
 #include "core/error.h"
-#include "scene.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "../scene.h"
 #include "overlap/overlap.h"
-#include "scene.h"
 #include "simulation/damage.h"
 
 namespace keyblock::simulation {

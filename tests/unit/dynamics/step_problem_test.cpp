@@ -8,10 +8,10 @@
 #include <random>
 #include <set>
 
+#include "../scene.h"
 #include "block/eigenvalue_floor.h"
 #include "dynamics/earlier_attempt.h"
 #include "dynamics/vertex_field.h"
-#include "scene.h"
 
 namespace keyblock::dynamics {
 namespace {

@@ -1,0 +1,19 @@
+#pragma once
+#include <optional>
+
+#include "simulation/record.h"
+#include "simulation/settle.h"
+#include "simulation/stage_motion.h"
+
+namespace keyblock::simulation {
+
+/// A stage that has begun and has not ended.
+struct StageAtHand {
+  StageRecord record;
+  long most_steps = 0;
+  bool is_in_equilibrium = false;     ///< static: there is nothing more to do
+  std::optional<Settler> settler;     ///< of a static stage
+  std::optional<StageMotion> motion;  ///< of one that shakes
+};
+
+}  // namespace keyblock::simulation
