@@ -6,36 +6,16 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <set>
 
 #include "../scene.h"
 #include "block/eigenvalue_floor.h"
 #include "dynamics/earlier_attempt.h"
+#include "dynamics/open_close.h"
 #include "dynamics/vertex_field.h"
+#include "one_step.h"
 
 namespace keyblock::dynamics {
 namespace {
-
-/// Room for all pairs that have contacts.
-void analyse(const Model& model, StepProblem& problem, linalg::BlockSolver& solver) {
-  std::vector<int> sizes;
-  for (const Block& block : model.blocks) {
-    if (!block.fixed) sizes.push_back(2 * block.size);
-  }
-  const auto for_rows = [&](const auto& body) {
-    for (StepProblem::Row& row : problem.rows()) {
-      if (row.unknown_a < 0 || row.unknown_b < 0) continue;
-      body(row, std::pair<int, int>(std::minmax(row.unknown_a, row.unknown_b)));
-    }
-  };
-  std::set<std::pair<int, int>> found;
-  for_rows([&](StepProblem::Row&, std::pair<int, int> pair) { found.insert(pair); });
-  const std::vector<std::pair<int, int>> pairs(found.begin(), found.end());
-  for_rows([&](StepProblem::Row& row, std::pair<int, int> pair) {
-    row.pair = static_cast<int>(std::ranges::lower_bound(pairs, pair) - pairs.begin());
-  });
-  solver.analyse(sizes, pairs);
-}
 
 /// Two blocks on a floor, of which one has an order, and a third of that order on both.
 simulation::Scene small_wall(double friction, int order) {
@@ -48,27 +28,6 @@ simulation::Scene small_wall(double friction, int order) {
 }
 
 class StepProblemOrder : public ::testing::TestWithParam<int> {};
-
-/// Drives a scene on from where it is, by 5 ms.
-struct NextStep {
-  explicit NextStep(const simulation::Simulator& s) : rule(s.model.blocks.size()) {
-    drive.step = 0.005;
-    drive.end_time = s.state.time + drive.step;
-    drive.rule = rule;
-  }
-  NextStep(const NextStep&) = delete;
-  NextStep& operator=(const NextStep&) = delete;
-
-  std::vector<Integrator> rule;
-  Drive drive;
-};
-
-/// `analyse` says which they are.
-std::vector<int> no_pairs(std::span<const contact::Contact> contacts) {
-  int most = -1;
-  for (const contact::Contact& c : contacts) most = std::max(most, c.candidate);
-  return std::vector<int>(static_cast<std::size_t>(most + 1), -1);
-}
 
 // The matrix that is assembled is the derivative of the gradient, and the gradient that of the forces, at every order.
 TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
