@@ -117,9 +117,9 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
               .at_least = zero_allowed && constant ? 0.0 : -HUGE_VAL});
     const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
     static const std::string std_text = fmt::format(
-        "Standard deviation. Needed for `uniform`, `normal` and `lognormal`; the others have none of their "
-        "own and leave it aside. That of `lognormal` is at most {} times the mean: beyond, half of the total "
-        "length is that of fewer than 2 joints in 100.",
+        "Standard deviation. `uniform`, `normal` and `lognormal` need it; the others do not use it. For "
+        "`lognormal` it is "
+        "at most {} times the mean. Beyond that, fewer than 2 joints in 100 make half of the total length.",
         most_lognormal_variation);
     const bool given = d.number("std", distribution.std,
                                 {.meaning = std_text,

@@ -63,7 +63,7 @@ function interruption(run: Run): Finding {
   const left = run.header.model.stages.slice(run.stages.length).map(quoted);
   const notRun = left.length === 0 ? "" : `; ${list(left)} ${left.length === 1 ? "was" : "were"} not run`;
   const text = run.header.run.cut_off
-    ? `The run was cut off ${whereItStopped(run)}, step ${integer(run.header.run.steps)}${notRun}. It left no record of its end (it was killed, or still goes on): blocks are counted in the last recorded frame, and what is measured at the end of a stage is not known of this one.`
+    ? `The run was cut off ${whereItStopped(run)}, step ${integer(run.header.run.steps)}${notRun}. It was killed, or still goes on. Blocks are counted in the last recorded frame. Numbers that only the end of a stage gives are missing.`
     : `The run was interrupted ${whereItStopped(run)}${notRun}. The numbers hold for what was computed until then.`;
   return { grade: "attention", text };
 }
