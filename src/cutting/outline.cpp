@@ -208,7 +208,15 @@ class ChainSimplifier {
       if (is_inner(static_cast<int>(v))) continue;
       for (const HalfEdge h : edges_at_[v]) follow(h);
     }
-    // What is left are rings without ends. Their lowest vertex is one that both sides agree on.
+    follow_rings();
+    while (restore_faces()) {
+    }
+    return std::move(dropped_);
+  }
+
+ private:
+  /// What is left are rings without ends. Their lowest vertex is one that both sides agree on.
+  void follow_rings() {
     std::vector<int> by_place;
     for (std::size_t e = 0; e < seen_.size(); ++e) {
       if (!seen_[e]) by_place.insert(by_place.end(), {graph_.edges[e].from, graph_.edges[e].to});
@@ -216,19 +224,20 @@ class ChainSimplifier {
     std::sort(by_place.begin(), by_place.end(),
               [&](int v, int w) { return graph_.point(v) < graph_.point(w); });
     for (const int v : by_place) follow(edges_at_[at(v)].front());
-    for (bool again = true; again;) {
-      again = false;
-      for (const Face& face : graph_.faces) {
-        if (is_simple(graph_, face, dropped_, distance_)) continue;
-        for (const auto& ring : face.rings) {
-          for (const HalfEdge h : ring) again = std::exchange(dropped_[at(graph_.origin(h))], 0) || again;
-        }
-      }
-    }
-    return std::move(dropped_);
   }
 
- private:
+  /// Faces that are not simple get all their vertices back. Whether any did.
+  bool restore_faces() {
+    bool restored = false;
+    for (const Face& face : graph_.faces) {
+      if (is_simple(graph_, face, dropped_, distance_)) continue;
+      for (const auto& ring : face.rings) {
+        for (const HalfEdge h : ring) restored = std::exchange(dropped_[at(graph_.origin(h))], 0) || restored;
+      }
+    }
+    return restored;
+  }
+
   [[nodiscard]] bool is_inner(int vertex) const {
     const auto& edges = edges_at_[at(vertex)];
     return edges.size() == 2 && graph_.edge(edges[0]).label == graph_.edge(edges[1]).label;
@@ -261,6 +270,19 @@ class ChainSimplifier {
   std::vector<char> dropped_;                    ///< per vertex
 };
 
+/// The block of a face. Points of the graph, in metres, are moved by `shift`.
+CutBlock block_of(const PlanarGraph& graph, const Face& face, std::vector<LabelledRing> rings, Vec2 shift) {
+  CutBlock block;
+  block.excavations = face.excavations;
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    Ring outline;
+    for (const int v : rings[r].vertices) outline.push_back(shift + graph.grid * to_vec2(graph.point(v)));
+    r == 0 ? block.polygon.outer = std::move(outline) : block.polygon.holes.emplace_back(std::move(outline));
+    block.labels.push_back(std::move(rings[r].labels));
+  }
+  return block;
+}
+
 }  // namespace
 
 std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, double straight, Vec2 shift,
@@ -283,23 +305,14 @@ std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, do
       rings.push_back(collinear > 0.0 ? simplifier.simplified(ring, common) : ring);
     }
     if (crosses_itself(graph, rings)) rings = full;
-    CutBlock block;
-    block.excavations = face.excavations;
-    for (std::size_t r = 0; r < rings.size(); ++r) {
-      Ring outline;
-      for (const int v : rings[r].vertices) {
-        outline.push_back(shift + graph.grid * to_vec2(graph.point(v)));
-        seen[at(v)] |= 2;
-      }
-      r == 0 ? block.polygon.outer = std::move(outline)
-             : block.polygon.holes.emplace_back(std::move(outline));
-      block.labels.push_back(std::move(rings[r].labels));
+    for (const LabelledRing& ring : rings) {
+      for (const int v : ring.vertices) seen[at(v)] |= 2;
     }
+    blocks.push_back(block_of(graph, face, std::move(rings), shift));
     if (crosses_itself(graph, full)) {
-      const Vec2 place = block.polygon.outer.front();
+      const Vec2 place = blocks.back().polygon.outer.front();
       throw RunError(fmt::format("cutting failed: the block at ({}, {}) crosses itself", place.x, place.y));
     }
-    blocks.push_back(std::move(block));
   }
   statistics.merged_vertices += static_cast<int>(std::count(seen.begin(), seen.end(), 1));
   return blocks;

@@ -191,37 +191,51 @@ MotionComponent cut_out(MotionComponent component, double from, double to) {
   return component;
 }
 
+namespace {
+
+std::string describe_file(const MotionComponent& c) {
+  std::string text = fmt::format("{}: {}\n", std::filesystem::path(c.file).filename().string(), c.format);
+  if (!c.event.empty()) text += fmt::format("  event      {}\n", printable(c.event, longest_text));
+  if (!c.station.empty()) text += fmt::format("  station    {}\n", printable(c.station, longest_text));
+  return text;
+}
+
+std::string describe_component(const MotionComponent& c) {
+  const MotionMeasures m = measure(c);
+  const std::string step = c.times.empty() ? fmt::format("dt {:.6g} s", c.dt) : "uneven steps";
+  std::string text =
+      fmt::format("  component  {}{}\n", direction(c),
+                  c.label.empty() ? "" : fmt::format("  ({})", printable(c.label, longest_text)));
+  text +=
+      fmt::format("    samples              {}, {}, {:.6g} s\n", c.acceleration.size(), step, c.duration());
+  const std::string as_read =
+      c.file_unit == "m/s2" ? "" : fmt::format("{:.6g} {} = ", m.peak / c.file_unit_in_si, c.file_unit);
+  text += fmt::format("    peak acceleration    {}{:.4g} m/s2 = {:.3g} g at {:.6g} s\n", as_read, m.peak,
+                      m.peak / standard_gravity, m.peak_time);
+  text += fmt::format("    peak velocity        {:.4g} m/s (integrated from rest; {:.4f} m/s at the end)\n",
+                      m.peak_velocity, m.final_velocity);
+  text += fmt::format("    Arias intensity      {:.4g} m/s; 5-95 % duration {:.4g} s\n", m.arias_intensity,
+                      m.significant_duration);
+  if (!c.processing.empty())
+    text += fmt::format("    reading              {}\n", printable(c.processing, longest_text));
+  for (const std::string& words : {unusual_peak(m.peak), jumps_text(end_jumps(c))}) {
+    if (!words.empty()) text += fmt::format("    note                 {}\n", words);
+  }
+  for (const std::string& note : c.notes) text += fmt::format("    note                 {}\n", note);
+  return text;
+}
+
+}  // namespace
+
 std::string describe_motion(const std::vector<MotionComponent>& components) {
   std::string text;
   std::string file;
   for (const MotionComponent& c : components) {
     if (c.file != file) {
       file = c.file;
-      text += fmt::format("{}{}: {}\n", text.empty() ? "" : "\n",
-                          std::filesystem::path(file).filename().string(), c.format);
-      if (!c.event.empty()) text += fmt::format("  event      {}\n", printable(c.event, longest_text));
-      if (!c.station.empty()) text += fmt::format("  station    {}\n", printable(c.station, longest_text));
+      text += (text.empty() ? "" : "\n") + describe_file(c);
     }
-    const MotionMeasures m = measure(c);
-    const std::string step = c.times.empty() ? fmt::format("dt {:.6g} s", c.dt) : "uneven steps";
-    text += fmt::format("  component  {}{}\n", direction(c),
-                        c.label.empty() ? "" : fmt::format("  ({})", printable(c.label, longest_text)));
-    text +=
-        fmt::format("    samples              {}, {}, {:.6g} s\n", c.acceleration.size(), step, c.duration());
-    const std::string as_read =
-        c.file_unit == "m/s2" ? "" : fmt::format("{:.6g} {} = ", m.peak / c.file_unit_in_si, c.file_unit);
-    text += fmt::format("    peak acceleration    {}{:.4g} m/s2 = {:.3g} g at {:.6g} s\n", as_read, m.peak,
-                        m.peak / standard_gravity, m.peak_time);
-    text += fmt::format("    peak velocity        {:.4g} m/s (integrated from rest; {:.4f} m/s at the end)\n",
-                        m.peak_velocity, m.final_velocity);
-    text += fmt::format("    Arias intensity      {:.4g} m/s; 5-95 % duration {:.4g} s\n", m.arias_intensity,
-                        m.significant_duration);
-    if (!c.processing.empty())
-      text += fmt::format("    reading              {}\n", printable(c.processing, longest_text));
-    for (const std::string& words : {unusual_peak(m.peak), jumps_text(end_jumps(c))}) {
-      if (!words.empty()) text += fmt::format("    note                 {}\n", words);
-    }
-    for (const std::string& note : c.notes) text += fmt::format("    note                 {}\n", note);
+    text += describe_component(c);
   }
   return text;
 }

@@ -59,24 +59,32 @@ bool matches_table(const MotionText& text) {
   return false;
 }
 
-// A comment may name the unit: `# units: cm/s2`, `# acceleration in gal`. One that speaks of a unit in passing must not be passed over.
+// Units of acceleration that the comment in line k names. One that speaks of a unit in passing must not be passed over.
+std::vector<UnitMention> units_in_comment(const MotionText& text, std::size_t k) {
+  std::vector<UnitMention> units;
+  const std::string words = lower(text.line(k));
+  const bool announces = words.find("unit") != std::string::npos || words.find("accel") != std::string::npos;
+  for (const UnitMention& mention : unit_mentions(words)) {
+    const bool acceleration = mention.kind == UnitKind::acceleration;
+    if (!mention.sure && !(acceleration && mention.after_number)) continue;
+    const bool named = announces && mention.sure;
+    if (!acceleration && !named && mention.kind != UnitKind::unknown) continue;
+    const bool plain = acceleration && mention.unit.in_si == 1.0;
+    if ((!acceleration || !named) && !plain)
+      text.fail(k, mention.at + 1, quoted_text(mention.words),
+                "the unit in a header line, such as 'time (s), acceleration (cm/s2)', or in a comment "
+                "'# units: cm/s2'");
+    units.push_back(mention);
+  }
+  return units;
+}
+
+// A comment may name the unit: `# units: cm/s2`, `# acceleration in gal`.
 std::optional<AccelerationUnit> comment_unit(const MotionText& text, MotionComponent& first) {
   std::optional<AccelerationUnit> unit;
   for (std::size_t k = 0; k < text.size(); ++k) {
     if (!is_comment(text.line(k))) continue;
-    const std::string words = lower(text.line(k));
-    const bool announces =
-        words.find("unit") != std::string::npos || words.find("accel") != std::string::npos;
-    for (const UnitMention& mention : unit_mentions(words)) {
-      const bool acceleration = mention.kind == UnitKind::acceleration;
-      if (!mention.sure && !(acceleration && mention.after_number)) continue;
-      const bool named = announces && mention.sure;
-      if (!acceleration && !named && mention.kind != UnitKind::unknown) continue;
-      const bool plain = acceleration && mention.unit.in_si == 1.0;
-      if ((!acceleration || !named) && !plain)
-        text.fail(k, mention.at + 1, quoted_text(mention.words),
-                  "the unit in a header line, such as 'time (s), acceleration (cm/s2)', or in a comment "
-                  "'# units: cm/s2'");
+    for (const UnitMention& mention : units_in_comment(text, k)) {
       if (unit && unit->in_si != mention.unit.in_si)
         text.fail(k, mention.at + 1, quoted_text(mention.words), "one unit of acceleration in the comments");
       if (!unit)

@@ -129,6 +129,22 @@ UnitMention of_length(const Length& length, int power) {
   return mention;
 }
 
+// `cm/s2`, and what is no unit of a motion but looks like one: `samples/s`.
+std::optional<UnitMention> fraction(std::string_view head, std::string_view below) {
+  const int power = seconds_power(below);
+  if (power == 0) return {};
+  if (const Length* length = length_of(head)) return of_length(*length, power);
+  const bool rate = is_one_of(
+      head, {"pts", "pt", "points", "point", "samples", "sample", "cyc", "cycles", "cycle", "", "1"});
+  const bool letters = !head.empty() && std::all_of(head.begin(), head.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || c == '%' || (c & 0x80) != 0;
+  });
+  if (rate || !letters) return {};
+  UnitMention mention;
+  mention.sure = true;
+  return mention;
+}
+
 // A unit in one word.
 std::optional<UnitMention> single(std::string_view word) {
   if (const auto plain = plain_acceleration(word)) {
@@ -139,21 +155,7 @@ std::optional<UnitMention> single(std::string_view word) {
     return mention;
   }
   const std::size_t slash = word.find('/');
-  const std::string_view head = word.substr(0, slash);
-  if (slash != std::string_view::npos) {
-    const int power = seconds_power(word.substr(slash + 1));
-    if (power == 0) return {};
-    if (const Length* length = length_of(head)) return of_length(*length, power);
-    const bool rate = is_one_of(
-        head, {"pts", "pt", "points", "point", "samples", "sample", "cyc", "cycles", "cycle", "", "1"});
-    const bool letters = !head.empty() && std::all_of(head.begin(), head.end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || c == '%' || (c & 0x80) != 0;
-    });
-    if (rate || !letters) return {};
-    UnitMention mention;
-    mention.sure = true;
-    return mention;
-  }
+  if (slash != std::string_view::npos) return fraction(word.substr(0, slash), word.substr(slash + 1));
   if (const Length* length = length_of(word)) return of_length(*length, 0);
   for (const std::string_view end : {"s-2", "sec-2"}) {
     if (!word.ends_with(end)) continue;

@@ -26,6 +26,10 @@ constexpr char any_space = ' ';  // as a separator: any number of spaces and tab
 /// Those that come first are tried first.
 constexpr std::array<char, 4> separators{',', ';', '\t', any_space};
 
+bool separates(char character, char separator) {
+  return character == separator || (separator == any_space && character == '\t');
+}
+
 /// Cells of one line; a quoted one may hold the separator, and a doubled quote for a quote.
 std::vector<Cell> cells_of(std::string_view line, char separator) {
   std::vector<Cell> cells;
@@ -33,9 +37,7 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
   bool quoted = false;
   std::string text;
   for (std::size_t k = 0; k <= line.size(); ++k) {
-    const bool between =
-        k == line.size() || line[k] == separator || (separator == any_space && line[k] == '\t');
-    if (k == line.size() || (between && !quoted)) {
+    if (k == line.size() || (separates(line[k], separator) && !quoted)) {
       const auto lead = line.substr(begin, k - begin).find_first_not_of(" \t");
       Cell cell{std::string(trimmed(text)),
                 static_cast<int>(begin + (lead == std::string_view::npos ? 0 : lead)) + 1};

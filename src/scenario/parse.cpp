@@ -71,6 +71,14 @@ struct Axis {
   std::vector<std::vector<const Value*>> rows;
 };
 
+// Values of an item of `values`: one each of several keys, or itself.
+std::vector<const Value*> row_of(const Value& item, bool several) {
+  if (!several) return {&item};
+  std::vector<const Value*> row;
+  for (const Value& value : item.items) row.push_back(&value);
+  return row;
+}
+
 // Those axes, and of them those rows, that can be tried.
 std::vector<Axis> axes_of(const Value& document) {
   std::vector<Axis> axes;
@@ -83,11 +91,7 @@ std::vector<Axis> axes_of(const Value& document) {
     if (axis.keys.empty() || values == nullptr || !values->is(Value::Type::array)) continue;
     const bool several = table.find("keys") != nullptr;
     for (const Value& item : values->items) {
-      std::vector<const Value*> row;
-      if (!several) row.push_back(&item);
-      for (const Value& value : item.items) {
-        if (several) row.push_back(&value);
-      }
+      std::vector<const Value*> row = row_of(item, several);
       if (row.size() == axis.keys.size()) axis.rows.push_back(std::move(row));
     }
     axes.push_back(std::move(axis));

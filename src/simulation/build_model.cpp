@@ -113,6 +113,20 @@ void add_loads(const RunSetup& setup, Model& model) {
   }
 }
 
+/// Springs of a share of a support's stiffness at a point of block b.
+void add_ground_springs(const loading::Support& support, std::size_t b, Vec2 where, double stiffness,
+                        Model& model) {
+  const Block& block = model.blocks[b];
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!(axis == 0 ? support.along_x : support.along_y)) continue;
+    dynamics::GroundSpring spring{
+        static_cast<int>(b),           axis,      std::vector<double>(at(block.size)),
+        axis == 0 ? where.x : where.y, stiffness, axis == 0 ? support.motion_x : support.motion_y};
+    block.basis.evaluate(where, spring.phi.data());
+    model.springs.push_back(std::move(spring));
+  }
+}
+
 void add_supports(const RunSetup& setup, Model& model) {
   for (std::size_t k = 0; k < setup.supports.size(); ++k) {
     const loading::Support& support = setup.supports[k];
@@ -122,17 +136,7 @@ void add_supports(const RunSetup& setup, Model& model) {
     for (const Vec2 p : support.points) require_on_block(block.reference, p, key, support.block);
     const double stiffness = support.stiffness.value_or(1000.0 * block.material.young);
     const auto add = [&](Vec2 where, double share) {
-      for (int axis = 0; axis < 2; ++axis) {
-        if (!(axis == 0 ? support.along_x : support.along_y)) continue;
-        dynamics::GroundSpring spring{static_cast<int>(b),
-                                      axis,
-                                      std::vector<double>(at(block.size)),
-                                      axis == 0 ? where.x : where.y,
-                                      stiffness * share,
-                                      axis == 0 ? support.motion_x : support.motion_y};
-        block.basis.evaluate(where, spring.phi.data());
-        model.springs.push_back(std::move(spring));
-      }
+      add_ground_springs(support, b, where, stiffness * share, model);
     };
     if (!support.is_edge) {
       for (const Vec2 p : support.points) add(p, 1.0);

@@ -28,21 +28,27 @@ MovingBlocks::MovingBlocks(const dynamics::Model& model)
   memory_.state.assign(model.blocks.size(), State::resting);
 }
 
+/// How far a block has gone without coming nearer to balance.
+void MovingBlocks::follow(std::size_t b, const dynamics::ForceBalance& balance, double moved,
+                          double tolerance) {
+  const double ratio = balance[b].ratio;
+  memory_.carried[b] = std::clamp(1.0 - balance[b].falling, 0.0, 1.0);
+  const bool balances = balance.balances(b, tolerance);
+  if (!balances) memory_.astray[b] += moved;
+  if (balances || ratio <= nearer * memory_.nearest[b]) {
+    memory_.nearest[b] = balances ? HUGE_VAL : ratio;
+    memory_.travel[b] = 0.0;
+  } else {
+    memory_.travel[b] += moved;
+  }
+}
+
 bool MovingBlocks::go(const dynamics::ForceBalance& balance, std::span<const double> moved,
                       double tolerance) {
   bool any = false;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b) || moves(b)) continue;
-    const double ratio = balance[b].ratio;
-    memory_.carried[b] = std::clamp(1.0 - balance[b].falling, 0.0, 1.0);
-    const bool balances = balance.balances(b, tolerance);
-    if (!balances) memory_.astray[b] += moved[b];
-    if (balances || ratio <= nearer * memory_.nearest[b]) {
-      memory_.nearest[b] = balances ? HUGE_VAL : ratio;
-      memory_.travel[b] = 0.0;
-    } else {
-      memory_.travel[b] += moved[b];
-    }
+    follow(b, balance, moved[b], tolerance);
     any = any || memory_.travel[b] > travel_limit_[b];
   }
   if (!any) return false;

@@ -45,6 +45,8 @@ class MovingBlocks {
  private:
   enum State : std::uint8_t { resting = 0, candidate = 1, moving = 2 };
 
+  void follow(std::size_t b, const dynamics::ForceBalance& balance, double moved, double tolerance);
+
   const dynamics::Model& model_;
   std::vector<double> travel_limit_;  ///< m, per block
   Memory memory_;

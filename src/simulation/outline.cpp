@@ -49,6 +49,28 @@ struct Part {
 /// Of a whole edge, where it is not told otherwise.
 constexpr Part whole[] = {Part{}};
 
+/// Adds edge k of a ring of a block, in its parts.
+void add_edge(Surface& surface, int block, int joint, const Ring& ring, std::size_t k,
+              std::span<const Part> parts) {
+  const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
+             after = ring[(k + 1) % ring.size()];
+  const contact::CornerKind kind = contact::corner_kind(here - before, after - here);
+  const std::size_t corner = surface.block.size();
+  for (const Part& part : parts) {
+    const std::vector<double> shares = start_shares(part.pieces);
+    surface.start_share.insert(surface.start_share.end(), shares.begin(), shares.end());
+    surface.divided.insert(surface.divided.end(), at(part.pieces),
+                           {surface.vertices(), part.pieces, &division(part.pieces)});
+    for (int piece = 0; piece < part.pieces; ++piece) {
+      const double share = std::lerp(part.from, part.to, division(part.pieces).points[at(piece)]);
+      surface.kind.push_back(surface.block.size() == corner ? kind : contact::CornerKind::convex);
+      surface.block.push_back(block);
+      surface.joint.push_back(joint);
+      surface.position.push_back(lerp(here, after, share));
+    }
+  }
+}
+
 /// The outlines of the blocks; parts: of each edge of the polygons, or none.
 Surface outlines(const Model& model, std::span<const int> joint, std::span<const std::vector<Part>> parts,
                  std::vector<int>& outline_edge) {
@@ -62,24 +84,9 @@ Surface outlines(const Model& model, std::span<const int> joint, std::span<const
       const Ring& ring = block.reference.ring(r);
       const int first = surface.vertices();
       for (std::size_t k = 0; k < ring.size(); ++k, ++edge) {
-        const Vec2 before = ring[(k + ring.size() - 1) % ring.size()], here = ring[k],
-                   after = ring[(k + 1) % ring.size()];
-        const contact::CornerKind kind = contact::corner_kind(here - before, after - here);
-        const std::size_t corner = surface.block.size();
-        for (const Part& part : parts.empty() ? std::span<const Part>(whole) : parts[edge]) {
-          const std::vector<double> shares = start_shares(part.pieces);
-          surface.start_share.insert(surface.start_share.end(), shares.begin(), shares.end());
-          surface.divided.insert(surface.divided.end(), at(part.pieces),
-                                 {surface.vertices(), part.pieces, &division(part.pieces)});
-          for (int piece = 0; piece < part.pieces; ++piece) {
-            const double share = std::lerp(part.from, part.to, division(part.pieces).points[at(piece)]);
-            surface.kind.push_back(surface.block.size() == corner ? kind : contact::CornerKind::convex);
-            surface.block.push_back(number);
-            surface.joint.push_back(joint[edge]);
-            surface.position.push_back(lerp(here, after, share));
-            outline_edge.push_back(static_cast<int>(edge));
-          }
-        }
+        add_edge(surface, number, joint[edge], ring, k,
+                 parts.empty() ? std::span<const Part>(whole) : parts[edge]);
+        outline_edge.resize(at(surface.vertices()), static_cast<int>(edge));
       }
       const int count = surface.vertices() - first;
       for (int k = 0; k < count; ++k) {

@@ -235,16 +235,23 @@ Stripe runs_at_rest(std::span<const Observation> runs) {
   return stripe;
 }
 
-Table tabulate(std::span<const Observation> runs) {
-  Table table;
-  table.at_rest = runs_at_rest(runs);
+/// Without runs.
+std::vector<Stripe> empty_stripes(std::span<const Observation> runs) {
   std::vector<double> intensities;
   for (const Observation& run : runs)
     if (run.intensity > 0.0) intensities.push_back(run.intensity);
   std::sort(intensities.begin(), intensities.end());
+  std::vector<Stripe> stripes;
   for (const double x : intensities)
-    if (table.stripes.empty() || x > table.stripes.back().intensity * (1.0 + same_intensity))
-      table.stripes.push_back({x, 0.0, 0.0, 0.0});
+    if (stripes.empty() || x > stripes.back().intensity * (1.0 + same_intensity))
+      stripes.push_back({x, 0.0, 0.0, 0.0});
+  return stripes;
+}
+
+Table tabulate(std::span<const Observation> runs) {
+  Table table;
+  table.at_rest = runs_at_rest(runs);
+  table.stripes = empty_stripes(runs);
   std::map<int, std::vector<Table::Part>> clusters;
   for (const Observation& run : runs) {
     if (!(run.intensity > 0.0)) continue;

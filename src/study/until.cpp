@@ -92,15 +92,19 @@ std::string asked_text(const scenario::UntilSpec& until) {
   return text;
 }
 
+/// Places in the plan of the runs that count, of each realization.
+std::map<int, std::vector<std::size_t>> runs_by_realization(const Plan& plan) {
+  std::map<int, std::vector<std::size_t>> runs;
+  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
+    if (plan.runs[k].wanted && plan.runs[k].variant.empty()) runs[plan.runs[k].realization].push_back(k);
+  }
+  return runs;
+}
+
 }  // namespace
 
 std::optional<int> enough_realizations(const Plan& plan, const std::vector<const RunResult*>& results) {
   if (!plan.until) return std::nullopt;
-  std::map<int, std::vector<std::size_t>> by_realization;
-  for (std::size_t k = 0; k < plan.runs.size(); ++k) {
-    if (plan.runs[k].wanted && plan.runs[k].variant.empty())
-      by_realization[plan.runs[k].realization].push_back(k);
-  }
   std::map<AxisValues, Sums> sums;
   std::map<int, double> quantiles;  // that were needed before
   const auto quantile = [&](int count) {
@@ -108,7 +112,7 @@ std::optional<int> enough_realizations(const Plan& plan, const std::vector<const
     if (added && count > 1) place->second = statistics::student_t(plan.confidence, count - 1);
     return place->second;
   };
-  for (const auto& [realization, runs] : by_realization) {
+  for (const auto& [realization, runs] : runs_by_realization(plan)) {
     for (const std::size_t k : runs) {
       if (results[k] == nullptr) return std::nullopt;
       Sums& sum = sums[plan.runs[k].values];

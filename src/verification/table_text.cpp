@@ -51,6 +51,22 @@ std::string spelled(std::string text, const TextStyle& style) {
   return ascii;
 }
 
+/// One line of a table; row: null for its heading.
+std::string line_text(const Line& cells, const Row* row, const std::array<std::size_t, columns>& width,
+                      const std::array<bool, table_columns.size()>& used, const TextStyle& style) {
+  std::string line = " ";
+  for (std::size_t c = 0; c < columns; ++c) {
+    const bool verdict = c + 1 == columns;
+    if (!verdict && !used[c]) continue;
+    const std::string padding(width[c] - width_of(cells[c]), ' ');
+    std::string cell = verdict || table_columns[c].left ? cells[c] + padding : padding + cells[c];
+    if (verdict && row != nullptr) cell = paint(cell, row->pass ? "32" : "1;31", style);
+    line += " " + cell + (verdict ? "" : " ");
+  }
+  while (line.ends_with(' ')) line.pop_back();
+  return line + "\n";
+}
+
 std::string case_text(const CaseResult& result, const TextStyle& style) {
   std::vector<Line> lines{heading()};
   for (const Row& row : result.rows) lines.push_back(line_of(row));
@@ -67,20 +83,9 @@ std::string case_text(const CaseResult& result, const TextStyle& style) {
       "1", style);
   text += fmt::format("  ({:.1f} s)\n", result.wall_time);
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    std::string line = " ";
-    for (std::size_t c = 0; c < columns; ++c) {
-      const bool verdict = c + 1 == columns;
-      if (!verdict && !used[c]) continue;
-      const std::string padding(width[c] - width_of(lines[k][c]), ' ');
-      std::string cell = verdict || table_columns[c].left ? lines[k][c] + padding : padding + lines[k][c];
-      if (verdict && k > 0) cell = paint(cell, result.rows[k - 1].pass ? "32" : "1;31", style);
-      line += " " + cell + (verdict ? "" : " ");
-    }
-    while (line.ends_with(' ')) line.pop_back();
-    text += line + "\n";
-    if (k > 0 && !result.rows[k - 1].failure.empty()) {
-      text += "      " + spelled(result.rows[k - 1].failure, style) + "\n";
-    }
+    const Row* row = k > 0 ? &result.rows[k - 1] : nullptr;
+    text += line_text(lines[k], row, width, used, style);
+    if (row != nullptr && !row->failure.empty()) text += "      " + spelled(row->failure, style) + "\n";
   }
   return text + "\n";
 }
