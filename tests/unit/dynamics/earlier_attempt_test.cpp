@@ -52,5 +52,28 @@ TEST(EarlierAttempt, SpringsOfTheSameContactsGoOn) {
   EXPECT_FALSE(springs.bounds_updated);
 }
 
+TEST(EarlierAttempt, OfNoContactsGivesNothing) {
+  EarlierAttempt attempt;
+  SpringArray springs = springs_of({held, slips}, {1.0, 2.0});
+  attempt.give(contacts_of({1, 2}), springs);
+  EXPECT_EQ(springs.branch, (std::vector{held, slips}));
+  attempt.keep(contacts_of({}), springs_of({}, {}));
+  attempt.give(contacts_of({1, 2}), springs);
+  EXPECT_EQ(springs.branch, (std::vector{held, slips}));
+  EXPECT_FALSE(springs.bounds_updated);
+}
+
+// Only the last attempt is known.
+TEST(EarlierAttempt, KeepsTheLastOne) {
+  EarlierAttempt attempt;
+  attempt.keep(contacts_of({1, 2}), springs_of({held, held}, {1.0, 2.0}));
+  attempt.keep(contacts_of({2}), springs_of({slips}, {5.0}));
+  SpringArray springs = springs_of({open, open}, {0.0, 0.0});
+  attempt.give(contacts_of({1, 2}), springs);
+  EXPECT_EQ(springs.branch, (std::vector{open, slips}));
+  EXPECT_EQ(springs.bound[0], 0.0);
+  EXPECT_EQ(springs.bound[1], 5.0);
+}
+
 }  // namespace
 }  // namespace keyblock::dynamics

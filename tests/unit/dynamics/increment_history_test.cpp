@@ -15,6 +15,7 @@ class History {
     history_.add(increment, dt, quiet, team_);
   }
   void forget() { history_.forget(); }
+  [[nodiscard]] bool is_smooth() const { return history_.is_smooth(); }
   [[nodiscard]] Increment guess(double dt) {
     Increment increment{9.0, 9.0};
     history_.extrapolate(dt, increment, team_);
@@ -57,6 +58,33 @@ TEST(IncrementHistory, FollowsACurveWhileNoContactChanges) {
   // The jolt is one of the first three steps after it, and the curve does without what was before.
   for (int k = 0; k < 4; ++k) history.add(cubic(k), 0.1, true);
   EXPECT_EQ(history.guess(0.1), cubic(4));
+}
+
+TEST(IncrementHistory, IsSmoothAfterThreeStepsWithoutAChange) {
+  History history;
+  const auto add = [&](bool quiet, double dt = 0.1) {
+    history.add({1.0, 2.0}, dt, quiet);
+    return history.is_smooth();
+  };
+  EXPECT_FALSE(history.is_smooth());
+  EXPECT_FALSE(add(true) || add(true));
+  EXPECT_TRUE(add(true));
+  EXPECT_FALSE(add(false)) << "a contact changed";
+  EXPECT_FALSE(add(true) || add(true));
+  EXPECT_TRUE(add(true) && add(true) && add(true));
+  EXPECT_FALSE(add(true, 0.05)) << "a step of another length";
+  EXPECT_FALSE(add(true, 0.05));
+  EXPECT_TRUE(add(true, 0.05));
+  history.forget();
+  EXPECT_FALSE(history.is_smooth());
+}
+
+// The curve goes through four increments at most, so that what lies farther back has no part in it.
+TEST(IncrementHistory, KnowsNoMoreThanFourIncrements) {
+  History history;
+  history.add({1e6, -1e6}, 0.1, true);
+  for (int k = 0; k < 4; ++k) history.add({7.0, 2.0 * k}, 0.1, true);
+  EXPECT_EQ(history.guess(0.1), (Increment{7.0, 8.0}));
 }
 
 }  // namespace
