@@ -64,6 +64,23 @@ Candidate take_largest(std::vector<Candidate>& candidates, const std::vector<Wei
   return taken;
 }
 
+using Square = std::array<std::array<double, 3>, 3>;
+
+/// G = R Rᵀ, in place: the lower triangle becomes R.
+void factor_gram(Square& gram) {
+  constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < gram.size(); ++i) {
+    const double whole = gram[i][i];
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = gram[i][j];
+      for (std::size_t k = 0; k < j; ++k) sum -= gram[i][k] * gram[j][k];
+      // The sum of those before it except for rounding.
+      if (i == j && !(sum > rounding * whole)) throw std::invalid_argument("Basis: a region without width");
+      gram[i][j] = i == j ? std::sqrt(sum) : sum / gram[j][j];
+    }
+  }
+}
+
 }  // namespace
 
 Basis::Basis(const Polygon& region, int order) : order_(order), size_(basis_size(order)) {
@@ -99,17 +116,7 @@ void Basis::orthonormalize_linear(const std::vector<WeightedPoint>& rule) {
       for (std::size_t j = 0; j <= i; ++j) gram[i][j] += weighted * phi[j];
     }
   }
-  constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
-  for (std::size_t i = 0; i < gram.size(); ++i) {
-    const double whole = gram[i][i];
-    for (std::size_t j = 0; j <= i; ++j) {
-      double sum = gram[i][j];
-      for (std::size_t k = 0; k < j; ++k) sum -= gram[i][k] * gram[j][k];
-      // The sum of those before it but for rounding.
-      if (i == j && !(sum > rounding * whole)) throw std::invalid_argument("Basis: a region without width");
-      gram[i][j] = i == j ? std::sqrt(sum) : sum / gram[j][j];
-    }
-  }
+  factor_gram(gram);
   // Forward substitution, row by row: coefficients ← R⁻¹ coefficients.
   for (std::size_t i = 0; i < gram.size(); ++i) {
     for (std::size_t column = 0; column <= i; ++column) {

@@ -14,6 +14,23 @@ std::string escaped(char c) {
   return fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
 }
 
+/// Bytes of a character that begins with `lead`; 0: none does.
+std::size_t length_after(unsigned lead) {
+  if (lead < 0x80U) return 1;
+  if (lead < 0xC2U) return 0;
+  if (lead < 0xE0U) return 2;
+  if (lead < 0xF0U) return 3;
+  return lead < 0xF5U ? 4 : 0;
+}
+
+/// A sequence of more bytes than its character needs, half of a surrogate pair, or one beyond the last character.
+bool is_no_character(unsigned lead, unsigned second) {
+  const bool overlong = (lead == 0xE0U && second < 0xA0U) || (lead == 0xF0U && second < 0x90U);
+  const bool surrogate = lead == 0xEDU && second >= 0xA0U;
+  const bool beyond = lead == 0xF4U && second >= 0x90U;
+  return overlong || surrogate || beyond;
+}
+
 }  // namespace
 
 std::size_t utf8_length(std::string_view text, std::size_t at) {
@@ -21,16 +38,11 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
     return at + k < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[at + k])) : 0U;
   };
   const unsigned lead = byte(0);
-  if (lead < 0x80U) return 1;
-  const std::size_t length = lead < 0xC2U ? 0 : lead < 0xE0U ? 2 : lead < 0xF0U ? 3 : lead < 0xF5U ? 4 : 0;
+  const std::size_t length = length_after(lead);
   for (std::size_t k = 1; k < length; ++k) {
     if ((byte(k) & 0xC0U) != 0x80U) return 0;
   }
-  const unsigned second = byte(1);
-  const bool overlong = (lead == 0xE0U && second < 0xA0U) || (lead == 0xF0U && second < 0x90U);
-  const bool surrogate = lead == 0xEDU && second >= 0xA0U;
-  const bool beyond = lead == 0xF4U && second >= 0x90U;
-  return overlong || surrogate || beyond ? 0 : length;
+  return is_no_character(lead, byte(1)) ? 0 : length;
 }
 
 std::size_t find_invalid_utf8(std::string_view text) {

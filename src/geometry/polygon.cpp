@@ -138,27 +138,26 @@ std::vector<Edge> edges_of(const Polygon& polygon) {
   return edges;
 }
 
+/// Whether two edges meet where they should not. size: of the ring of the first one.
+bool interfere(const Edge& e, const Edge& f, std::size_t size) {
+  const bool next = e.ring == f.ring && (e.index + 1) % size == f.index;
+  const bool previous = e.ring == f.ring && (f.index + 1) % size == e.index;
+  if (!next && !previous) return segments_meet(e.a, e.b, f.a, f.b);
+  // Neighbours meet at their common vertex; they must not fold back onto each other.
+  const Edge& first = next ? e : f;
+  const Edge& second = next ? f : e;
+  return side(first.a, first.b, second.b) == 0 && dot(first.b - first.a, second.b - second.a) < 0.0;
+}
+
 }  // namespace
 
 bool self_intersects(const Polygon& polygon) {
   const std::vector<Edge> edges = edges_of(polygon);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Edge& e = edges[i];
-    if (e.a == e.b) return true;
-    const std::size_t size = polygon.ring(e.ring).size();
+    if (edges[i].a == edges[i].b) return true;
+    const std::size_t size = polygon.ring(edges[i].ring).size();
     for (std::size_t j = i + 1; j < edges.size(); ++j) {
-      const Edge& f = edges[j];
-      const bool next = e.ring == f.ring && (e.index + 1) % size == f.index;
-      const bool previous = e.ring == f.ring && (f.index + 1) % size == e.index;
-      if (next || previous) {
-        // Neighbours meet at their common vertex; they must not fold back onto each other.
-        const Edge& first = next ? e : f;
-        const Edge& second = next ? f : e;
-        if (side(first.a, first.b, second.b) == 0 && dot(first.b - first.a, second.b - second.a) < 0.0)
-          return true;
-      } else if (segments_meet(e.a, e.b, f.a, f.b)) {
-        return true;
-      }
+      if (interfere(edges[i], edges[j], size)) return true;
     }
   }
   return false;
