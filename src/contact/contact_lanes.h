@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <span>
 
-#include "contact/detection.h"
+#include "contact/contact.h"
 #include "core/lanes.h"
 
 namespace keyblock::contact {
