@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "contact/box_grid.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
@@ -20,7 +21,7 @@ double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
 
 namespace {
 
-/// What is known of pairs of blocks stays, but for those with a block that is looked at anew.
+/// What is known of pairs of blocks stays, except for pairs with a block that is searched again.
 void find_block_pairs(std::span<const std::uint8_t> dirty, CandidateList& list) {
   const std::vector<BlockPair> known = std::exchange(list.block_pairs, {});
   list.block_pairs.reserve(known.size());
@@ -67,20 +68,21 @@ void Candidates::measure_motion(const Surface& surface, std::span<const double> 
       if (!surface.present[b]) continue;
       double moved = 0.0;
       for (auto v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
-        moved = std::max(moved, squared_norm(surface.position[v] - looked_at_[v]));
+        moved = std::max(moved, squared_norm(surface.position[v] - searched_at_[v]));
       }
       away_[b] = std::sqrt(moved) + reach[b];
     }
   });
 }
 
-bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list,
-                        ThreadTeam& team) {
+/// Which blocks are searched again, and from where.
+Candidates::Dirty Candidates::begin_search(const Surface& surface, std::span<const double> reach,
+                                           ThreadTeam& team) {
   const auto blocks = at(surface.blocks());
-  const bool all = looked_at_.empty();
+  const bool all = searched_at_.empty();
   Dirty dirty{{}, std::vector<std::uint8_t>(blocks, all)};
   if (all) {
-    looked_at_.assign(surface.position.size(), Vec2{});
+    searched_at_.assign(surface.position.size(), Vec2{});
     margin_.assign(blocks, 0.0);
     box_.assign(blocks, Box{});
     away_.assign(blocks, 0.0);
@@ -95,23 +97,30 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
     margin_[b] = surface.fixed[b] && reach[b] == 0.0 ? 0.0 : tolerances_.margin + 4.0 * reach[b];
     box_[b] = {};
     for (auto v = at(surface.block_begin[b]); v < at(surface.block_begin[b + 1]); ++v) {
-      looked_at_[v] = surface.position[v];
+      searched_at_[v] = surface.position[v];
       box_[b].add(surface.position[v]);
     }
     box_[b] = box_[b].grown(margin_[b] + tolerances_.depth_limit);
   }
+  return dirty;
+}
+
+bool Candidates::update(const Surface& surface, std::span<const double> reach, CandidateList& list,
+                        ThreadTeam& team) {
+  const Dirty dirty = begin_search(surface, reach, team);
   bool changed = false;
   if (!dirty.blocks.empty()) {
     std::vector<Candidate> found = collect(surface, dirty);
     add_held(surface, dirty, list, found);
-    changed = merge(found, dirty, list);
+    changed = !is_unchanged(found, dirty, list);
+    if (changed) merge(found, dirty, list);
   }
   if (changed || list.block_pairs.empty()) {
     find_block_pairs(dirty.is, list);
-    index_block_pairs(blocks, list);
+    index_block_pairs(at(surface.blocks()), list);
   } else {
     for (const int block : dirty.blocks) {
-      for (const int pair : list.pairs_of(block)) list.block_pairs[at(pair)].steady = -1.0;
+      for (const int pair : list.pairs_of(block)) list.block_pairs[at(pair)].steady.forget();
     }
   }
   return changed;
@@ -119,141 +128,8 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
 
 namespace {
 
-constexpr std::size_t few = 32;
-
-/// Cells of equal size over all boxes; finds the boxes that overlap a given one.
-///
-/// A few blocks that are far from all others do not make it large: where there would be many more cells than blocks, it repeats itself,
-/// and cells that lie far apart share their members.
-class Grid {
- public:
-  explicit Grid(std::span<const Box> boxes, std::span<const std::uint8_t> present)
-      : boxes_(boxes), present_(present) {
-    Box all;
-    double mean = 0.0;
-    std::size_t count = 0;
-    for (std::size_t b = 0; b < boxes.size(); ++b) {
-      if (!present[b]) continue;
-      all.add(boxes[b]);
-      mean += boxes[b].size().x + boxes[b].size().y;
-      ++count;
-    }
-    if (count == 0) return;
-    cell_ = std::max(mean / static_cast<double>(count), 1e-300);
-    origin_ = all.min;
-    const auto cells = [&](double length) {
-      return static_cast<int>(std::min(length / cell_ + 1.0, most_cells));
-    };
-    columns_ = period_x_ = cells(all.size().x);
-    rows_ = period_y_ = cells(all.size().y);
-    while (at(period_x_) * at(period_y_) > cells_per_block * count) {
-      int& longer = period_x_ > period_y_ ? period_x_ : period_y_;
-      longer = (longer + 1) / 2;
-    }
-    members_.resize(at(period_x_) * at(period_y_));
-    for (std::size_t b = 0; b < boxes.size(); ++b) {
-      if (!present[b]) continue;
-      const Range r = range(boxes[b]);
-      if (r.is_huge()) {
-        huge_.push_back(static_cast<int>(b));
-        continue;
-      }
-      for (int y = r.y0; y <= r.y1; ++y) {
-        for (int x = r.x0; x <= r.x1; ++x) members_[cell(x, y)].push_back(static_cast<int>(b));
-      }
-    }
-  }
-
-  /// Blocks whose boxes overlap that of block b, each once, not b itself; ascending.
-  void query(int b, std::vector<int>& found) const {
-    found.clear();
-    const Box& box = boxes_[at(b)];
-    const Range r = range(box);
-    const auto add = [&](int other) {
-      if (other != b && boxes_[at(other)].overlaps(box)) found.push_back(other);
-    };
-    if (r.is_huge()) {
-      for (std::size_t other = 0; other < boxes_.size(); ++other) {
-        if (present_[other]) add(static_cast<int>(other));
-      }
-      return;
-    }
-    for (int y = r.y0; y <= r.y1; ++y) {
-      for (int x = r.x0; x <= r.x1; ++x) {
-        for (const int other : members_[cell(x, y)]) add(other);
-      }
-    }
-    for (const int other : huge_) add(other);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-  }
-
- private:
-  static constexpr double most_cells = 1e9;  ///< on a side
-  static constexpr std::size_t cells_per_block = 4;
-  struct Range {
-    int x0, x1, y0, y1;
-    /// Whether a box is over so many cells that it is kept apart.
-    [[nodiscard]] bool is_huge() const {
-      return (x1 - x0 + std::int64_t{1}) * (y1 - y0 + std::int64_t{1}) > 256;
-    }
-  };
-  [[nodiscard]] Range range(const Box& box) const {
-    const auto index = [&](double t, double from, int count) {
-      return static_cast<int>(std::clamp(std::floor((t - from) / cell_), 0.0, count - 1.0));
-    };
-    return {index(box.min.x, origin_.x, columns_), index(box.max.x, origin_.x, columns_),
-            index(box.min.y, origin_.y, rows_), index(box.max.y, origin_.y, rows_)};
-  }
-  [[nodiscard]] std::size_t cell(int x, int y) const {
-    return at(y % period_y_) * at(period_x_) + at(x % period_x_);
-  }
-
-  std::span<const Box> boxes_;
-  std::span<const std::uint8_t> present_;
-  double cell_ = 1.0;
-  Vec2 origin_;
-  int columns_ = 0, rows_ = 0;
-  int period_x_ = 1, period_y_ = 1;  ///< cells after which the grid repeats itself
-  std::vector<std::vector<int>> members_;
-  std::vector<int> huge_;
-};
-
-}  // namespace
-
-/// Candidates of the blocks that are looked at anew, in order.
-std::vector<Candidate> Candidates::collect(const Surface& surface, const Dirty& dirty) const {
-  std::vector<Candidate> found;
-  std::vector<int> neighbours;
-  // A grid over all boxes is worth building for many; a few blocks are compared with all others sooner.
-  std::optional<Grid> grid;
-  if (dirty.blocks.size() > few) grid.emplace(box_, surface.present);
-  for (const int a : dirty.blocks) {
-    const auto ia = at(a);
-    if (!surface.present[ia]) continue;
-    if (grid) {
-      grid->query(a, neighbours);
-    } else {
-      neighbours.clear();
-      for (std::size_t b = 0; b < box_.size(); ++b) {
-        if (b != ia && surface.present[b] && box_[b].overlaps(box_[ia]))
-          neighbours.push_back(static_cast<int>(b));
-      }
-    }
-    for (const int b : neighbours) {
-      const auto ib = at(b);
-      if (dirty.is[ib] && b < a) continue;  // done from the other side
-      if (surface.fixed[ia] && surface.fixed[ib]) continue;
-      collect_pair(surface, a, b, found);
-      collect_pair(surface, b, a, found);
-    }
-  }
-  // Of all blocks they come in order.
-  if (!std::is_sorted(found.begin(), found.end(), before)) std::sort(found.begin(), found.end(), before);
-  return found;
-}
-
-bool Candidates::before(const Candidate& x, const Candidate& y) {
+/// The order of a CandidateList.
+bool comes_before(const Candidate& x, const Candidate& y) {
   const auto key = [](const Candidate& c) {
     const auto [low, high] = std::minmax(c.block_a, c.block_b);
     return std::tuple(low, high, c.vertex, c.edge);
@@ -261,8 +137,58 @@ bool Candidates::before(const Candidate& x, const Candidate& y) {
   return key(x) < key(y);
 }
 
-/// Calls of_candidate(k, memory) for the candidates in the list that have a block that is looked at anew, and where what they remember
-/// is; −1: nothing. In their order.
+/// Blocks whose boxes overlap with the box of a block, ascending. A grid over all boxes is worth building for many blocks; a few are compared
+/// with all others sooner.
+class Neighbours {
+ public:
+  Neighbours(std::span<const Box> boxes, std::span<const std::uint8_t> present, std::size_t blocks)
+      : boxes_(boxes), present_(present) {
+    constexpr std::size_t few = 32;
+    if (blocks > few) grid_.emplace(boxes, present);
+  }
+  std::span<const int> of(int block) {
+    if (grid_) {
+      grid_->query(block, found_);
+      return found_;
+    }
+    found_.clear();
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+      if (b != at(block) && present_[b] && boxes_[b].overlaps(boxes_[at(block)]))
+        found_.push_back(static_cast<int>(b));
+    }
+    return found_;
+  }
+
+ private:
+  std::span<const Box> boxes_;
+  std::span<const std::uint8_t> present_;
+  std::optional<BoxGrid> grid_;
+  std::vector<int> found_;
+};
+
+}  // namespace
+
+/// Candidates of the blocks that are searched again, in order.
+std::vector<Candidate> Candidates::collect(const Surface& surface, const Dirty& dirty) const {
+  std::vector<Candidate> found;
+  Neighbours neighbours(box_, surface.present, dirty.blocks.size());
+  for (const int a : dirty.blocks) {
+    if (!surface.present[at(a)]) continue;
+    for (const int b : neighbours.of(a)) {
+      if (dirty.is[at(b)] && b < a) continue;  // done from the other side
+      if (surface.fixed[at(a)] && surface.fixed[at(b)]) continue;
+      collect_pair(surface, a, b, found);
+      collect_pair(surface, b, a, found);
+    }
+  }
+  // Of all blocks they come in order.
+  if (!std::is_sorted(found.begin(), found.end(), comes_before))
+    std::sort(found.begin(), found.end(), comes_before);
+  return found;
+}
+
+/// Calls of_candidate(k, memory) for the candidates in the list that have a block that is searched again, in their order. memory: where their
+/// memory is; −1: none.
 template <typename OfCandidate>
 void Candidates::for_old(const Dirty& dirty, const CandidateList& list, const OfCandidate& of_candidate) {
   constexpr std::size_t many = 8;  // of which all blocks are as many times as many, or fewer
@@ -297,15 +223,15 @@ void Candidates::add_held(const Surface& surface, const Dirty& dirty, const Cand
     if (memory < 0 || !list.memory[at(memory)].holds() || !surface.present[at(c.block_a)] ||
         !surface.present[at(c.block_b)])
       return;
-    while (next < collected && before(found[next], c)) ++next;
-    if (next == collected || before(c, found[next])) found.push_back(c);
+    while (next < collected && comes_before(found[next], c)) ++next;
+    if (next == collected || comes_before(c, found[next])) found.push_back(c);
   });
-  if (found.size() > collected) std::sort(found.begin(), found.end(), before);
+  if (found.size() > collected) std::sort(found.begin(), found.end(), comes_before);
 }
 
-/// Puts what was found into the list, in the place of all candidates of the same blocks.
-bool Candidates::merge(std::span<const Candidate> found, const Dirty& dirty, CandidateList& list) {
-  // A block that moves through the air, or shifts a little among its neighbours, leaves the list as it is.
+/// Whether what was found is what the list has: a block that moves through the air, or shifts a little among its neighbours, leaves the list
+/// as it is. Clearances are brought up to date.
+bool Candidates::is_unchanged(std::span<const Candidate> found, const Dirty& dirty, CandidateList& list) {
   std::size_t same = 0, old = 0;
   for_old(dirty, list, [&](std::size_t k, int memory) {
     if (same != old++ || same == found.size()) return;
@@ -314,53 +240,54 @@ bool Candidates::merge(std::span<const Candidate> found, const Dirty& dirty, Can
     c.clearance = memory >= 0 && list.memory[at(memory)].holds() ? 0.0 : found[same].clearance;
     ++same;
   });
-  if (same == found.size() && old == found.size()) return false;
+  return same == found.size() && old == found.size();
+}
 
+/// Puts what was found into the list, instead of all candidates of the same blocks.
+void Candidates::merge(std::span<const Candidate> found, const Dirty& dirty, CandidateList& list) {
   CandidateList merged;
   merged.block_pairs = std::move(list.block_pairs);
   merged.pairs.reserve(list.pairs.size() + found.size());
   CandidateList::Finder memory_of(list, 0);
   const auto add = [&](const Candidate& c, int memory) {
-    if (memory >= 0) {
-      merged.tracked.push_back(static_cast<int>(merged.pairs.size()));
-      merged.memory.push_back(list.memory[at(memory)]);
-    }
     merged.pairs.push_back(c);
-    if (memory >= 0 && list.memory[at(memory)].holds()) merged.pairs.back().clearance = 0.0;
+    if (memory < 0) return;
+    merged.tracked.push_back(static_cast<int>(merged.pairs.size()) - 1);
+    merged.memory.push_back(list.memory[at(memory)]);
+    if (list.memory[at(memory)].holds()) merged.pairs.back().clearance = 0.0;
   };
   std::size_t k = 0;
+  const auto add_old = [&] {
+    if (!dirty.has_one_of(list.pairs[k])) add(list.pairs[k], memory_of(k));
+    ++k;
+  };
   for (const Candidate& c : found) {
-    for (; k < list.pairs.size() && before(list.pairs[k], c); ++k) {
-      if (!dirty.has_one_of(list.pairs[k])) add(list.pairs[k], memory_of(k));
-    }
-    const bool known = k < list.pairs.size() && !before(c, list.pairs[k]);
+    while (k < list.pairs.size() && comes_before(list.pairs[k], c)) add_old();
+    const bool known = k < list.pairs.size() && !comes_before(c, list.pairs[k]);
     add(c, known ? memory_of(k) : -1);
     if (known) ++k;
   }
-  for (; k < list.pairs.size(); ++k) {
-    if (!dirty.has_one_of(list.pairs[k])) add(list.pairs[k], memory_of(k));
-  }
+  while (k < list.pairs.size()) add_old();
   list = std::move(merged);
-  return true;
 }
 
 /// Vertices of a near edges of b.
 void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const {
   const auto ia = at(a), ib = at(b);
-  // Positions are those at the last look, which the margins refer to.
+  // Positions are those of the last search, which the margins refer to.
   const double margin = margin_[ia] + margin_[ib] + tolerances_.activation;
   const Box near = box_[ib].grown(margin_[ia] + tolerances_.depth_limit);
   for (int v = surface.block_begin[ia]; v < surface.block_begin[ia + 1]; ++v) {
     const auto iv = at(v);
-    const Vec2 p = looked_at_[iv];
+    const Vec2 p = searched_at_[iv];
     if (surface.is_reflex(iv) || !near.contains(p)) continue;
     for (int e = surface.block_begin[ib]; e < surface.block_begin[ib + 1]; ++e) {
       const auto from = at(e), to = at(surface.next[from]);
-      const bool inside = cross(looked_at_[to] - looked_at_[from], p - looked_at_[from]) > 0.0;
-      const bool deep = inside || surface.is_nook(from) || surface.is_nook(to);
+      const bool inside = cross(searched_at_[to] - searched_at_[from], p - searched_at_[from]) > 0.0;
+      const bool deep = inside || surface.is_concave(from) || surface.is_concave(to);
       const double reach = margin + (deep ? tolerances_.depth_limit : 0.0);
-      if (distance_to_segment(p, looked_at_[from], looked_at_[to]) < reach)
-        found.push_back({v, e, a, b, clearance(surface, looked_at_, tolerances_, v, e)});
+      if (distance_to_segment(p, searched_at_[from], searched_at_[to]) < reach)
+        found.push_back({v, e, a, b, clearance(surface, searched_at_, tolerances_, v, e)});
     }
   }
 }

@@ -18,7 +18,7 @@ double clearance(const Surface& surface, std::span<const Vec2> position, const T
   const double deepest = std::min({tolerances.depth_limit, surface.thickness[at(surface.block[at(vertex)])],
                                    surface.thickness[at(surface.block[at(edge)])]});
   const auto zone = [&](int corner) {
-    return surface.is_nook(at(corner)) ? std::max(deepest, tolerances.end_zone) : tolerances.end_zone;
+    return surface.is_concave(at(corner)) ? std::max(deepest, tolerances.end_zone) : tolerances.end_zone;
   };
   const double apart = std::max(
       {gap - tolerances.activation, -gap - deepest, -along - zone(edge), along - length - zone(end)});

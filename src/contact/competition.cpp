@@ -1,143 +1,201 @@
-// Where two corners meet: which of their lines keeps them apart.
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include "contact/competition.h"
 
-#include "contact/detection.h"
-#include "core/index.h"
+#include "contact/entry_face.h"
 
 namespace keyblock::contact {
 
-bool Detection::lies_outside(const Surface& surface, const Rival& rival, const CandidateList& candidates,
-                             std::span<const Vec2> ahead) const {
-  const Candidate& c = candidates.pairs[at(rival.candidate)];
-  const auto outside = [&](const auto& place) {
-    const Vec2 along = place(surface.next[at(c.edge)]) - place(c.edge), corner = place(c.vertex);
+namespace {
+
+using All = std::span<Competitor* const>;
+
+/// Some of the competitors for a pair of corners.
+class Few {
+ public:
+  void add(Competitor* c) { all_[size_++] = c; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] All all() const { return All(all_).first(size_); }
+
+ private:
+  std::array<Competitor*, most_competitors> all_{};
+  std::size_t size_ = 0;
+};
+
+/// Whether both edges of the vertex lie outside the line, now or after the predicted displacement.
+bool lies_outside(const CornerView& view, const Competitor& competitor, std::span<const Vec2> predicted) {
+  const Surface& surface = view.surface;
+  const Candidate& c = view.candidate(competitor);
+  const auto outside = [&](const auto& position) {
+    const Vec2 along = position(surface.next[at(c.edge)]) - position(c.edge), corner = position(c.vertex);
     const auto is_outside = [&](int other) {
-      const Vec2 u = place(other) - corner;
+      const Vec2 u = position(other) - corner;
       return cross(u, along) >= -Tolerances::sine_inside * norm(u) * norm(along);
     };
     return is_outside(surface.previous[at(c.vertex)]) && is_outside(surface.next[at(c.vertex)]);
   };
   return outside([&](int v) { return surface.position[at(v)]; }) ||
-         outside([&](int v) { return surface.position[at(v)] + ahead[at(v)]; });
+         outside([&](int v) { return surface.position[at(v)] + predicted[at(v)]; });
 }
 
-double Detection::gap_ahead(const Surface& surface, const Rival& rival, const CandidateList& candidates,
-                            std::span<const Vec2> ahead) const {
-  if (ahead.empty()) return rival.gap;
-  const Candidate& c = candidates.pairs[at(rival.candidate)];
-  const Corner& edge = corners_[at(c.edge)];
-  const Vec2 r = ahead[at(c.vertex)] -
-                 lerp(ahead[at(c.edge)], ahead[at(surface.next[at(c.edge)])], rival.along / edge.length);
-  return rival.gap + dot(edge.normal(), r);
+/// m, gap at the end of the step, by the predicted displacement.
+double predicted_gap(const CornerView& view, const Competitor& competitor, std::span<const Vec2> predicted) {
+  if (predicted.empty()) return competitor.gap;
+  const Candidate& c = view.candidate(competitor);
+  const Corner& edge = view.corner(c.edge);
+  const Vec2 r =
+      predicted[at(c.vertex)] - lerp(predicted[at(c.edge)], predicted[at(view.surface.next[at(c.edge)])],
+                                     competitor.along / edge.length);
+  return competitor.gap + dot(edge.normal(), r);
 }
 
-double Detection::passing(const Surface& surface, const Rival& rival, const CandidateList& candidates,
-                          std::span<const Vec2> ahead) const {
-  const double depth = tolerances_.corner_depth;
-  if (rival.gap <= -depth) return 0.0;
-  const double end = gap_ahead(surface, rival, candidates, ahead);
-  return end < -depth ? (rival.gap + depth) / (rival.gap - end) : HUGE_VAL;
+/// When, as a share of the step, the vertex will be deeper than Tolerances::corner_depth. 0: it is; HUGE_VAL: not in this step.
+double time_of_passing(const CornerView& view, const Competitor& c, std::span<const Vec2> predicted) {
+  const double depth = view.tolerances.corner_depth;
+  if (c.gap <= -depth) return 0.0;
+  const double end = predicted_gap(view, c, predicted);
+  return end < -depth ? (c.gap + depth) / (c.gap - end) : HUGE_VAL;
 }
 
-/// Of two corners of which each has passed a line of the other, the one is in the other when it has passed the last: a corner that slides
-/// along a face and over the joint at its end passes the side of the next block, but not its face. Null: there is no telling.
-Detection::Rival* Detection::line_passed_last(const Surface& surface, std::span<Rival* const> all,
-                                              const CandidateList& candidates,
-                                              std::span<const Vec2> ahead) const {
-  std::array<Rival*, 4> outside{};  // the others are there for turns that blocks might make
-  std::size_t count = 0;
-  for (Rival* r : all) {
-    if (!ahead.empty() && lies_outside(surface, *r, candidates, ahead)) outside[count++] = r;
+/// m, the largest gap of competitors that part the corners in another direction than `one`.
+double largest_other_gap(const CornerView& view, All all, const Competitor& one) {
+  double largest = -HUGE_VAL;
+  for (const Competitor* c : all) {
+    if (part_otherwise(view, *c, one)) largest = std::max(largest, c->gap);
   }
-  const std::span<Rival* const> rivals = count > 0 ? std::span<Rival* const>(outside).first(count) : all;
-  std::array<double, 4> when{};
+  return largest;
+}
+
+/// When the vertices pass their lines, and of the lines which is passed last and which has the largest gap.
+struct Passing {
+  std::array<double, most_competitors> when{};
   std::size_t last = 0, farthest = 0;
-  for (std::size_t i = 0; i < rivals.size(); ++i) {
-    when[i] = passing(surface, *rivals[i], candidates, ahead);
-    if (rivals[i]->gap > rivals[farthest]->gap) farthest = i;
-    if (when[i] > when[last] || (when[i] == when[last] && rivals[i]->gap > rivals[last]->gap)) last = i;
+
+  Passing(const CornerView& view, All lines, std::span<const Vec2> predicted) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      when[i] = time_of_passing(view, *lines[i], predicted);
+      if (lines[i]->gap > lines[farthest]->gap) farthest = i;
+      if (when[i] > when[last] || (when[i] == when[last] && lines[i]->gap > lines[last]->gap)) last = i;
+    }
   }
-  if (when[last] < HUGE_VAL) return rivals[last];
-  double second = -HUGE_VAL;
-  bool passes_another = false;
-  for (std::size_t i = 0; i < rivals.size(); ++i) {
-    if (part_otherwise(*rivals[i], *rivals[farthest], candidates)) second = std::max(second, rivals[i]->gap);
-    passes_another =
-        passes_another || (when[i] > 0.0 && when[i] < HUGE_VAL &&
-                           turned(line(*rivals[i], candidates), line(*rivals[last], candidates)));
+  /// Whether a line that is at an angle to the last one is passed in the step.
+  [[nodiscard]] bool passes_another(const CornerView& view, All lines) const {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (when[i] > 0.0 && when[i] < HUGE_VAL && are_turned(view.line(*lines[i]), view.line(*lines[last])))
+        return true;
+    }
+    return false;
   }
-  if (rivals[farthest]->gap - second < tolerances_.corner_tie) return passes_another ? rivals[last] : nullptr;
-  // One that comes to lie just inside of all lines gets out the shortest way from there: a corner that slides along a face is no deeper
-  // behind the side of the next block than behind that face, though that side is farther away now.
-  std::array<double, 4> ends{};
-  for (std::size_t i = 0; i < rivals.size(); ++i) ends[i] = gap_ahead(surface, *rivals[i], candidates, ahead);
-  const auto nearest = static_cast<std::size_t>(
-      std::max_element(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(rivals.size())) -
-      ends.begin());
-  return ends[nearest] < 0.0 ? rivals[nearest] : rivals[last];
+};
+
+/// The line with the largest gap at the end of the step.
+Competitor* nearest_way_out(const CornerView& view, All lines, std::span<const Vec2> predicted, double& gap) {
+  Competitor* nearest = nullptr;
+  for (Competitor* c : lines) {
+    const double end = predicted_gap(view, *c, predicted);
+    if (nearest != nullptr && !(end > gap)) continue;
+    nearest = c;
+    gap = end;
+  }
+  return nearest;
 }
 
-bool Detection::faces(const Rival& rival, const CandidateList& candidates) const {
-  const Corner& vertex = corners_[at(candidates.pairs[at(rival.candidate)].vertex)];
-  const Vec2 tangent = line(rival, candidates).tangent;
+/// Of two corners that have each passed a line of the other, one is in the other when it has passed the last line. A corner that slides
+/// along a face and over the joint at its end passes the side of the next block, but not its face. Null: there is no telling.
+Competitor* line_passed_last(const CornerView& view, All all, std::span<const Vec2> predicted) {
+  Few outside;  // the others are there for turns that blocks might make
+  for (Competitor* c : all) {
+    if (!predicted.empty() && lies_outside(view, *c, predicted)) outside.add(c);
+  }
+  const All lines = outside.size() > 0 ? outside.all() : all;
+  const Passing passing(view, lines, predicted);
+  Competitor *last = lines[passing.last], *farthest = lines[passing.farthest];
+  if (passing.when[passing.last] < HUGE_VAL) return last;
+  if (farthest->gap - largest_other_gap(view, lines, *farthest) < view.tolerances.corner_tie)
+    return passing.passes_another(view, lines) ? last : nullptr;
+  // A corner that comes to lie just inside of all lines gets out the shortest way from there: a corner that slides along a face is no deeper
+  // behind the side of the next block than behind that face, though that side is farther away now.
+  double gap = 0.0;
+  Competitor* nearest = nearest_way_out(view, lines, predicted, gap);
+  return gap < 0.0 ? nearest : last;
+}
+
+/// The competitor that was in contact; the strongest, should there be several. Null: none.
+Competitor* last_contact(const CornerView& view, All all) {
+  Competitor* found = nullptr;
+  for (Competitor* c : all) {
+    if (c->memory >= 0 &&
+        (found == nullptr || view.memory(*c).normal_force > view.memory(*found).normal_force))
+      found = c;
+  }
+  return found;
+}
+
+/// Of parallel lines. before: last_contact().
+Competitor* winner_of_parallel(const CornerView& view, All all, Competitor* before) {
+  Competitor* winner = nullptr;
+  for (Competitor* c : all) {
+    if (winner == nullptr || inside(view, *c) > inside(view, *winner)) winner = c;
+  }
+  const bool is_over = !(inside(view, *winner) < -view.tolerances.rounding);
+  if (before != nullptr) return inside(view, *before) > leave(view.tolerances) || !is_over ? before : winner;
+  return is_over ? winner : nullptr;  // else beyond the end of an edge, with nothing of it on the other side
+}
+
+/// Of lines at an angle.
+Competitor* winner_of_turned(const CornerView& view, All all, Competitor* before) {
+  Competitor* winner = line_passed_last(view, all, view.motion.predicted);
+  // Corners that were held in the first attempt seem to go nowhere in the next.
+  if (winner == nullptr && !view.motion.first_predicted.empty())
+    winner = line_passed_last(view, all, view.motion.first_predicted);
+  if (before == nullptr) return winner;
+  // Corners that press on each other may part in the step, where one of them meets another block.
+  if (winner == nullptr) return view.memory(*before).normal_force > 0.0 ? before : nullptr;
+  // A vertex does not leave a face that holds it by a line that it has passed long ago without having been held there.
+  return winner->gap <= -view.tolerances.corner_depth && holds_vertex(view, *before) ? before : winner;
+}
+
+}  // namespace
+
+double cosine_between(const CornerView& view, const Competitor& one, const Competitor& other) {
+  const double cosine = dot(view.line(one).tangent, view.line(other).tangent);
+  return view.candidate(one).block_b == view.candidate(other).block_b ? cosine : -cosine;
+}
+
+bool part_otherwise(const CornerView& view, const Competitor& one, const Competitor& other) {
+  return are_turned(view.line(one), view.line(other)) &&
+         cosine_between(view, one, other) < Tolerances::cosine_alike;
+}
+
+bool faces(const CornerView& view, const Competitor& c) {
+  const Corner& vertex = view.corner(view.candidate(c).vertex);
+  const Vec2 tangent = view.line(c).tangent;
   const auto runs_against = [&](Vec2 u) {
     return dot(u, tangent) < 0.0 && std::abs(cross(u, tangent)) <= Tolerances::sine_facing;
   };
   return runs_against(vertex.tangent) || runs_against(vertex.before);
 }
 
-Detection::Outcome Detection::compete(const Surface& surface, std::span<Rival* const> all,
-                                      const CandidateList& candidates) const {
-  // Both faces of a sharp tip are one line to the corner beside it, and only one of them has that corner's block on its other side.
-  std::array<Rival*, 4> facing{};
-  std::size_t count = 0;
+Outcome compete(const CornerView& view, All all) {
+  // Both faces of a sharp tip are one line to the corner beside it, and only one of them has the block of that corner on its other side.
+  Few facing;
   bool parallel = true;
-  for (Rival* f : all) {
-    parallel = parallel && !turned(line(*f, candidates), line(*all[0], candidates));
-    if (faces(*f, candidates)) facing[count++] = f;
+  for (Competitor* c : all) {
+    parallel = parallel && !are_turned(view.line(*c), view.line(*all[0]));
+    if (faces(view, *c)) facing.add(c);
   }
-  const bool left_out = parallel && count > 0 && count < all.size();
-  const std::span<Rival* const> rivals = left_out ? std::span<Rival* const>(facing).first(count) : all;
-  const auto line = [&](const Rival& f) -> const Corner& { return this->line(f, candidates); };
-  const auto over = [&](const Rival& f) { return inside(f.along, line(f).length); };
-  const auto force = [&](const Rival& f) { return candidates.memory[at(f.memory)].normal_force; };
-  Rival* holder = nullptr;  // the one that was in contact; the strongest, should there be several
-  for (Rival* f : rivals) {
-    if (f->memory >= 0 && (holder == nullptr || force(*f) > force(*holder))) holder = f;
-  }
-  Rival* winner = nullptr;
-  if (parallel) {
-    for (Rival* f : rivals) {
-      if (winner == nullptr || over(*f) > over(*winner)) winner = f;
-    }
-    if (holder != nullptr && (over(*holder) > leave() || over(*winner) < -tolerances_.rounding)) {
-      winner = holder;
-    } else if (holder == nullptr && over(*winner) < -tolerances_.rounding) {
-      winner = nullptr;  // a vertex beyond the end of an edge, with nothing of it on the other side
-    }
-  } else {
-    winner = line_passed_last(surface, rivals, candidates, motion_.ahead);
-    // Corners that were held in the first look at the step seem to go nowhere in the next.
-    if (winner == nullptr && !motion_.ahead_at_first.empty())
-      winner = line_passed_last(surface, rivals, candidates, motion_.ahead_at_first);
-    // Corners that press on each other may part in the step, where one of them meets a third block.
-    if (winner == nullptr && holder != nullptr && force(*holder) > 0.0) winner = holder;
-    // Nor does one leave a face that holds it, and that it is over, by a line that it has long passed without having been held there.
-    if (winner != nullptr && holder != nullptr && winner->gap <= -tolerances_.corner_depth &&
-        holds(*holder, candidates))
-      winner = holder;
-  }
-  // Slip of the one block against the other has the same sign on both sides: when the vertex and the edge change sides, the
-  // tangents of the two lines run against each other, and normal and tangent turn together.
-  const auto alike = [&](const Rival& f, const Rival& other) {
-    return std::abs(dot(line(f).tangent, line(other).tangent)) > Tolerances::cosine_alike;
+  const bool left_out = parallel && facing.size() > 0 && facing.size() < all.size();
+  const All competing = left_out ? facing.all() : all;
+  Competitor* before = last_contact(view, competing);
+  Competitor* winner =
+      parallel ? winner_of_parallel(view, competing, before) : winner_of_turned(view, competing, before);
+  // Slip of one block against the other has the same sign on both sides. When the vertex and the edge change sides, the tangents of the two
+  // lines run against each other, and normal and tangent turn together.
+  const auto alike = [&](const Competitor& c, const Competitor& other) {
+    return std::abs(dot(view.line(c).tangent, view.line(other).tangent)) > Tolerances::cosine_alike;
   };
-  const bool hands_over =
-      winner != nullptr && holder != nullptr && winner != holder &&
-      (parallel || (force(*holder) > 0.0 && winner->memory < 0 && alike(*winner, *holder)));
-  if (hands_over) winner->memory = holder->memory;
+  const bool hands_over = winner != nullptr && before != nullptr && winner != before &&
+                          (parallel || (view.memory(*before).normal_force > 0.0 && winner->memory < 0 &&
+                                        alike(*winner, *before)));
+  if (hands_over) winner->memory = before->memory;
   return {winner, parallel, hands_over, left_out};
 }
 

@@ -2,19 +2,20 @@
 #include <cstddef>
 #include <span>
 
-#include "contact/detection.h"
+#include "contact/contact.h"
 #include "core/lanes.h"
 
 namespace keyblock::contact {
 
-/// Of as many contacts as there are lanes, by component: as many numbers as stand side by side in each.
+/// Of as many contacts as there are lanes: the eight numbers that follow each other in Contact and in Memory, one lane for each contact.
 struct LawLanes {
   Lanes gap, length, depth, normal_stiffness, shear_stiffness, friction, cohesion, tension;
 };
 struct MemoryLanes {
   Lanes offset, stiffness, shear, normal_force, bounding_force, multiplier, drift, stored;
 
-  /// What of the force that bounds friction is owed from the steps before, and what is not. A contact that only pulls owes nothing.
+  /// N: the part of the force that bounds friction that is owed from the steps before, and the other part. A contact that only pulls owes
+  /// nothing.
   [[nodiscard]] Lanes owed() const {
     return where(normal_force > Lanes{}, bounding_force - normal_force, Lanes{});
   }
@@ -25,7 +26,7 @@ struct MemoryLanes {
 static_assert(offsetof(Contact, tension) - offsetof(Contact, gap) == (lane_count - 1) * sizeof(double));
 static_assert(offsetof(Memory, stored) - offsetof(Memory, offset) == (lane_count - 1) * sizeof(double));
 
-/// Of the first of `some`, at least one, whose numbers begin at begin(each); lanes beyond the last are those of the first.
+/// Numbers of `some`, at least one, that begin at begin(each); lanes beyond the last are those of the first.
 template <typename Components, typename Some, typename Begin>
 Components components_of(std::span<const Some> some, const Begin& begin) {
   Lanes lines[lane_count];
@@ -56,7 +57,7 @@ void keep(const MemoryLanes& m, std::size_t count, const MemoryOf& memory_of) {
   for (std::size_t i = 0; i < lane_count && i < count; ++i) store(&memory_of(i).offset, lines[i]);
 }
 
-/// number(each) of the first of `some`, likewise.
+/// number(each) of `some`, likewise.
 template <typename Some, typename Number>
 Lanes lanes_of(std::span<const Some> some, const Number& number) {
   return each_lane([&](std::size_t i) { return number(some[i < some.size() ? i : 0]); });

@@ -15,9 +15,9 @@ struct EdgeDivision {
   explicit EdgeDivision(std::vector<double> ascending);
 };
 
-/// Calls of_vertex(v, share) for the vertices along a divided edge, with their shares in what it is at a point of one of its pieces:
-/// the polynomial through all of them (Lagrange), which is what a block of order n does along a straight edge of at least n pieces.
-/// A chord is that at its ends alone: a block that is held or pressed between them would have to bend by other forces.
+/// Calls of_vertex(v, share) for the vertices along a divided edge. The point of the curve is the sum of the vertices times their shares: the
+/// polynomial through all of them (Lagrange). A block of order n takes this shape along a straight edge of at least n pieces. A chord has
+/// this shape at its ends only: a block that is held or pressed between them would have to bend by other forces.
 ///
 /// position: Contact::position, along the piece.
 template <typename OfVertex>

@@ -1,41 +1,41 @@
 #pragma once
 #include "core/lanes.h"
 
-// How much of what two edges that face each other have in common belongs to the contact of a vertex
+// Two edges that face each other have a length in common. How much of it belongs to the contact of a vertex
 // (docs/decisions/0012-length-of-joints.md).
 namespace keyblock::contact {
 
-/// An edge beside a line, as SharedLength sees it. Of lanes, or of one number each.
+/// An edge beside a line, as SharedLength sees it. Number: double or Lanes.
 template <typename Number>
 struct Beside {
   Number share;     ///< Surface::start_share of the end at the vertex
-  Number from, to;  ///< m, along the line: the ends of what it is a piece of
-  Number pieces;    ///< of that
+  Number from, to;  ///< m, along the line: the ends of the whole edge that it is a piece of
+  Number pieces;    ///< of the whole edge
 };
 
-/// Likewise.
+/// The length that the edges of a vertex have in common with a line.
 template <typename Number>
 struct SharedLength {
   Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
   double zone;           ///< m, by which edges may miss each other and still begin or end together
   double apart;          ///< m, up to which they are beside each other
 
-  /// m, of the edge, over which one that leaves it at an angle of this sine is beside it.
+  /// m of the edge, over which an edge that leaves it at an angle of this sine is beside it.
   [[nodiscard]] Number stretch(Number sine) const {
     const Number most = Number{} + apart;
     return most / larger(size(sine), most * (1.0 / largest_length));
   }
-  /// m that an edge of the vertex's block, that goes on to `to` and is beside this one for so long, has in common with it.
+  /// m that an edge of the vertex has in common with this edge. It reaches to `to`, and is beside this edge for `long_beside`.
   [[nodiscard]] Number common(Number to, Number long_beside) const {
     const Number low = smaller(along, to), high = larger(along, to), zero{};
     return smaller(larger(zero, smaller(length, high) - larger(zero, low)), long_beside);
   }
-  /// m that the vertex has of that: the half, or what Surface::start_share gives it of the one that lies within the other with all of its
-  /// pieces, or of both, where these are divided alike; as blocks slide, the latter become halves.
-  /// Shares of some pieces of an edge beside halves of others would put what presses evenly beside the middle.
+  /// m that the vertex has of the common length: the half, in general. Where one edge lies within the other with all of its pieces, the vertex
+  /// has what Surface::start_share of that edge gives it. Where both are divided alike, it has the mean of both; as blocks slide, that
+  /// becomes the half. Shares of some pieces beside halves of others would move the middle of an even pressure.
   Number operator()(Number to, Number long_beside, const Beside<Number>& other,
                     const Beside<Number>& here) const {
-    constexpr double slid = 0.5;  // of an edge: by so much it is not divided like the other one any more
+    constexpr double slid = 0.5;  // of an edge: edges that miss each other by more are not divided alike
     const Number low = smaller(along, to), high = larger(along, to), zero{};
     const Number other_low = smaller(other.from, other.to), other_high = larger(other.from, other.to);
     const Number from_slid = other_low - here.from, to_slid = other_high - here.to,

@@ -15,17 +15,17 @@ struct DividedEdge {
   const EdgeDivision* division = nullptr;
 };
 
-/// What a vertex is to others. One at which the block's angle exceeds 180° touches nothing. Where it does so by more than 10° it is a nook,
-/// which a vertex of another block may lie in, and its edges reach past it for that; where by less, the end zone does
-/// (Tolerances: depth_limit · tan 5° < end_zone).
-enum class CornerKind : std::uint8_t { convex, reflex, nook };
+/// What a vertex is to others. A vertex at which the angle of its block exceeds 180° touches nothing:
+///   - reflex: by at most 10°. The end zone is enough for a vertex of another block there (Tolerances: depth_limit · tan 5° < end_zone).
+///   - concave: by more. A vertex of another block may lie in such a corner, and the edges of the corner reach past it for that.
+enum class CornerKind : std::uint8_t { convex, reflex, concave };
 
-/// Of the vertex between two edges; straight but for rounding is convex.
+/// Of the vertex between two edges; a straight corner, up to rounding, is convex.
 inline CornerKind corner_kind(Vec2 before, Vec2 after) {
-  constexpr double rounding = 1e-9, sine_nook = 0.174;
+  constexpr double rounding = 1e-9, sine_concave = 0.174;
   const double sine = cross(before, after) / (norm(before) * norm(after));
   if (sine >= -rounding) return CornerKind::convex;
-  return sine < -sine_nook || dot(before, after) < 0.0 ? CornerKind::nook : CornerKind::reflex;
+  return sine < -sine_concave || dot(before, after) < 0.0 ? CornerKind::concave : CornerKind::reflex;
 }
 
 /// The outlines of all blocks as contact sees them: vertices joined by straight edges. Edge k runs from vertex k to
@@ -47,7 +47,7 @@ struct Surface {
   std::vector<double> phi;
 
   [[nodiscard]] bool is_reflex(std::size_t vertex) const { return kind[vertex] != CornerKind::convex; }
-  [[nodiscard]] bool is_nook(std::size_t vertex) const { return kind[vertex] == CornerKind::nook; }
+  [[nodiscard]] bool is_concave(std::size_t vertex) const { return kind[vertex] == CornerKind::concave; }
   [[nodiscard]] int blocks() const { return static_cast<int>(block_begin.size()) - 1; }
   [[nodiscard]] int vertices() const { return static_cast<int>(block.size()); }
 };

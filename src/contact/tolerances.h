@@ -23,8 +23,8 @@ struct Tolerances {
   /// Distance from the end of an edge within which the contacts of two corners compete (2 mm), beside what motion adds.
   double end_zone;
   /// Depth up to which a vertex behind an edge is in contact with it (2 cm). Must stay below the thickness of a block:
-  /// beyond it a vertex is grabbed by the far edge. Also how far an edge reaches past an end in a nook (CornerKind), where a vertex
-  /// nested in a concave corner may slip by. A block of area A and perimeter P has A/P, should that be less.
+  /// beyond it a vertex is grabbed by the far edge. Also how far an edge reaches past an end in a concave corner (CornerKind), where a
+  /// vertex of another block may slip by. A block of area A and perimeter P has A/P, should that be less.
   double depth_limit;
   /// How far candidates are collected beyond the activation distance (1 cm), each block on its own. Larger: fewer
   /// rebuilds, more candidates.

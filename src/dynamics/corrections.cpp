@@ -20,9 +20,10 @@ double Corrections::Law::bend_stiffness(double stretch) const {
   return (branch(stretch) == 0 ? stiffness : 0.0) - line_stiffness;
 }
 
-void Corrections::add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, linalg::HalfSolver::Part b) {
+void Corrections::add(linalg::LowRankSolver& solver, linalg::LowRankSolver::Part a,
+                      linalg::LowRankSolver::Part b) {
   if (half_.size() == size_) half_.emplace_back();
-  solver.half_solve(a, b, half_[size_]);
+  solver.forward_solve(a, b, half_[size_]);
   compliance_.resize(size_ * (size_ + 1) / 2);
   for (std::size_t t = 0; t <= size_; ++t) compliance_.push_back(solver.product(half_[t], half_[size_]));
   ++size_;
@@ -76,7 +77,7 @@ bool Corrections::find_direction() {
   return true;
 }
 
-bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double> half,
+bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const double> half,
                         std::span<const Law> laws, std::span<const double> stretch) {
   constexpr int most_iterations = 60;
   constexpr double rounding = 1e-13;
@@ -122,10 +123,10 @@ bool Corrections::solve(const linalg::HalfSolver& solver, std::span<const double
   return false;
 }
 
-void Corrections::finish(linalg::HalfSolver& solver, std::span<const double> half, std::span<double> d) {
+void Corrections::finish(linalg::LowRankSolver& solver, std::span<const double> half, std::span<double> d) {
   scaled_.resize(size_);
   for (std::size_t s = 0; s < size_; ++s) scaled_[s] = -force_[s];
-  solver.finish(half, std::span(half_).first(size_), scaled_, d);
+  solver.backward_solve(half, std::span(half_).first(size_), scaled_, d);
 }
 
 }  // namespace keyblock::dynamics

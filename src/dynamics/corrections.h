@@ -31,13 +31,13 @@ class Corrections {
   void clear() { size_ = 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
   /// Adds a spring; a and b: the parts of a_s.
-  void add(linalg::HalfSolver& solver, linalg::HalfSolver::Part a, linalg::HalfSolver::Part b);
+  void add(linalg::LowRankSolver& solver, linalg::LowRankSolver::Part a, linalg::LowRankSolver::Part b);
   /// φ, given half of −A⁻¹ g, the law of every spring and its stretch at D. False when it is not found.
-  [[nodiscard]] bool solve(const linalg::HalfSolver& solver, std::span<const double> half,
+  [[nodiscard]] bool solve(const linalg::LowRankSolver& solver, std::span<const double> half,
                            std::span<const Law> laws, std::span<const double> stretch);
   [[nodiscard]] std::span<const double> forces() const { return force_; }
   /// δ, given half of −A⁻¹ g.
-  void finish(linalg::HalfSolver& solver, std::span<const double> half, std::span<double> d);
+  void finish(linalg::LowRankSolver& solver, std::span<const double> half, std::span<double> d);
 
  private:
   [[nodiscard]] double compliance(std::size_t s, std::size_t t) const {
@@ -47,9 +47,9 @@ class Corrections {
   [[nodiscard]] bool find_direction();
 
   std::size_t size_ = 0;
-  std::vector<linalg::HalfSolution> half_;  ///< L⁻¹ a_s; of the first size_
-  std::vector<double> compliance_;          ///< lower triangle by rows
-  std::vector<double> force_;               ///< φ
+  std::vector<linalg::ForwardVector> half_;  ///< L⁻¹ a_s; of the first size_
+  std::vector<double> compliance_;           ///< lower triangle by rows
+  std::vector<double> force_;                ///< φ
   // Scratch.
   std::vector<double> stretch_, stiffness_, missing_;  ///< e; ∂β/∂e; β − φ
   std::vector<int> branch_;

@@ -17,7 +17,7 @@ bool LocalSolve::solve(const StepSystem& system, Iterate& iterate, double enough
       system.team, ratios.size(), blocks_worth_threads,
       [&](std::size_t b) { return ratios[b] > step_numbers::elsewhere_share * enough; }, out_of_balance_);
   for (std::size_t& b : out_of_balance_) b = at(problem.unknown(b));
-  if (!system.solver.find_near(out_of_balance_, reach_)) return false;
+  if (!system.solver.local()->find_local(out_of_balance_, reach_)) return false;
   take_reach(system);
   for (const std::size_t b : blocks_) {
     const auto [first, last] = problem.coefficients(b);
@@ -29,8 +29,8 @@ bool LocalSolve::solve(const StepSystem& system, Iterate& iterate, double enough
     return largest / enough;
   };
   const std::size_t n = problem.unknowns();
-  system.solver.solve_near(std::span(iterate.direction).first(n), std::span(iterate.residual).first(n),
-                           excess);
+  system.solver.local()->solve_local(std::span(iterate.direction).first(n),
+                                     std::span(iterate.residual).first(n), excess);
   is_active_ = true;
   return true;
 }

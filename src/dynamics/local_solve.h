@@ -13,7 +13,7 @@ class LocalSolve {
  public:
   /// Whether it can be done in this step. In a static one, which has little inertia, a block moves all others.
   [[nodiscard]] static bool serves(const StepSystem& system) {
-    return system.options.accelerators.local_solve && system.solver.solves_near() &&
+    return system.options.accelerators.local_solve && system.solver.local() != nullptr &&
            !system.problem.is_static();
   }
   void reset() { is_active_ = false; }
@@ -42,7 +42,7 @@ class LocalSolve {
   std::vector<std::uint32_t> contacts_of_block_;
   std::uint64_t version_ = 0;  ///< StepContacts::version of these
   // Scratch.
-  linalg::BlockSolver::Reach reach_;
+  linalg::LocalSolver::Reach reach_;
   std::vector<std::uint8_t> is_taken_;  ///< per unknown block
   std::vector<std::size_t> out_of_balance_;
 };

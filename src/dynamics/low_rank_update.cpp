@@ -18,7 +18,7 @@ void leave_out(const StepSystem& system, Iterate& iterate, std::size_t contact, 
 }
 
 bool is_exact(const StepSystem& system, bool is_kept) {
-  return !is_kept && system.solver.halves()->is_exact();
+  return !is_kept && system.solver.low_rank()->is_exact();
 }
 
 }  // namespace
@@ -84,7 +84,8 @@ bool LowRankUpdate::begin(const StepSystem& system, Iterate& iterate, StepMatrix
     return solve(system, matrix, 0, direction);
   }
   start_on_lines(system, iterate, matrix);
-  if (is_kept || system.solver.halves()->is_exact()) return solve(system, matrix, updated_.size(), direction);
+  if (is_kept || system.solver.low_rank()->is_exact())
+    return solve(system, matrix, updated_.size(), direction);
   // A long way: what its last digits lack would have springs seem to act otherwise that do not.
   const Profile::Scope scope(system.profile, Phase::solution);
   system.solver.solve(direction, std::span(iterate.residual).first(direction.size()),
@@ -121,10 +122,10 @@ void LowRankUpdate::go(const StepSystem& system, Iterate& iterate, StepMatrix& m
 /// are on the straight lines of the matrix so far. False when their forces are not found; none are updated then.
 bool LowRankUpdate::solve(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh,
                           std::span<double> direction) {
-  linalg::HalfSolver& halves = *system.solver.halves();
+  linalg::LowRankSolver& halves = *system.solver.low_rank();
   {
     const Profile::Scope scope(system.profile, Phase::solution);
-    halves.half_solve(direction, base_);
+    halves.forward_solve(direction, base_);
   }
   if (!find_forces(system, matrix, fresh)) {
     reset();
@@ -159,7 +160,7 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
     if (!is_fresh) force_[k] = law.bend(stretch_.back());
     law.line_force += force_[k];
   }
-  if (!corrections_.solve(*system.solver.halves(), base_, laws_, stretch_)) return false;
+  if (!corrections_.solve(*system.solver.low_rank(), base_, laws_, stretch_)) return false;
   for (std::size_t k = 0; k < updated_.size(); ++k) force_[k] += corrections_.forces()[k];
   return true;
 }
@@ -182,7 +183,7 @@ void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
   for (const Spring spring : wanted_) {
     const StepProblem::Row& row = system.row(spring.contact);
     system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), part_a_, part_b_);
-    corrections_.add(*system.solver.halves(), {row.unknown_a, part_a_}, {row.unknown_b, part_b_});
+    corrections_.add(*system.solver.low_rank(), {row.unknown_a, part_a_}, {row.unknown_b, part_b_});
     updated_.push_back(spring);
     matrix.take_hold(system.problem, row);
   }

@@ -14,12 +14,12 @@ void OpenClose::begin(const StepSystem& system, std::span<double> d) {
   bond_updates_ = misses_ = 0;
   const bool is_kept = kept_.begin_step(system, matrix_, update_);
   // Without halves the matrix of an earlier step is brought to this one; with them its factor is used as it is.
-  matrix_.begin_step(is_kept && system.solver.halves() == nullptr);
+  matrix_.begin_step(is_kept && system.solver.low_rank() == nullptr);
 }
 
 /// Whether what is solved is the matrix of this step, to all the digits that are asked for.
 bool OpenClose::is_exact(const StepSystem& system) const {
-  const linalg::HalfSolver* halves = system.solver.halves();
+  const linalg::LowRankSolver* halves = system.solver.low_rank();
   return !kept_.is_kept() && (halves == nullptr || halves->is_exact());
 }
 
@@ -69,7 +69,7 @@ bool OpenClose::settles(const StepSystem& system, double enough, OpenCloseResult
 bool OpenClose::minimize(const StepSystem& system, bool warm, double enough, OpenCloseResult& result) {
   const int limit = result.iterations + system.options.max_iterations;
   const double tolerance = system.options.tolerance;
-  const bool updates = system.options.accelerators.low_rank_update && system.solver.halves() != nullptr;
+  const bool updates = system.options.accelerators.low_rank_update && system.solver.low_rank() != nullptr;
   // Springs are built at D = 0.
   bool from_zero =
       !warm && updates && std::ranges::all_of(iterate_.increment, [](double v) { return v == 0.0; });

@@ -100,13 +100,13 @@ bool PredictedMotion::is_exceeded(const Attempt& attempt, std::span<const double
   return true;
 }
 
-contact::Detection::Motion PredictedMotion::for_detection(std::span<const double> away,
+contact::StepMotion PredictedMotion::for_detection(std::span<const double> away,
                                                           bool is_static) const {
-  contact::Detection::Motion motion{reach_, turn_, away, path_};
+  contact::StepMotion motion{reach_, turn_, away, path_};
   if (!is_static) {
-    motion.ahead = predicted_;
-    motion.way_ahead = differs_;
-    motion.ahead_at_first = predicted_at_first_;
+    motion.predicted = predicted_;
+    motion.predicted_path = differs_;
+    motion.first_predicted = predicted_at_first_;
   }
   return motion;
 }

@@ -36,14 +36,14 @@ class PredictedMotion {
   /// m/s, per block: the fastest of its vertices at the start of the step.
   [[nodiscard]] std::span<const double> speed() const { return speed_; }
   /// What detection asks for. away: Candidates::away.
-  [[nodiscard]] contact::Detection::Motion for_detection(std::span<const double> away, bool is_static) const;
+  [[nodiscard]] contact::StepMotion for_detection(std::span<const double> away, bool is_static) const;
 
  private:
-  std::vector<double> reach_, turn_, path_;  ///< m, rad and m, per block: Detection::Motion
+  std::vector<double> reach_, turn_, path_;  ///< m, rad and m, per block: StepMotion
   std::vector<double> speed_;
-  std::vector<Vec2> predicted_;           ///< m, per vertex: Detection::Motion::ahead
+  std::vector<Vec2> predicted_;           ///< m, per vertex: StepMotion::predicted
   std::vector<Vec2> predicted_at_first_;  ///< m, the same in the first attempt; empty: this is it
-  std::vector<double> differs_;           ///< m, per block: Detection::Motion::way_ahead
+  std::vector<double> differs_;           ///< m, per block: StepMotion::predicted_path
   std::vector<std::uint8_t> is_far_;      ///< per block: it left its region. Scratch
 };
 

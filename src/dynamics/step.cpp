@@ -26,7 +26,7 @@ std::vector<double> sizes_of(const std::vector<Block>& blocks) {
 /// The beginning of the first attempt. Where there is a factor, only a curve through the last increments is a better beginning than none.
 void guess(const IncrementHistory& history, linalg::BlockSolver& solver, const SolverOptions& options,
            double step, std::span<double> increment, ThreadTeam& team) {
-  if (options.accelerators.increment_history && (solver.halves() == nullptr || history.is_smooth()))
+  if (options.accelerators.increment_history && (solver.low_rank() == nullptr || history.is_smooth()))
     return history.extrapolate(step, increment, team);
   std::fill(increment.begin(), increment.end(), 0.0);
 }

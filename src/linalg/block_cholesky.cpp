@@ -4,20 +4,19 @@
 #include <memory>
 
 #include "core/index.h"
+#include "linalg/numbers.h"
 #include "linalg/registers.h"
 
 namespace keyblock::linalg {
 
 void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
-  // Coefficients of higher polynomials differ too much in what they do; and a small factor stays in a cache as it is.
-  constexpr int largest_single = 12;
-  constexpr std::size_t worth_single = std::size_t{1} << 18;  // numbers: 2 MB in double precision
   pattern_ = BlockPattern(sizes, pairs);
   matrix_ = BlockMatrix(pattern_, pairs);
   single_.reset();
   double_.reset();
-  const bool is_worth_it = pattern_.values >= worth_single &&
-                           std::ranges::all_of(sizes, [](int size) { return size <= largest_single; });
+  const bool is_worth_it =
+      pattern_.values >= numbers::worth_single &&
+      std::ranges::all_of(sizes, [](int size) { return size <= numbers::largest_single_block; });
   if (precision_ == Precision::single || (precision_ == Precision::automatic && is_worth_it))
     single_.emplace(pattern_);
   in_double_ = !single_;
@@ -35,13 +34,13 @@ void BlockCholesky::clear() {
   share_left_ = 0.0;
 }
 
-/// Calls what(factor) with that at hand.
-template <typename Do>
-void BlockCholesky::with_factor(const Do& what) {
+/// Calls call(factor) with the factor at hand.
+template <typename Call>
+void BlockCholesky::with_factor(const Call& call) {
   if (in_double_) {
-    what(*double_);
+    call(*double_);
   } else {
-    what(*single_);
+    call(*single_);
   }
 }
 
@@ -61,10 +60,8 @@ bool BlockCholesky::factor_in_double() {
 
 bool BlockCholesky::factor() {
   solved_ = true;
-  // A pivot that is the difference of numbers 10⁵ times as large has two digits left in single precision.
-  constexpr double least_pivot = 1e-5;
   if (!in_double_) {
-    if (single_->factor(pattern_, matrix_, least_pivot) == FactorOutcome::done) return true;
+    if (single_->factor(pattern_, matrix_, numbers::least_single_pivot) == FactorOutcome::done) return true;
     if (double_) double_->make_stale();
   }
   return factor_in_double();
@@ -91,15 +88,13 @@ void BlockCholesky::solve_by_column(std::span<double> x) {
 /// Solutions in single precision, each of what the ones before left over. Whether the excess came down to 1.
 bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, const Excess& excess,
                            Residual kind) {
-  constexpr int most = 5;
-  constexpr double sure = 0.1;  // an excess that is estimated to be less needs no look
   double left = excess(x);
   std::fill(solution_.begin(), solution_.end(), 0.0);
   work_ = right_;
-  for (int round = 0; round < most; ++round) {
+  for (int round = 0; round < numbers::most_refinements; ++round) {
     solve_by_column(work_);
     for (std::size_t k = 0; k < work_.size(); ++k) solution_[k] += work_[k];
-    if (kind == Residual::estimated && share_left_ > 0.0 && share_left_ * left < sure) {
+    if (kind == Residual::estimated && share_left_ > 0.0 && share_left_ * left < numbers::sure_excess) {
       std::fill(residual.begin(), residual.end(), 0.0);
       give(solution_, x);
       return true;
@@ -131,22 +126,22 @@ void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const
   give(right_, x);
 }
 
-void BlockCholesky::half_solve(Part a, Part b, HalfSolution& half) {
+void BlockCholesky::forward_solve(Part a, Part b, ForwardVector& w) {
   std::size_t first = BlockPattern::none;
   for (const Part& part : {a, b}) {
     if (part.block >= 0) first = std::min(first, column(part.block));
   }
-  half.column = static_cast<int>(first);
-  half.values.assign(pattern_.above[first] + at(pattern_.stride[first]), 0.0);
+  w.column = static_cast<int>(first);
+  w.values.assign(pattern_.above[first] + at(pattern_.stride[first]), 0.0);
   for (const Part& part : {a, b}) {
     if (part.block >= 0)
-      std::copy(part.values.begin(), part.values.end(), &half.values[pattern_.above[column(part.block)]]);
+      std::copy(part.values.begin(), part.values.end(), &w.values[pattern_.above[column(part.block)]]);
   }
-  with_factor([&](auto& factor) { factor.forward(pattern_, half); });
+  with_factor([&](auto& factor) { factor.forward(pattern_, w); });
 }
 
-double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) const {
-  // The ways have all in common from where they meet.
+double BlockCholesky::product(const ForwardVector& x, const ForwardVector& y) const {
+  // The paths have all in common from where they meet.
   constexpr std::size_t none = BlockPattern::none;
   std::size_t i = at(x.column), j = at(y.column);
   while (i != j && i != none && j != none) (i < j ? i : j) = pattern_.parent[std::min(i, j)];
@@ -157,7 +152,7 @@ double BlockCholesky::product(const HalfSolution& x, const HalfSolution& y) cons
   return sum(t);
 }
 
-double BlockCholesky::product(const HalfSolution& x, std::span<const double> y) const {
+double BlockCholesky::product(const ForwardVector& x, std::span<const double> y) const {
   Lanes t{};
   for (std::size_t j = at(x.column); j != BlockPattern::none; j = pattern_.parent[j]) {
     for (std::size_t l = 0; l < at(pattern_.stride[j]); l += row_padding)
@@ -166,21 +161,21 @@ double BlockCholesky::product(const HalfSolution& x, std::span<const double> y) 
   return sum(t);
 }
 
-void BlockCholesky::half_solve(std::span<const double> b, std::vector<double>& half) {
-  half.resize(pattern_.work_size);
-  take(b, half);
-  with_factor([&](auto& factor) { factor.forward(pattern_, half); });
+void BlockCholesky::forward_solve(std::span<const double> b, std::vector<double>& w) {
+  w.resize(pattern_.work_size);
+  take(b, w);
+  with_factor([&](auto& factor) { factor.forward(pattern_, w); });
 }
 
-void BlockCholesky::finish(std::span<const double> half, std::span<const HalfSolution> halves,
-                           std::span<const double> factor, std::span<double> x) {
-  std::copy(half.begin(), half.end(), work_.begin());
-  for (std::size_t k = 0; k < halves.size(); ++k) {
-    for (std::size_t j = at(halves[k].column); j != BlockPattern::none; j = pattern_.parent[j]) {
+void BlockCholesky::backward_solve(std::span<const double> w, std::span<const ForwardVector> ws,
+                                   std::span<const double> factor, std::span<double> x) {
+  std::copy(w.begin(), w.end(), work_.begin());
+  for (std::size_t k = 0; k < ws.size(); ++k) {
+    for (std::size_t j = at(ws[k].column); j != BlockPattern::none; j = pattern_.parent[j]) {
       double* y = &work_[pattern_.work_start[j]];
       for (int l = 0; l < pattern_.stride[j]; l += row_padding)
-        store(y + l, add_product(broadcast(factor[k]), load(&halves[k].values[pattern_.above[j] + at(l)]),
-                                 load(y + l)));
+        store(y + l,
+              add_product(broadcast(factor[k]), load(&ws[k].values[pattern_.above[j] + at(l)]), load(y + l)));
     }
   }
   with_factor([&](auto& of) { of.backward(pattern_, work_); });

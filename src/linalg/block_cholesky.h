@@ -12,7 +12,7 @@
 namespace keyblock::linalg {
 
 /// make_block_cholesky().
-class BlockCholesky final : public BlockSolver, public HalfSolver {
+class BlockCholesky final : public BlockSolver, public LowRankSolver {
  public:
   explicit BlockCholesky(Precision precision) : precision_(precision) {}
   void analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) override;
@@ -22,16 +22,16 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   void touch(int block) override;
   bool factor() override;
   void solve(std::span<double> x, std::span<double> residual, const Excess& excess, Residual kind) override;
-  HalfSolver* halves() override { return this; }
+  [[nodiscard]] LowRankSolver* low_rank() override { return this; }
   [[nodiscard]] bool serves_later_steps() const override { return true; }
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool is_exact() const override { return in_double_; }
-  void half_solve(Part a, Part b, HalfSolution& half) override;
-  void half_solve(std::span<const double> b, std::vector<double>& half) override;
-  [[nodiscard]] double product(const HalfSolution& x, const HalfSolution& y) const override;
-  [[nodiscard]] double product(const HalfSolution& x, std::span<const double> y) const override;
-  void finish(std::span<const double> half, std::span<const HalfSolution> halves,
-              std::span<const double> factor, std::span<double> x) override;
+  void forward_solve(Part a, Part b, ForwardVector& w) override;
+  void forward_solve(std::span<const double> b, std::vector<double>& w) override;
+  [[nodiscard]] double product(const ForwardVector& x, const ForwardVector& y) const override;
+  [[nodiscard]] double product(const ForwardVector& x, std::span<const double> y) const override;
+  void backward_solve(std::span<const double> w, std::span<const ForwardVector> ws,
+                      std::span<const double> factor, std::span<double> x) override;
 
  private:
   [[nodiscard]] std::size_t column(int block) const {
@@ -40,8 +40,8 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   [[nodiscard]] bool factor_in_double();
   void take(std::span<const double> x, std::span<double> by_column) const;
   void give(std::span<const double> by_column, std::span<double> x) const;
-  template <typename Do>
-  void with_factor(const Do& what);
+  template <typename Call>
+  void with_factor(const Call& call);
   void solve_by_column(std::span<double> x);
   [[nodiscard]] bool refine(std::span<double> x, std::span<double> residual, const Excess& excess,
                             Residual kind);
@@ -49,11 +49,11 @@ class BlockCholesky final : public BlockSolver, public HalfSolver {
   Precision precision_;
   BlockPattern pattern_;
   BlockMatrix matrix_;
-  std::optional<BlockFactor<float>> single_;   ///< where it may do
+  std::optional<BlockFactor<float>> single_;   ///< where it may be enough
   std::optional<BlockFactor<double>> double_;  ///< once it is needed
   bool in_double_ = false;                     ///< the factor at hand
   double share_left_ =
-      0.0;  ///< of an excess after one solution in single precision, the most that has been seen; 0: not known
+      0.0;  ///< of an excess, what one solution in single precision left at the most; 0: not known
   bool solved_ = true;
   // Scratch, by columns.
   std::vector<double> work_, right_, solution_;

@@ -5,94 +5,120 @@
 #include <memory>
 #include <utility>
 
+#include "core/index.h"
+
 namespace keyblock::linalg {
 
-namespace {
+void BlockConjugateResidual::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
+  matrix_.analyse(sizes, pairs);
+  passes_.analyse(matrix_.order());
+}
 
-// Excess of the iteration's residual, with which that of the matrix is small enough.
-constexpr double well_enough = 0.9;
-// Share of the square of the residual asked for, at which it is looked at for the first time.
-constexpr double early = 0.5;
+bool BlockConjugateResidual::factor() {
+  lags_ = local_lags_ = {};
+  return matrix_.factor(team_);
+}
 
-}  // namespace
+void BlockConjugateResidual::begin(const SolvedPart& part, std::span<const double> residual) {
+  rho_ = ss_ = 0.0;
+  passes_.start(matrix_, part, residual);
+}
 
-/// Conjugate residuals from r_, p_, s_, rho_ and ss_ on, to z_.
+/// α and β of the next step from the dot products, and r · r after it. False where nothing is left of r in single precision, or the matrix is
+/// not positive definite.
+bool BlockConjugateResidual::next_lengths(const IterationDots& dots, double first_rr, PendingSteps& steps,
+                                          double& rr) {
+  const double beta = rho_ > 0.0 ? dots.rq / rho_ : 0.0;
+  rho_ = dots.rq;
+  ss_ = dots.qq - beta * beta * ss_;
+  constexpr double most_growth = numbers::most_growth * numbers::most_growth;
+  if (!(rho_ > 0.0 && ss_ > 0.0 && dots.rr <= most_growth * first_rr)) return false;
+  const double alpha = rho_ / ss_;
+  steps.add({static_cast<float>(alpha), static_cast<float>(beta), 1.0F});
+  rr = std::max(0.0, dots.rr - alpha * rho_);
+  return true;
+}
+
+/// r · r at which the residual is found for the first time: by the last solutions, or after three quarters of the digits. start: excess at the
+/// beginning.
+double BlockConjugateResidual::first_check(double first_rr, double start, const Lags& lags) {
+  const double lag = std::ranges::max(lags), three_quarters = std::sqrt(start);
+  return first_rr *
+         (lag > 0.0 ? std::min(three_quarters, numbers::first_check_share * lag) : three_quarters) /
+         (start * start);
+}
+
+/// Conjugate residuals from r, p, s, rho_ and ss_ on, to z.
 ///
 /// When it is enough, the residual itself has to say: its norm in the scaled system differs from the largest of its numbers by a
-/// factor of ten and more, the one way or the other. As it costs more than an iteration it is looked at when it should be small
-/// enough, going by how far it was away the last time; the first time by the last solutions, or three quarters of the digits on the way.
-BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(double too_large, const Excess& excess,
-                                                                   int most) {
+/// factor of ten and more, in either direction. As it costs more than an iteration it is found when it should be small enough, by what was
+/// missing the last time.
+BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(const SolvedPart& part, double too_large,
+                                                                   const Excess& excess, int most,
+                                                                   Lags& lags) {
   const double start = too_large;
   const bool goes_on = rho_ > 0.0;
-  Ways ways;
-  double wanted = 0.0, first_rr = 0.0;
+  PendingSteps steps;
+  double wanted = 0.0, first_rr = 0.0, rr = 0.0;
   for (int iterations = 1;; ++iterations) {
-    const Dots dots = apply(ways);
+    const IterationDots dots = passes_.apply(matrix_, part, steps);
     if (iterations == 1) {
       first_rr = dots.rr;
-      const double lag = *std::max_element(lag_.begin(), lag_.end()), three_quarters = std::sqrt(start);
-      wanted =
-          first_rr * (lag > 0.0 ? std::min(three_quarters, early * lag) : three_quarters) / (start * start);
+      wanted = first_check(first_rr, start, lags);
     }
-    const double beta = rho_ > 0.0 ? dots.rq / rho_ : 0.0;
-    rho_ = dots.rq;
-    ss_ = dots.qq - beta * beta * ss_;
-    // Nothing is left of r in single precision, or the matrix is not positive definite.
-    if (!(rho_ > 0.0 && ss_ > 0.0 && dots.rr <= most_growth * most_growth * first_rr)) {
-      if (ways.pending == 1) {  // r and s have gone that; so do p and z
-        ways.take({});
-        go(ways);
+    if (!next_lengths(dots, first_rr, steps, rr)) {
+      if (steps.count == 1) {  // r and s have taken that step; so do p and z
+        steps.add({});
+        passes_.take(part, steps);
       }
       return {iterations, false};
     }
-    const double alpha = rho_ / ss_;
-    ways.take({static_cast<float>(alpha), static_cast<float>(beta), 1.0F});
-    const double rr = std::max(0.0, dots.rr - alpha * rho_);
     if (rr > wanted && iterations < most) continue;
-    go(ways);
-    ways = {};
+    passes_.take(part, steps);
+    steps = {};
     if (iterations == most) return {iterations, false};
-    find_residual(estimate_);
+    passes_.estimate_residual(matrix_, part, estimate_);
     too_large = excess(estimate_);
-    if (too_large <= well_enough) {
+    if (too_large <= numbers::enough_estimated) {
       if (goes_on) return {iterations, true};
-      std::copy_backward(lag_.begin(), lag_.end() - 1, lag_.end());
-      lag_.front() = rr / first_rr * (start * start) / (too_large * too_large);
+      std::copy_backward(lags.begin(), lags.end() - 1, lags.end());
+      lags.front() = rr / first_rr * (start * start) / (too_large * too_large);
       return {iterations, true};
     }
-    wanted = 0.5 * rr / (too_large * too_large);
+    wanted = numbers::next_check_share * rr / (too_large * too_large);
   }
 }
 
 /// From where the iteration is, or from the beginning where rho_ is 0.
 void BlockConjugateResidual::approach(std::span<double> x, std::span<double> residual, const Excess& excess,
                                       Residual kind) {
+  const SolvedPart part = all();
   solved_ = true;
   bool goes_on = rho_ > 0.0;
   int iterations = 0;
   double most = HUGE_VAL;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
-    if (iterations >= most_iterations || !(too_large < most)) {
+    if (iterations >= numbers::most_iterations || !(too_large < most)) {
       solved_ = false;
       return;
     }
-    most = most_growth * too_large;
-    if (!goes_on) start(residual);
+    most = numbers::most_growth * too_large;
+    if (!goes_on) begin(part, residual);
     goes_on = false;
-    const Iterations taken = iterate(too_large, excess, most_iterations - iterations);
+    const Iterations taken = iterate(part, too_large, excess, numbers::most_iterations - iterations, lags_);
     iterations += taken.count;
     if (taken.enough && kind == Residual::estimated) {
-      take_over(x, residual, kind);
+      passes_.add_solution(matrix_, part, x);
+      part.for_numbers(residual.size(), [&](std::size_t k) { residual[k] = estimate_[k]; });
       return;
     }
-    take_over(x, residual, Residual::exact);
+    passes_.add_solution(matrix_, part, x, residual);
   }
 }
 
 void BlockConjugateResidual::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                    Residual kind) {
-  for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
+  all().for_numbers(x.size(), [&](std::size_t k) { residual[k] = std::exchange(x[k], 0.0); });
   estimate_.resize(x.size());
   rho_ = 0.0;
   approach(x, residual, excess, kind);
@@ -100,8 +126,41 @@ void BlockConjugateResidual::solve(std::span<double> x, std::span<double> residu
 
 void BlockConjugateResidual::improve(std::span<double> x, std::span<double> residual, const Excess& excess,
                                      Residual kind) {
-  for_numbers(z_.size(), [&](std::size_t k) { z_[k] = 0.0F; });
+  passes_.clear_solution(all());
   approach(x, residual, excess, kind);
+}
+
+bool BlockConjugateResidual::find_local(std::span<const std::size_t> blocks, Reach& reach) {
+  if (!neighbourhood_.collect(matrix_.order(), matrix_.pattern(), blocks)) return false;
+  reach.moved = neighbourhood_.positions().size();
+  reach.blocks.clear();
+  for (const Positions positions : {neighbourhood_.positions(), neighbourhood_.edge()}) {
+    for (const std::size_t position : positions)
+      reach.blocks.push_back(at(matrix_.order().block_at[position]));
+  }
+  return true;
+}
+
+void BlockConjugateResidual::solve_local(std::span<double> x, std::span<double> residual,
+                                         const Excess& excess) {
+  const BlockOrder& order = matrix_.order();
+  estimate_.resize(x.size());
+  for (const Positions positions : {neighbourhood_.positions(), neighbourhood_.edge()}) {
+    for (const std::size_t position : positions) {
+      const std::size_t first = order.offset[position];
+      for (std::size_t k = first; k < first + at(order.size[position]); ++k)
+        estimate_[k] = residual[k] = std::exchange(x[k], 0.0);
+    }
+  }
+  solved_ = true;
+  const double too_large = excess(residual);
+  if (!(too_large > 1.0)) return;
+  const SolvedPart part(order, &neighbourhood_, team_);
+  begin(part, residual);
+  const Iterations taken = iterate(part, too_large, excess, numbers::most_iterations, local_lags_);
+  passes_.add_solution(matrix_, part, x, residual);
+  // What is left over beyond may be more than there was, unless the iteration came to nothing.
+  solved_ = excess(residual) < (taken.enough ? numbers::most_growth : 1.0) * too_large;
 }
 
 std::unique_ptr<BlockSolver> make_block_conjugate_residual(ThreadTeam* team) {

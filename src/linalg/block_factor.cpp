@@ -19,12 +19,23 @@ int stride_of(const BlockPattern& pattern, std::size_t column) {
   return equal > 0 ? padded_rows(equal) : pattern.stride[column];
 }
 
-/// Calls what.template operator()<equal>().
-template <typename Do>
-auto for_equal_size(const BlockPattern& pattern, const Do& what) {
-  if (pattern.equal_size == 6) return what.template operator()<6>();
-  if (pattern.equal_size == 12) return what.template operator()<12>();
-  return what.template operator()<0>();
+/// What the matrix has over the pivot, the largest of a diagonal block. inverse: L⁻¹, with 1 / √pivot on its diagonal.
+template <typename Number>
+double largest_cancellation(int size, int stride, const double* block, const Number* inverse) {
+  double largest = 0.0;
+  for (int k = 0; k < size; ++k) {
+    const double root = inverse[k * (stride + 1)];
+    largest = std::max(largest, block[k * (stride + 1)] * root * root);
+  }
+  return largest;
+}
+
+/// Calls call.template operator()<equal>().
+template <typename Call>
+auto for_equal_size(const BlockPattern& pattern, const Call& call) {
+  if (pattern.equal_size == 6) return call.template operator()<6>();
+  if (pattern.equal_size == 12) return call.template operator()<12>();
+  return call.template operator()<0>();
 }
 
 }  // namespace
@@ -110,15 +121,9 @@ FactorOutcome BlockFactor<Number>::factor_columns(const BlockPattern& pattern, c
     if (!invert_diagonal<equal>(pattern, j)) return FactorOutcome::not_positive;
     const int size = size_of<equal>(pattern, j), stride = stride_of<equal>(pattern, j);
     const Number* inverse = &values_[pattern.column_value[j]];
-    if (least_pivot > 0.0) {
-      const double* before = matrix.diagonal_of_column(j);
-      double largest = 0.0;  // of what the matrix has over the pivot
-      for (int k = 0; k < size; ++k) {
-        const double root = inverse[k * (stride + 1)];  // 1 / √pivot
-        largest = std::max(largest, before[k * (stride + 1)] * root * root);
-      }
-      if (largest * least_pivot > 1.0) return FactorOutcome::poor;
-    }
+    if (least_pivot > 0.0 &&
+        largest_cancellation(size, stride, matrix.diagonal_of_column(j), inverse) * least_pivot > 1.0)
+      return FactorOutcome::poor;
     for (std::size_t e = pattern.row_start[j]; e < pattern.row_start[j + 1]; ++e) {
       Number* x = &values_[pattern.row_value[e]];
       if constexpr (equal > 0) {
@@ -221,10 +226,10 @@ void BlockFactor<Number>::backward(const BlockPattern& pattern, std::span<double
 }
 
 template <typename Number>
-void BlockFactor<Number>::forward(const BlockPattern& pattern, HalfSolution& half) {
-  const auto of_row = [&](std::size_t i) { return &half.values[pattern.above[i]]; };
+void BlockFactor<Number>::forward(const BlockPattern& pattern, ForwardVector& w) {
+  const auto of_row = [&](std::size_t i) { return &w.values[pattern.above[i]]; };
   for_equal_size(pattern, [&]<int equal>() {
-    for (std::size_t j = at(half.column); j != BlockPattern::none; j = pattern.parent[j])
+    for (std::size_t j = at(w.column); j != BlockPattern::none; j = pattern.parent[j])
       eliminate<equal>(pattern, j, of_row(j), of_row);
   });
 }

@@ -30,8 +30,8 @@ class BlockFactor {
   /// y ← L⁻¹ y and y ← L⁻ᵀ y, of vectors by columns.
   void forward(const BlockPattern& pattern, std::span<double> y);
   void backward(const BlockPattern& pattern, std::span<double> y);
-  /// y ← L⁻¹ y, on the way from half.column to the root.
-  void forward(const BlockPattern& pattern, HalfSolution& half);
+  /// y ← L⁻¹ y, on the path from w.column to the root.
+  void forward(const BlockPattern& pattern, ForwardVector& w);
 
  private:
   // `equal`: unknowns of every block where all have as many, so that loops have a known length; 0 where not.

@@ -10,8 +10,8 @@
 namespace keyblock::linalg {
 
 /// Calls columns<width>(c), six columns at a time and then one by one.
-template <typename Do>
-void in_sixes(int size, const Do& columns) {
+template <typename Columns>
+void in_sixes(int size, const Columns& columns) {
   int c = 0;
   for (; c + 6 <= size; c += 6) columns.template operator()<6>(c);
   for (; c < size; ++c) columns.template operator()<1>(c);

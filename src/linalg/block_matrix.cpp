@@ -15,7 +15,7 @@ BlockMatrix::BlockMatrix(const BlockPattern& pattern, std::span<const std::pair<
         std::minmax(pattern.position[at(pairs[k].first)], pattern.position[at(pairs[k].second)]));
   };
   for (std::size_t k = 0; k < pairs.size(); ++k) pairs_of[column_and_row(k).first].push_back(k);
-  std::vector<std::size_t> place(pairs.size());
+  std::vector<std::size_t> value(pairs.size());
   std::size_t used = 0;
   source_start_.assign(1, 0);
   const auto add = [&](std::size_t to, std::size_t row, std::size_t column) {
@@ -34,7 +34,7 @@ BlockMatrix::BlockMatrix(const BlockPattern& pattern, std::span<const std::pair<
       const auto first = pattern.rows.begin() + static_cast<std::ptrdiff_t>(pattern.row_start[j]);
       const auto last = pattern.rows.begin() + static_cast<std::ptrdiff_t>(pattern.row_start[j + 1]);
       const auto entry = static_cast<std::size_t>(std::lower_bound(first, last, row) - pattern.rows.begin());
-      place[k] = add(pattern.row_value[entry], row, j);
+      value[k] = add(pattern.row_value[entry], row, j);
     }
     source_start_.push_back(sources_.size());
   }
@@ -45,7 +45,7 @@ BlockMatrix::BlockMatrix(const BlockPattern& pattern, std::span<const std::pair<
     const auto [i, j] = pairs[k];
     const bool i_below = pattern.position[at(i)] > pattern.position[at(j)];
     const std::size_t row = pattern.position[at(i_below ? i : j)];
-    slots_.push_back({&values_[place[k]], pattern.stride[row], i_below ? i : j, i_below ? j : i});
+    slots_.push_back({&values_[value[k]], pattern.stride[row], i_below ? i : j, i_below ? j : i});
   }
 }
 
@@ -56,8 +56,8 @@ void BlockMatrix::clear() {
 template <typename Number>
 void BlockMatrix::load_column(const BlockPattern& pattern, std::size_t j, std::span<Number> values) const {
   std::size_t filled = pattern.column_value[j];
-  const auto clear_up_to = [&](std::size_t place) {
-    for (; filled < place; filled += row_padding) store(&values[filled], decltype(load(values.data())){});
+  const auto clear_up_to = [&](std::size_t value) {
+    for (; filled < value; filled += row_padding) store(&values[filled], decltype(load(values.data())){});
   };
   for (std::size_t k = source_start_[j]; k < source_start_[j + 1]; ++k) {
     const Source& source = sources_[k];

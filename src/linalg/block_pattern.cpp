@@ -27,11 +27,11 @@ BlockPattern::BlockPattern(std::span<const int> sizes, std::span<const std::pair
   equal_size =
       n > 0 && std::all_of(sizes.begin(), sizes.end(), [&](int s) { return s == sizes[0]; }) ? sizes[0] : 0;
   find_structure(pairs);
+  find_updates();
   place_values();
 }
 
-// Row structure of every column: its own entries and those of the columns whose parent it is (elimination
-// tree).
+// Row structure of every column: its own entries and the entries of its children in the elimination tree.
 void BlockPattern::find_structure(std::span<const std::pair<int, int>> pairs) {
   const std::size_t n = columns();
   std::vector<std::vector<std::size_t>> below(n), children(n);
@@ -61,6 +61,10 @@ void BlockPattern::find_structure(std::span<const std::pair<int, int>> pairs) {
     rows.insert(rows.end(), found.begin(), found.end());
     row_start.push_back(rows.size());
   }
+}
+
+void BlockPattern::find_updates() {
+  const std::size_t n = columns();
   above.assign(n, 0);
   for (std::size_t j = n; j-- > 0;) {
     if (parent[j] != none) above[j] = above[parent[j]] + at(stride[parent[j]]);

@@ -44,6 +44,7 @@ struct BlockPattern {
 
  private:
   void find_structure(std::span<const std::pair<int, int>> pairs);
+  void find_updates();
   void place_values();
 };
 

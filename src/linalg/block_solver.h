@@ -24,36 +24,8 @@ struct BlockSlot {
   int column = 0;
 };
 
-/// L⁻¹ b, with A = L Lᵀ, of a b that belongs to one block or to two that have a pair: zero but for the columns on the way from the
-/// first of the two that is eliminated to the root of the elimination tree.
-struct HalfSolution {
-  int column = -1;             ///< where the way begins
-  std::vector<double> values;  ///< of the columns on the way, those of the root first
-};
-
-/// Halves of solutions with the last factor, to correct others by: with w = L⁻¹ a, a change of A along a aᵀ needs no more than
-/// products of such w with each other and one L⁻ᵀ.
-class HalfSolver {
- public:
-  virtual ~HalfSolver() = default;
-  /// Whether the factor has the digits of double precision; where not, what is solved with it wants to be refined.
-  [[nodiscard]] virtual bool is_exact() const = 0;
-  /// What belongs to a block, as long as its unknowns; block −1: nothing.
-  struct Part {
-    int block = -1;
-    std::span<const double> values;
-  };
-  /// half = L⁻¹ (a + b). The two blocks have a pair, or one of them is −1.
-  virtual void half_solve(Part a, Part b, HalfSolution& half) = 0;
-  /// half = L⁻¹ b, of all columns, for a b of all blocks.
-  virtual void half_solve(std::span<const double> b, std::vector<double>& half) = 0;
-  /// xᵀ y, for x = L⁻¹ a and y = L⁻¹ b that is aᵀ A⁻¹ b.
-  [[nodiscard]] virtual double product(const HalfSolution& x, const HalfSolution& y) const = 0;
-  [[nodiscard]] virtual double product(const HalfSolution& x, std::span<const double> y) const = 0;
-  /// x = L⁻ᵀ (half + Σ factor_k halves_k).
-  virtual void finish(std::span<const double> half, std::span<const HalfSolution> halves,
-                      std::span<const double> factor, std::span<double> x) = 0;
-};
+class LowRankSolver;
+class LocalSolver;
 
 /// A symmetric positive definite matrix of dense blocks, of sizes that may differ, and its factorization.
 ///
@@ -61,7 +33,7 @@ class HalfSolver {
 ///     clear(); add to diagonal(i) (what is above its diagonal counts for nothing) and slot(k); factor(); solve(x)   as often as wanted
 ///     add to diagonal(i) and slot(k); touch(i); factor(); solve(x)                   when little has changed
 ///
-/// solve() may be called any number of times after factor().
+/// solve() may be called any number of times after factor(). What only some solvers can do is asked for: low_rank(), local().
 class BlockSolver {
  public:
   virtual ~BlockSolver() = default;
@@ -77,39 +49,77 @@ class BlockSolver {
   virtual void touch(int block) = 0;
   /// False when the matrix is not positive definite.
   [[nodiscard]] virtual bool factor() = 0;
+
   /// How many times too large a residual (as long as x) is; up to 1 it is small enough.
   using Excess = std::function<double(std::span<const double>)>;
-  /// What solve() says of what it leaves over: by a product with the matrix, or as the iteration has it, which is enough where the
-  /// residual of something else is looked at next.
+  /// How solve() finds the residual: by a product with the matrix, or as the iteration estimates it. The estimate is enough where the residual
+  /// of something else is found next.
   enum class Residual { exact, estimated };
   /// x ← A⁻¹ x; unknowns of block i start at Σ_{j<i} sizes[j]. An iterative solver stops when `excess` is at most 1, and leaves
-  /// what is missing in `residual`: the x given less A times the x returned, or an estimate of it. A direct one leaves zeros there.
+  /// what is missing in `residual`: the x given less A times the x returned, or an estimate of it. A direct solver leaves zeros there.
   virtual void solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                      Residual kind = Residual::exact) = 0;
-  /// Goes on from where the last solve() ended, with its x and residual, to a smaller excess: less work than to begin with the residual.
+  /// Continues from where the last solve() ended, with its x and residual, to a smaller excess: less work than to begin with the residual.
   /// A direct solver has nothing to improve.
   virtual void improve(std::span<double> /*x*/, std::span<double> /*residual*/, const Excess& /*excess*/,
                        Residual /*kind*/ = Residual::exact) {}
-  /// Whether there is a solve_near().
-  [[nodiscard]] virtual bool solves_near() const { return false; }
-  /// What solve_near() reads and changes, of x and residual.
-  struct Reach {
-    std::vector<std::size_t>
-        blocks;             ///< of which it finds x, and then those beside them, whose residual it changes
-    std::size_t moved = 0;  ///< how many the former are
-  };
-  /// Finds what solve_near() then reaches: these blocks and those near them. False where they are so many that solve() is as well.
-  virtual bool find_near(std::span<const std::size_t> /*blocks*/, Reach& /*reach*/) { return false; }
-  /// As solve() does, of what was reached, where all other blocks lack well less than is asked for. `residual`, which is exact, may be
-  /// too large beside the blocks that move afterwards. `excess` need look at no others.
-  virtual void solve_near(std::span<double> /*x*/, std::span<double> /*residual*/, const Excess& /*excess*/) {
-  }
-  /// Null where this solver has none.
-  [[nodiscard]] virtual HalfSolver* halves() { return nullptr; }
+  /// False when the last solution gave up before its residual was small enough.
+  [[nodiscard]] virtual bool solved() const { return true; }
+
   /// Whether the matrix and what factor() made of it may serve later steps, corrected for what they get wrong.
   [[nodiscard]] virtual bool serves_later_steps() const { return false; }
-  /// False when the last solve() gave up before its residual was small enough.
-  [[nodiscard]] virtual bool solved() const { return true; }
+  /// Null where this solver has none.
+  [[nodiscard]] virtual LowRankSolver* low_rank() { return nullptr; }
+  [[nodiscard]] virtual LocalSolver* local() { return nullptr; }
+};
+
+/// L⁻¹ b, with A = L Lᵀ, of a b that belongs to one block or to two that have a pair. It is zero except in the columns on a path of the
+/// elimination tree: from the first of the two blocks that is eliminated to the root.
+struct ForwardVector {
+  int column = -1;             ///< where the path begins
+  std::vector<double> values;  ///< of the columns on the path, those of the root first
+};
+
+/// Of a direct solver: forward substitution with the last factor, for low-rank updates. With w = L⁻¹ a, a change of A along a aᵀ needs no more
+/// than products of such w with each other and one L⁻ᵀ (Woodbury's formula).
+class LowRankSolver {
+ public:
+  virtual ~LowRankSolver() = default;
+  /// Whether the factor has the digits of double precision; where not, what is solved with it has to be refined.
+  [[nodiscard]] virtual bool is_exact() const = 0;
+  /// What belongs to a block, as long as its unknowns; block −1: nothing.
+  struct Part {
+    int block = -1;
+    std::span<const double> values;
+  };
+  /// w = L⁻¹ (a + b). The two blocks have a pair, or one of them is −1.
+  virtual void forward_solve(Part a, Part b, ForwardVector& w) = 0;
+  /// w = L⁻¹ b, of all columns, for a b of all blocks.
+  virtual void forward_solve(std::span<const double> b, std::vector<double>& w) = 0;
+  /// xᵀ y, for x = L⁻¹ a and y = L⁻¹ b that is aᵀ A⁻¹ b.
+  [[nodiscard]] virtual double product(const ForwardVector& x, const ForwardVector& y) const = 0;
+  [[nodiscard]] virtual double product(const ForwardVector& x, std::span<const double> y) const = 0;
+  /// x = L⁻ᵀ (w + Σ factor_k ws_k).
+  virtual void backward_solve(std::span<const double> w, std::span<const ForwardVector> ws,
+                              std::span<const double> factor, std::span<double> x) = 0;
+};
+
+/// Of an iterative solver: systems of some blocks and the blocks near them.
+class LocalSolver {
+ public:
+  virtual ~LocalSolver() = default;
+  /// What solve_local() reads and changes, of x and residual.
+  struct Reach {
+    std::vector<std::size_t>
+        blocks;  ///< of which it finds x, and then the blocks beside them, whose residual it changes
+    std::size_t moved = 0;  ///< number of the former
+  };
+  /// Finds what solve_local() then reaches: these blocks and the blocks near them. False where they are so many that solve() is as well.
+  [[nodiscard]] virtual bool find_local(std::span<const std::size_t> blocks, Reach& reach) = 0;
+  /// As BlockSolver::solve() does, of what was reached, where all other blocks lack well less than is asked for. `residual`, which is exact,
+  /// may be too large beside the blocks that move afterwards. `excess` need look at no others.
+  virtual void solve_local(std::span<double> x, std::span<double> residual,
+                           const BlockSolver::Excess& excess) = 0;
 };
 
 /// Digits of a factor.
@@ -121,7 +131,7 @@ enum class Precision {
 
 /// The block Cholesky factorization of this project: left-looking by block columns, ordered by AMD on the graph of blocks. A factor in single
 /// precision takes half the memory, by which solutions are bound; solve() refines what it gets by products with the matrix in double
-/// precision, and halves are those of a matrix that differs from it in the seventh digit.
+/// precision, and forward-substituted vectors are those of a matrix that differs from it in the seventh digit.
 std::unique_ptr<BlockSolver> make_block_cholesky(Precision precision = Precision::automatic);
 
 /// Conjugate residuals with the symmetric block Gauss-Seidel preconditioner, two triangular solutions an iteration (Eisenstat

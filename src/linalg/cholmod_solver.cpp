@@ -45,7 +45,7 @@ class Cholmod final : public BlockSolver {
   std::vector<double> values_;  ///< the blocks as the caller adds to them
   std::vector<std::size_t> diagonal_;
   std::vector<BlockSlot> slots_;
-  std::vector<std::size_t> source_;  ///< entry of the compressed matrix → place in values_
+  std::vector<std::size_t> source_;  ///< entry of the compressed matrix → index into values_
 };
 
 void Cholmod::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
@@ -61,14 +61,14 @@ void Cholmod::analyse(std::span<const int> sizes, std::span<const std::pair<int,
     diagonal_.push_back(used);
     used += at(size * padded_rows(size));
   }
-  std::vector<std::size_t> place;
+  std::vector<std::size_t> value;
   for (const auto& [i, j] : pairs) {  // the larger index along the rows: the lower triangle
-    place.push_back(used);
+    value.push_back(used);
     used += at(padded_rows(sizes[at(std::max(i, j))]) * sizes[at(std::min(i, j))]);
   }
   values_.assign(used, 0.0);
 
-  std::map<std::pair<int, int>, std::size_t> entries;  // (column, row) → place in values_
+  std::map<std::pair<int, int>, std::size_t> entries;  // (column, row) → index into values_
   const auto add_block = [&](int row, int column, std::size_t first) {
     for (int c = 0; c < sizes[at(column)]; ++c) {
       for (int r = row == column ? c : 0; r < sizes[at(row)]; ++r) {
@@ -81,8 +81,8 @@ void Cholmod::analyse(std::span<const int> sizes, std::span<const std::pair<int,
   for (std::size_t i = 0; i < n; ++i) add_block(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [column, row] = std::minmax(pairs[k].first, pairs[k].second);
-    add_block(row, column, place[k]);
-    slots_.push_back({&values_[place[k]], padded_rows(sizes[at(row)]), row, column});
+    add_block(row, column, value[k]);
+    slots_.push_back({&values_[value[k]], padded_rows(sizes[at(row)]), row, column});
   }
 
   matrix_ =

@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "core/index.h"
+#include "linalg/numbers.h"
 
 namespace keyblock::linalg {
 
 namespace {
-
-constexpr std::size_t largest_part = 1'000;  // blocks, whose matrix and vectors a cache of a MB has room for
 
 /// Cuts blocks in two, again and again.
 class Dissection {
@@ -30,7 +29,7 @@ class Dissection {
     search(blocks);
     std::reverse(blocks.begin(), blocks.end());
     search(blocks);
-    if (blocks.size() <= largest_part) {
+    if (blocks.size() <= numbers::largest_part) {
       bring_apart(blocks);
       parts_.push_back(std::move(blocks));
       return;

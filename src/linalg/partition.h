@@ -10,8 +10,9 @@ namespace keyblock::linalg {
 /// middle level of a breadth-first search, and so are its halves, until parts are small enough for a cache. The order depends on
 /// the pattern alone.
 struct Partition {
-  std::vector<int> order;          ///< place → block
-  std::vector<std::size_t> begin;  ///< 0; first place of every part, which is the end of what is before it; n
+  std::vector<int> order;  ///< position → block
+  std::vector<std::size_t>
+      begin;  ///< 0; first position of every part, which is the end of what is before it; n
 };
 
 /// Of n blocks that are coupled in these pairs.

@@ -122,7 +122,8 @@ TEST(Candidates, OfFewBlocksAreThoseOfGoingThroughAll) {
     EXPECT_EQ(few.list.tracked, all.list.tracked) << step;
     ASSERT_EQ(few.list.block_pairs.size(), all.list.block_pairs.size()) << step;
     for (std::size_t p = 0; p < all.list.block_pairs.size(); ++p)
-      EXPECT_EQ(few.list.block_pairs[p].steady, all.list.block_pairs[p].steady) << step << ' ' << p;
+      EXPECT_EQ(few.list.block_pairs[p].steady.limit, all.list.block_pairs[p].steady.limit)
+          << step << ' ' << p;
     for (Looked* looked : {&all, &few}) {
       // Half of them hold, and stay however far they go.
       looked->list.make_room(looked->list.pairs.size() / 3);
@@ -130,7 +131,7 @@ TEST(Candidates, OfFewBlocksAreThoseOfGoingThroughAll) {
         looked->list.tracked[k] = static_cast<int>(3 * k);
         looked->list.memory[k].normal_force = k % 2 == 0 ? 1.0 : 0.0;
       }
-      for (BlockPair& pair : looked->list.block_pairs) pair.steady = 1.0;
+      for (BlockPair& pair : looked->list.block_pairs) pair.steady.limit = 1.0;
     }
     held += static_cast<int>(all.list.tracked.size());
     const double pace = step % 2 == 0 ? 0.03 : 0.003;

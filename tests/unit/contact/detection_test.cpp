@@ -167,15 +167,15 @@ struct Seen {
   long contacts = 0, skipped = 0, steady = 0;
 };
 
-bool is_steady(const BlockPair& pair, const Surface& surface, const Detection::Motion& motion) {
+bool is_steady(const BlockPair& pair, const Surface& surface, const StepMotion& motion) {
   const std::size_t a = at(pair.block_a), b = at(pair.block_b);
   const auto first = [&](std::size_t block) { return at(surface.block_begin[block]); };
-  const Vec2 now = surface.position[first(b)] - surface.position[first(a)] - pair.apart,
-             then = now + motion.ahead[first(b)] - motion.ahead[first(a)];
-  return std::max(norm(now), norm(then)) + motion.way[a] + motion.way[b] + motion.way_ahead[a] +
-                 motion.way_ahead[b] <=
-             pair.steady &&
-         motion.reach[a] + motion.reach[b] <= pair.reach;
+  const Vec2 now = surface.position[first(b)] - surface.position[first(a)] - pair.steady.apart,
+             then = now + motion.predicted[first(b)] - motion.predicted[first(a)];
+  return std::max(norm(now), norm(then)) + motion.path[a] + motion.path[b] + motion.predicted_path[a] +
+                 motion.predicted_path[b] <=
+             pair.steady.limit &&
+         motion.reach[a] + motion.reach[b] <= pair.steady.reach;
 }
 
 /// Compares with looking at every candidate in every step. The whole wall sways.
@@ -207,7 +207,7 @@ void compare_with_oracle(Surface surface, std::mt19937& random, Seen& seen) {
         furthest[b] = std::max(furthest[b], norm(turned));
       }
     }
-    const Detection::Motion motion{reach, turns, candidates.away(), way, ahead, furthest};
+    const StepMotion motion{reach, turns, candidates.away(), way, ahead, furthest};
     CandidateList all = list;
     for (Candidate& c : all.pairs) {
       seen.skipped += candidates.away()[at(c.block_a)] + candidates.away()[at(c.block_b)] < c.clearance;
@@ -215,7 +215,7 @@ void compare_with_oracle(Surface surface, std::mt19937& random, Seen& seen) {
     }
     for (BlockPair& pair : all.block_pairs) {
       seen.steady += is_steady(pair, surface, motion);
-      pair.steady = -1.0;
+      pair.steady.forget();
     }
     std::vector<Contact> fast, slow, again;
     detection.find(surface, motion, list, alone, fast);

@@ -97,9 +97,9 @@ TEST(Corrections, ReachTheMinimum) {
     for (const Spring& s : springs)
       right -= s.derivative() * (s.law.line_force + s.law.line_stiffness * s.rest);
 
-    linalg::HalfSolver& halves = *chain.solver->halves();
+    linalg::LowRankSolver& halves = *chain.solver->low_rank();
     std::vector<double> base;
-    halves.half_solve(std::span(right.data(), unknowns), base);
+    halves.forward_solve(std::span(right.data(), unknowns), base);
     Corrections corrections;
     std::vector<Corrections::Law> laws;
     std::vector<double> stretch, d(unknowns);

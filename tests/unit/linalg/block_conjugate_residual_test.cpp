@@ -235,10 +235,12 @@ double largest(std::span<const double> numbers) {
 }
 
 // x ← A⁻¹ x near some blocks, zero elsewhere. The solver does not look at what belongs to blocks that it does not reach.
-bool solve_near(BlockSolver& solver, std::span<const std::size_t> first,
-                const std::vector<std::size_t>& blocks, std::vector<double>& x, std::vector<double>& residual,
-                const BlockSolver::Excess& excess, BlockSolver::Reach& reach) {
-  if (!solver.solves_near() || !solver.find_near(blocks, reach)) return false;
+bool solve_local(BlockSolver& solver, std::span<const std::size_t> first,
+                 const std::vector<std::size_t>& blocks, std::vector<double>& x,
+                 std::vector<double>& residual, const BlockSolver::Excess& excess,
+                 LocalSolver::Reach& reach) {
+  LocalSolver* local = solver.local();
+  if (local == nullptr || !local->find_local(blocks, reach)) return false;
   std::vector<bool> reached(x.size(), false);
   for (const std::size_t block : reach.blocks) {
     for (std::size_t k = first[block]; k < first[block + 1]; ++k) reached[k] = true;
@@ -249,7 +251,7 @@ bool solve_near(BlockSolver& solver, std::span<const std::size_t> first,
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!reached[k]) x[k] = unknown;
   }
-  solver.solve_near(x, residual, [&](std::span<const double> r) {
+  local->solve_local(x, residual, [&](std::span<const double> r) {
     std::vector<double> all = right;
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (reached[k]) all[k] = r[k];
@@ -285,8 +287,8 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       problem.fill(*solver);
       ASSERT_TRUE(solver->factor());
       std::vector<double> x = b, residual(b.size());
-      BlockSolver::Reach reach;
-      ASSERT_TRUE(solve_near(*solver, first, blocks, x, residual, excess, reach));
+      LocalSolver::Reach reach;
+      ASSERT_TRUE(solve_local(*solver, first, blocks, x, residual, excess, reach));
       EXPECT_TRUE(solver->solved());
       const auto product = problem.product(x);
       const std::set<std::size_t> reached(reach.blocks.begin(), reach.blocks.end()),
@@ -319,13 +321,13 @@ TEST(BlockSolver, SolvesNearSomeBlocks) {
       std::vector<double> little(b.size(), 0.899 * enough);
       std::fill(little.data() + first[7], little.data() + first[8], 1.001 * enough);
       x = little;
-      ASSERT_TRUE(solve_near(*solver, first, std::vector<std::size_t>{7}, x, residual, excess, reach));
+      ASSERT_TRUE(solve_local(*solver, first, std::vector<std::size_t>{7}, x, residual, excess, reach));
       EXPECT_GT(largest(residual), largest(little));
       EXPECT_TRUE(solver->solved());
 
       std::vector<std::size_t> all(problem.sizes.size());
       std::iota(all.begin(), all.end(), std::size_t{0});
-      EXPECT_FALSE(solver->find_near(all, reach)) << "all are as well";
+      EXPECT_FALSE(solver->local()->find_local(all, reach)) << "all are as well";
     }
   }
 }
@@ -352,11 +354,11 @@ TEST(BlockSolver, GivesUpNearSomeBlocksWhereTheMatrixIsNotPositiveDefinite) {
   ASSERT_TRUE(solver->factor());
   const auto [i, j] = problem.grid.pairs[pair];
   std::vector<double> x(problem.right.size(), 0.0), residual(x.size());
-  BlockSolver::Reach reach;
+  LocalSolver::Reach reach;
   std::fill_n(x.data() + 6 * i, 6, 1.0);
   std::fill_n(x.data() + 6 * j, 6, -1.0);
   const std::vector<std::size_t> blocks{static_cast<std::size_t>(i), static_cast<std::size_t>(j)};
-  ASSERT_TRUE(solve_near(
+  ASSERT_TRUE(solve_local(
       *solver, problem.first(), blocks, x, residual,
       [&](std::span<const double> r) { return largest(r) / 1e-5; }, reach));
   EXPECT_FALSE(solver->solved());

@@ -82,7 +82,7 @@ TEST(DenseBlock, IsSolved) {
 }
 
 // Halves of solutions multiply to aᵀ A⁻¹ b, and are finished to A⁻¹ b, for vectors of one block, of two with a pair, and of all.
-void expect_halves_of_solutions(std::unique_ptr<BlockSolver> (*make)(), bool exact, double error) {
+void expect_forward_vectors_of_solutions(std::unique_ptr<BlockSolver> (*make)(), bool exact, double error) {
   unsigned seed = 40;
   for (const std::vector<int>& choice : {std::vector{6}, {6, 12}, {12}, {6, 12, 20, 30}}) {
     // Few pairs leave parts that nothing couples.
@@ -100,11 +100,11 @@ void expect_halves_of_solutions(std::unique_ptr<BlockSolver> (*make)(), bool exa
       const auto solver = make();
       solver->analyse(p.sizes, p.pairs);
       solve(*solver, p);
-      HalfSolver& halves = *solver->halves();
-      ASSERT_EQ(halves.is_exact(), exact);
+      LowRankSolver& low_rank = *solver->low_rank();
+      ASSERT_EQ(low_rank.is_exact(), exact);
       std::mt19937 random(seed);
       std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-      std::vector<HalfSolution> half;
+      std::vector<ForwardVector> forward;
       Eigen::MatrixXd vectors = Eigen::MatrixXd::Zero(p.dense.rows(), 12);
       std::vector<double> factor;
       for (int k = 0; k < 12; ++k) {
@@ -118,26 +118,26 @@ void expect_halves_of_solutions(std::unique_ptr<BlockSolver> (*make)(), bool exa
             vectors(first + u, k) = values[side].back();
           }
         }
-        half.emplace_back();
-        halves.half_solve({i, values[0]}, {values[1].empty() ? -1 : j, values[1]}, half.back());
+        forward.emplace_back();
+        low_rank.forward_solve({i, values[0]}, {values[1].empty() ? -1 : j, values[1]}, forward.back());
         factor.push_back(uniform(random));
       }
       const Eigen::MatrixXd solved = p.dense.ldlt().solve(vectors), product = vectors.transpose() * solved;
-      for (std::size_t k = 0; k < half.size(); ++k) {
-        for (std::size_t l = 0; l < half.size(); ++l)
-          EXPECT_NEAR(halves.product(half[k], half[l]),
+      for (std::size_t k = 0; k < forward.size(); ++k) {
+        for (std::size_t l = 0; l < forward.size(); ++l)
+          EXPECT_NEAR(low_rank.product(forward[k], forward[l]),
                       product(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)), error);
       }
       const Eigen::VectorXd whole =
           Eigen::VectorXd::NullaryExpr(p.dense.rows(), [&] { return uniform(random); });
       const Eigen::VectorXd whole_solved = p.dense.ldlt().solve(whole);
-      std::vector<double> whole_half;
-      halves.half_solve(std::span(whole.data(), static_cast<std::size_t>(whole.size())), whole_half);
-      for (std::size_t k = 0; k < half.size(); ++k)
-        EXPECT_NEAR(halves.product(half[k], whole_half), whole.dot(solved.col(static_cast<Eigen::Index>(k))),
-                    error);
+      std::vector<double> whole_forward;
+      low_rank.forward_solve(std::span(whole.data(), static_cast<std::size_t>(whole.size())), whole_forward);
+      for (std::size_t k = 0; k < forward.size(); ++k)
+        EXPECT_NEAR(low_rank.product(forward[k], whole_forward),
+                    whole.dot(solved.col(static_cast<Eigen::Index>(k))), error);
       std::vector<double> x(static_cast<std::size_t>(p.dense.rows()));
-      halves.finish(whole_half, half, factor, x);
+      low_rank.backward_solve(whole_forward, forward, factor, x);
       const Eigen::VectorXd expected = whole_solved + solved * Eigen::Map<Eigen::VectorXd>(factor.data(), 12);
       for (std::size_t k = 0; k < x.size(); ++k)
         EXPECT_NEAR(x[k], expected[static_cast<Eigen::Index>(k)], error);
@@ -145,9 +145,9 @@ void expect_halves_of_solutions(std::unique_ptr<BlockSolver> (*make)(), bool exa
   }
 }
 
-TEST(BlockSolver, HalvesAreThoseOfTheSolutions) {
-  expect_halves_of_solutions(make_full, true, 1e-14);
-  expect_halves_of_solutions(make_single, false, 1e-6);
+TEST(BlockSolver, ForwardVectorsAreThoseOfTheSolutions) {
+  expect_forward_vectors_of_solutions(make_full, true, 1e-14);
+  expect_forward_vectors_of_solutions(make_single, false, 1e-6);
 }
 
 /// Bodies in a row that springs of this stiffness couple, over an inertia of 1.
@@ -183,7 +183,7 @@ TEST(BlockSolver, DoublePrecisionWhereSingleHasTooFewDigits) {
     for (int repeat = 0; repeat < 2; ++repeat) {
       fill(*solver, p);
       ASSERT_TRUE(solver->factor());
-      EXPECT_EQ(solver->halves()->is_exact(), exact) << stiffness;
+      EXPECT_EQ(solver->low_rank()->is_exact(), exact) << stiffness;
       x.assign(p.right.begin(), p.right.end());
       solver->solve(x, residual, [&](std::span<const double> r) {
         return std::abs(*std::ranges::max_element(r, {}, [](double v) { return std::abs(v); })) /
@@ -203,7 +203,7 @@ TEST(BlockSolver, DoublePrecisionWhereSingleHasTooFewDigits) {
     EXPECT_GT(*std::ranges::max_element(residual), 0.0);  // not those of double precision
     x.assign(p.right.begin(), p.right.end());
     solver->solve(x, residual, [](std::span<const double>) { return 2.0; });
-    EXPECT_TRUE(solver->halves()->is_exact());
+    EXPECT_TRUE(solver->low_rank()->is_exact());
     EXPECT_EQ(Eigen::Map<Eigen::VectorXd>(x.data(), p.right.size()), expected);
   }
 }

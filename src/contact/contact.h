@@ -1,0 +1,46 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "contact/candidates.h"
+#include "core/parallel.h"
+#include "geometry/vec2.h"
+
+namespace keyblock::contact {
+
+/// Direction of an edge from its outward normal.
+inline Vec2 tangent_of(Vec2 normal) {
+  return {-normal.y, normal.x};
+}
+
+/// A contact of this step: vertex V of block a against edge AB of block b, linear in the displacements of both.
+///
+///     gap  g = n · (V − P),     g(D) = gap + n · r,     r = D_a(V) − D_b(P),   P = (1 − s) A + s B
+///     slip u(D) = shear + t · r
+///
+/// n is the outward unit normal of the edge, t its direction (A to B). Where AB is a piece of a divided edge, P is on the curve through
+/// all vertices of the whole edge (edge_curve.h).
+struct Contact {
+  int candidate = 0;  ///< of the list
+  int block_a = 0, block_b = 0;
+  int vertex = 0, edge = 0;
+  Vec2 normal;
+  double position = 0.0;  ///< s, 0 at A, 1 at B; a little outside near the ends
+  double gap = 0.0;       ///< m, of the geometry
+  /// m of joint that belongs to the contact: half of what each facing pair of edges shares, at either end. Where two corners meet in one
+  /// contact, the contact has the share of both corners.
+  double length = 0.0;
+  double depth = 0.0;  ///< m, −(gap + offset): what the normal spring sees at the start of the step
+  double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
+  double friction_coefficient = 0.0;
+  double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
+  bool fused = false;
+  Memory memory;  ///< at the start of the step; no bond any more where the bond breaks in the step
+
+  [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
+};
+
+/// Takes what the contacts of a step remember over into the list. Candidates that were no contacts remember nothing.
+void keep_memory(std::span<const Contact> contacts, CandidateList& candidates, ThreadTeam& team);
+
+}  // namespace keyblock::contact

@@ -1,0 +1,152 @@
+#include "contact/contact_description.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contact/contact_lanes.h"
+#include "contact/edge_curve.h"
+#include "core/index.h"
+
+namespace keyblock::contact {
+
+namespace {
+
+/// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
+/// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
+/// comes back from there when the joint gets shorter again. What it has no room for is lost by a spring that gets softer.
+void keep_energy(MemoryLanes& memory, Lanes gap, Lanes stiffness) {
+  const Lanes zero{}, depth = -gap - memory.offset, ratio = memory.stiffness / stiffness;
+  const auto pushes = memory.multiplier > 0.0;  // a force that belongs to no penetration stays
+  const auto is_other = (stiffness < memory.stiffness) | (stiffness > memory.stiffness),
+             changes = ~pushes & (memory.stiffness > 0.0) & is_other & (depth > 0.0);
+  const Lanes scale = square_root(ratio), wanted = scale * depth,
+              offset = largest(-gap - wanted, least(memory.offset, zero)), now = -gap - offset;
+  memory.stored = where(changes & (now < wanted),
+                        memory.stored - 0.5 * stiffness * (wanted * wanted - now * now), memory.stored);
+  memory.offset = where(changes, offset, memory.offset);
+  memory.multiplier = where(pushes, memory.multiplier * ratio, memory.multiplier);
+  memory.shear = where(pushes, memory.shear * ratio, where(changes, memory.shear * scale, memory.shear));
+  memory.stiffness = stiffness;
+}
+
+/// Brings a contact from the chord of a piece of a divided edge to its curve: to the point that the vertex is opposite to.
+void bring_to_curve(const Surface& surface, Contact& contact) {
+  const Vec2 from = surface.position[at(contact.edge)],
+             to = surface.position[at(surface.next[at(contact.edge)])];
+  const auto from_curve = [&](double position) {
+    Vec2 apart = surface.position[at(contact.vertex)];
+    for_curve_vertices(surface, contact.edge, position,
+                       [&](std::size_t v, double share) { apart -= share * surface.position[v]; });
+    return apart;
+  };
+  contact.position += dot(contact.tangent(), from_curve(contact.position)) / norm(to - from);
+  contact.gap = dot(contact.normal, from_curve(contact.position));
+}
+
+/// The law of an edge and of the edge beyond its end, which has `share` of the length of the contact. What is fused is so to its end.
+JointLaw law_over_corner(JointLaw law, const JointLaw& beyond, double share, double penalty) {
+  const auto stiffness = [&](const JointLaw& of) {
+    return of.normal_stiffness > 0.0 ? of.normal_stiffness : penalty;
+  };
+  const double normal = std::lerp(stiffness(law), stiffness(beyond), share),
+               shear = std::lerp(stiffness(law) * law.stiffness_ratio,
+                                 stiffness(beyond) * beyond.stiffness_ratio, share);
+  law.friction_coefficient = std::lerp(law.friction_coefficient, beyond.friction_coefficient, share);
+  law.cohesion = std::lerp(law.cohesion, beyond.cohesion, share);
+  law.tension = std::lerp(law.tension, beyond.tension, share);
+  law.normal_stiffness = normal;
+  law.stiffness_ratio = shear / normal;
+  return law;
+}
+
+/// Which blocks meet where. Whether that is where the contact was before.
+bool identify(const Corners& corners, const FoundContact& found, const Candidate& candidate,
+              Contact& contact) {
+  const bool same = contact.vertex == candidate.vertex && contact.edge == candidate.edge;
+  contact.candidate = found.candidate;
+  contact.block_a = candidate.block_a;
+  contact.block_b = candidate.block_b;
+  contact.vertex = candidate.vertex;
+  contact.edge = candidate.edge;
+  contact.normal = corners.all()[at(candidate.edge)].normal();
+  return same;
+}
+
+}  // namespace
+
+/// Of a contact that knows its blocks and whether it is bonded. Written in place: numbers that are stored one by one are slow to copy
+/// together.
+void ContactDescription::find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
+                                  SpringLaw& of_contact) const {
+  const double penalty = std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
+  const std::size_t joint = at(surface.joint[at(contact.edge)]);
+  const bool mixed = beyond.share > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
+  const JointLaw over_corner =
+      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : JointLaw{};
+  const JointLaw& law = mixed ? over_corner : laws_[joint];
+  const bool bonded = contact.memory.bonded;
+  const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty;
+  of_contact.fused = bonded && law.fused;
+  of_contact.per_length = of_contact.fused ? std::max(of_joint, penalty) : of_joint;
+  of_contact.stiffness_ratio = law.stiffness_ratio;
+  of_contact.friction = law.friction_coefficient;
+  of_contact.cohesion = bonded ? law.cohesion : 0.0;
+  of_contact.tension = bonded ? law.tension : 0.0;
+}
+
+bool ContactDescription::describe(const Surface& surface, const Corners& corners,
+                                  const CandidateList& candidates, std::span<const FoundContact> found,
+                                  std::span<Contact> contacts) const {
+  static constexpr Memory nothing;
+  const auto before = [&](const FoundContact& f) -> const Memory& {
+    return f.memory < 0 ? nothing : candidates.memory[at(f.memory)];
+  };
+  const ContactGeometry geometry = measure_contacts(surface, tolerances_, corners, candidates.pairs, found);
+  std::array<SpringLaw, lane_count> laws;
+  bool same = true;
+  LawLanes law{};
+  law.gap = geometry.gap;
+  law.length = geometry.length + geometry.length_beyond;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Candidate& candidate = candidates.pairs[at(found[i].candidate)];
+    Contact& contact = contacts[i];
+    same = identify(corners, found[i], candidate, contact) && same;
+    contact.position = geometry.position[i];
+    if (is_curved(surface, contact.edge)) {
+      contact.gap = geometry.gap[i];
+      bring_to_curve(surface, contact);
+      law.gap[i] = contact.gap;
+    }
+    const double beyond = geometry.length_beyond[i];
+    const Beyond over_corner{beyond > 0.0 ? beyond / law.length[i] : 0.0, surface.joint[geometry.beyond[i]]};
+    const Memory& memory = before(found[i]);
+    contact.memory.state = memory.state;
+    contact.memory.bonded = memory.bonded;
+    contact.memory.bond_length = memory.bond_length;
+    if (memory.bonded) law.length[i] = memory.bond_length;
+    find_law(surface, contact, over_corner, laws[i]);
+    contact.fused = laws[i].fused;
+  }
+  const std::span<const SpringLaw> of_joints = std::span(laws).first(contacts.size());
+  const auto of_joint = [&](double SpringLaw::*number) {
+    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.*number; });
+  };
+  law.normal_stiffness = of_joint(&SpringLaw::per_length) * largest(law.length, geometry.least_length);
+  law.shear_stiffness = of_joint(&SpringLaw::stiffness_ratio) * law.normal_stiffness;
+  law.friction = of_joint(&SpringLaw::friction);
+  law.cohesion = of_joint(&SpringLaw::cohesion) * law.length;
+  law.tension = of_joint(&SpringLaw::tension) * law.length;
+  MemoryLanes memory =
+      components_of<MemoryLanes>(found, [&](const FoundContact& f) { return &before(f).offset; });
+  const auto is_new = lanes_where(found, [](const FoundContact& f) { return f.memory < 0; });
+  const Lanes zero{}, born = largest(zero, -law.gap);
+  memory.offset = where(is_new, born, where(memory.offset > 0.0, least(memory.offset, born), memory.offset));
+  keep_energy(memory, law.gap, law.normal_stiffness);
+  law.depth = -law.gap - memory.offset + memory.multiplier;
+  keep(law, contacts);
+  keep(memory, contacts.size(), [&](std::size_t i) -> Memory& { return contacts[i].memory; });
+  return same;
+}
+
+}  // namespace keyblock::contact

@@ -1,0 +1,44 @@
+#pragma once
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "contact/contact.h"
+#include "contact/contact_geometry.h"
+
+namespace keyblock::contact {
+
+/// What is known of a contact once it is one: geometry, length of joint, springs by the law of its joint, and what it remembers.
+class ContactDescription {
+ public:
+  /// penalty[b]: Pa/m, normal stiffness of joints of block b that give none; the softer of two blocks counts. laws[k]: by
+  /// Surface::joint.
+  ContactDescription(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
+      : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
+
+  /// Of up to lane_count contacts. Whether all of them had the same vertices and edges before.
+  bool describe(const Surface& surface, const Corners& corners, const CandidateList& candidates,
+                std::span<const FoundContact> found, std::span<Contact> contacts) const;
+
+ private:
+  /// Of the edge beyond a corner.
+  struct Beyond {
+    double share;  ///< of the length that belongs to the contact at the corner
+    int joint;     ///< Surface::joint
+  };
+  /// What the springs of a contact have of its joint.
+  struct SpringLaw {
+    double per_length;  ///< Pa/m, normal stiffness
+    double stiffness_ratio, friction;
+    double cohesion, tension;  ///< Pa, of a bond
+    bool fused;
+  };
+  void find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
+                SpringLaw& of_contact) const;
+
+  Tolerances tolerances_;
+  std::vector<JointLaw> laws_;
+  std::vector<double> penalty_;
+};
+
+}  // namespace keyblock::contact

@@ -1,0 +1,36 @@
+#include "contact/entry_face.h"
+
+namespace keyblock::contact {
+
+double distance_to_other_edges(const CornerView& view, int vertex, int edge, int except) {
+  const Surface& surface = view.surface;
+  const Vec2 from = view.corner(vertex).position;
+  double nearest = HUGE_VAL;
+  const auto measure = [&](int k) {
+    if (k == except) return;
+    const Corner& other = view.corner(k);
+    const Vec2 from_start = from - other.position;
+    const double along = std::clamp(dot(other.tangent, from_start), 0.0, other.length);
+    nearest = std::min(nearest, squared_norm(from_start - along * other.tangent));
+  };
+  int k = surface.next[at(edge)];
+  for (; k != edge && !surface.is_reflex(at(k)); k = surface.next[at(k)]) measure(k);
+  if (k != edge) {
+    for (k = edge; !surface.is_reflex(at(k));) measure(k = surface.previous[at(k)]);
+  }
+  return std::sqrt(nearest);
+}
+
+bool has_come_in_elsewhere(const CornerView& view, const Competitor& competitor, int except) {
+  if (competitor.gap >= -entry_depth(view, competitor)) return false;
+  if (has_come_in_here(view, competitor)) return false;
+  const Candidate& c = view.candidate(competitor);
+  // Along the edge, away from the end that is nearer to the vertex.
+  const Vec2 inwards = (competitor.first_half ? 1.0 : -1.0) * view.corner(c.edge).tangent;
+  for (const Vec2 side : view.sides(c.vertex)) {
+    if (dot(side, inwards) > 0.0 && std::abs(cross(side, inwards)) < Tolerances::sine_facing) return false;
+  }
+  return distance_to_other_edges(view, c.vertex, c.edge, except) < -competitor.gap;
+}
+
+}  // namespace keyblock::contact
