@@ -23,9 +23,20 @@ function(keyblock_module name)
   endforeach()
 endfunction()
 
+# The cases of test_<module> in KEYBLOCK_TEST_SHARDS processes, without the longest ones.
+function(keyblock_test_shards module)
+  math(EXPR last "${KEYBLOCK_TEST_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME unit.${module}.${shard} COMMAND test_${module} --gtest_brief=1 --gtest_filter=-*TenThousandRuns*)
+    set_tests_properties(unit.${module}.${shard} PROPERTIES LABELS unit TIMEOUT 900
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${KEYBLOCK_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
+endfunction()
+
 # keyblock_tests(module...): tests/unit/<module>/*.cpp become the executable test_<module>; the target unit_tests
 # builds them all, `ctest -L unit` runs them. Compiled eight files at once, for the headers of the test libraries, and hardly optimized
-# where they do not compute much themselves.
+# where they do not compute much themselves. With KEYBLOCK_TEST_SHARDS each executable runs as so many tests in place of one per case:
+# under the sanitizers the start of a process takes longer than most cases.
 function(keyblock_tests)
   add_custom_target(unit_tests)
   set(computing geometry cutting block contact linalg dynamics simulation)
@@ -40,7 +51,11 @@ function(keyblock_tests)
       target_link_libraries(test_${module} PRIVATE keyblock_${module} GTest::gtest_main GTest::gmock rapidcheck Eigen3::Eigen)
       target_compile_definitions(test_${module} PRIVATE
         KEYBLOCK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" KEYBLOCK_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
-      gtest_discover_tests(test_${module} TEST_PREFIX "unit." DISCOVERY_TIMEOUT 60 PROPERTIES LABELS unit TIMEOUT 300)
+      if(KEYBLOCK_TEST_SHARDS)
+        keyblock_test_shards(${module})
+      else()
+        gtest_discover_tests(test_${module} TEST_PREFIX "unit." DISCOVERY_TIMEOUT 60 PROPERTIES LABELS unit TIMEOUT 300)
+      endif()
       add_dependencies(unit_tests test_${module})
     endif()
   endforeach()

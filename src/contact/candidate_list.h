@@ -16,9 +16,8 @@ enum class State : std::uint8_t { open = 0, sliding = 1, locked = 2 };
 struct Memory {
   State state = State::open;
   bool bonded = false;  ///< in place, with cohesion and tension not yet broken
-  double offset =
-      0.0;  ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
-            ///< negative: the closure of a joint that carries in-situ stress
+  double offset = 0.0;  ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
+                        ///< negative: the closure of a joint that carries in-situ stress
   double stiffness = 0.0;     ///< N/m per thickness, of the normal spring in the last step
   double shear = 0.0;         ///< m, elastic shear displacement
   double normal_force = 0.0;  ///< N per thickness, compression positive

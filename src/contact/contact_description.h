@@ -15,6 +15,7 @@ class ContactDescription {
   /// Surface::joint.
   ContactDescription(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
+  void set_laws(std::vector<JointLaw> laws) { laws_ = std::move(laws); }
 
   /// Of up to lane_count contacts. Whether all of them had the same vertices and edges before.
   bool describe(const Surface& surface, const Corners& corners, const CandidateList& candidates,

@@ -27,6 +27,8 @@ class ContactFinder {
   /// The contacts of a state, found anew, with candidates of their own. The state and what find_which() found are left alone.
   [[nodiscard]] std::vector<contact::Contact> find_anew(const PredictedMotion& motion, const State& state);
 
+  /// Laws of joints from the next step on, as many as there were.
+  void set_laws(const std::vector<contact::JointLaw>& laws) { detection_.set_laws(laws); }
   /// The next search looks at all blocks.
   void invalidate() { candidates_.invalidate(); }
   /// After blocks are gone: candidates of those that are there.

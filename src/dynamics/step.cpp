@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "core/error.h"
 #include "core/index.h"
@@ -117,29 +119,31 @@ void Stepper::measure_stored_energy(State& state) {
 
 std::vector<ContactForce> Stepper::forces() const {
   const SpringArray& springs = problem_.springs();
+  const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
   const std::size_t count = std::min(finder_.contacts().size(), springs.size());
-  std::vector<ContactForce> forces;
-  forces.reserve(count);
+  std::vector<ContactForce> forces(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const SpringArray::Force force = springs.force(k);
-    if (!(springs.y[k] > springs.floor[k])) {
-      forces.push_back({force.normal, 0.0, contact::State::open});
-      continue;
-    }
+    const contact::Contact& c = finder_.contacts()[k];
+    const StepProblem::Row& row = problem_.rows()[k];
+    // n·r; what multipliers have added is in both y₀ and y.
+    const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
+    ContactForce& force = forces[k];
+    force.gap = c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
+    force.normal = springs.force(k).normal;
+    if (!(springs.y[k] > springs.floor[k])) continue;
+    force.shear = springs.force(k).shear;
     const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
-    forces.push_back({force.normal, force.shear, holds ? contact::State::locked : contact::State::sliding});
+    force.state = holds ? contact::State::locked : contact::State::sliding;
   }
   return forces;
 }
 
-double Stepper::gap(std::size_t k) const {
-  const contact::Contact& c = finder_.contacts()[k];
-  const StepProblem::Row& row = problem_.rows()[k];
-  const SpringArray& springs = problem_.springs();
-  // n·r; what multipliers have added is in both y₀ and y.
-  const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
-  const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
-  return c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
+void Stepper::set_laws(std::vector<contact::JointLaw> laws) {
+  if (laws.size() != model_.laws.size())
+    throw std::invalid_argument("as many laws of joints as before are needed");
+  model_.laws = std::move(laws);
+  finder_.set_laws(model_.laws);
+  forget_history();
 }
 
 // ── the stages of a step ─────────────────────────────────────────────────────────────────────────────────────────────

@@ -59,9 +59,10 @@ struct StaticStep {
   double farthest = HUGE_VAL;  ///< m
 };
 
-/// What a contact does.
+/// What a contact does at the end of a step.
 struct ContactForce {
   double normal = 0.0, shear = 0.0;  ///< N per thickness
+  double gap = 0.0;                  ///< m, as the law of its joint has it: negative where it is pressed
   contact::State state = contact::State::open;
 };
 
@@ -95,6 +96,11 @@ class Stepper {
   /// Makes the next step look at all blocks and factor its matrix anew, as it does after a restart: with that at every
   /// checkpoint, a run that is resumed gives the same bits as one that is not.
   void forget_history();
+  /// Other laws of joints from the next step on (Surface::joint says which edge has which): strengths that are reduced step by step, joints
+  /// that degrade. Springs keep the energy that they store. Bonds are made by start() only; they get their new strength, and a bond with
+  /// neither cohesion nor tension breaks when it is pulled or slips. A run that is resumed has to be given the laws again: they are part of
+  /// the model, not of the state. Throws std::invalid_argument unless there are as many as before.
+  void set_laws(std::vector<contact::JointLaw> laws);
   /// The contacts of the state as it is, found anew.
   [[nodiscard]] std::vector<contact::Contact> find_contacts(const State& state) {
     return finder_.find_anew(motion_, state);
@@ -113,8 +119,6 @@ class Stepper {
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return finder_.contacts(); }
   /// Of every contact at the end of the last step; of none where no step was taken.
   [[nodiscard]] std::vector<ContactForce> forces() const;
-  /// m, of contact k at the same time, as the law of its joint has it: negative where it is pressed.
-  [[nodiscard]] double gap(std::size_t k) const;
 
  private:
   void predict(const State& state, Drive& drive);

@@ -144,7 +144,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
     row.position = surface.position[at(c.vertex)];
     row.normal = c.normal;
     row.length = c.length;
-    row.gap = stepper.gap(k);
+    row.gap = forces[k].gap;
     row.slip = gauge_.joints().slip(c.vertex, c.edge);
     row.normal_force = forces[k].normal;
     row.shear_force = forces[k].shear;
