@@ -35,10 +35,8 @@ double Corrections::compliance_times(std::size_t s, std::span<const double> x) c
   return sum;
 }
 
-/// (1 + diag(∂β/∂e) C) d = β − φ. Springs that do not bend give d at once; the others the symmetric matrix C + diag(∂e/∂β), positive
-/// definite among springs that the matrix lacks, negative definite among those that it has too many: L D Lᵀ needs no pivots.
-bool Corrections::find_direction() {
-  direction_ = missing_;
+/// Matrix and right side of the springs with ∂β/∂e ≠ 0.
+void Corrections::assemble() {
   bent_.clear();
   for (std::size_t s = 0; s < size_; ++s) {
     if (stiffness_[s] != 0.0) bent_.push_back(s);
@@ -55,6 +53,11 @@ bool Corrections::find_direction() {
     for (std::size_t j = 0; j <= i; ++j) triangle_[i * n + j] = compliance(s, bent_[j]);
     triangle_[i * n + i] += 1.0 / stiffness_[s];
   }
+}
+
+/// L D Lᵀ in place of the matrix, and L⁻¹ in front of the right side. False where there is none.
+bool Corrections::factor() {
+  const std::size_t n = bent_.size();
   for (std::size_t i = 0; i < n; ++i) {
     double* row = &triangle_[i * n];
     for (std::size_t j = 0; j < i; ++j) {
@@ -69,6 +72,16 @@ bool Corrections::find_direction() {
     }
     if (row[i] == 0.0 || !std::isfinite(row[i])) return false;
   }
+  return true;
+}
+
+/// (1 + diag(∂β/∂e) C) d = β − φ. Springs with ∂β/∂e = 0 give d at once; the others the symmetric matrix C + diag(∂e/∂β), positive
+/// definite among springs that the matrix lacks, negative definite among those that it has too many: L D Lᵀ needs no pivots.
+bool Corrections::find_direction() {
+  direction_ = missing_;
+  assemble();
+  if (!factor()) return false;
+  const std::size_t n = bent_.size();
   for (std::size_t i = 0; i < n; ++i) right_[i] /= triangle_[i * n + i];
   for (std::size_t i = n; i-- > 0;) {
     for (std::size_t j = 0; j < i; ++j) right_[j] -= triangle_[i * n + j] * right_[i];

@@ -44,6 +44,8 @@ class Corrections {
     return s < t ? compliance_[t * (t + 1) / 2 + s] : compliance_[s * (s + 1) / 2 + t];
   }
   [[nodiscard]] double compliance_times(std::size_t s, std::span<const double> x) const;
+  void assemble();
+  [[nodiscard]] bool factor();
   [[nodiscard]] bool find_direction();
 
   std::size_t size_ = 0;

@@ -41,6 +41,14 @@ bool LowRankUpdate::minimize(const StepSystem& system, Iterate& iterate, StepMat
   return true;
 }
 
+/// Finds the gradient where what the factor gets wrong is to be refined away. `wants`: whether.
+bool LowRankUpdate::refines(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool wants) {
+  if (!wants) return false;
+  iterate.find_gradient(system);
+  leave_out_wanted(system, iterate, matrix);
+  return true;
+}
+
 bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix,
                                        bool is_kept, bool from_zero, OpenCloseResult& result) {
   const std::span<double> direction = std::span(iterate.direction).first(system.problem.unknowns());
@@ -54,12 +62,8 @@ bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterat
     const std::size_t fresh = wanted_.size();
     // What the factor gets wrong is refined away at the end, until nothing of it is left, and what that of an earlier step does
     // along with the first springs that come to be updated.
-    const bool refines = fresh == 0 ? !is_exact(system, is_kept) : is_kept && refinements == 0;
-    if (refines) {
-      iterate.find_gradient(system);
-      leave_out_wanted(system, iterate, matrix);
-    }
-    const bool fits = !refines || iterate.out_of_balance(system) <= enough;
+    const bool wants = fresh == 0 ? !is_exact(system, is_kept) : is_kept && refinements == 0;
+    const bool fits = !refines(system, iterate, matrix, wants) || iterate.out_of_balance(system) <= enough;
     if (fits && fresh == 0) return true;
     if (fits) {
       std::ranges::fill(direction, 0.0);

@@ -41,6 +41,7 @@ class LowRankUpdate {
     bool normal;
     friend bool operator==(Spring, Spring) = default;
   };
+  bool refines(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool wants);
   bool iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
                           bool from_zero, OpenCloseResult& result);
   bool begin(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept, double enough,

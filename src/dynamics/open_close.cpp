@@ -65,45 +65,60 @@ bool OpenClose::settles(const StepSystem& system, double enough, OpenCloseResult
   return false;
 }
 
-/// With a low-rank update where the solver has halves, and Newton's method where too many springs act otherwise.
+/// At the beginning of a step: the factor that low-rank updates need, and the gradient where D is not 0, at which springs are built.
+OpenClose::Minimum OpenClose::begin_minimum(const StepSystem& system, bool warm, bool updates,
+                                            bool& from_zero) {
+  if (warm) return Minimum::not_found;
+  from_zero = updates && std::ranges::all_of(iterate_.increment, [](double v) { return v == 0.0; });
+  if (updates && !kept_.is_kept() && !factor(system)) return Minimum::failed;
+  if (from_zero) return Minimum::not_found;
+  iterate_.place(system);
+  iterate_.find_gradient(system);
+  const double enough = step_numbers::linear_share * system.options.tolerance;
+  return !updates && iterate_.out_of_balance(system) <= enough ? Minimum::found : Minimum::not_found;
+}
+
+/// The first update has the springs of the last step; later it is worth trying where few springs differ from the matrix. With a kept
+/// factor that does not do, the next one has a factor of this step.
+OpenClose::Minimum OpenClose::update(const StepSystem& system, int& tries, bool& from_zero,
+                                     OpenCloseResult& result) {
+  const bool is_worth_it =
+      tries > 0 && (result.iterations == 0 ||
+                    matrix_.count_differing(system.springs()) <= step_numbers::most_corrected / 3);
+  if (!is_worth_it) return Minimum::not_found;
+  if (update_.minimize(system, iterate_, matrix_, kept_.is_kept(), std::exchange(from_zero, false), result) &&
+      iterate_.out_of_balance(system) < system.options.tolerance)
+    return Minimum::found;
+  if (kept_.is_kept()) return factor(system) ? Minimum::tried_kept_factor : Minimum::failed;
+  --tries;
+  return Minimum::not_found;
+}
+
+/// With a low-rank update where the solver can do so, and Newton's method where too many springs act otherwise.
 bool OpenClose::minimize(const StepSystem& system, bool warm, double enough, OpenCloseResult& result) {
   const int limit = result.iterations + system.options.max_iterations;
-  const double tolerance = system.options.tolerance;
   const bool updates = system.options.accelerators.low_rank_update && system.solver.low_rank() != nullptr;
-  // Springs are built at D = 0.
-  bool from_zero =
-      !warm && updates && std::ranges::all_of(iterate_.increment, [](double v) { return v == 0.0; });
-  if (!warm && updates && !kept_.is_kept() && !factor(system)) return false;
-  if (!warm && !from_zero) {
-    iterate_.place(system);
-    iterate_.find_gradient(system);
-    if (!updates && iterate_.out_of_balance(system) <= step_numbers::linear_share * tolerance) return true;
-  }
-  for (int tries = updates ? step_numbers::most_tries : 0; result.iterations < limit;) {
+  bool from_zero = false;
+  Minimum minimum = begin_minimum(system, warm, updates, from_zero);
+  for (int tries = updates ? step_numbers::most_tries : 0;
+       minimum != Minimum::found && minimum != Minimum::failed && result.iterations < limit;) {
     look_at_stop();
-    // The first update has the springs of the last step; later it is worth trying where few springs differ from the matrix.
-    if (tries > 0 && (result.iterations == 0 ||
-                      matrix_.count_differing(system.springs()) <= step_numbers::most_corrected / 3)) {
-      --tries;
-      if (update_.minimize(system, iterate_, matrix_, kept_.is_kept(), std::exchange(from_zero, false),
-                           result) &&
-          iterate_.out_of_balance(system) < tolerance)
-        return true;
-      if (kept_.is_kept()) {
-        if (!factor(system)) return false;
-        ++tries;
-        continue;
-      }
-    }
-    if (!newton_step(system, enough, result)) {
-      if (!kept_.is_kept()) return false;
-      kept_.forget();
-      matrix_.forget();
-    } else if (iterate_.out_of_balance(system) < enough && settles(system, enough, result)) {
-      return true;
-    }
+    minimum = update(system, tries, from_zero, result);
+    if (minimum == Minimum::not_found) minimum = newton(system, enough, result);
   }
-  return false;
+  return minimum == Minimum::found;
+}
+
+/// One step of Newton's method. A kept factor that it fails with is forgotten.
+OpenClose::Minimum OpenClose::newton(const StepSystem& system, double enough, OpenCloseResult& result) {
+  if (!newton_step(system, enough, result)) {
+    if (!kept_.is_kept()) return Minimum::failed;
+    kept_.forget();
+    matrix_.forget();
+    return Minimum::not_found;
+  }
+  const bool is_found = iterate_.out_of_balance(system) < enough && settles(system, enough, result);
+  return is_found ? Minimum::found : Minimum::not_found;
 }
 
 /// What the solution does to the laws of springs, except to bounds of friction: whether Π has to be minimized again.

@@ -57,6 +57,10 @@ class OpenClose {
   [[nodiscard]] bool is_exact(const StepSystem& system) const;
   bool factor(const StepSystem& system);
   bool minimize(const StepSystem& system, bool warm, double enough, OpenCloseResult& result);
+  enum class Minimum { found, not_found, tried_kept_factor, failed };
+  Minimum begin_minimum(const StepSystem& system, bool warm, bool updates, bool& from_zero);
+  Minimum update(const StepSystem& system, int& tries, bool& from_zero, OpenCloseResult& result);
+  Minimum newton(const StepSystem& system, double enough, OpenCloseResult& result);
   bool newton_step(const StepSystem& system, double enough, OpenCloseResult& result);
   bool settles(const StepSystem& system, double enough, OpenCloseResult& result);
 

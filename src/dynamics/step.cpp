@@ -211,30 +211,33 @@ Verdict Stepper::check(const Attempt& attempt, const OpenCloseResult& result, bo
   return impact ? Verdict::impact : rotation;
 }
 
+Verdict Stepper::solve(State& state, Drive& drive, const SolverOptions& options, Attempts& attempts,
+                       StepReport& report) {
+  drive.rotation = rotation_.known();
+  build(state, drive, attempts.same_contacts);
+  linalg::BlockSolver& solver = choose_solver(state, drive.is_static, attempts.must_be_direct);
+  if (attempts.is_first()) guess(history_, solver, options, drive.step, increment_, team_);
+  const bool may_meet_impacts = attempts.count < step_numbers::most_attempts;
+  const auto meets_impacts = [&] {
+    return may_meet_impacts && rules_.meet_impacts(solution(state, drive), motion_.speed());
+  };
+  const OpenCloseResult result =
+      open_close_.solve({problem_, finder_.of_step(), solver, options, team_, profile_}, increment_,
+                        options.accelerators.early_impacts ? meets_impacts : std::function<bool()>{});
+  report.iterations += result.iterations;
+  quiet_ = result.changes == 0;
+  attempts.bond_broken = result.bond_broken;
+  check_finite(result, drive);
+  if (result.linear_failed && !attempts.must_be_direct) return Verdict::solver_failed;
+  return check(solution(state, drive), result, may_meet_impacts);
+}
+
 /// Whether a solution was found that the step can be taken with.
 bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report) {
-  using namespace step_numbers;
   predict(state, drive);
-  bool must_be_direct = false, same_contacts = false;
-  for (int attempts = 1, rotations = 0;;) {
-    if (!same_contacts) find(state, drive);
-    drive.rotation = rotation_.known();
-    build(state, drive, same_contacts);
-    linalg::BlockSolver& solver = choose_solver(state, drive.is_static, must_be_direct);
-    if (attempts == 1 && rotations == 0) guess(history_, solver, options, drive.step, increment_, team_);
-    const bool may_meet_impacts = attempts < most_attempts;
-    const auto meets_impacts = [&] {
-      return may_meet_impacts && rules_.meet_impacts(solution(state, drive), motion_.speed());
-    };
-    const OpenCloseResult result =
-        open_close_.solve({problem_, finder_.of_step(), solver, options, team_, profile_}, increment_,
-                          options.accelerators.early_impacts ? meets_impacts : std::function<bool()>{});
-    report.iterations += result.iterations;
-    quiet_ = result.changes == 0;
-    check_finite(result, drive);
-    const Verdict verdict = result.linear_failed && !must_be_direct
-                                ? Verdict::solver_failed
-                                : check(solution(state, drive), result, may_meet_impacts);
+  for (Attempts attempts;;) {
+    if (!attempts.same_contacts) find(state, drive);
+    const Verdict verdict = solve(state, drive, options, attempts, report);
     switch (verdict) {
       case Verdict::accepted:
         return true;
@@ -242,20 +245,20 @@ bool Stepper::attempt(State& state, Drive& drive, const SolverOptions& options, 
       case Verdict::rotated_too_far:
         return false;
       case Verdict::solver_failed:
-        must_be_direct = true;
+        attempts.must_be_direct = true;
         continue;
       case Verdict::rotated:
-        if (++rotations > most_rotations) return false;
+        if (++attempts.rotations > step_numbers::most_rotations) return false;
         rotation_.take_over();
-        same_contacts = true;
+        attempts.same_contacts = true;
         break;
       case Verdict::moved_too_far:
       case Verdict::impact:
         // The last attempt is taken as it is, with the rotation correction that it was made with.
-        if (++attempts > most_attempts) return true;
+        if (++attempts.count > step_numbers::most_attempts) return true;
         rotation_.forget();
         // Bonds that broke are for the next attempt to find again.
-        same_contacts = verdict == Verdict::impact && !result.bond_broken;
+        attempts.same_contacts = verdict == Verdict::impact && !attempts.bond_broken;
         break;
     }
     earlier_attempt_.keep(finder_.contacts(), problem_.springs());

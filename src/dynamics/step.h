@@ -66,6 +66,17 @@ struct ContactForce {
   contact::State state = contact::State::open;
 };
 
+/// Attempts at one step so far, and what the next one is made with.
+struct Attempts {
+  int count = 1;                ///< where blocks moved too far or struck each other
+  int rotations = 0;            ///< with a new rotation correction
+  bool must_be_direct = false;  ///< conjugate residuals did not converge
+  bool same_contacts = false;   ///< those of the attempt before
+  bool bond_broken = false;     ///< in the attempt before
+
+  [[nodiscard]] bool is_first() const { return count == 1 && rotations == 0; }
+};
+
 /// Advances a State. Owns scratch memory and the factorization, but nothing that a restart would miss.
 ///
 /// A step is a list of stages, each of them a class or a function:
@@ -128,6 +139,9 @@ class Stepper {
   /// The solution at hand, of the step from this state.
   [[nodiscard]] Attempt solution(const State& state, const Drive& drive) const;
   [[nodiscard]] Verdict check(const Attempt& attempt, const OpenCloseResult& result, bool may_meet_impacts);
+  /// One attempt: build, solve, check.
+  Verdict solve(State& state, Drive& drive, const SolverOptions& options, Attempts& attempts,
+                StepReport& report);
   bool attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report);
   void accept(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,

@@ -84,6 +84,27 @@ struct StepProblem::PressedBlocks {
   std::size_t count = 0;
 };
 
+/// Material part of H, b, and the geometric stiffness (N − 1)², which H does not have yet.
+template <typename Size>
+void StepProblem::linearize(Size size, std::size_t i, const State& state, const Drive& drive,
+                            Vec2 acceleration, double* geometric) {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  const double* v = &state.velocity[block.first];
+  double *b = &b_[block.first], *h = &h_[h_first_[i]];
+  block.elasticity.add_force_and_material_tangent(&state.position[block.first], viscous_[i], b, h, stride,
+                                                  geometric);
+  for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+  if (!drive.is_static && !state.acceleration.empty()) {
+    const double c_a = drive.rule[i].acceleration() * block.material.density,
+                 c_f = drive.rule[i].force() * block.material.density;
+    for (std::size_t k = 0; k < at(n); ++k)
+      b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
+  }
+  b[0] += block.body_force() * acceleration.x;
+  b[1] += block.body_force() * acceleration.y;
+}
+
 template <typename Size>
 void StepProblem::build_block(Size size, std::size_t i, const State& state, const Drive& drive,
                               Vec2 acceleration, PressedBlocks& pressed) {
@@ -93,30 +114,16 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
   std::fill(b, b + n, 0.0);
   inertia_[i] = 0.0;
   if (!model_->moves(i)) return;
-  const double* a = &state.position[block.first];
-  const double* v = &state.velocity[block.first];
   double* h = &h_[h_first_[i]];
   std::fill(h, h + 2 * stride, 0.0);  // translation; the rest is written below
   inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                 (drive.is_static ? drive.inertia_scale[i] : 1.0);
   viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency_[i] * drive.step);
-  const auto linearize = [&](double* geometric) {
-    block.elasticity.add_force_and_material_tangent(a, viscous_[i], b, h, stride, geometric);
-    for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
-    if (!drive.is_static && !state.acceleration.empty()) {
-      const double c_a = drive.rule[i].acceleration() * block.material.density,
-                   c_f = drive.rule[i].force() * block.material.density;
-      for (std::size_t k = 0; k < at(n); ++k)
-        b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
-    }
-    b[0] += block.body_force() * acceleration.x;
-    b[1] += block.body_force() * acceleration.y;
-  };
   const int m = size - 1;
   const double floor = floor_of(drive, inertia_[i]);
   if constexpr (std::is_same_v<Size, std::integral_constant<int, 6>>) {
     block::MatrixOfOrder2& geometric = pressed.geometric[pressed.count];
-    linearize(geometric.data());
+    linearize(size, i, state, drive, acceleration, geometric.data());
     if (!block::may_lie_below(geometric.data(), m, floor)) return finish_block(size, i, geometric.data());
     pressed.block[pressed.count] = i;
     pressed.floor[pressed.count] = floor;
@@ -125,7 +132,7 @@ void StepProblem::build_block(Size size, std::size_t i, const State& state, cons
     std::array<double, 4> of_order_1;
     std::vector<double> many(m > 2 ? at(m * m) : 0);
     double* geometric = m > 2 ? many.data() : of_order_1.data();
-    linearize(geometric);
+    linearize(size, i, state, drive, acceleration, geometric);
     if (m == 2 || block::may_lie_below(geometric, m, floor)) block::raise_eigenvalues(geometric, m, floor);
     finish_block(size, i, geometric);
   }

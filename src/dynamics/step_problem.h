@@ -331,6 +331,9 @@ class StepProblem {
                   linalg::BlockSolver& solver) const;
   struct PressedBlocks;
   template <typename Size>
+  void linearize(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration,
+                 double* geometric);
+  template <typename Size>
   void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration,
                    PressedBlocks& pressed);
   template <typename Size>
@@ -343,7 +346,12 @@ class StepProblem {
   void add_supports(const State& state, const Drive& drive);
   void build_rows(const State& state, const Drive& drive, std::span<const contact::Contact> contacts,
                   std::span<const int> pairs, const ForContacts& for_contacts);
-  void build_row(const Drive& drive, const contact::Contact& contact, std::size_t c);
+  /// Of rows: what some of them are, that all of the problem asks for.
+  struct RowFacts {
+    bool may_break = false, lacks_room = false, has_distant = false;
+  };
+  RowFacts build_row(const Drive& drive, const contact::Contact& contact, int pair, std::size_t c);
+  void place_row(const contact::Contact& contact, std::size_t c);
   void find_owners();
   void build_springs(const State& state, const Drive& drive, std::span<const contact::Contact> contacts,
                      std::size_t first);

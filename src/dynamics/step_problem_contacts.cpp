@@ -22,24 +22,20 @@ void StepProblem::build_rows(const State& state, const Drive& drive,
   if (team_->size() > 1) unknowns_of_row_.resize(contacts.size());
   std::atomic<bool> may_break = false, lacks_room = false, has_distant = false;
   const auto of_some = [&](std::size_t begin, std::size_t end) {
-    bool any = false, without = false, distant = false;
+    RowFacts all;
     for (std::size_t first = begin; first < end; first += lane_count) {
       const std::size_t last = std::min(first + lane_count, end);
       for (std::size_t k = first; k < last; ++k) {
-        build_row(drive, contacts[k], k);
-        rows_[k].pair = pairs[at(contacts[k].candidate)];
-        if (!drive.rotation.empty())
-          rows_[k].moved += drive.rotation[k].x * rows_[k].normal + drive.rotation[k].y * rows_[k].tangent();
-        any = any || (contacts[k].memory.bonded && !contacts[k].fused);
-        without = without || rows_[k].pair == without_room;
-        distant = distant || std::abs(rows_[k].position - 0.5) > 1.0;
-        if (team_->size() > 1) unknowns_of_row_[k] = {rows_[k].unknown_a, rows_[k].unknown_b};
+        const RowFacts row = build_row(drive, contacts[k], pairs[at(contacts[k].candidate)], k);
+        all.may_break |= row.may_break;
+        all.lacks_room |= row.lacks_room;
+        all.has_distant |= row.has_distant;
       }
       build_springs(state, drive, contacts.subspan(first, last - first), first);
     }
-    if (any) may_break = true;
-    if (without) lacks_room = true;
-    if (distant) has_distant = true;
+    if (all.may_break) may_break = true;
+    if (all.lacks_room) lacks_room = true;
+    if (all.has_distant) has_distant = true;
   };
   if (for_contacts) {
     for_contacts(of_some);
@@ -76,7 +72,24 @@ void StepProblem::set_pairs(std::span<const contact::Contact> contacts, std::spa
   lacks_room_ = false;
 }
 
-void StepProblem::build_row(const Drive& drive, const contact::Contact& contact, std::size_t c) {
+StepProblem::RowFacts StepProblem::build_row(const Drive& drive, const contact::Contact& contact, int pair,
+                                             std::size_t c) {
+  place_row(contact, c);
+  Row& row = rows_[c];
+  row.position = contact.position;
+  row.unknown_a = bodies_[at(contact.block_a)].unknown;
+  row.unknown_b = bodies_[at(contact.block_b)].unknown;
+  row.pair = pair;
+  row.normal = contact.normal;
+  row.moved = drive.prescribed_between(contact);
+  if (!drive.rotation.empty())
+    row.moved += drive.rotation[c].x * row.normal + drive.rotation[c].y * row.tangent();
+  if (team_->size() > 1) unknowns_of_row_[c] = {row.unknown_a, row.unknown_b};
+  return {contact.memory.bonded && !contact.fused, pair == without_room, std::abs(row.position - 0.5) > 1.0};
+}
+
+/// The points of a row.
+void StepProblem::place_row(const contact::Contact& contact, std::size_t c) {
   Row& row = rows_[c];
   row.vertex = static_cast<std::uint32_t>(contact.vertex);
   if (most_vertices_ > 0 && contact::is_curved(*surface_, contact.edge)) {
@@ -91,11 +104,6 @@ void StepProblem::build_row(const Drive& drive, const contact::Contact& contact,
     row.from = static_cast<std::uint32_t>(contact.edge);
     row.to = static_cast<std::uint32_t>(surface_->next[at(contact.edge)]);
   }
-  row.position = contact.position;
-  row.unknown_a = bodies_[at(contact.block_a)].unknown;
-  row.unknown_b = bodies_[at(contact.block_b)].unknown;
-  row.normal = contact.normal;
-  row.moved = drive.prescribed_between(contact);
 }
 
 /// m, Δt times the velocity at the start of the step of a fixed block that is moved. What it goes in a step is the mean velocity of that.
