@@ -100,8 +100,7 @@ bool PredictedMotion::is_exceeded(const Attempt& attempt, std::span<const double
   return true;
 }
 
-contact::StepMotion PredictedMotion::for_detection(std::span<const double> away,
-                                                          bool is_static) const {
+contact::StepMotion PredictedMotion::for_detection(std::span<const double> away, bool is_static) const {
   contact::StepMotion motion{reach_, turn_, away, path_};
   if (!is_static) {
     motion.predicted = predicted_;
