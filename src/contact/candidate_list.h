@@ -21,15 +21,15 @@ struct Memory {
   double stiffness = 0.0;     ///< N/m per thickness, of the normal spring in the last step
   double shear = 0.0;         ///< m, elastic shear displacement
   double normal_force = 0.0;  ///< N per thickness, compression positive
-  /// N per thickness; times μ it bounds the friction of the next step: the normal force, negative in a bond's tension, and what the
-  /// bounds of the steps before have missed of it while the contact slid, as a force over the last one. So friction loses no impulse.
+  /// N per thickness; times μ it bounds the friction of the next step. It is the normal force, negative in the tension of a bond, and the part of
+  /// it that the bounds of the steps before have missed while the contact slid, as a force over the last step. So friction loses no impulse.
   double bounding_force = 0.0;
   double multiplier = 0.0;  ///< m, augmented Lagrangian: normal force over stiffness, in place of penetration
   double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
   double stored = 0.0;      ///< J per thickness, elastic energy of the springs
   double bond_length = 0.0;  ///< m of joint that a bond holds: it stays what it was when the bond was made
 
-  /// Whether the contact is one at any gap, as a bond, or at any depth, as what presses, as long as its vertex is over the edge.
+  /// Whether the candidate is a contact as long as its vertex is over the edge: a bond at any gap, and what presses at any depth.
   [[nodiscard]] bool holds() const { return bonded || normal_force > 0.0; }
 };
 
@@ -73,7 +73,7 @@ struct CandidateList {
   std::vector<int> tracked;    ///< contacts of the last step, into pairs; ascending
   std::vector<Memory> memory;  ///< of each of them
 
-  /// For what so many contacts remember.
+  /// For the memory of so many contacts.
   void make_room(std::size_t contacts) {
     tracked.resize(contacts);
     memory.resize(contacts);
@@ -105,14 +105,14 @@ struct CandidateList {
     return {all + first[0], all + first[1]};
   }
 
-  /// Walks over the candidates in their order: where the memory of each is.
+  /// Goes over the candidates in their order, and finds the memory of each.
   class Finder {
    public:
     Finder(const CandidateList& list, int first)
         : tracked_(list.tracked),
           next_(static_cast<std::size_t>(std::lower_bound(tracked_.begin(), tracked_.end(), first) -
                                          tracked_.begin())) {}
-    /// Into `memory`; −1: none. No candidate before the last one that was asked for.
+    /// Index into `memory`; −1: none. Candidates have to be asked for in ascending order.
     int operator()(std::size_t candidate) {
       const int wanted = static_cast<int>(candidate);
       while (next_ < tracked_.size() && tracked_[next_] < wanted) ++next_;

@@ -51,10 +51,10 @@ void for_facing(const Outlines& outlines, const Vertices& vertices, const Lanes 
                                    outlines.tolerances.activation};
   const auto measure_edge = [&](Lanes ux, Lanes uy, Lanes length, Lanes sign, const Beside<Lanes>& edge,
                                 const Beside<Lanes>& of_line) {
-    const Lanes across = ty * ux - tx * uy, ahead = ux * tx + uy * ty, long_beside = shared.stretch(across);
+    const Lanes across = ty * ux - tx * uy, forward = ux * tx + uy * ty, long_beside = shared.stretch(across);
     const auto faces =
-        ~((ahead > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing));
-    const Lanes to = along + ahead * sign * length;
+        ~((forward > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing));
+    const Lanes to = along + forward * sign * length;
     const Lanes of_vertex =
         divided ? shared(to, long_beside, edge, of_line) : 0.5 * shared.common(to, long_beside);
     of_edge(Vertices::Facing{faces, where(faces, of_vertex, Lanes{}), long_beside, length, edge, of_line});
@@ -73,9 +73,9 @@ Lanes length_beyond(const Outlines& outlines, const Vertices& vertices, const La
   Lanes line[lane_count], length{};
   for (std::size_t i = 0; i < lane_count; ++i) line[i] = load(&outlines.corners[beyond[i]].position.x);
   transpose(line);
-  const Lanes ahead = edge[2] * line[2] + edge[3] * line[3], across = edge[2] * line[3] - edge[3] * line[2];
+  const Lanes forward = edge[2] * line[2] + edge[3] * line[3], across = edge[2] * line[3] - edge[3] * line[2];
   const auto continues =
-      (ahead >= 0.0) & (across * across <= Tolerances::sine_facing * Tolerances::sine_facing);
+      (forward >= 0.0) & (across * across <= Tolerances::sine_facing * Tolerances::sine_facing);
   if (!any(continues)) return length;
   for_facing<divided>(outlines, vertices, line, beyond,
                       [&](const Vertices::Facing& f) { length += f.common; });

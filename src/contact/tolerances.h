@@ -17,10 +17,10 @@ struct Tolerances {
         rounding(1e-6 * block_size),
         turn(5e-5 * block_size) {}
 
-  /// A gap below which a contact takes part in the step although it is open (1 mm), beside what motion adds. Too small:
+  /// A gap below which a contact takes part in the step although it is open (1 mm); motion adds to it. Too small:
   /// a contact is met only after it has been penetrated. Too large: more contacts to evaluate.
   double activation;
-  /// Distance from the end of an edge within which the contacts of two corners compete (2 mm), beside what motion adds.
+  /// Distance from the end of an edge within which the contacts of two corners compete (2 mm); motion adds to it.
   double end_zone;
   /// Depth up to which a vertex behind an edge is in contact with it (2 cm). Must stay below the thickness of a block:
   /// beyond it a vertex is grabbed by the far edge. Also how far an edge reaches past an end in a concave corner (CornerKind), where a
@@ -42,7 +42,7 @@ struct Tolerances {
   /// Corners that miss each other by less still meet (0.7 µm): outlines may be given to few digits.
   double rounding;
 
-  /// Of the gap at the end of a step, what a contact may miss as its blocks turn and leave the straight way that the step is linear
+  /// Of the gap at the end of a step, what a contact may miss as its blocks turn and leave the straight path that the step is linear
   /// in (0.03 mm). Beyond, or where it costs more work than it may (dynamics::RotationCorrection), the step is taken again with what it
   /// missed. Larger: small spinning blocks are pressed into others by the rotation and thrown out again.
   double turn;

@@ -68,12 +68,12 @@ bool BlockCholesky::factor() {
 }
 
 /// Brings x into the order of elimination.
-void BlockCholesky::take(std::span<const double> x, std::span<double> by_column) const {
+void BlockCholesky::to_columns(std::span<const double> x, std::span<double> by_column) const {
   for (std::size_t j = 0; j < pattern_.columns(); ++j)
     std::copy_n(&x[pattern_.offset[j]], pattern_.size[j], &by_column[pattern_.work_start[j]]);
 }
 
-void BlockCholesky::give(std::span<const double> by_column, std::span<double> x) const {
+void BlockCholesky::from_columns(std::span<const double> by_column, std::span<double> x) const {
   for (std::size_t j = 0; j < pattern_.columns(); ++j)
     std::copy_n(&by_column[pattern_.work_start[j]], pattern_.size[j], &x[pattern_.offset[j]]);
 }
@@ -96,17 +96,17 @@ bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, cons
     for (std::size_t k = 0; k < work_.size(); ++k) solution_[k] += work_[k];
     if (kind == Residual::estimated && share_left_ > 0.0 && share_left_ * left < numbers::sure_excess) {
       std::fill(residual.begin(), residual.end(), 0.0);
-      give(solution_, x);
+      from_columns(solution_, x);
       return true;
     }
     work_ = right_;
     matrix_.subtract_product(pattern_, solution_, work_);
-    give(work_, residual);
+    from_columns(work_, residual);
     const double now = excess(residual);
     if (left > 0.0) share_left_ = std::max(share_left_, now / left);
     left = now;
     if (left > 1.0) continue;
-    give(solution_, x);
+    from_columns(solution_, x);
     return true;
   }
   return false;
@@ -114,7 +114,7 @@ bool BlockCholesky::refine(std::span<double> x, std::span<double> residual, cons
 
 void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const Excess& excess,
                           Residual kind) {
-  take(x, right_);
+  to_columns(x, right_);
   if (!in_double_) {
     if (refine(x, residual, excess, kind)) return;
     if (double_) double_->make_stale();
@@ -123,7 +123,7 @@ void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const
   }
   std::fill(residual.begin(), residual.end(), 0.0);
   solve_by_column(right_);
-  give(right_, x);
+  from_columns(right_, x);
 }
 
 void BlockCholesky::forward_solve(Part a, Part b, ForwardVector& w) {
@@ -163,7 +163,7 @@ double BlockCholesky::product(const ForwardVector& x, std::span<const double> y)
 
 void BlockCholesky::forward_solve(std::span<const double> b, std::vector<double>& w) {
   w.resize(pattern_.work_size);
-  take(b, w);
+  to_columns(b, w);
   with_factor([&](auto& factor) { factor.forward(pattern_, w); });
 }
 
@@ -179,7 +179,7 @@ void BlockCholesky::backward_solve(std::span<const double> w, std::span<const Fo
     }
   }
   with_factor([&](auto& of) { of.backward(pattern_, work_); });
-  give(work_, x);
+  from_columns(work_, x);
 }
 
 std::unique_ptr<BlockSolver> make_block_cholesky(Precision precision) {

@@ -38,8 +38,8 @@ class BlockCholesky final : public BlockSolver, public LowRankSolver {
     return pattern_.position[static_cast<std::size_t>(block)];
   }
   [[nodiscard]] bool factor_in_double();
-  void take(std::span<const double> x, std::span<double> by_column) const;
-  void give(std::span<const double> by_column, std::span<double> x) const;
+  void to_columns(std::span<const double> x, std::span<double> by_column) const;
+  void from_columns(std::span<const double> by_column, std::span<double> x) const;
   template <typename Call>
   void with_factor(const Call& call);
   void solve_by_column(std::span<double> x);

@@ -57,7 +57,7 @@ BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(const SolvedP
                                                                    const Excess& excess, int most,
                                                                    Lags& lags) {
   const double start = too_large;
-  const bool goes_on = rho_ > 0.0;
+  const bool continues = rho_ > 0.0;
   PendingSteps steps;
   double wanted = 0.0, first_rr = 0.0, rr = 0.0;
   for (int iterations = 1;; ++iterations) {
@@ -80,7 +80,7 @@ BlockConjugateResidual::Iterations BlockConjugateResidual::iterate(const SolvedP
     passes_.estimate_residual(matrix_, part, estimate_);
     too_large = excess(estimate_);
     if (too_large <= numbers::enough_estimated) {
-      if (goes_on) return {iterations, true};
+      if (continues) return {iterations, true};
       std::copy_backward(lags.begin(), lags.end() - 1, lags.end());
       lags.front() = rr / first_rr * (start * start) / (too_large * too_large);
       return {iterations, true};
@@ -94,7 +94,7 @@ void BlockConjugateResidual::approach(std::span<double> x, std::span<double> res
                                       Residual kind) {
   const SolvedPart part = all();
   solved_ = true;
-  bool goes_on = rho_ > 0.0;
+  bool continues = rho_ > 0.0;
   int iterations = 0;
   double most = HUGE_VAL;
   for (double too_large = excess(residual); too_large > 1.0; too_large = excess(residual)) {
@@ -103,8 +103,8 @@ void BlockConjugateResidual::approach(std::span<double> x, std::span<double> res
       return;
     }
     most = numbers::most_growth * too_large;
-    if (!goes_on) begin(part, residual);
-    goes_on = false;
+    if (!continues) begin(part, residual);
+    continues = false;
     const Iterations taken = iterate(part, too_large, excess, numbers::most_iterations - iterations, lags_);
     iterations += taken.count;
     if (taken.enough && kind == Residual::estimated) {

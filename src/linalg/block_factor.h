@@ -13,8 +13,8 @@ namespace keyblock::linalg {
 enum class FactorOutcome { done, not_positive, poor };
 
 /// L of a matrix A ≈ L Lᵀ, from the left by block columns, with entries of type Number: float or double. Solutions are those of L Lᵀ in
-/// double precision, so that they are symmetric whatever the entries were rounded to; of A they have as many digits as the entries less
-/// those that its condition takes.
+/// double precision, so that they are symmetric whatever the entries were rounded to. As solutions of A they have the digits of the entries, less
+/// the digits that the condition of A takes.
 template <typename Number>
 class BlockFactor {
  public:

@@ -16,7 +16,7 @@ struct BlockPattern {
   /// As BlockSolver::analyse.
   BlockPattern(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs);
   [[nodiscard]] std::size_t columns() const { return size.size(); }
-  /// Of the values of column j.
+  /// Where the values of column j end.
   [[nodiscard]] std::size_t column_end(std::size_t j) const {
     return j + 1 < columns() ? column_value[j + 1] : values;
   }

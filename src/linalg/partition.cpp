@@ -39,12 +39,12 @@ class Dissection {
     std::vector<int> before, after;
     for (const int block : blocks) {
       const int level = level_[at(block)];
-      const bool goes_on = has_neighbour(block, [&](int k) { return level_[at(k)] > level; });
-      (level > middle ? after : level == middle && goes_on ? between_ : before).push_back(block);
+      const bool continues = has_neighbour(block, [&](int k) { return level_[at(k)] > level; });
+      (level > middle ? after : level == middle && continues ? between_ : before).push_back(block);
     }
     blocks = {};
-    for (auto* half : {&before, &after}) {
-      if (!half->empty()) cut(std::move(*half));
+    for (auto* side : {&before, &after}) {
+      if (!side->empty()) cut(std::move(*side));
     }
   }
 

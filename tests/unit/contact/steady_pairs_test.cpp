@@ -39,7 +39,7 @@ Chosen choose(const Surface& surface, const SteadyPairs& steady_pairs = {},
   return chosen;
 }
 
-Surface stacked(double shift, double gap, double tilt) {
+Surface one_on_other(double shift, double gap, double tilt) {
   Surface surface;
   add_block(surface, rectangle(0, 0, 1, 1));
   add_block(surface,
@@ -53,8 +53,9 @@ TEST(SteadyPairs, ContactsStayWithinTheMargin) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   int steady = 0, moves = 0;
   for (int k = 0; k < 300; ++k) {
-    const Surface surface = stacked(0.5 * uniform(random) * std::pow(10.0, -3.0 * std::abs(uniform(random))),
-                                    1e-3 * uniform(random), 1e-2 * uniform(random));
+    const Surface surface =
+        one_on_other(0.5 * uniform(random) * std::pow(10.0, -3.0 * std::abs(uniform(random))),
+                     1e-3 * uniform(random), 1e-2 * uniform(random));
     const Chosen before = choose(surface);
     if (before.steady.limit < 0.0) continue;
     ++steady;
@@ -74,7 +75,7 @@ TEST(SteadyPairs, ContactsStayWithinTheMargin) {
 }
 
 TEST(SteadyPairs, KnowTheContactsTheyKeep) {
-  const Surface surface = stacked(0.3, 0.0, 0.0);
+  const Surface surface = one_on_other(0.3, 0.0, 0.0);
   const Chosen chosen = choose(surface);
   ASSERT_GT(chosen.steady.limit, 0.0);
   EXPECT_EQ(std::popcount(chosen.steady.contacts), static_cast<int>(chosen.contacts.size()));
@@ -84,7 +85,7 @@ TEST(SteadyPairs, KnowTheContactsTheyKeep) {
 
 /// Two blocks for which `steady` is known, and a step in which they may move.
 struct Pair {
-  Surface surface = stacked(0.3, 0.0, 0.0);
+  Surface surface = one_on_other(0.3, 0.0, 0.0);
   BlockPair pair{0, 0, 1, choose(surface).steady};
   std::vector<double> reach{0.0, 0.0}, path{0.0, 0.0}, predicted_path{0.0, 0.0};
   std::vector<Vec2> predicted = std::vector<Vec2>(8);
@@ -127,7 +128,7 @@ TEST(SteadyPairs, SwitchedOffKnowNothing) {
   SteadyPairs off;
   off.switch_off();
   EXPECT_FALSE(Pair().is_steady(off));
-  const Surface surface = stacked(0.3, 0.0, 0.0);
+  const Surface surface = one_on_other(0.3, 0.0, 0.0);
   const Chosen chosen = choose(surface, off);
   EXPECT_EQ(chosen.contacts, choose(surface).contacts);
   EXPECT_LT(chosen.steady.limit, 0.0);
@@ -135,7 +136,7 @@ TEST(SteadyPairs, SwitchedOffKnowNothing) {
 
 // Corners whose contact hangs on a hair are not steady, and tried again some steps later.
 TEST(SteadyPairs, WaitWhereTheMarginIsSmall) {
-  const Surface surface = stacked(0.0, Tolerances(1.0).activation * (1.0 - 1e-12), 0.0);
+  const Surface surface = one_on_other(0.0, Tolerances(1.0).activation * (1.0 - 1e-12), 0.0);
   CornerScene scene(surface);
   const std::vector<double> reach(2, 1e-6);
   scene.motion.reach = reach;
