@@ -7,7 +7,7 @@
 
 namespace keyblock::dynamics {
 
-double Corrections::Law::bend(double stretch) const {
+double Corrections::Law::excess(double stretch) const {
   return std::clamp(stiffness * stretch, low, high) - (line_force + line_stiffness * stretch);
 }
 
@@ -16,7 +16,7 @@ int Corrections::Law::branch(double stretch) const {
   return elastic <= low ? -1 : elastic >= high ? 1 : 0;
 }
 
-double Corrections::Law::bend_stiffness(double stretch) const {
+double Corrections::Law::excess_stiffness(double stretch) const {
   return (branch(stretch) == 0 ? stiffness : 0.0) - line_stiffness;
 }
 
@@ -37,27 +37,27 @@ double Corrections::compliance_times(std::size_t s, std::span<const double> x) c
 
 /// Matrix and right side of the springs with ∂β/∂e ≠ 0.
 void Corrections::assemble() {
-  bent_.clear();
+  curved_.clear();
   for (std::size_t s = 0; s < size_; ++s) {
-    if (stiffness_[s] != 0.0) bent_.push_back(s);
+    if (stiffness_[s] != 0.0) curved_.push_back(s);
   }
-  const std::size_t n = bent_.size();
+  const std::size_t n = curved_.size();
   triangle_.resize(n * n);
   right_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t s = bent_[i];
+    const std::size_t s = curved_[i];
     right_[i] = missing_[s] / stiffness_[s];
     for (std::size_t t = 0; t < size_; ++t) {
       if (stiffness_[t] == 0.0) right_[i] -= compliance(s, t) * missing_[t];
     }
-    for (std::size_t j = 0; j <= i; ++j) triangle_[i * n + j] = compliance(s, bent_[j]);
+    for (std::size_t j = 0; j <= i; ++j) triangle_[i * n + j] = compliance(s, curved_[j]);
     triangle_[i * n + i] += 1.0 / stiffness_[s];
   }
 }
 
 /// L D Lᵀ in place of the matrix, and L⁻¹ in front of the right side. False where there is none.
 bool Corrections::factor() {
-  const std::size_t n = bent_.size();
+  const std::size_t n = curved_.size();
   for (std::size_t i = 0; i < n; ++i) {
     double* row = &triangle_[i * n];
     for (std::size_t j = 0; j < i; ++j) {
@@ -81,12 +81,12 @@ bool Corrections::find_direction() {
   direction_ = missing_;
   assemble();
   if (!factor()) return false;
-  const std::size_t n = bent_.size();
+  const std::size_t n = curved_.size();
   for (std::size_t i = 0; i < n; ++i) right_[i] /= triangle_[i * n + i];
   for (std::size_t i = n; i-- > 0;) {
     for (std::size_t j = 0; j < i; ++j) right_[j] -= triangle_[i * n + j] * right_[i];
   }
-  for (std::size_t i = 0; i < n; ++i) direction_[bent_[i]] = right_[i];
+  for (std::size_t i = 0; i < n; ++i) direction_[curved_[i]] = right_[i];
   return true;
 }
 
@@ -104,8 +104,8 @@ bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const dou
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     double largest = 0.0, missing = 0.0;
     for (std::size_t s = 0; s < size_; ++s) {
-      missing_[s] = laws[s].bend(stretch_[s]) - force_[s];
-      stiffness_[s] = laws[s].bend_stiffness(stretch_[s]);
+      missing_[s] = laws[s].excess(stretch_[s]) - force_[s];
+      stiffness_[s] = laws[s].excess_stiffness(stretch_[s]);
       branch_[s] = laws[s].branch(stretch_[s]);
       missing = std::max(missing, std::abs(missing_[s]));
       largest = std::max({largest, std::abs(force_[s]), laws[s].stiffness * std::abs(stretch_[s])});
@@ -120,7 +120,8 @@ bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const dou
     const auto slope = [&](double alpha) {
       double sum = 0.0;
       for (std::size_t s = 0; s < size_; ++s)
-        sum += step_[s] * (force_[s] + alpha * direction_[s] - laws[s].bend(stretch_[s] - alpha * step_[s]));
+        sum +=
+            step_[s] * (force_[s] + alpha * direction_[s] - laws[s].excess(stretch_[s] - alpha * step_[s]));
       return sum;
     };
     const double alpha = line_search(

@@ -22,8 +22,9 @@ class Corrections {
     double stiffness = 0.0, low = 0.0, high = 0.0;
     double line_stiffness = 0.0, line_force = 0.0;
 
-    [[nodiscard]] double bend(double stretch) const;
-    [[nodiscard]] double bend_stiffness(double stretch) const;
+    /// β, N per thickness: the force beyond the straight line; and ∂β/∂e.
+    [[nodiscard]] double excess(double stretch) const;
+    [[nodiscard]] double excess_stiffness(double stretch) const;
     /// −1, 1: at `low`, at `high`; 0: the spring acts.
     [[nodiscard]] int branch(double stretch) const;
   };
@@ -56,7 +57,7 @@ class Corrections {
   std::vector<double> stretch_, stiffness_, missing_;  ///< e; ∂β/∂e; β − φ
   std::vector<int> branch_;
   std::vector<double> direction_, step_;  ///< of φ; what it takes off e
-  std::vector<std::size_t> bent_;         ///< springs with ∂β/∂e ≠ 0
+  std::vector<std::size_t> curved_;       ///< springs with ∂β/∂e ≠ 0
   std::vector<double> triangle_, right_;
   std::vector<double> scaled_;
 };

@@ -38,8 +38,8 @@ void Intrusions::measure(const Step& step) {
     const std::size_t first = at(surface.block_begin[b]), last = at(surface.block_begin[b + 1]);
     double differs = 0.0;
     for (std::size_t v = first; v < last; ++v)
-      differs = std::max(differs, squared_norm(step.went[v] - step.went[first]));
-    first_[b] = step.went[first];
+      differs = std::max(differs, squared_norm(step.displacement[v] - step.displacement[first]));
+    first_[b] = step.displacement[first];
     if (!step.prescribed.empty()) first_[b] += step.prescribed[b];
     differs_[b] = std::sqrt(differs);
   }
@@ -57,7 +57,7 @@ bool Intrusions::comes_in(const Step& step, int vertex, int block, double deepes
 /// Whether no vertex goes far enough in the step to come into any block: most steps end here.
 bool Intrusions::all_go_little(const Step& step) const {
   double farthest = 0.0, moved = 0.0;
-  for (const Vec2& way : step.went) farthest = std::max(farthest, squared_norm(way));
+  for (const Vec2& way : step.displacement) farthest = std::max(farthest, squared_norm(way));
   for (const Vec2& way : step.prescribed) moved = std::max(moved, squared_norm(way));
   return 2.0 * (std::sqrt(farthest) + std::sqrt(moved)) <= least_added * most_share * least_size_;
 }

@@ -24,8 +24,8 @@ class Intrusions {
 
   /// A step, as it would end.
   struct Step {
-    const contact::Surface& surface;   ///< at its start
-    std::span<const Vec2> went;        ///< m, per vertex, in the step; of a fixed block 0
+    const contact::Surface& surface;     ///< at its start
+    std::span<const Vec2> displacement;  ///< m, per vertex, in the step; of a fixed block 0
     std::span<const Vec2> prescribed;  ///< m, per block, of fixed blocks that are moved; empty: there is none
     const std::function<Vec2(std::size_t)>& at_end;  ///< m, where a vertex comes to be
     const std::function<bool(int vertex, int block)>&
@@ -41,7 +41,7 @@ class Intrusions {
 
   std::vector<double> size_;
   double least_size_;
-  std::vector<Vec2> first_;      ///< m, per block: what its first vertex goes
+  std::vector<Vec2> first_;      ///< m, per block: displacement of its first vertex
   std::vector<double> differs_;  ///< m, per block: by how much another one's way differs from that at most
 };
 

@@ -4,10 +4,10 @@
 namespace keyblock::dynamics {
 
 /// Root of the slope of a convex, piecewise quadratic function along a line, to 1 % of `start`, its slope at zero. slope(α) rises
-/// piecewise linearly from it; look(α) is called before slopes up to an α > 1 are asked for. 1 when the slope at zero is not negative:
+/// piecewise linearly from it; prepare(α) is called before slopes up to an α > 1 are asked for. 1 when the slope at zero is not negative:
 /// the minimum, to the last digit.
-template <typename Look, typename Slope>
-double line_search(double start, const Look& look, const Slope& slope) {
+template <typename Prepare, typename Slope>
+double line_search(double start, const Prepare& prepare, const Slope& slope) {
   const double target = 0.01 * std::abs(start);
   if (!(start < 0.0)) return 1.0;
   double low = 0.0, low_slope = start, high = 1.0;
@@ -16,7 +16,7 @@ double line_search(double start, const Look& look, const Slope& slope) {
     low = high;
     low_slope = high_slope;
     high *= 2.0;
-    look(high);
+    prepare(high);
     high_slope = slope(high);
   }
   if (std::abs(high_slope) <= target) return high;

@@ -161,7 +161,7 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
     law.line_stiffness = in_matrix;
     law.line_force = normal ? constant.normal : constant.shear;
     const bool is_fresh = k + fresh >= updated_.size();
-    if (!is_fresh) force_[k] = law.bend(stretch_.back());
+    if (!is_fresh) force_[k] = law.excess(stretch_.back());
     law.line_force += force_[k];
   }
   if (!corrections_.solve(*system.solver.low_rank(), base_, laws_, stretch_)) return false;

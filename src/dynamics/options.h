@@ -13,7 +13,7 @@ enum class ContactMethod { penalty, augmented_lagrangian };
 enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 
 /// What makes a step faster and changes where it ends by no more than its tolerance. Each can be switched off, to see what it is worth and
-/// to look for a fault (`keyblock run --without NAME`). docs/performance.md has a table of what each saves.
+/// to look for a fault (`keyblock run --without NAME`). `benchmarks/ablation.py` measures what each saves.
 struct Accelerators {
   bool kept_factor = true;      ///< dynamics::KeptFactor
   bool low_rank_update = true;  ///< dynamics::LowRankUpdate

@@ -68,12 +68,12 @@ void PredictedMotion::predict(const Model& model, const State& state, const Driv
 bool PredictedMotion::is_exceeded(const Attempt& attempt, std::span<const double> spin,
                                   const contact::Tolerances& tolerances) {
   std::atomic<bool> any = false;
-  const std::span<const Vec2> went = attempt.displacement;
+  const std::span<const Vec2> displacement = attempt.displacement;
   for_moving_blocks(attempt.model, attempt.team, [&](std::size_t b) {
     const Block& block = attempt.model.blocks[b];
     const auto [begin, end] = vertices_of(attempt.model.surface, b);
     double moved = 0.0;
-    for (std::size_t v = begin; v < end; ++v) moved = std::max(moved, squared_norm(went[v]));
+    for (std::size_t v = begin; v < end; ++v) moved = std::max(moved, squared_norm(displacement[v]));
     moved = std::sqrt(moved);
     const bool is_far = moved > reach_[b] + 0.5 * tolerances.activation,
                is_turned = std::abs(spin[b]) > turn_[b] + 0.5 * contact::Tolerances::sine_inside;
@@ -92,8 +92,8 @@ bool PredictedMotion::is_exceeded(const Attempt& attempt, std::span<const double
     const auto [begin, end] = vertices_of(attempt.model.surface, b);
     double against_first = 0.0;
     for (std::size_t v = begin; v < end; ++v) {
-      predicted_[v] = went[v];
-      against_first = std::max(against_first, squared_norm(went[v] - went[begin]));
+      predicted_[v] = displacement[v];
+      against_first = std::max(against_first, squared_norm(displacement[v] - displacement[begin]));
     }
     differs_[b] = std::sqrt(against_first);
   });

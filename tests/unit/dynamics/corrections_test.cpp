@@ -112,7 +112,7 @@ TEST(Corrections, ReachTheMinimum) {
     corrections.finish(halves, base, d);
     const Eigen::VectorXd x = Eigen::Map<Eigen::VectorXd>(d.data(), unknowns);
     Eigen::VectorXd gradient = chain.dense * x - right;
-    for (const Spring& s : springs) gradient += s.derivative() * s.law.bend(s.rest + s.derivative().dot(x));
+    for (const Spring& s : springs) gradient += s.derivative() * s.law.excess(s.rest + s.derivative().dot(x));
     EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 1e-9) << trial;
   }
 }
