@@ -30,8 +30,8 @@ void ForceBalance::predict(const Model& model, const StepProblem& problem, std::
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     if (!model.moves(b)) continue;
     const std::span<const double> of_block = coefficients_of(model.blocks[b], d);
-    left_[b] = problem.inertia(b) * length_of(of_block);
-    left_down_[b] = problem.inertia(b) * dot(down, {of_block[0], of_block[1]});
+    left_[b] = problem.terms().inertia(b) * length_of(of_block);
+    left_down_[b] = problem.terms().inertia(b) * dot(down, {of_block[0], of_block[1]});
   }
 }
 
@@ -39,7 +39,7 @@ void ForceBalance::find_scales(const Model& model, const StepProblem& problem) {
   constexpr double least_share = 1e-4;  // of the largest scale
   const std::size_t n = model.blocks.size();
   scale_.resize(n);
-  for (std::size_t b = 0; b < n; ++b) scale_[b] = problem.weight(b);
+  for (std::size_t b = 0; b < n; ++b) scale_[b] = problem.terms().weight(b);
   if (norm(model.gravity) > 0.0) return;
   force_.assign(n, 0.0);
   for (std::size_t c = 0; c < problem.springs().size(); ++c) {
@@ -82,7 +82,8 @@ void ForceBalance::find_rounding(const Model& model, const StepProblem& problem)
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Block& block = model.blocks[b];
     if (!model.moves(b)) continue;
-    const double elastic = std::sqrt(problem.largest_stiffness(b) * block.material.young * block.area);
+    const double elastic =
+        std::sqrt(problem.terms().largest_stiffness(b) * block.material.young * block.area);
     of_[b].rounding = epsilon * (elastic + force_[b] / std::sqrt(block.area)) / std::max(scale_[b], 1e-300);
   }
 }

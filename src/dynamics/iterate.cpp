@@ -50,7 +50,7 @@ void Iterate::take_force(const StepSystem& system, std::size_t c, Force before) 
 }
 
 void Iterate::gradient_changed_at(const StepSystem& system, std::span<const std::size_t> blocks) {
-  for (const std::size_t b : blocks) ratios_[b] = system.problem.residual_ratio(b, gradient);
+  for (const std::size_t b : blocks) ratios_[b] = system.problem.terms().residual_ratio(b, gradient);
   largest_ratio_.reset();
 }
 
@@ -58,7 +58,7 @@ std::span<const double> Iterate::ratios(const StepSystem& system) {
   if (std::exchange(knows_ratios_, true)) return ratios_;
   ratios_.resize(system.problem.blocks());
   system.team.for_range(ratios_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) ratios_[b] = system.problem.residual_ratio(b, gradient);
+    for (std::size_t b = begin; b < end; ++b) ratios_[b] = system.problem.terms().residual_ratio(b, gradient);
   });
   return ratios_;
 }

@@ -35,7 +35,7 @@ void KeptFactor::note(const StepSystem& system) {
   if (!system.options.accelerators.kept_factor || !system.solver.serves_later_steps()) return;
   solver_ = &system.solver;
   note_contacts(system);
-  inertia_.assign(system.problem.inertias().begin(), system.problem.inertias().end());
+  inertia_.assign(system.problem.terms().inertias().begin(), system.problem.terms().inertias().end());
 }
 
 void KeptFactor::note_contacts(const StepSystem& system) {
@@ -46,8 +46,8 @@ void KeptFactor::note_contacts(const StepSystem& system) {
 
 /// Whether the factor was made for the inertia of this step.
 bool KeptFactor::fits(const StepSystem& system) const {
-  return solver_ == &system.solver && system.problem.has_weights() &&
-         std::ranges::equal(inertia_, system.problem.inertias());
+  return solver_ == &system.solver && system.problem.terms().has_weights() &&
+         std::ranges::equal(inertia_, system.problem.terms().inertias());
 }
 
 /// What is known of the matrix by contact goes over to the contacts of this step: those that came have no spring in it, those that went had

@@ -20,12 +20,13 @@ bool LocalSolve::solve(const StepSystem& system, Iterate& iterate, double enough
   if (!system.solver.local()->find_local(out_of_balance_, reach_)) return false;
   take_reach(system);
   for (const std::size_t b : blocks_) {
-    const auto [first, last] = problem.coefficients(b);
+    const auto [first, last] = problem.terms().coefficients(b);
     for (std::size_t k = first; k < last; ++k) iterate.direction[k] = -iterate.gradient[k];
   }
   const auto excess = [&](std::span<const double> residual) {
     double largest = 0.0;
-    for (const std::size_t b : blocks_) largest = std::max(largest, problem.residual_ratio(b, residual));
+    for (const std::size_t b : blocks_)
+      largest = std::max(largest, problem.terms().residual_ratio(b, residual));
     return largest / enough;
   };
   const std::size_t n = problem.unknowns();

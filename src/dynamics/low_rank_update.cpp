@@ -100,7 +100,7 @@ bool LowRankUpdate::begin(const StepSystem& system, Iterate& iterate, StepMatrix
 /// −∇Π at D = 0 into the direction, with all springs on the straight lines of the factored matrix.
 void LowRankUpdate::start_on_lines(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix) {
   const SpringArray& springs = system.springs();
-  const std::span<const double> right = system.problem.right();
+  const std::span<const double> right = system.problem.terms().right();
   std::copy(right.begin(), right.end(), iterate.direction.begin());
   const auto minus_gradient = [&](std::size_t c) {
     return -1.0 * system.row(c).gradient(springs.force_on(c, matrix.branch(c), springs.y0[c], springs.w0[c]));
@@ -116,7 +116,7 @@ void LowRankUpdate::go(const StepSystem& system, Iterate& iterate, StepMatrix& m
   in_lanes(static_cast<int>(direction.size()), [&](int k, int count) {
     store_first(&d[at(k)], load_first(&d[at(k)], count) + load_first(&direction[at(k)], count), count);
   });
-  for (const std::size_t b : matrix.free_blocks()) system.problem.solve_alone(b, d);
+  for (const std::size_t b : matrix.free_blocks()) system.problem.terms().solve_alone(b, d);
   iterate.place(system);
   matrix.find_differing(system);
   find_wanted(system.springs(), matrix);

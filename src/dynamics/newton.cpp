@@ -33,7 +33,7 @@ void Newton::for_reached_coefficients(const StepSystem& system, const Iterate& i
                                       const Body& body) const {
   if (!local_.is_active())
     return system.team.for_range(iterate.direction.size(), coefficients_worth_threads, body);
-  for (const std::size_t b : local_.blocks()) std::apply(body, system.problem.coefficients(b));
+  for (const std::size_t b : local_.blocks()) std::apply(body, system.problem.terms().coefficients(b));
 }
 
 template <typename Body>
@@ -78,7 +78,8 @@ bool Newton::go_along(const StepSystem& system, Iterate& iterate, double enough,
   if (whole_way) find_changes(system, 1.0);
   double alpha = whole_way ? 1.0 : search_line(system, iterate);
   // Where no contact changes, what the system left over is all that is.
-  if (!local_.is_active() && changes_.empty() && system.problem.residual_ratio(iterate.residual) >= enough) {
+  if (!local_.is_active() && changes_.empty() &&
+      system.problem.terms().residual_ratio(iterate.residual) >= enough) {
     if (!improve(system, iterate, exact)) return false;
     find_direction(system, iterate);
     alpha = search_line(system, iterate);
@@ -135,7 +136,7 @@ Newton::Products Newton::products(const StepSystem& system, const Iterate& itera
     return sum_of<Products>(system.team, iterate.direction.size(), coefficients_worth_threads, of_one);
   Products products;
   for (const std::size_t b : local_.moved_blocks()) {
-    const auto [first, last] = system.problem.coefficients(b);
+    const auto [first, last] = system.problem.terms().coefficients(b);
     for (std::size_t k = first; k < last; ++k) products += of_one(k);
   }
   return products;

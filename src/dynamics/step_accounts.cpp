@@ -40,12 +40,12 @@ void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const do
                                       StepProblem& problem, State& state) {
   const Model& model = attempt.model;
   EnergyLedger& ledger = state.ledger;
-  const StepProblem::ElasticLoss elastic = problem.elastic_loss(state, attempt.increment, spin);
+  const BlockTerms::ElasticLoss elastic = problem.terms().elastic_loss(state, attempt.increment, spin);
   ledger.numerical += elastic.numerical;
   ledger.damping += elastic.damping;
   work_.assign(model.blocks.size(), {});
   for_moving_blocks(model, attempt.team,
-                    [&](std::size_t b) { work_[b] = work_of(attempt, b, problem.inertia(b)); });
+                    [&](std::size_t b) { work_[b] = work_of(attempt, b, problem.terms().inertia(b)); });
   for (const BlockWork& work : work_) {
     ledger.numerical += work.numerical;
     ledger.input += work.input;

@@ -11,7 +11,7 @@ namespace keyblock::dynamics {
 
 void StepMatrix::assemble(const StepSystem& system) {
   const SpringArray& springs = system.springs();
-  system.problem.assemble(system.solver);
+  system.problem.terms().assemble(system.solver);
   const std::size_t n = springs.size();
   normal_stiffness_.resize(n);
   shear_stiffness_.resize(n);
@@ -37,7 +37,7 @@ bool StepMatrix::update(const StepSystem& system) {
   const SpringArray& springs = system.springs();
   const bool turned = !free_.empty();
   for (const std::size_t b : free_) {
-    system.problem.assemble_block(b, system.solver);
+    system.problem.terms().assemble_block(b, system.solver);
     system.solver.touch(system.problem.unknown(b));
   }
   free_.clear();

@@ -11,7 +11,8 @@
 #include "contact/edge_curve.h"
 #include "contact/law.h"
 #include "core/parallel.h"
-#include "dynamics/integrator.h"
+#include "dynamics/block_terms.h"
+#include "dynamics/drive.h"
 #include "dynamics/model.h"
 #include "dynamics/spring_array.h"
 #include "dynamics/state.h"
@@ -20,34 +21,6 @@
 #include "linalg/block_solver.h"
 
 namespace keyblock::dynamics {
-
-/// What drives one step.
-struct Drive {
-  double step = 0.0;         ///< s, Δt
-  double end_time = 0.0;     ///< s, at which loads and supports are taken
-  Vec2 ground_acceleration;  ///< m/s², mean over the step
-  double owed_share = 0.0;   ///< length of the last dynamic step over that of this one; static: 0
-  bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
-  /// Static only: factor on the inertia of each block.
-  std::span<const double> inertia_scale;
-  /// Static only: the step is tried, to see how far blocks go. Π is bounded from below whatever its inertia.
-  bool is_trial = false;
-  std::span<const Integrator> rule;  ///< of each block
-  /// m, of each block: what a fixed block is moved by in the step; empty when none is.
-  std::span<const Vec2> prescribed;
-  /// m, of each contact: by how much more than linear in D its vertex is from the point of the edge at the end of the step, as its blocks
-  /// turn, across the edge (x) and, of a bond, along it (y); empty: by nothing.
-  std::span<const Vec2> rotation;
-
-  /// Whether there is a known part of the relative displacement of contacts.
-  [[nodiscard]] bool moves_contacts() const { return !prescribed.empty() || !rotation.empty(); }
-  /// m, what block a is moved by less what block b is.
-  [[nodiscard]] Vec2 prescribed_between(const contact::Contact& c) const {
-    return prescribed.empty() ? Vec2{}
-                              : prescribed[static_cast<std::size_t>(c.block_a)] -
-                                    prescribed[static_cast<std::size_t>(c.block_b)];
-  }
-};
 
 /// The minimization that a step is (docs/theory.md, section "One step"), with the Coulomb bounds frozen:
 ///
@@ -132,14 +105,6 @@ class StepProblem {
   }
   /// g = ∇Π(D), contact by contact: the oracle of what the open-close iteration does by way of the vertices.
   void gradient(std::span<const double> d, std::span<double> g) const;
-  /// The increment of a block on which no contact acts, into d.
-  void solve_alone(std::size_t block, std::span<double> d) const;
-  /// y = H x, of one block.
-  void multiply(std::size_t block, std::span<const double> x, std::span<double> y) const;
-  /// Sets the solver's matrix to H. With add_springs for all that act at r it becomes ∇²Π there.
-  void assemble(linalg::BlockSolver& solver) const;
-  /// The same for the block on the diagonal that belongs to one.
-  void assemble_block(std::size_t block, linalg::BlockSolver& solver) const;
   /// Where a contact has its springs: normal of the edge, and how far along it.
   struct Place {
     Vec2 normal;
@@ -189,37 +154,15 @@ class StepProblem {
     gradient_with(d, at_vertices, g);
   }
 
-  [[nodiscard]] std::span<const double> right() const { return b_; }
-  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
-  [[nodiscard]] double residual_ratio(std::span<const double> g) const;
-  /// That of one block.
-  [[nodiscard]] double residual_ratio(std::size_t block, std::span<const double> g) const;
   [[nodiscard]] std::size_t blocks() const { return bodies_.size(); }
   [[nodiscard]] bool moves(std::size_t block) const { return model_->moves(block); }
   [[nodiscard]] int unknown(std::size_t block) const { return bodies_[block].unknown; }
   /// The block with this number among the unknown ones.
   [[nodiscard]] std::size_t block(std::size_t unknown) const { return block_of_unknown_[unknown]; }
-  /// The first of its coefficients, and the one after the last.
-  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> coefficients(std::size_t block) const {
-    return coefficients_[block];
-  }
   [[nodiscard]] double block_size() const { return model_->block_size; }
-  [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
-  /// Whether there is anything to measure residuals by: not without gravity, loads and shaking.
-  [[nodiscard]] bool has_weights() const { return !weight_.empty() && weight_.front() > 0.0; }
-  /// N/m per thickness and unit area: largest of a coefficient of the block, without inertia.
-  [[nodiscard]] double largest_stiffness(std::size_t block) const;
-  [[nodiscard]] double inertia(std::size_t block) const { return inertia_[block]; }
-  [[nodiscard]] std::span<const double> inertias() const { return inertia_; }  ///< of all blocks
-  /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
-  /// `spin`: what the forces at the end of the step lose against the potential.
-  struct ElasticLoss {
-    /// ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out of D.
-    double numerical = 0.0;
-    double damping = 0.0;  ///< by the viscosity of the rock
-  };
-  [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d,
-                                         std::span<const double> spin);
+  /// H, b and what residuals are measured by: of blocks, loads and supports.
+  [[nodiscard]] const BlockTerms& terms() const { return terms_; }
+  [[nodiscard]] BlockTerms& terms() { return terms_; }
 
  private:
   /// What contacts read of a block: 24 bytes, which a cache has for all blocks.
@@ -329,21 +272,7 @@ class StepProblem {
   }
   void add_spring(const Row& row, const Place& place, double kn, double ks, Owner owner,
                   linalg::BlockSolver& solver) const;
-  struct PressedBlocks;
-  template <typename Size>
-  void linearize(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration,
-                 double* geometric);
-  template <typename Size>
-  void build_block(Size size, std::size_t i, const State& state, const Drive& drive, Vec2 acceleration,
-                   PressedBlocks& pressed);
-  template <typename Size>
-  void finish_block(Size size, std::size_t i, const double* geometric);
-  void finish_blocks(PressedBlocks& pressed);
-  template <typename Size>
-  [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
-                                       double spin, double* turn) const;
-  void build_blocks(const State& state, const Drive& drive);
-  void add_supports(const State& state, const Drive& drive);
+  void begin(const Model& model);
   void build_rows(const State& state, const Drive& drive, std::span<const contact::Contact> contacts,
                   std::span<const int> pairs, const ForContacts& for_contacts);
   /// Of rows: what some of them are, that all of the problem asks for.
@@ -364,6 +293,7 @@ class StepProblem {
   const Model* model_ = nullptr;
   const contact::Surface* surface_ = nullptr;
   ThreadTeam* team_ = nullptr;
+  BlockTerms terms_;
   std::vector<Body> bodies_;  ///< of every block
   std::vector<Row> rows_;
   SpringArray springs_;                   ///< of every row
@@ -375,20 +305,7 @@ class StepProblem {
   static constexpr std::size_t rows_of_piece = 256;
   std::vector<std::pair<int, int>> unknowns_of_row_;    ///< the two of every row, to look through
   std::vector<std::pair<int, int>> unknowns_of_piece_;  ///< least and largest of so many rows
-  int largest_size_ = 0;                                ///< N
-  /// Per block: the first of its coefficients, and where they end.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> coefficients_;
   std::vector<std::size_t> block_of_unknown_;
-  std::vector<std::size_t> h_first_;  ///< per block, into h_
-  std::vector<double> h_;             ///< H of each, columns of padded_rows(2N)
-  std::vector<double> b_;
-  std::vector<double> inertia_;      ///< per block, cρ/Δt²; 0: it does not move
-  std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
-  std::vector<double> body_force_;   ///< per block, Block::body_force
-  std::vector<double> frequency_;    ///< rad/s, per block: its first elastic one, about
-  std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
-  std::vector<double> stress_;       ///< the same of its in-situ stress, where there is no gravity; else 0
-  std::vector<ElasticLoss> losses_;  ///< scratch, per block
 };
 
 }  // namespace keyblock::dynamics

@@ -219,7 +219,7 @@ double StepProblem::reduced_mass(const contact::Contact& c) const {
 
 double StepProblem::inertia_between(const contact::Contact& c) const {
   const std::size_t moves = at(model_->blocks[at(c.block_a)].fixed ? c.block_b : c.block_a);
-  return reduced_mass(c) * inertia_[moves] / model_->blocks[moves].material.density;
+  return reduced_mass(c) * terms_.inertia(moves) / model_->blocks[moves].material.density;
 }
 
 }  // namespace keyblock::dynamics

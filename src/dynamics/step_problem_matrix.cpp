@@ -85,26 +85,6 @@ void add_block(const double* phi_r, int rows, const double* phi_c, int columns, 
 
 }  // namespace
 
-void StepProblem::assemble(linalg::BlockSolver& solver) const {
-  solver.clear();
-  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (model_->blocks[i].unknown >= 0) assemble_block(i, solver);
-    }
-  });
-}
-
-void StepProblem::assemble_block(std::size_t i, linalg::BlockSolver& solver) const {
-  const Block& block = model_->blocks[i];
-  const int n = 2 * block.size, stride = linalg::padded_rows(n);
-  double* diagonal = solver.diagonal(block.unknown);
-  if (model_->moves(i)) {
-    std::copy_n(&h_[h_first_[i]], stride * n, diagonal);
-  } else {
-    for (int k = 0; k < n; ++k) diagonal[k * stride + k] = 1.0;
-  }
-}
-
 void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
   for (const SpringChange& change : changes)
     add_spring(rows_[change.contact], change.place, change.normal, change.shear, Owner{}, solver);

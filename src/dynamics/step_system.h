@@ -31,7 +31,7 @@ struct StepSystem {
   /// How many times what is enough the residual of a linear system is.
   [[nodiscard]] linalg::BlockSolver::Excess excess_over(double enough) const {
     return [this, enough](std::span<const double> residual) {
-      return problem.residual_ratio(residual) / enough;
+      return problem.terms().residual_ratio(residual) / enough;
     };
   }
 };

@@ -49,7 +49,7 @@ struct StruckWall {
     const StepProblem& problem = step->problem;
     std::vector<double> y(x.size(), 0.0);
     for (std::size_t b = 0; b < problem.blocks(); ++b) {
-      if (problem.moves(b)) problem.multiply(b, x, y);
+      if (problem.moves(b)) problem.terms().multiply(b, x, y);
     }
     for (std::size_t c = 0; c < problem.rows().size(); ++c) {
       const StepProblem::Row& row = problem.rows()[c];
@@ -84,12 +84,14 @@ TEST(LocalSolve, SolvesTheSystemNearTheBlocksThatAreOutOfBalance) {
   const Iterate& iterate = wall.step->iterate;
   std::vector<double> error = wall.matrix_times(iterate.direction);
   for (const std::size_t b : wall.local.blocks()) {
-    const auto [first, last] = wall.step->problem.coefficients(b);
+    const auto [first, last] = wall.step->problem.terms().coefficients(b);
     for (std::size_t k = first; k < last; ++k)
-      EXPECT_NEAR(error[k], -iterate.gradient[k] - iterate.residual[k], 1e-6 * wall.step->problem.weight(b));
+      EXPECT_NEAR(error[k], -iterate.gradient[k] - iterate.residual[k],
+                  1e-6 * wall.step->problem.terms().weight(b));
   }
   for (std::size_t k = 0; k < error.size(); ++k) error[k] += iterate.gradient[k];
-  for (const std::size_t b : moved) EXPECT_LE(wall.step->problem.residual_ratio(b, error), 1.001 * enough);
+  for (const std::size_t b : moved)
+    EXPECT_LE(wall.step->problem.terms().residual_ratio(b, error), 1.001 * enough);
 }
 
 TEST(LocalSolve, KnowsWhatItDoesToItsContacts) {

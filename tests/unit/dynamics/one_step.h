@@ -76,7 +76,7 @@ struct OneStep {
   [[nodiscard]] double out_of_balance() const {
     std::vector<double> g(d.size());
     problem.gradient(d, g);
-    return problem.residual_ratio(g);
+    return problem.terms().residual_ratio(g);
   }
 
   NextStep next;

@@ -75,7 +75,7 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   // K direction, by solving: K⁻¹ (∂g · direction) must give the direction back.
   const auto solver = linalg::make_block_cholesky();
   analyse(s.model, problem, *solver);
-  problem.assemble(*solver);
+  problem.terms().assemble(*solver);
   std::vector<StepProblem::SpringChange> springs;
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {
     const StepProblem::Row& row = problem.rows()[c];
@@ -158,7 +158,7 @@ TEST(StepProblem, EveryPressedBlockHasItsOwnTangent) {
   for (std::size_t i = 0; i < s.model.blocks.size(); ++i) {
     const Block& block = s.model.blocks[i];
     const int n = 2 * block.size, m = block.size - 1;
-    const double floor = 0.05 * problem.inertia(i);
+    const double floor = 0.05 * problem.terms().inertia(i);
     std::vector<double> force(at(n)), tangent(at(n * n), 0.0), geometric(at(m * m));
     block.elasticity.add_force_and_material_tangent(&s.state.position[block.first], 0.0, force.data(),
                                                     tangent.data(), n, geometric.data());
@@ -170,12 +170,13 @@ TEST(StepProblem, EveryPressedBlockHasItsOwnTangent) {
     std::vector<double> x(s.model.coefficients), y(x.size());
     for (int c = 0; c < n; ++c) {
       x[block.first + at(c)] = 1.0;
-      problem.multiply(i, x, y);
+      problem.terms().multiply(i, x, y);
       x[block.first + at(c)] = 0.0;
       for (int r = 0; r < n; ++r) {
         const double expected =
-            tangent[at(std::min(r, c) * n + std::max(r, c))] + (r == c ? problem.inertia(i) : 0.0);
-        EXPECT_NEAR(y[block.first + at(r)], expected, 1e-9 * problem.inertia(i)) << i << ' ' << r << ' ' << c;
+            tangent[at(std::min(r, c) * n + std::max(r, c))] + (r == c ? problem.terms().inertia(i) : 0.0);
+        EXPECT_NEAR(y[block.first + at(r)], expected, 1e-9 * problem.terms().inertia(i))
+            << i << ' ' << r << ' ' << c;
       }
     }
   }
@@ -208,12 +209,12 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     EXPECT_TRUE(result.converged);
     EXPECT_GT(result.iterations, 1);
     problem.gradient(d, g);
-    EXPECT_LE(problem.residual_ratio(g), s.model.solver.tolerance);
+    EXPECT_LE(problem.terms().residual_ratio(g), s.model.solver.tolerance);
     for (std::size_t b = 0; b < s.model.blocks.size(); ++b) {
       const Block& block = s.model.blocks[b];
       if (block.fixed) continue;
       for (std::size_t k = block.first; k < block.first + 2 * static_cast<std::size_t>(block.size); ++k)
-        EXPECT_NEAR(g[k], iteration.gradient()[k], 1e-8 * problem.weight(b)) << k;
+        EXPECT_NEAR(g[k], iteration.gradient()[k], 1e-8 * problem.terms().weight(b)) << k;
     }
   }
 }
@@ -249,7 +250,7 @@ TEST(StepProblem, EndsInBalanceWhereContactsBendInOnePlace) {
     EXPECT_TRUE(result.converged) << step;
     EXPECT_GT(result.iterations, 3) << step;
     problem.gradient(d, g);
-    EXPECT_LE(problem.residual_ratio(g), tolerance) << step;
+    EXPECT_LE(problem.terms().residual_ratio(g), tolerance) << step;
   }
 }
 
