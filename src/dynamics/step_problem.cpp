@@ -122,7 +122,7 @@ void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2>
                                 std::span<double> g) const {
   team_->for_range(bodies_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto [first, last] = terms_.coefficients(i);
+      const std::size_t first = terms_.coefficients(i).first, last = terms_.coefficients(i).second;
       with_known_size(model_->moves(i) ? bodies_[i].size : 0, [&](auto size) {
         if constexpr (std::is_same_v<decltype(size), int>) {
           terms_.multiply(i, d, g);
