@@ -128,9 +128,9 @@ void subtract_two_block_products(const float* a_and_e, const float* b, float* c,
 #endif
 }
 
-/// Replaces a symmetric positive definite block A = L Lᵀ (lower triangle) by L⁻¹ (its upper triangle zero). False when a pivot is
-/// not positive. By A = U D Uᵀ, U with a diagonal of ones: then no root is waited for.
-inline bool invert_factor(int n, double* a, double* scale) {
+/// A = U D Uᵀ, U with a diagonal of ones, of the lower triangle: D U below the diagonal, and D⁻¹ into `scale`. False when a pivot is not
+/// positive.
+inline bool factor_without_roots(int n, double* a, double* scale) {
   const int stride = padded_rows(n);
   for (int j = 0; j < n; ++j) {
     const double* column = a + j * stride;
@@ -144,7 +144,12 @@ inline bool invert_factor(int n, double* a, double* scale) {
         store(target + l, subtract_product(load(column + l), factor, load(target + l)));
     }
   }
-  // Columns of U below the diagonal; then U⁻¹ in place, column by column from the right.
+  return true;
+}
+
+/// U⁻¹ in place of the columns D U, the upper triangle zero; column by column from the right.
+inline void invert_unit_triangle(int n, double* a, const double* scale) {
+  const int stride = padded_rows(n);
   for (int j = 0; j < n; ++j) {
     double* column = a + j * stride;
     for (int i = 0; i < j; ++i) column[i] = 0.0;
@@ -154,14 +159,21 @@ inline bool invert_factor(int n, double* a, double* scale) {
   for (int j = n - 1; j >= 0; --j) {
     double* column = a + j * stride;
     for (int q = n - 1; q > j; --q) {
-      const double u = column[q];
-      const Lanes factor = broadcast(u);
+      const Lanes factor = broadcast(column[q]);
       // Column q of U⁻¹ begins with a one in row q.
       column[q] = 0.0;
       for (int l = q / row_padding * row_padding; l < stride; l += row_padding)
         store(column + l, subtract_product(load(a + q * stride + l), factor, load(column + l)));
     }
   }
+}
+
+/// Replaces a symmetric positive definite block A = L Lᵀ (lower triangle) by L⁻¹ (its upper triangle zero). False when a pivot is
+/// not positive. By A = U D Uᵀ: then no root is waited for.
+inline bool invert_factor(int n, double* a, double* scale) {
+  const int stride = padded_rows(n);
+  if (!factor_without_roots(n, a, scale)) return false;
+  invert_unit_triangle(n, a, scale);
   for (int i = 0; i < n; ++i) scale[i] = std::sqrt(scale[i]);
   for (int j = 0; j < n; ++j) {
     for (int i = j; i < n; ++i) a[j * stride + i] *= scale[i];
@@ -169,9 +181,9 @@ inline bool invert_factor(int n, double* a, double* scale) {
   return true;
 }
 
-/// The same for blocks of n unknowns, held in registers.
+/// The same for blocks of n unknowns, held in registers: one function, as the compiler keeps them there within one only.
 template <int n>
-bool invert_factor(double* a) {
+bool invert_factor(double* a) {  // NOLINT(readability-function-cognitive-complexity): loops that are unrolled
   constexpr int stride = padded_rows(n);
   using Of = Registers<double, stride>;
   using Register = typename Of::Register;
