@@ -283,6 +283,12 @@ CutBlock block_of(const PlanarGraph& graph, const Face& face, std::vector<Labell
   return block;
 }
 
+void check_outline(const PlanarGraph& graph, const std::vector<LabelledRing>& rings, const CutBlock& block) {
+  if (!crosses_itself(graph, rings)) return;
+  const Vec2 place = block.polygon.outer.front();
+  throw RunError(fmt::format("cutting failed: the block at ({}, {}) crosses itself", place.x, place.y));
+}
+
 }  // namespace
 
 std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, double straight, Vec2 shift,
@@ -309,10 +315,7 @@ std::vector<CutBlock> outlines_of(const PlanarGraph& graph, double collinear, do
       for (const int v : ring.vertices) seen[at(v)] |= 2;
     }
     blocks.push_back(block_of(graph, face, std::move(rings), shift));
-    if (crosses_itself(graph, full)) {
-      const Vec2 place = blocks.back().polygon.outer.front();
-      throw RunError(fmt::format("cutting failed: the block at ({}, {}) crosses itself", place.x, place.y));
-    }
+    check_outline(graph, full, blocks.back());
   }
   statistics.merged_vertices += static_cast<int>(std::count(seen.begin(), seen.end(), 1));
   return blocks;
