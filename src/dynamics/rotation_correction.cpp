@@ -49,6 +49,7 @@ double largest_squared_norm(ThreadTeam& team, std::span<const Vec2> vectors) {
 /// m, what a contact may miss so that it seems no more than a hundredth of its strength, if it is a bond.
 struct BondTolerance {
   double across = HUGE_VAL, along = HUGE_VAL;
+  BondTolerance() = default;
   explicit BondTolerance(const contact::Contact& contact) {
     using step_numbers::bond_share;
     if (!contact.memory.bonded || contact.fused) return;
@@ -131,22 +132,21 @@ double RotationCorrection::tolerated(double work, double force, double stiffness
   return std::clamp(missed, least_rotation_share * tolerance_, tolerance_);
 }
 
-/// Whether no contact can miss too much, as in most steps.
-bool RotationCorrection::is_surely_known(const Attempt& attempt, double missed_at_most, double work) const {
-  if (!known_.empty()) return false;
-  if (has_bonds(attempt) && missed_at_most > least_bond_tolerance(attempt.contacts)) return false;
-  const SpringArray& springs = attempt.problem.springs();
-  return missed_at_most <= step_numbers::least_rotation_share * tolerance_ ||
-         missed_at_most <= tolerated(work, springs.largest_normal_force(attempt.team),
-                                     springs.largest_stiffness(attempt.team));
-}
-
 Verdict RotationCorrection::check(const Attempt& attempt) {
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   const double moved = std::sqrt(largest_squared_norm(attempt.team, attempt.relative)),
-               work = tolerated_work(attempt, std::max(moved, turn * largest_radius_));
-  if (is_surely_known(attempt, turn * (turn * largest_radius_ + moved), work)) return Verdict::accepted;
+               missed_at_most = turn * (turn * largest_radius_ + moved);
+  // In most steps no contact can miss too much.
+  const bool may_be_known =
+      known_.empty() && (!has_bonds(attempt) || missed_at_most <= least_bond_tolerance(attempt.contacts));
+  if (may_be_known && missed_at_most <= step_numbers::least_rotation_share * tolerance_)
+    return Verdict::accepted;
+  const double work = tolerated_work(attempt, std::max(moved, turn * largest_radius_));
+  const SpringArray& springs = attempt.problem.springs();
+  if (may_be_known && missed_at_most <= tolerated(work, springs.largest_normal_force(attempt.team),
+                                                  springs.largest_stiffness(attempt.team)))
+    return Verdict::accepted;
   found_.assign(attempt.contacts.size(), {});
   Verdict verdict = Verdict::accepted;
   for (std::size_t c = 0; c < attempt.contacts.size(); ++c) {
@@ -167,7 +167,7 @@ Verdict RotationCorrection::check_contact(const Attempt& attempt, std::size_t c,
   const double spin = std::max(std::abs(spin_[a]), std::abs(spin_[b])),
                force = std::abs(springs.force(c).normal);
   const bool bonds = has_bonds(attempt);
-  const BondTolerance bond(bonds ? contact : contact::Contact{});
+  const BondTolerance bond = bonds ? BondTolerance(contact) : BondTolerance();
   const double most_missed = std::min(tolerated(work, force, springs.kn[c]), bond.across);
   const double at_most =
       0.5 * (spin_[a] * spin_[a] * model.blocks[a].radius + spin_[b] * spin_[b] * model.blocks[b].radius) +

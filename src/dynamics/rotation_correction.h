@@ -45,7 +45,6 @@ class RotationCorrection {
  private:
   [[nodiscard]] double tolerated_work(const Attempt& attempt, double farthest) const;
   [[nodiscard]] double tolerated(double work, double force, double stiffness) const;
-  [[nodiscard]] bool is_surely_known(const Attempt& attempt, double missed_at_most, double work) const;
   Verdict check_contact(const Attempt& attempt, std::size_t c, double work);
 
   double tolerance_;             ///< m, largest change of δ

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstddef>
 
-/// The numbers by which a step is solved, in one place: what each is a share of, and what a larger or smaller one does. None of them changes
-/// where a converged step ends by more than the tolerance of the step.
+/// The numbers by which a step is solved, in one place: what each is a share of, and what a larger or smaller one does. Only those
+/// of attempts and of the rotation correction change where a converged step ends by more than the tolerance of the step.
 namespace keyblock::dynamics::step_numbers {
 
 // ── linear systems ───────────────────────────────────────────────────────────────────────────────────────────────────

@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 /// Energies that are no finite numbers.
 void check_energies(const RunSetup& setup, const RunState& now, const Energy& energy);
 
-/// A state that has none after a step.
+/// A state after a step in which a position is no finite number.
 void check_state(const RunSetup& setup, const RunState& now);
 
 /// A hundred steps in a row that did not converge. Each of them takes many times as long as others.
