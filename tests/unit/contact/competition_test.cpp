@@ -16,6 +16,15 @@ CornerScene stacked(double shift) {
   return CornerScene(surface);
 }
 
+/// Those whose vertex it is.
+std::vector<Competitor*> competitors_of(const CornerView& view, std::span<Competitor> all, int vertex) {
+  std::vector<Competitor*> found;
+  for (Competitor& c : all) {
+    if (view.candidate(c).vertex == vertex) found.push_back(&c);
+  }
+  return found;
+}
+
 TEST(Competitors, MeetAtTheEndsOfAFace) {
   const CornerScene scene = stacked(0.001);
   std::vector<Competitor> all = scene.competitors(0);
@@ -90,10 +99,7 @@ TEST(Competition, OfLinesThatWerePassedTheShortestWayOutWins) {
     const CornerScene scene = by_side ? corner_to_corner(0.002, 0.0005) : corner_to_corner(0.0005, 0.002);
     std::vector<Competitor> all = scene.competitors(0);
     const CornerView view = scene.view();
-    std::vector<Competitor*> of_tip;
-    for (Competitor& c : all) {
-      if (view.candidate(c).vertex == 4) of_tip.push_back(&c);
-    }
+    const std::vector<Competitor*> of_tip = competitors_of(view, all, 4);
     ASSERT_EQ(of_tip.size(), 2U);
     const Outcome outcome = compete(view, of_tip);
     EXPECT_FALSE(outcome.parallel);
@@ -129,10 +135,7 @@ TEST(Competition, ThePredictedDisplacementTellsWhichLineIsPassedLast) {
     scene.motion.predicted = predicted;
     std::vector<Competitor> all = scene.competitors(0);
     const CornerView view = scene.view();
-    std::vector<Competitor*> of_tip;
-    for (Competitor& c : all) {
-      if (view.candidate(c).vertex == 4) of_tip.push_back(&c);
-    }
+    const std::vector<Competitor*> of_tip = competitors_of(view, all, 4);
     ASSERT_EQ(of_tip.size(), 2U);
     const Outcome outcome = compete(view, of_tip);
     ASSERT_NE(outcome.winner, nullptr);

@@ -11,18 +11,6 @@
 namespace keyblock::dynamics {
 namespace {
 
-/// A long wall of bricks; the size at which few blocks are worth a system of their own.
-simulation::Scene long_wall() {
-  constexpr int rows = 3, columns = 150;
-  simulation::Scene scene(1e9, 35.0);
-  scene.rectangle({-2.0, -1.0}, columns + 4.0, 1.0, 0.0, true);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column)
-      scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
-  }
-  return scene;
-}
-
 /// The first linear system of a step in which one brick is struck.
 struct StruckWall {
   explicit StruckWall(double blow_to_all = 0.0) : s(long_wall()) {

@@ -122,4 +122,18 @@ inline double apart(std::span<const double> x, std::span<const double> y) {
   return largest;
 }
 
+/// Rows and columns of long_wall().
+constexpr int wall_rows = 3, wall_columns = 150;
+
+/// A long wall of bricks; the size at which few blocks are worth a system of their own.
+inline simulation::Scene long_wall() {
+  simulation::Scene scene(1e9, 35.0);
+  scene.rectangle({-2.0, -1.0}, wall_columns + 4.0, 1.0, 0.0, true);
+  for (int row = 0; row < wall_rows; ++row) {
+    for (int column = 0; column < wall_columns; ++column)
+      scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
+  }
+  return scene;
+}
+
 }  // namespace keyblock::dynamics

@@ -221,20 +221,13 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
 
 // Also where systems are of the neighbourhood of some blocks, and leave something over beside it.
 TEST(StepProblem, EndsInBalanceWhereContactsBendInOnePlace) {
-  constexpr int rows = 3, columns = 150;
-  simulation::Scene scene(1e9, 35.0);
-  scene.rectangle({-2.0, -1.0}, columns + 4.0, 1.0, 0.0, true);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column)
-      scene.rectangle({1.0 * column + 0.5 * (row % 2), 0.5 * row}, 1.0, 0.5);
-  }
-  simulation::Simulator s(scene);
+  simulation::Simulator s(long_wall());
   const double tolerance = s.model.solver.tolerance;
   for (int step = 0; step < 12; ++step) {
     s.run(0.002, 0.002);
     // A blow to one brick after the other.
     const std::size_t struck =
-        s.model.blocks[1 + static_cast<std::size_t>(13 * step % (rows * columns))].first;
+        s.model.blocks[1 + static_cast<std::size_t>(13 * step % (wall_rows * wall_columns))].first;
     s.state.velocity[struck] += 1.0;
     s.state.velocity[struck + 1] += step % 2 == 0 ? 1.0 : -1.0;
     StepProblem problem;
