@@ -49,7 +49,7 @@ class StepProblem {
     [[nodiscard]] Vec2 gradient(SpringArray::Force force) const {
       return force.shear * tangent() - force.normal * normal;
     }
-    /// r, but for the known part.
+    /// r, except for the known part.
     [[nodiscard]] Pair relative(std::span<const Vec2> u) const {
       return load_pair(u[vertex]) - lerp(load_pair(u[from]), load_pair(u[to]), position);
     }
@@ -91,7 +91,7 @@ class StepProblem {
   /// The same of some blocks, and of points of some contacts.
   void displace(std::span<const double> d, std::span<const std::size_t> blocks,
                 std::span<const std::size_t> contacts, std::span<Vec2> u) const;
-  /// r of a contact for increment D, but for the known part.
+  /// r of a contact for increment D, except for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
     const auto displacement = [&](std::uint32_t point) {
       const Body& body = body_of(point);

@@ -65,7 +65,7 @@ std::string_view trim(std::string_view text);
 /// Runs of blanks become one blank.
 std::string squeeze(std::string_view text);
 std::string lower(std::string_view text);
-/// A finite number that fills `text` but for blanks; Fortran's D exponents and leading + are understood.
+/// A finite number that fills `text` except for blanks; Fortran's D exponents and leading + are understood.
 std::optional<double> parse_number(std::string_view text);
 /// The number that follows `key` in `text` (after any of " =:("), e.g. number_after("NPTS= 12", "NPTS").
 std::optional<double> number_after(std::string_view text, std::string_view key);

@@ -46,7 +46,7 @@ bool lies_in_a_hole(const Ring& points, const Polygon& polygon) {
                      [&](const Ring& hole) { return lies_in_hole(points, hole); });
 }
 
-// The hull of a hole that is convex, but for `rounding` in m; else nothing.
+// The hull of a hole that is convex, except for `rounding` in m; else nothing.
 std::optional<Ring> convex_hole(const Ring& hole, double rounding) {
   const Ring hull = convex_hull(hole);
   const auto is_on_hull = [&](Vec2 p) {

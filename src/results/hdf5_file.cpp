@@ -68,7 +68,7 @@ std::string padded(const std::vector<std::string>& values) {
   return texts;
 }
 
-// "unable to lock file, errno = 37, …", but for a file that is in use.
+// "unable to lock file, errno = 37, …", except for a file that is in use.
 herr_t see_failed_lock(unsigned /*n*/, const H5E_error2_t* error, void* seen) {
   const std::string_view text = error->desc == nullptr ? "" : error->desc;
   if (text.find("unable to lock file") != std::string_view::npos &&

@@ -32,7 +32,7 @@ std::optional<simulation::Standing> read_standing(const nlohmann::ordered_json& 
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
 std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
 simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);
-/// Into an overlap, but for its depth; the origin of its coordinates stays in them.
+/// Into an overlap, except for its depth; the origin of its coordinates stays in them.
 void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapRecord& overlap);
 std::vector<std::pair<std::string, std::string>> read_ground(const nlohmann::ordered_json& json);
 std::vector<Vec2> read_points(const nlohmann::ordered_json& json);

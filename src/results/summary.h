@@ -8,7 +8,7 @@ namespace keyblock::results {
 
 /// m². The frame around a domain counts nowhere.
 struct Areas {
-  double blocks = 0.0;     ///< but for those in `excavated`
+  double blocks = 0.0;     ///< except for those in `excavated`
   double excavated = 0.0;  ///< of blocks inside excavations that were opened
   double domain = 0.0;
 };

@@ -31,7 +31,7 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
 void add_overlap_warnings(const Scenario& scenario, const cutting::BlockSystem& system,
                           std::vector<std::string>& warnings);
 
-/// Everything a run needs, but for `version`. Of a block's keys those of its [[block]] go before those of the last
+/// Everything a run needs, except for `version`. Of a block's keys those of its [[block]] go before those of the last
 /// [[region]] that holds its centroid, and those before [rock].
 ///
 /// In-situ stress from depth h and K0, with y_top the top of the domain (without one, of the blocks):

@@ -33,7 +33,7 @@ void clean_run_folder(const std::filesystem::path& folder);
 std::unique_ptr<FileLock> lock_study(const std::filesystem::path& directory);
 
 /// Puts the plan into the folder. A folder that holds a plan already is gone on with only if `resume`, and only if it is of the
-/// same study: same scenario but for [study], same files, same version of the program, and the same raster of maps where runs
+/// same study: same scenario except for [study], same files, same version of the program, and the same raster of maps where runs
 /// are done. Runs keep their places (keep_places), and files that earlier plans named stay known with their content. Throws
 /// InputError that names what differs; the folder is then as it was.
 void enter_plan(const std::filesystem::path& directory, Plan& plan, bool resume);

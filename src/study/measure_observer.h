@@ -10,7 +10,7 @@ namespace keyblock::study {
 /// Gathers the measures of a run. A block fell in the first stage from whose end on it has always counted as fallen.
 class MeasureObserver : public simulation::RunObserver {
  public:
-  /// Fills `result` (but for key, realization, values, variant and error), which must outlive the run. The first `blocks`
+  /// Fills `result` (except for key, realization, values, variant and error), which must outlive the run. The first `blocks`
   /// blocks of the model are the rock; a frame comes after them.
   MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks)
       : result_(result), grid_(grid), blocks_(blocks) {}
