@@ -6,7 +6,8 @@
 /// Records as JSON, each number to its last bit: what the result file holds as text. See docs/result-file.md.
 namespace keyblock::results {
 
-std::string model_json(const simulation::ModelRecord& model);  ///< except for what the result file has as arrays
+std::string model_json(
+    const simulation::ModelRecord& model);  ///< except for what the result file has as arrays
 std::string stage_json(int index, const simulation::StageRecord& stage, bool ended);
 std::string run_json(const simulation::RunRecord& run);  ///< without its stages
 
