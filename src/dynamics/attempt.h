@@ -15,10 +15,10 @@ struct Attempt {
   const State& state;
   const Drive& drive;
   const StepProblem& problem;                  ///< its springs are stretched by the increment
-  std::span<const contact::Contact> contacts;  ///< one per row of the problem
+  std::span<const contact::Contact> contacts;  ///< of the first rows of the problem
   std::span<const double> increment;           ///< D, by Block::first
   std::span<const Vec2> displacement;          ///< m, per vertex of the surface, of D; 0 on fixed blocks
-  std::span<const Vec2> relative;              ///< m, r of each contact
+  std::span<const Vec2> relative;              ///< m, r of each row
   ThreadTeam& team;
 };
 

@@ -9,6 +9,8 @@
 #include "block/eigenvalue_floor.h"
 #include "core/index.h"
 #include "core/known_size.h"
+#include "dynamics/coupling.h"
+#include "dynamics/turn.h"
 #include "dynamics/worth_threads.h"
 #include "linalg/dense_block.h"
 
@@ -32,7 +34,7 @@ void BlockTerms::build(const Model& model, const State& state, const Drive& driv
   if (model_ != &model) begin(model);
   build_blocks(state, drive);
   add_loads(drive);
-  add_supports(state, drive);
+  for (const auto& coupling : model.couplings) coupling->add_terms(model, state, drive, *this);
 }
 
 void BlockTerms::begin(const Model& model) {
@@ -181,23 +183,15 @@ void BlockTerms::add_loads(const Drive& drive) {
   for (double& weight : weight_) weight = weight > 0.0 ? weight : most;
 }
 
-void BlockTerms::add_supports(const State& state, const Drive& drive) {
-  for (const GroundSpring& spring : model_->springs) {
-    if (!model_->moves(at(spring.block))) continue;
-    const Block& block = model_->blocks[at(spring.block)];
-    double coordinate = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k)
-      coordinate += spring.phi[k] * state.position[block.first + 2 * k + at(spring.axis)];
-    const double force = -spring.stiffness * (coordinate - spring.target(drive.end_time));
-    const int stride = linalg::padded_rows(2 * block.size);
-    double* h = &h_[h_first_[at(spring.block)]];
-    for (int l = 0; l < block.size; ++l) {
-      b_[block.first + at(2 * l + spring.axis)] += force * spring.phi[at(l)];
-      for (int k = 0; k < block.size; ++k) {
-        h[(2 * l + spring.axis) * stride + 2 * k + spring.axis] +=
-            spring.stiffness * spring.phi[at(k)] * spring.phi[at(l)];
-      }
-    }
+void BlockTerms::add_spring(std::size_t b, int axis, std::span<const double> phi, double stiffness,
+                            double force) {
+  const Block& block = model_->blocks[b];
+  const int stride = linalg::padded_rows(2 * block.size);
+  double* h = &h_[h_first_[b]];
+  for (int l = 0; l < block.size; ++l) {
+    b_[block.first + at(2 * l + axis)] += force * phi[at(l)];
+    for (int k = 0; k < block.size; ++k)
+      h[(2 * l + axis) * stride + 2 * k + axis] += stiffness * phi[at(k)] * phi[at(l)];
   }
 }
 
@@ -258,20 +252,6 @@ double BlockTerms::residual_ratio(std::span<const double> g) const {
                     [&](std::size_t i) { return residual_ratio(i, g); });
 }
 
-namespace {
-
-/// Row k of w × r, of the relative part r of a block's coefficients; likewise as many as there are lanes, from an even k on.
-double turn_of(double w, const double* position, std::size_t k) {
-  return k < 2 ? 0.0 : k % 2 == 0 ? -w * position[k + 1] : w * position[k - 1];
-}
-Lanes turn_of(double w, const double* position, int k, int count) {
-  const Lanes turns =
-      lanes_from(-w, w, -w, w, -w, w, -w, w) * swap_neighbours(load_first(position + k, count));
-  return k == 0 ? where(first_lanes(2), Lanes{}, turns) : turns;
-}
-
-}  // namespace
-
 template <typename Size>
 BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const double* position,
                                                const double* d, double spin, double* turn) const {
@@ -315,17 +295,6 @@ BlockTerms::ElasticLoss BlockTerms::elastic_loss(const State& state, std::span<c
   for (const ElasticLoss& of_block : losses_) {
     loss.numerical += of_block.numerical;
     loss.damping += of_block.damping;
-  }
-  for (const GroundSpring& spring :
-       model_->springs) {  // linear in D: no part of what the pose update takes out
-    const std::size_t b = at(spring.block), first = model_->blocks[b].first, axis = at(spring.axis);
-    if (!model_->moves(b)) continue;
-    double moved = 0.0, turned = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
-      moved += spring.phi[k] * d[first + 2 * k + axis];
-      turned += spring.phi[k] * turn_of(spin[b], &state.position[first], 2 * k + axis);
-    }
-    loss.numerical -= spring.stiffness * (moved - 0.5 * turned) * turned;
   }
   return loss;
 }

@@ -24,6 +24,10 @@ class BlockTerms {
  public:
   void build(const Model& model, const State& state, const Drive& drive, ThreadTeam& team);
 
+  /// Adds a spring at a point of a block, in the direction of an axis (0: x, 1: y): stiffness, N/m per thickness, and the force that it has
+  /// at D = 0, N per thickness. phi: the N basis functions at the point.
+  void add_spring(std::size_t block, int axis, std::span<const double> phi, double stiffness, double force);
+
   /// y = H x, of one block.
   void multiply(std::size_t block, std::span<const double> x, std::span<double> y) const;
   /// Calls of_rows(first, count, rows) with the rows of H x of one block of N basis functions, as many at once as there are lanes: in
@@ -87,7 +91,6 @@ class BlockTerms {
   void finish_blocks(PressedBlocks& pressed);
   void build_blocks(const State& state, const Drive& drive);
   void add_loads(const Drive& drive);
-  void add_supports(const State& state, const Drive& drive);
   template <typename Size>
   [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
                                        double spin, double* turn) const;

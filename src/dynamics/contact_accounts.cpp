@@ -2,24 +2,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/contact_lanes.h"
+#include "contact/law.h"
 #include "core/index.h"
-#include "dynamics/step_accounts.h"
+#include "dynamics/attempt.h"
+#include "dynamics/contact_coupling.h"
+#include "dynamics/worth_threads.h"
 
 namespace keyblock::dynamics {
 
 namespace {
 
 /// n·moved or t·moved of each row, moved: the known part of its r.
-Lanes moved_along(std::span<const StepProblem::Row> rows, bool tangent) {
+Lanes moved_along(std::span<const Row> rows, bool tangent) {
   Lanes along{};
   for (std::size_t i = 0; i < rows.size(); ++i)
     along[i] = dot(tangent ? rows[i].tangent() : rows[i].normal, rows[i].moved);
   return along;
 }
 
-}  // namespace
+/// Where the energy of as many contacts as there are lanes went in the step, and how deep they are.
+struct ContactAccounts {
+  contact::SpringLanes::Balance balance;
+  Lanes stored_before{};  ///< J per thickness, at the start
+  Lanes input{};          ///< J per thickness, by what fixed blocks are moved
+  Lanes rotation{};       ///< J per thickness, of the forces over Drive::rotation: no block gets it
+  Lanes penetration{};    ///< m
+  Lanes closed{};         ///< at the end: 1, else 0
+  void add(const ContactAccounts& other);
+  /// Zero where a lane is none of the first `count`.
+  void leave_out_beyond(std::size_t count);
+  void enter(EnergyLedger& ledger) const;
+};
 
-void StepAccounts::ContactAccounts::add(const ContactAccounts& other) {
+void ContactAccounts::add(const ContactAccounts& other) {
   balance.stored += other.balance.stored;
   balance.friction += other.balance.friction;
   balance.damping += other.balance.damping;
@@ -31,14 +47,14 @@ void StepAccounts::ContactAccounts::add(const ContactAccounts& other) {
   closed += other.closed;
 }
 
-void StepAccounts::ContactAccounts::leave_out_beyond(std::size_t count) {
+void ContactAccounts::leave_out_beyond(std::size_t count) {
   if (count >= lane_count) return;
   for (Lanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
                        &stored_before, &input, &rotation, &penetration, &closed})
     *lanes = where(first_lanes(count), *lanes, Lanes{});
 }
 
-void StepAccounts::ContactAccounts::enter(EnergyLedger& ledger) const {
+void ContactAccounts::enter(EnergyLedger& ledger) const {
   ledger.friction += sum(balance.friction);
   ledger.input += sum(input);
   ledger.damping += sum(balance.damping);
@@ -46,12 +62,11 @@ void StepAccounts::ContactAccounts::enter(EnergyLedger& ledger) const {
 }
 
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
-StepAccounts::ContactAccounts StepAccounts::remember_some(const Attempt& attempt, std::size_t first,
-                                                          std::size_t count,
-                                                          std::span<contact::Memory> remembered) {
+ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::size_t count,
+                              std::span<contact::Memory> remembered) {
   const Drive& drive = attempt.drive;
   const std::span<const contact::Contact> contacts = attempt.contacts.subspan(first, count);
-  const std::span<const StepProblem::Row> rows = std::span(attempt.problem.rows()).subspan(first, count);
+  const std::span<const Row> rows = std::span(attempt.problem.rows()).subspan(first, count);
   const SpringArray& springs = attempt.problem.springs();
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
   const contact::LawLanes law = contact::laws_of(contacts);
@@ -109,11 +124,11 @@ StepAccounts::ContactAccounts StepAccounts::remember_some(const Attempt& attempt
 }
 
 /// What is otherwise with an augmented Lagrangian.
-void StepAccounts::remember_multiplier(const Attempt& attempt, std::size_t c, std::size_t lane,
-                                       contact::Memory& memory, ContactAccounts& accounts) {
+void remember_multiplier(const Attempt& attempt, std::size_t c, std::size_t lane, contact::Memory& memory,
+                         ContactAccounts& accounts) {
   const contact::Contact& contact = attempt.contacts[c];
-  const StepProblem::Row& row = attempt.problem.rows()[c];
-  const contact::Spring s = attempt.problem.spring(contact, c);
+  const Row& row = attempt.problem.rows()[c];
+  const contact::Spring s = spring_of(attempt.problem, contact, c);
   const double y = attempt.problem.springs().y[c], w = attempt.problem.springs().w[c];
   const Vec2 r = attempt.relative[c];
   const contact::Spring::Balance balance = s.rigid_balance(y, w, dot(row.normal, r), dot(row.tangent(), r));
@@ -131,6 +146,51 @@ void StepAccounts::remember_multiplier(const Attempt& attempt, std::size_t c, st
     memory.shear = s.shear_force(w) / contact.shear_stiffness;
   }
   memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
+}
+
+ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::size_t last,
+                               contact::CandidateList& list) {
+  ContactAccounts sum;
+  for (std::size_t c = first; c < last; c += lane_count) {
+    const std::size_t count = std::min<std::size_t>(lane_count, last - c);
+    const std::span<contact::Memory> remembered = std::span(list.memory).subspan(c, count);
+    ContactAccounts accounts = remember_some(attempt, c, count, remembered);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (attempt.model.solver.contact != ContactMethod::penalty)
+        remember_multiplier(attempt, c + i, i, remembered[i], accounts);
+      list.track(c + i, attempt.contacts[c + i].candidate);
+    }
+    sum.add(accounts);
+  }
+  return sum;
+}
+
+}  // namespace
+
+CouplingTotals ContactCoupling::account(const Attempt& attempt, std::span<const double> /*spin*/,
+                                        std::size_t /*first*/, std::span<double> /*memory*/,
+                                        State& state) const {
+  const std::size_t contacts = attempt.contacts.size();
+  // What was stored in contacts that have ended, a vertex that left its edge, is lost.
+  state.ledger.numerical += state.contact_energy;
+  state.contacts.make_room(contacts);
+  // Piece by piece, which are the same for any number of threads.
+  constexpr std::size_t size = 64 * lane_count;
+  std::vector<ContactAccounts> pieces((contacts + size - 1) / size);
+  attempt.team.for_range(
+      pieces.size(), contacts_worth_threads / size, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+          pieces[p] = remember_piece(attempt, p * size, std::min(contacts, (p + 1) * size), state.contacts);
+      });
+  ContactAccounts total;
+  for (const ContactAccounts& accounts : pieces) total.add(accounts);
+  total.enter(state.ledger);
+  state.contact_energy = sum(total.balance.stored);
+  CouplingTotals totals;
+  for (std::size_t i = 0; i < lane_count; ++i)
+    totals.penetration = std::max(totals.penetration, total.penetration[i]);
+  totals.closed = static_cast<int>(sum(total.closed));
+  return totals;
 }
 
 }  // namespace keyblock::dynamics

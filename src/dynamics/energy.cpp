@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "dynamics/coupling.h"
 
 namespace keyblock::dynamics {
 
@@ -40,15 +41,8 @@ double gravity_energy(const Model& model, const State& state) {
 
 double support_energy(const Model& model, const State& state, double time) {
   double sum = 0.0;
-  for (const GroundSpring& spring : model.springs) {
-    if (!model.moves(at(spring.block))) continue;
-    const std::size_t first = model.blocks[at(spring.block)].first + at(spring.axis);
-    double coordinate = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k)
-      coordinate += spring.phi[k] * state.position[first + 2 * k];
-    const double stretch = coordinate - spring.target(time);
-    sum += 0.5 * spring.stiffness * stretch * stretch;
-  }
+  for (std::size_t k = 0; k < model.couplings.size(); ++k)
+    sum += model.couplings[k]->stored_energy(model, state, time, state.couplings[k]);
   return sum;
 }
 

@@ -12,9 +12,9 @@ double kinetic_energy(const Model& model, const State& state);
 double strain_energy(const Model& model, const State& state);
 /// Against the positions before the run.
 double gravity_energy(const Model& model, const State& state);
-/// Of the springs to the ground, whose ends are where they are to be at this time, s.
+/// Of the couplings except contacts; what is prescribed to them is that of this time, s.
 double support_energy(const Model& model, const State& state, double time);
-/// In the springs of contacts and of supports, as the last step summed it.
+/// In the springs of contacts and of other couplings, as the last step summed it.
 inline double spring_energy(const State& state) {
   return state.contact_energy + state.support_energy;
 }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/law.h"
 #include "core/index.h"
+#include "dynamics/coupling.h"
 
 namespace keyblock::dynamics {
 
@@ -51,7 +53,7 @@ void ForceBalance::find_scales(const Model& model, const StepProblem& problem) {
     force_[b] = model.moves(b) ? force_[b] / std::sqrt(model.blocks[b].area) : 0.0;
   // A block with a load or a support of its own may have no contacts.
   for (const GeneralizedLoad& load : model.loads) force_[at(load.block)] = HUGE_VAL;
-  for (const GroundSpring& spring : model.springs) force_[at(spring.block)] = HUGE_VAL;
+  for (const int block : held_blocks(model)) force_[at(block)] = HUGE_VAL;
   double largest = 0.0;
   for (std::size_t b = 0; b < n; ++b) {
     if (!model.moves(b)) continue;
@@ -73,12 +75,7 @@ void ForceBalance::find_rounding(const Model& model, const StepProblem& problem)
     for (const int unknown : {problem.rows()[c].unknown_a, problem.rows()[c].unknown_b})
       if (unknown >= 0) force_[problem.block(at(unknown))] += problem.springs().kn[c] * extent;
   }
-  for (const GroundSpring& spring : model.springs) {
-    double largest = 0.0;
-    for (const double phi : spring.phi) largest = std::max(largest, std::abs(phi));
-    force_[at(spring.block)] +=
-        spring.stiffness * extent * largest * std::sqrt(model.blocks[at(spring.block)].area);
-  }
+  for (const auto& coupling : model.couplings) coupling->add_rounding_forces(model, extent, force_);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Block& block = model.blocks[b];
     if (!model.moves(b)) continue;

@@ -37,8 +37,8 @@ void Iterate::find_gradient(const StepSystem& system) {
 
 void Iterate::add_force(const StepSystem& system, std::size_t c, Force force, double scale) {
   if (force.is_zero()) return;
-  const StepProblem::Row& row = system.row(c);
-  system.problem.add_contact_force(row, scale * row.gradient(force), gradient);
+  const Row& row = system.row(c);
+  system.problem.add_force(row, scale * row.gradient(force), gradient);
 }
 
 /// Of a spring that had the force `before` with its old law.

@@ -58,7 +58,7 @@ class Iterate {
   /// Calls of_some(c, count, relatives) with what `displacement` is of as many contacts as there are lanes, or fewer, from c on.
   template <typename OfSome>
   void for_relatives(const StepSystem& system, const OfSome& of_some) const {
-    const std::span<const StepProblem::Row> rows = system.problem.rows();
+    const std::span<const Row> rows = system.problem.rows();
     system.team.for_range(rows.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; c += lane_count) {
         const std::size_t count = std::min(end - c, std::size_t{lane_count});

@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::size_t gone = SIZE_MAX;
 
-/// Vertex and edge.
-std::pair<int, int> key_of(const contact::Contact& contact) {
-  return {contact.vertex, contact.edge};
-}
-
 }  // namespace
 
 bool KeptFactor::begin_step(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update) {
@@ -34,13 +29,12 @@ void KeptFactor::note(const StepSystem& system) {
   solver_ = nullptr;
   if (!system.options.accelerators.kept_factor || !system.solver.serves_later_steps()) return;
   solver_ = &system.solver;
-  note_contacts(system);
+  note_rows(system);
   inertia_.assign(system.problem.terms().inertias().begin(), system.problem.terms().inertias().end());
 }
 
-void KeptFactor::note_contacts(const StepSystem& system) {
-  contacts_.resize(system.contacts.contacts.size());
-  std::ranges::transform(system.contacts.contacts, contacts_.begin(), key_of);
+void KeptFactor::note_rows(const StepSystem& system) {
+  system.problem.name_rows(rows_);
   version_ = system.contacts.version;
 }
 
@@ -54,12 +48,14 @@ bool KeptFactor::fits(const StepSystem& system) const {
 /// none. False when one had, or is updated.
 bool KeptFactor::carry(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update) {
   if (system.contacts.version != 0 && version_ == system.contacts.version) return true;
-  std::vector<std::size_t> now(contacts_.size(), gone);
+  std::vector<Coupling::RowKey> rows;
+  system.problem.name_rows(rows);
+  std::vector<std::size_t> now(rows_.size(), gone);
   std::size_t next = 0;
-  for (std::size_t c = 0; c < system.contacts.contacts.size(); ++c) {
-    const std::size_t last = std::min(next + step_numbers::most_gone, contacts_.size());
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    const std::size_t last = std::min(next + step_numbers::most_gone, rows_.size());
     for (std::size_t k = next; k < last; ++k) {
-      if (contacts_[k] != key_of(system.contact(c))) continue;
+      if (rows_[k] != rows[c]) continue;
       now[k] = c;
       next = k + 1;
       break;
@@ -70,8 +66,9 @@ bool KeptFactor::carry(const StepSystem& system, StepMatrix& matrix, LowRankUpda
   }
   if (std::ranges::any_of(update.contacts(), [&](std::size_t c) { return now[c] == gone; })) return false;
   update.carry(now);
-  matrix.carry(now, gone, system.contacts.contacts.size());
-  note_contacts(system);
+  matrix.carry(now, gone, rows.size());
+  rows_ = std::move(rows);
+  version_ = system.contacts.version;
   return true;
 }
 

@@ -31,12 +31,12 @@ class KeptFactor {
   void end_step(const OpenCloseResult& result, std::size_t updated);
 
  private:
-  void note_contacts(const StepSystem& system);
+  void note_rows(const StepSystem& system);
   [[nodiscard]] bool fits(const StepSystem& system) const;
   bool carry(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update);
 
   const linalg::BlockSolver* solver_ = nullptr;  ///< that has it; null: there is none
-  std::vector<std::pair<int, int>> contacts_;    ///< vertex and edge of each, for which it was made
+  std::vector<Coupling::RowKey> rows_;           ///< for which it was made
   std::uint64_t version_ = 0;                    ///< of these
   std::vector<double> inertia_;                  ///< per block
   bool is_kept_ = false;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "dynamics/contact_coupling.h"
 #include "dynamics/step_numbers.h"
 
 namespace keyblock::dynamics {
@@ -27,7 +28,7 @@ struct Sums {
 /// it holds, m.
 Vec2 violation(const StepSystem& system, std::size_t c) {
   const SpringArray& springs = system.springs();
-  const StepProblem::Row& row = system.row(c);
+  const Row& row = system.row(c);
   const contact::Contact& contact = system.contact(c);
   const double normal = springs.y0[c] - springs.y[c] + dot(row.normal, row.moved),
                slip = springs.w[c] - springs.w0[c] + dot(row.tangent(), row.moved);
@@ -40,7 +41,7 @@ Vec2 violation(const StepSystem& system, std::size_t c) {
 template <typename Changes>
 bool for_bonds(const StepSystem& system, const Changes& changes) {
   bool any = false;
-  for (std::size_t c = 0; system.problem.may_break() && c < system.springs().size(); ++c) {
+  for (std::size_t c = 0; system.problem.facts().may_break && c < system.contacts.contacts.size(); ++c) {
     const contact::Contact& contact = system.contact(c);
     if (contact.memory.bonded && !contact.fused) any = changes(c) || any;
   }
@@ -80,7 +81,8 @@ bool LawUpdates::reverses(const StepSystem& system, std::size_t c) const {
   const double of_both = std::max(sliding_bound_[at(contact.block_a)], sliding_bound_[at(contact.block_b)]);
   // This contact brings its share of the mass to rest, from a velocity that `slipped` is the way of (with θ = 1 exactly).
   const double share = of_both > 0.0 ? springs.bound[c] / of_both : 1.0,
-               holds = shear - share * system.problem.inertia_between(contact) * slipped;
+               holds =
+                   shear - share * inertia_between(system.problem.model(), system.problem, contact) * slipped;
   return holds * slipped < 0.0 && std::abs(holds) > springs.bound[c];
 }
 
@@ -177,7 +179,7 @@ bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tole
   const SpringArray& springs = system.springs();
   violation_.assign(springs.size(), {});
   double worst = 0.0;
-  for (std::size_t c = 0; c < springs.size(); ++c) {
+  for (std::size_t c = 0; c < system.contacts.contacts.size(); ++c) {
     if (!springs.branch[c].closed) continue;
     violation_[c] = violation(system, c);
     worst = std::max({worst, std::abs(violation_[c].x), std::abs(violation_[c].y)});
@@ -185,8 +187,8 @@ bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tole
   if (worst <= tolerance) return false;
   if (std::isinf(worst_)) worst_without_ = worst;
   // What runs away, far beyond what springs without multipliers leave, was shifted by too much: it is taken back, except for what fits.
-  if (worst > worst_ &&
-      worst > std::max(4.0 * worst_without_, step_numbers::most_transient * system.problem.block_size())) {
+  if (worst > worst_ && worst > std::max(4.0 * worst_without_,
+                                         step_numbers::most_transient * system.problem.model().block_size)) {
     const double left = std::min(0.25, worst_ / worst);
     multiplier_share_ *= left;
     shift_forces(system, iterate, left - 1.0);
@@ -202,9 +204,10 @@ bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tole
   worst_ = worst;
   if (stalls_ == 3) return false;
   shift_.assign(springs.size(), {});
-  for (std::size_t c = 0; c < springs.size(); ++c) {
+  for (std::size_t c = 0; c < system.contacts.contacts.size(); ++c) {
     if (!springs.branch[c].closed) continue;
-    const double inertia = multiplier_share_ * system.problem.inertia_between(system.contact(c));
+    const double inertia =
+        multiplier_share_ * inertia_between(system.problem.model(), system.problem, system.contact(c));
     // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
     const double multiplier =
         springs.is_tensile(c) ? HUGE_VAL : std::max(0.0, springs.y[c] - violation_[c].x);

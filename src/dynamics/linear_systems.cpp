@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/index.h"
+#include "dynamics/coupling.h"
 #include "dynamics/step_numbers.h"
-#include "dynamics/step_problem.h"
 #include "linalg/minimum_degree.h"
 
 namespace keyblock::dynamics {
@@ -42,13 +42,13 @@ void LinearSystems::find_pairs(const Model& model, const State& state) {
   for (std::size_t k = 0; k < list.size(); ++k) {
     const Unknowns pair = unknowns_of(model, list[k].block_a, list[k].block_b);
     if (pair.first < 0) {
-      pair_of_candidate_[k] = StepProblem::of_fixed;
+      pair_of_candidate_[k] = Row::of_fixed;
       continue;
     }
     while (next != state.pattern.end() && *next < pair) ++next;
     pair_of_candidate_[k] = next != state.pattern.end() && *next == pair
                                 ? static_cast<int>(next - state.pattern.begin())
-                                : StepProblem::without_room;
+                                : Row::without_room;
   }
   knows_pairs_ = true;
 }
@@ -58,6 +58,12 @@ void LinearSystems::make_room(const Model& model, std::span<const contact::Conta
   for (const contact::Contact& c : contacts) {
     const Unknowns pair = unknowns_of(model, c.block_a, c.block_b);
     if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
+  }
+  Coupling::BlockPairs coupled;
+  for (const auto& coupling : model.couplings) coupling->add_pairs(coupled);
+  for (const auto& [a, b] : coupled) {
+    const Unknowns pair = unknowns_of(model, a, b);
+    if (pair.first >= 0) used.push_back(pair);
   }
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());

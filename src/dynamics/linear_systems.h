@@ -19,7 +19,7 @@ class LinearSystems {
 
   /// Where the pair of blocks of every candidate is in the pattern. Both are in order.
   void find_pairs(const Model& model, const State& state);
-  /// Room in the matrix for every pair of blocks that has contacts. Pairs that have contacts no more keep their room until they are many.
+  /// Room in the matrix for every pair of blocks that has contacts or another coupling. Pairs that have contacts no more keep their room until they are many.
   void make_room(const Model& model, std::span<const contact::Contact> contacts, State& state);
   /// After the pattern or the candidates have changed in another way.
   void forget();
@@ -33,7 +33,7 @@ class LinearSystems {
   Chosen choose(const Model& model, const State& state, bool is_static, bool must_be_direct);
 
   [[nodiscard]] bool knows_pairs() const { return knows_pairs_; }
-  /// StepProblem::Row::pair of every candidate.
+  /// Row::pair of every candidate.
   [[nodiscard]] std::span<const int> pairs() const { return pair_of_candidate_; }
 
  private:

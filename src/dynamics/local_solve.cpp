@@ -65,7 +65,7 @@ void LocalSolve::take_reach(const StepSystem& system) {
   contacts_.clear();
   for (const std::size_t block : std::span(reach_.blocks).first(reach_.moved)) {
     for (std::size_t i = first_contact_[block]; i < first_contact_[block + 1]; ++i) {
-      const StepProblem::Row& row = system.row(contacts_of_block_[i]);
+      const Row& row = system.row(contacts_of_block_[i]);
       const int other = at(row.unknown_a) == block ? row.unknown_b : row.unknown_a;
       if (other < 0 || is_taken_[at(other)] == 0) contacts_.push_back(contacts_of_block_[i]);
     }
@@ -79,9 +79,9 @@ void LocalSolve::take_reach(const StepSystem& system) {
 /// Blocks beside those that move stand still: the displacement is that of another direction there.
 void LocalSolve::find_direction(const StepSystem& system, Iterate& iterate) const {
   SpringArray& springs = system.springs();
-  system.problem.displace(iterate.direction, blocks_, contacts_, iterate.displacement);
+  system.problem.points().displace(iterate.direction, blocks_, contacts_, iterate.displacement);
   for (const std::size_t c : contacts_) {
-    const StepProblem::Row& row = system.row(c);
+    const Row& row = system.row(c);
     const Vec2 r = vec2_of(row.relative(iterate.displacement));
     springs.dy[c] = -dot(row.normal, r);
     springs.dw[c] = dot(row.tangent(), r);

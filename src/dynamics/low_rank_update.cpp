@@ -105,7 +105,7 @@ void LowRankUpdate::start_on_lines(const StepSystem& system, Iterate& iterate, c
   const auto minus_gradient = [&](std::size_t c) {
     return -1.0 * system.row(c).gradient(springs.force_on(c, matrix.branch(c), springs.y0[c], springs.w0[c]));
   };
-  system.problem.add_contact_forces(minus_gradient, iterate.vertex_force, iterate.direction);
+  system.problem.add_forces(minus_gradient, iterate.vertex_force, iterate.direction);
 }
 
 /// D ← D + direction; springs that act otherwise than the matrix has them there and are not updated yet, into wanted_.
@@ -185,7 +185,7 @@ void LowRankUpdate::find_wanted(const SpringArray& springs, const StepMatrix& ma
 /// Those in wanted_ are updated from now on.
 void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
   for (const Spring spring : wanted_) {
-    const StepProblem::Row& row = system.row(spring.contact);
+    const Row& row = system.row(spring.contact);
     system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), part_a_, part_b_);
     corrections_.add(*system.solver.low_rank(), {row.unknown_a, part_a_}, {row.unknown_b, part_b_});
     updated_.push_back(spring);

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "loading/time_table.h"
 
 namespace keyblock::dynamics {
+
+class Coupling;
 
 /// One block as mechanics sees it; constant during a run.
 struct Block {
@@ -54,19 +57,6 @@ struct PrescribedMotion {
   }
 };
 
-/// A spring from a material point to the ground in one direction; edges are many of them, with Gauss weights.
-struct GroundSpring {
-  int block = 0;
-  int axis = 0;               ///< 0: x, 1: y
-  std::vector<double> phi;    ///< N values at the point
-  double anchor = 0.0;        ///< m, coordinate of the point at the start
-  double stiffness = 0.0;     ///< N/m per thickness
-  loading::TimeTable motion;  ///< m; empty: none
-
-  /// Coordinate of the ground end at a time.
-  [[nodiscard]] double target(double time) const { return anchor + (motion.empty() ? 0.0 : motion(time)); }
-};
-
 /// Everything that does not change during a run but by excavation.
 struct Model {
   std::vector<Block> blocks;
@@ -75,7 +65,7 @@ struct Model {
   std::vector<int> outline_edge;  ///< of its edges: the edge of a polygon it lies on; all count, ring by ring
   std::vector<contact::JointLaw> laws;
   std::vector<GeneralizedLoad> loads;
-  std::vector<GroundSpring> springs;
+  std::vector<std::shared_ptr<const Coupling>> couplings;  ///< all except contacts
   std::vector<PrescribedMotion> motions;
   std::optional<InSituStress> in_situ;
   Vec2 gravity;             ///< m/s²

@@ -136,7 +136,7 @@ bool OpenClose::change_laws(const StepSystem& system, OpenCloseResult& result) {
   if (options.contact != ContactMethod::augmented_lagrangian ||
       result.multiplier_updates >= options.max_multiplier_updates)
     return false;
-  if (!laws_.augment(system, iterate_, options.penetration_tolerance * system.problem.block_size()))
+  if (!laws_.augment(system, iterate_, options.penetration_tolerance * system.problem.model().block_size))
     return false;
   ++result.multiplier_updates;
   return true;

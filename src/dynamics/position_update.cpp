@@ -70,7 +70,7 @@ void place_surface(Model& model, State& state, PredictedMotion& motion, ThreadTe
 }
 
 double renew_support_energy(const Model& model, double time, State& state) {
-  if (model.springs.empty()) return 0.0;
+  if (model.couplings.empty()) return 0.0;
   const double now = support_energy(model, state, time), gained = now - state.support_energy;
   state.support_energy = now;
   return gained;

@@ -68,7 +68,7 @@ double least_bond_tolerance(std::span<const contact::Contact> contacts) {
 }
 
 bool has_bonds(const Attempt& attempt) {
-  return attempt.problem.may_break() && !attempt.drive.is_static;
+  return attempt.problem.facts().may_break && !attempt.drive.is_static;
 }
 
 }  // namespace
@@ -135,7 +135,8 @@ double RotationCorrection::tolerated(double work, double force, double stiffness
 Verdict RotationCorrection::check(const Attempt& attempt) {
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
-  const double moved = std::sqrt(largest_squared_norm(attempt.team, attempt.relative)),
+  const double moved = std::sqrt(
+                   largest_squared_norm(attempt.team, attempt.relative.first(attempt.contacts.size()))),
                missed_at_most = turn * (turn * largest_radius_ + moved);
   // In most steps no contact can miss too much.
   const bool may_be_known =
@@ -161,7 +162,7 @@ Verdict RotationCorrection::check_contact(const Attempt& attempt, std::size_t c,
   const Model& model = attempt.model;
   const contact::Contact& contact = attempt.contacts[c];
   const std::size_t a = at(contact.block_a), b = at(contact.block_b);
-  const StepProblem::Row& row = attempt.problem.rows()[c];
+  const Row& row = attempt.problem.rows()[c];
   const SpringArray& springs = attempt.problem.springs();
   const Vec2 known = known_.empty() ? Vec2{} : known_[c], r = attempt.relative[c];
   const double spin = std::max(std::abs(spin_[a]), std::abs(spin_[b])),
@@ -187,7 +188,7 @@ Verdict RotationCorrection::check_contact(const Attempt& attempt, std::size_t c,
 }
 
 double RotationCorrection::keep_shear(const Attempt& attempt, std::span<contact::Memory> memory) {
-  if (!attempt.problem.may_break()) return 0.0;
+  if (!attempt.problem.facts().may_break) return 0.0;
   const contact::Surface& surface = attempt.model.surface;
   const bool has_multipliers = attempt.model.solver.contact == ContactMethod::augmented_lagrangian;
   gained_.assign(attempt.contacts.size(), 0.0);

@@ -32,7 +32,8 @@ struct State {
   contact::CandidateList contacts;
   std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for
   EnergyLedger ledger;
-  /// J per thickness, stored in the springs of contacts and of supports, as the last step summed it.
+  std::vector<std::vector<double>> couplings;  ///< what each of Model::couplings remembers
+  /// J per thickness, stored in the springs of contacts and of other couplings, as the last step summed it.
   double contact_energy = 0.0, support_energy = 0.0;
 };
 

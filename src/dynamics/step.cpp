@@ -65,6 +65,8 @@ void Stepper::start(State& state) {
     state.force.assign(model_.coefficients, 0.0);
     state.acceleration_known.assign(model_.blocks.size(), 0);
   }
+  state.couplings.clear();
+  for (const auto& coupling : model_.couplings) state.couplings.emplace_back(coupling->memory_size(), 0.0);
   place_surface(model_, state, motion_, team_);
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   finder_.find_at_rest(motion_, state);
@@ -124,7 +126,7 @@ std::vector<ContactForce> Stepper::forces() const {
   std::vector<ContactForce> forces(count);
   for (std::size_t k = 0; k < count; ++k) {
     const contact::Contact& c = finder_.contacts()[k];
-    const StepProblem::Row& row = problem_.rows()[k];
+    const Row& row = problem_.rows()[k];
     // n·r; what multipliers have added is in both y₀ and y.
     const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
     ContactForce& force = forces[k];
@@ -170,11 +172,12 @@ void Stepper::find(State& state, const Drive& drive) {
 void Stepper::build(State& state, const Drive& drive, bool knows_contacts) {
   const Profile::Scope scope(profile_, Phase::terms);
   const auto describe = [&](const contact::Detection::OfSome& then) { finder_.describe(state, then); };
-  problem_.build(model_, state, drive, model_.surface, finder_.contacts(), systems_.pairs(), team_,
-                 knows_contacts ? StepProblem::ForContacts{} : describe);
-  if (problem_.lacks_room()) {
+  contact_coupling_.begin_step(finder_.contacts(), systems_.pairs(),
+                               knows_contacts ? ContactCoupling::ForContacts{} : describe);
+  problem_.build(model_, state, drive, contact_coupling_, team_);
+  if (problem_.facts().lacks_room) {
     systems_.make_room(model_, finder_.contacts(), state);
-    problem_.set_pairs(finder_.contacts(), systems_.pairs());
+    problem_.find_pairs(state);
   }
   if (model_.solver.accelerators.earlier_attempt)
     earlier_attempt_.give(finder_.contacts(), problem_.springs());
@@ -272,7 +275,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
     accounts_.account_for_blocks(solved, rotation_.spin(), problem_, state);
   }
   const Profile::Scope scope(profile_, Phase::update);
-  const ContactTotals totals = accounts_.remember_contacts(solved, state);
+  const CouplingTotals totals = account_for_couplings(solved, rotation_.spin(), state);
   report.penetration = std::max(report.penetration, totals.penetration);
   report.closed_contacts = totals.closed;
   if (!drive.is_static) {

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/profile.h"
 #include "dynamics/attempt.h"
+#include "dynamics/contact_coupling.h"
 #include "dynamics/contact_finder.h"
 #include "dynamics/earlier_attempt.h"
 #include "dynamics/force_balance.h"
@@ -155,6 +156,7 @@ class Stepper {
   StepRules rules_;
   ContactFinder finder_;
   LinearSystems systems_;
+  ContactCoupling contact_coupling_;
   StepProblem problem_;
   OpenClose open_close_;
   RotationCorrection rotation_;

@@ -56,70 +56,17 @@ void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const do
     for (std::size_t k = 0; k < load.force.size(); ++k)
       ledger.input += f * load.force[k] * attempt.increment[model.blocks[at(load.block)].first + k];
   }
-  account_for_supports(attempt, state);
 }
 
-void StepAccounts::account_for_supports(const Attempt& attempt, State& state) {
-  const Model& model = attempt.model;
-  const Drive& drive = attempt.drive;
+CouplingTotals account_for_couplings(const Attempt& attempt, std::span<const double> spin, State& state) {
   state.support_energy = 0.0;
-  for (const GroundSpring& spring : model.springs) {
-    if (!model.moves(at(spring.block))) continue;
-    const std::size_t first = model.blocks[at(spring.block)].first + at(spring.axis);
-    double coordinate = 0.0, moved = 0.0;
-    for (std::size_t k = 0; k < spring.phi.size(); ++k) {
-      coordinate += spring.phi[k] * state.position[first + 2 * k];
-      moved += spring.phi[k] * attempt.increment[first + 2 * k];
-    }
-    const double before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step),
-                 end = spring.target(drive.end_time);
-    const double stretch = coordinate + moved - end, change = moved - (end - before);
-    state.support_energy += 0.5 * spring.stiffness * stretch * stretch;
-    state.ledger.input -= spring.stiffness * stretch * (end - before);
-    // elastic_loss has taken ½ k moved² for a ground that stands still.
-    state.ledger.numerical += 0.5 * spring.stiffness * (change * change - moved * moved);
+  CouplingTotals totals;
+  const std::span<const StepProblem::Part> parts = attempt.problem.parts();
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::span<double> memory = k == 0 ? std::span<double>() : state.couplings[k - 1];
+    totals += parts[k].coupling->account(attempt, spin, parts[k].first, memory, state);
   }
-}
-
-ContactTotals StepAccounts::remember_contacts(const Attempt& attempt, State& state) {
-  const std::size_t contacts = attempt.contacts.size();
-  // What was stored in contacts that have ended, a vertex that left its edge, is lost.
-  state.ledger.numerical += state.contact_energy;
-  state.contacts.make_room(contacts);
-  // Piece by piece, which are the same for any number of threads.
-  constexpr std::size_t size = 64 * lane_count;
-  pieces_.assign((contacts + size - 1) / size, {});
-  attempt.team.for_range(
-      pieces_.size(), contacts_worth_threads / size, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-          pieces_[p] = remember_piece(attempt, p * size, std::min(contacts, (p + 1) * size), state.contacts);
-      });
-  ContactAccounts total;
-  for (const ContactAccounts& accounts : pieces_) total.add(accounts);
-  total.enter(state.ledger);
-  state.contact_energy = sum(total.balance.stored);
-  ContactTotals totals;
-  for (std::size_t i = 0; i < lane_count; ++i)
-    totals.penetration = std::max(totals.penetration, total.penetration[i]);
-  totals.closed = static_cast<int>(sum(total.closed));
   return totals;
-}
-
-StepAccounts::ContactAccounts StepAccounts::remember_piece(const Attempt& attempt, std::size_t first,
-                                                           std::size_t last, contact::CandidateList& list) {
-  ContactAccounts sum;
-  for (std::size_t c = first; c < last; c += lane_count) {
-    const std::size_t count = std::min<std::size_t>(lane_count, last - c);
-    const std::span<contact::Memory> remembered = std::span(list.memory).subspan(c, count);
-    ContactAccounts accounts = remember_some(attempt, c, count, remembered);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (attempt.model.solver.contact != ContactMethod::penalty)
-        remember_multiplier(attempt, c + i, i, remembered[i], accounts);
-      list.track(c + i, attempt.contacts[c + i].candidate);
-    }
-    sum.add(accounts);
-  }
-  return sum;
 }
 
 }  // namespace keyblock::dynamics

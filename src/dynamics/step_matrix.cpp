@@ -23,7 +23,7 @@ void StepMatrix::assemble(const StepSystem& system) {
     for (std::size_t c = begin; c < end; ++c) {
       normal_stiffness_[c] = springs.normal_stiffness(c, branches_[c]);
       shear_stiffness_[c] = springs.shear_stiffness(c, branches_[c]);
-      places_[c] = StepProblem::Place(system.contact(c));
+      places_[c] = Place(system.row(c));
     }
   });
   for (std::size_t c = 0; c < n; ++c) {
@@ -51,7 +51,7 @@ bool StepMatrix::update(const StepSystem& system) {
                  normal_before = std::exchange(normal_stiffness_[c], normal),
                  shear_before = std::exchange(shear_stiffness_[c], shear);
     if (normal == normal_before && shear == shear_before) continue;
-    const StepProblem::Place now(system.contact(c)), before = std::exchange(places_[c], now);
+    const Place now(system.row(c)), before = std::exchange(places_[c], now);
     if (now == before) {
       changes_.push_back({c, now, normal - normal_before, shear - shear_before});
     } else {
@@ -60,7 +60,7 @@ bool StepMatrix::update(const StepSystem& system) {
       changes_.push_back({c, now, normal, shear});
     }
     count_held(system, c, static_cast<int>(has_spring(c)) - static_cast<int>(had_spring));
-    const StepProblem::Row& row = system.row(c);
+    const Row& row = system.row(c);
     if (row.unknown_a >= 0) system.solver.touch(row.unknown_a);
     if (row.unknown_b >= 0) system.solver.touch(row.unknown_b);
   }
@@ -112,12 +112,12 @@ void StepMatrix::find_free_blocks(const StepSystem& system, std::span<const std:
   for (const std::size_t c : updated) count_held(system, c, 1);
   free_.clear();
   for (std::size_t b = 0; b < held_.size(); ++b) {
-    if (system.problem.moves(b) && held_[at(system.problem.unknown(b))] == 0) free_.push_back(b);
+    if (system.problem.model().moves(b) && held_[at(system.problem.unknown(b))] == 0) free_.push_back(b);
   }
   for (const std::size_t c : updated) count_held(system, c, -1);
 }
 
-void StepMatrix::take_hold(const StepProblem& problem, const StepProblem::Row& row) {
+void StepMatrix::take_hold(const StepProblem& problem, const Row& row) {
   std::erase_if(free_, [&](std::size_t b) {
     return problem.unknown(b) == row.unknown_a || problem.unknown(b) == row.unknown_b;
   });
@@ -125,7 +125,7 @@ void StepMatrix::take_hold(const StepProblem& problem, const StepProblem::Row& r
 
 /// Counts what holds the blocks of a contact.
 void StepMatrix::count_held(const StepSystem& system, std::size_t c, int count) {
-  const StepProblem::Row& row = system.row(c);
+  const Row& row = system.row(c);
   if (row.unknown_a >= 0) held_[at(row.unknown_a)] += count;
   if (row.unknown_b >= 0) held_[at(row.unknown_b)] += count;
 }

@@ -52,19 +52,19 @@ class StepMatrix {
   [[nodiscard]] std::span<const std::size_t> free_blocks() const { return free_; }
   void forget_free_blocks() { free_.clear(); }
   /// The blocks of this contact are free no more.
-  void take_hold(const StepProblem& problem, const StepProblem::Row& row);
+  void take_hold(const StepProblem& problem, const Row& row);
 
  private:
   void count_held(const StepSystem& system, std::size_t c, int count);
 
   std::vector<Branch> branches_;                            ///< per contact
   std::vector<double> normal_stiffness_, shear_stiffness_;  ///< N/m per thickness, per contact
-  std::vector<StepProblem::Place> places_;                  ///< of these springs
+  std::vector<Place> places_;                               ///< of these springs
   std::vector<int> held_;  ///< per unknown block: contacts that have such springs
   std::vector<std::size_t> free_;
   std::vector<std::size_t> differing_;
-  std::vector<StepProblem::SpringChange> changes_;  ///< scratch
-  bool is_assembled_ = false;                       ///< in this step
+  std::vector<SpringChange> changes_;  ///< scratch
+  bool is_assembled_ = false;          ///< in this step
 };
 
 }  // namespace keyblock::dynamics

@@ -1,12 +1,6 @@
-// The matrix of a step: stiffness and inertia of its blocks, and springs of its contacts.
-#include <algorithm>
-#include <array>
+// The matrix of a step: stiffness and inertia of its blocks, and springs of its rows.
 #include <cstddef>
-#include <type_traits>
-#include <vector>
 
-#include "core/index.h"
-#include "core/known_size.h"
 #include "core/lanes.h"
 #include "dynamics/step_problem.h"
 #include "linalg/registers.h"
@@ -15,7 +9,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
-/// C of a contact: normal and shear spring in coordinates.
+/// C of a row: normal and shear spring in coordinates.
 struct Stiffness {
   double xx, xy, yy;
 };
@@ -87,65 +81,30 @@ void add_block(const double* phi_r, int rows, const double* phi_c, int columns, 
 
 void StepProblem::add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const {
   for (const SpringChange& change : changes)
-    add_spring(rows_[change.contact], change.place, change.normal, change.shear, Owner{}, solver);
+    add_spring(rows_[change.row], change.place, change.normal, change.shear, {}, solver);
 }
 
 void StepProblem::add_springs(std::span<const double> normal, std::span<const double> shear,
                               linalg::BlockSolver& solver) const {
-  for_owned_rows([&](std::size_t c, Owner owner) {
+  owners_.for_rows(model_->blocks.size(), *team_, [&](std::size_t c, RowOwners::Owner owner) {
     if (normal[c] == 0.0 && shear[c] == 0.0) return;
     add_spring(rows_[c], Place(rows_[c]), normal[c], shear[c], owner, solver);
   });
 }
 
-/// Calls what(φ) with the basis functions of block b at a point of its edge.
-template <typename Do>
-void StepProblem::with_phi(const Row& row, double position, const Do& what) const {
-  const auto fill = [&](auto size, double* phi) {
-    if (is_on_curve(row.from)) {
-      const std::size_t c = contact_on_curve(row.from);
-      const auto for_vertices = [&](const auto& add) {
-        if (position == row.position) {
-          for_vertices_of_curve(c, add);
-        } else {
-          contact::for_curve_vertices(*surface_, on_curves_[c].edge, position, add);
-        }
-      };
-      std::fill_n(phi, int{size}, 0.0);
-      for_vertices([&](std::size_t v, double share) {
-        const double* of_vertex = phi_of(v);
-        for (int k = 0; k < size; ++k) phi[k] += share * of_vertex[k];
-      });
-    } else {
-      const double *from = phi_of(row.from), *to = phi_of(row.to);
-      for (int k = 0; k < size; ++k) phi[k] = (1.0 - position) * from[k] + position * to[k];
-    }
-    what(phi);
-  };
-  with_known_size(body_of(row.from).size, [&](auto size) {
-    if constexpr (std::is_same_v<decltype(size), int>) {
-      std::vector<double> phi(at(size));
-      fill(size, phi.data());
-    } else {
-      std::array<double, decltype(size)::value> phi;
-      fill(size, phi.data());
-    }
-  });
-}
-
-void StepProblem::add_spring(const Row& row, const Place& place, double kn, double ks, Owner owner,
+void StepProblem::add_spring(const Row& row, const Place& place, double kn, double ks, RowOwners::Owner owner,
                              linalg::BlockSolver& solver) const {
   const Vec2 n = place.normal, t = contact::tangent_of(n);
   const Stiffness k{kn * n.x * n.x + ks * t.x * t.x, kn * n.x * n.y + ks * t.x * t.y,
                     kn * n.y * n.y + ks * t.y * t.y};
-  const double* phi_a = phi_of(row.vertex);
-  const int size_a = body_of(row.vertex).size, size_b = body_of(row.from).size;
+  const double* phi_a = points_.phi_of(row.vertex);
+  const int size_a = points_.body_of(row.vertex).size, size_b = points_.body_of(row.from).size;
   const auto add_diagonal = [&](const double* phi, int size, int unknown) {
     if (size > 0 && owner.has(unknown))
       add_block(phi, size, phi, size, k, 1.0, solver.diagonal(unknown), linalg::padded_rows(2 * size));
   };
   add_diagonal(phi_a, size_a, row.unknown_a);
-  with_phi(row, place.position, [&](const double* phi_b) {
+  points_.with_phi(row, place.position, [&](const double* phi_b) {
     add_diagonal(phi_b, size_b, row.unknown_b);
     if (row.pair < 0) return;
     const linalg::BlockSlot slot = solver.slot(row.pair);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "dynamics/contact_coupling.h"
 #include "dynamics/worth_threads.h"
 
 namespace keyblock::dynamics {
@@ -35,11 +36,11 @@ void find_fast(const Attempt& attempt, std::span<const double> speed, double lea
   constexpr double rounding = 0.999;
   const bool moves_fixed_blocks = !attempt.drive.prescribed.empty();
   fast.clear();
-  if (!moves_fixed_blocks && !attempt.problem.has_distant() &&
+  if (!moves_fixed_blocks && !attempt.problem.facts().has_distant &&
       3.0 * *std::max_element(speed.begin(), speed.end()) <= rounding * least)
     return;
   const auto may_be_fast = [&](std::size_t k) {
-    const StepProblem::Row& row = attempt.problem.rows()[k];
+    const Row& row = attempt.problem.rows()[k];
     const contact::Contact& contact = attempt.contacts[k];
     const double beyond = std::max({0.0, -row.position, row.position - 1.0});
     return moves_fixed_blocks ||
@@ -51,14 +52,14 @@ void find_fast(const Attempt& attempt, std::span<const double> speed, double lea
 /// Whether contact c presses, its blocks approach faster than `least`, m/s, and the step does not resolve what its spring does to them.
 bool is_impact(const Attempt& attempt, std::size_t c, double least) {
   const contact::Contact& contact = attempt.contacts[c];
-  const StepProblem::Row& row = attempt.problem.rows()[c];
+  const Row& row = attempt.problem.rows()[c];
   const double step = attempt.drive.step;
   if (attempt.problem.springs().force(c).normal <= 0.0) return false;
   const Vec2 speed = attempt.problem.relative(row, attempt.state.velocity) +
                      attempt.drive.prescribed_between(contact) / step;
   if (-dot(row.normal, speed) <= least) return false;
   return attempt.model.solver.contact == ContactMethod::augmented_lagrangian ||
-         contact.normal_stiffness * step * step > attempt.problem.reduced_mass(contact);
+         contact.normal_stiffness * step * step > reduced_mass(attempt.problem.points(), contact);
 }
 
 }  // namespace

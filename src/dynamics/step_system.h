@@ -27,7 +27,7 @@ struct StepSystem {
 
   [[nodiscard]] SpringArray& springs() const { return problem.springs(); }
   [[nodiscard]] const contact::Contact& contact(std::size_t c) const { return contacts.contacts[c]; }
-  [[nodiscard]] const StepProblem::Row& row(std::size_t c) const { return problem.rows()[c]; }
+  [[nodiscard]] const Row& row(std::size_t c) const { return problem.rows()[c]; }
   /// How many times what is enough the residual of a linear system is.
   [[nodiscard]] linalg::BlockSolver::Excess excess_over(double enough) const {
     return [this, enough](std::span<const double> residual) {

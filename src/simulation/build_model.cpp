@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
 #include "core/error.h"
 #include "core/index.h"
+#include "dynamics/ground_springs.h"
 #include "geometry/quadrature.h"
 #include "simulation/outline.h"
 
@@ -114,20 +116,20 @@ void add_loads(const RunSetup& setup, Model& model) {
 }
 
 /// Springs of a share of a support's stiffness at a point of block b.
-void add_ground_springs(const loading::Support& support, std::size_t b, Vec2 where, double stiffness,
-                        Model& model) {
-  const Block& block = model.blocks[b];
+void add_ground_springs(const loading::Support& support, const Block& block, std::size_t b, Vec2 where,
+                        double stiffness, std::vector<dynamics::GroundSpring>& springs) {
   for (int axis = 0; axis < 2; ++axis) {
     if (!(axis == 0 ? support.along_x : support.along_y)) continue;
     dynamics::GroundSpring spring{
         static_cast<int>(b),           axis,      std::vector<double>(at(block.size)),
         axis == 0 ? where.x : where.y, stiffness, axis == 0 ? support.motion_x : support.motion_y};
     block.basis.evaluate(where, spring.phi.data());
-    model.springs.push_back(std::move(spring));
+    springs.push_back(std::move(spring));
   }
 }
 
 void add_supports(const RunSetup& setup, Model& model) {
+  std::vector<dynamics::GroundSpring> springs;
   for (std::size_t k = 0; k < setup.supports.size(); ++k) {
     const loading::Support& support = setup.supports[k];
     const std::string key = fmt::format("support[{}]", k);
@@ -136,7 +138,7 @@ void add_supports(const RunSetup& setup, Model& model) {
     for (const Vec2 p : support.points) require_on_block(block.reference, p, key, support.block);
     const double stiffness = support.stiffness.value_or(1000.0 * block.material.young);
     const auto add = [&](Vec2 where, double share) {
-      add_ground_springs(support, b, where, stiffness * share, model);
+      add_ground_springs(support, block, b, where, stiffness * share, springs);
     };
     if (!support.is_edge) {
       for (const Vec2 p : support.points) add(p, 1.0);
@@ -148,6 +150,13 @@ void add_supports(const RunSetup& setup, Model& model) {
       }
     }
   }
+  if (!springs.empty())
+    model.couplings.push_back(std::make_shared<dynamics::GroundSprings>(std::move(springs)));
+}
+
+/// In an order that stays the same: State::couplings is in it.
+void add_couplings(const RunSetup& setup, Model& model) {
+  add_supports(setup, model);
 }
 
 void add_prescribed_motions(const RunSetup& setup, Model& model) {
@@ -245,7 +254,7 @@ Model build_model(const RunSetup& setup) {
   number_coefficients(model);
   build_surface(model, joints);
   add_loads(setup, model);
-  add_supports(setup, model);
+  add_couplings(setup, model);
   add_prescribed_motions(setup, model);
   return model;
 }
@@ -263,9 +272,9 @@ void change_orders(const RunSetup& setup, Model& model, dynamics::State& state, 
   number_coefficients(model);
   evaluate_basis(model);
   model.loads.clear();
-  model.springs.clear();
+  model.couplings.clear();
   add_loads(setup, model);
-  add_supports(setup, model);
+  add_couplings(setup, model);
   // Basis functions are ordered by degree and those of lower degree are the same at every order.
   const auto carry_over = [&](std::vector<double>& values) {
     if (values.empty()) return;

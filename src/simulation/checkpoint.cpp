@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000d;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'000e;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -79,6 +79,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.contacts.tracked);
   archive(s.mechanics.contacts.memory);
   archive(s.mechanics.pattern);
+  archive(s.mechanics.couplings);
   archive(s.mechanics.ledger);
   archive(s.mechanics.contact_energy);
   archive(s.mechanics.support_energy);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "dynamics/coupling.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -88,13 +89,21 @@ bool is_pattern(const std::vector<std::pair<int, int>>& pattern, const Model& mo
          });
 }
 
+bool are_couplings(const State& s, const Model& model) {
+  return std::equal(s.couplings.begin(), s.couplings.end(), model.couplings.begin(), model.couplings.end(),
+                    [](const std::vector<double>& memory, const auto& coupling) {
+                      return memory.size() == coupling->memory_size() && all_finite(memory);
+                    });
+}
+
 bool has_sizes(const State& s, const Model& model) {
   const std::size_t blocks = model.blocks.size();
   const bool keeps_accelerations = model.solver.integrator != dynamics::TimeIntegration::shi;
   const std::size_t kept = keeps_accelerations ? model.coefficients : 0;
   return s.position.size() == model.coefficients && s.velocity.size() == model.coefficients &&
          s.acceleration.size() == kept && s.force.size() == kept &&
-         s.acceleration_known.size() == (keeps_accelerations ? blocks : 0) && s.moved.size() == blocks;
+         s.acceleration_known.size() == (keeps_accelerations ? blocks : 0) && s.moved.size() == blocks &&
+         are_couplings(s, model);
 }
 
 bool has_numbers(const State& s) {

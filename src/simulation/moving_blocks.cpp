@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dynamics/coupling.h"
+
 namespace keyblock::simulation {
 
 namespace {
@@ -19,8 +21,8 @@ constexpr double least_of_farthest = 0.05;  // of the farthest block of a trial
 
 MovingBlocks::MovingBlocks(const dynamics::Model& model)
     : model_(model), travel_limit_(model.blocks.size(), travel_share * model.block_size) {
-  for (const dynamics::GroundSpring& spring : model.springs)
-    travel_limit_[static_cast<std::size_t>(spring.block)] = HUGE_VAL;
+  for (const int block : dynamics::held_blocks(model))
+    travel_limit_[static_cast<std::size_t>(block)] = HUGE_VAL;
   memory_.travel.assign(model.blocks.size(), 0.0);
   memory_.nearest.assign(model.blocks.size(), HUGE_VAL);
   memory_.carried.assign(model.blocks.size(), 1.0);

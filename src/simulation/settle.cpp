@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "dynamics/coupling.h"
 #include "simulation/verdict.h"
 
 namespace keyblock::simulation {
@@ -48,7 +49,7 @@ Settler::Settler(const dynamics::Model& model, double time_step, double toleranc
       step_tolerance_(std::max(step_share * tolerance, least_step_tolerance)),
       is_held_(model.blocks.size(), false),
       moving_(model) {
-  for (const dynamics::GroundSpring& spring : model.springs) is_held_[at(spring.block)] = true;
+  for (const int block : dynamics::held_blocks(model)) is_held_[at(block)] = true;
   memory_.time_step = time_step;
   memory_.creep = first_creep * model.block_size;
   memory_.best_predicted = HUGE_VAL;

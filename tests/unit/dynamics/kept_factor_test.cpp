@@ -92,8 +92,7 @@ TEST(KeptFactor, IsOfOneSolverAndOneInertia) {
   k.make();
   OneStep shorter(k.s, *k.solver, k.s.stepper.find_contacts(k.s.state), false);
   shorter.next.drive.step = 0.0025;
-  shorter.problem.build(k.s.model, k.s.state, shorter.next.drive, k.s.model.surface, shorter.contacts,
-                        no_pairs(shorter.contacts), k.s.team);
+  shorter.problem.build(k.s.model, k.s.state, shorter.next.drive, shorter.coupled, k.s.team);
   EXPECT_FALSE(k.is_offered(shorter));
 }
 

@@ -37,14 +37,14 @@ struct StruckWall {
     const StepProblem& problem = step->problem;
     std::vector<double> y(x.size(), 0.0);
     for (std::size_t b = 0; b < problem.blocks(); ++b) {
-      if (problem.moves(b)) problem.terms().multiply(b, x, y);
+      if (problem.model().moves(b)) problem.terms().multiply(b, x, y);
     }
     for (std::size_t c = 0; c < problem.rows().size(); ++c) {
-      const StepProblem::Row& row = problem.rows()[c];
+      const Row& row = problem.rows()[c];
       const Vec2 r = problem.relative(row, x);
       const SpringArray::Force force{-matrix.normal_stiffness(c) * dot(row.normal, r),
                                      matrix.shear_stiffness(c) * dot(row.tangent(), r)};
-      problem.add_contact_force(row, row.gradient(force), y);
+      problem.add_force(row, row.gradient(force), y);
     }
     return y;
   }
@@ -101,7 +101,7 @@ TEST(LocalSolve, KnowsWhatItDoesToItsContacts) {
   EXPECT_EQ(contacts, expected);
   const double largest = largest_of(wall.step->iterate.direction);
   for (const std::size_t c : contacts) {
-    const StepProblem::Row& row = system.row(c);
+    const Row& row = system.row(c);
     const Vec2 r = wall.step->problem.relative(row, wall.step->iterate.direction);
     EXPECT_NEAR(system.springs().dy[c], -dot(row.normal, r), 1e-12 * largest);
     EXPECT_NEAR(system.springs().dw[c], dot(row.tangent(), r), 1e-12 * largest);
@@ -142,8 +142,7 @@ TEST(LocalSolve, ServesIterativeSolversInDynamicSteps) {
   at_rest.next.drive.is_static = true;
   const std::vector<double> inertia_scale(wall.s.model.blocks.size(), 1.0);
   at_rest.next.drive.inertia_scale = inertia_scale;
-  at_rest.problem.build(wall.s.model, wall.s.state, at_rest.next.drive, wall.s.model.surface,
-                        at_rest.contacts, no_pairs(at_rest.contacts), wall.s.team);
+  at_rest.problem.build(wall.s.model, wall.s.state, at_rest.next.drive, at_rest.coupled, wall.s.team);
   EXPECT_FALSE(LocalSolve::serves(at_rest.system()));
 }
 

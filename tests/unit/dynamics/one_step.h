@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../scene.h"
+#include "dynamics/contact_coupling.h"
 #include "dynamics/newton.h"
 #include "dynamics/step_matrix.h"
 
@@ -19,15 +20,15 @@ inline void analyse(const Model& model, StepProblem& problem, linalg::BlockSolve
     if (!block.fixed) sizes.push_back(2 * block.size);
   }
   const auto for_rows = [&](const auto& body) {
-    for (StepProblem::Row& row : problem.rows()) {
+    for (Row& row : problem.rows()) {
       if (row.unknown_a < 0 || row.unknown_b < 0) continue;
       body(row, std::pair<int, int>(std::minmax(row.unknown_a, row.unknown_b)));
     }
   };
   std::set<std::pair<int, int>> found;
-  for_rows([&](StepProblem::Row&, std::pair<int, int> pair) { found.insert(pair); });
+  for_rows([&](Row&, std::pair<int, int> pair) { found.insert(pair); });
   const std::vector<std::pair<int, int>> pairs(found.begin(), found.end());
-  for_rows([&](StepProblem::Row& row, std::pair<int, int> pair) {
+  for_rows([&](Row& row, std::pair<int, int> pair) {
     row.pair = static_cast<int>(std::ranges::lower_bound(pairs, pair) - pairs.begin());
   });
   solver.analyse(sizes, pairs);
@@ -47,12 +48,23 @@ struct NextStep {
   Drive drive;
 };
 
-/// `analyse` says which they are.
-inline std::vector<int> no_pairs(std::span<const contact::Contact> contacts) {
-  int most = -1;
-  for (const contact::Contact& c : contacts) most = std::max(most, c.candidate);
-  return std::vector<int>(static_cast<std::size_t>(most + 1), -1);
-}
+/// Contacts as the coupling of a step. `analyse` says where in the pattern their pairs of blocks are.
+class CoupledContacts {
+ public:
+  explicit CoupledContacts(std::span<const contact::Contact> contacts) {
+    int most = -1;
+    for (const contact::Contact& c : contacts) most = std::max(most, c.candidate);
+    pairs_.assign(static_cast<std::size_t>(most + 1), -1);
+    coupling_.begin_step(contacts, pairs_, {});
+  }
+  CoupledContacts(const CoupledContacts&) = delete;
+  CoupledContacts& operator=(const CoupledContacts&) = delete;
+  operator const Coupling&() const { return coupling_; }  // NOLINT(google-explicit-constructor)
+
+ private:
+  std::vector<int> pairs_;
+  ContactCoupling coupling_;
+};
 
 /// The minimization of the next step of a scene, with bounds of friction frozen, and what an open-close iteration has of it.
 struct OneStep {
@@ -60,8 +72,8 @@ struct OneStep {
       : OneStep(s, linear, s.stepper.find_contacts(s.state)) {}
   OneStep(simulation::Simulator& s, linalg::BlockSolver& linear, std::vector<contact::Contact> of_step,
           bool is_first = true)
-      : next(s), contacts(std::move(of_step)), solver(linear), simulator(s) {
-    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+      : next(s), contacts(std::move(of_step)), coupled(contacts), solver(linear), simulator(s) {
+    problem.build(s.model, s.state, next.drive, coupled, s.team);
     if (is_first) analyse(s.model, problem, solver);
     d.assign(s.model.coefficients, 0.0);
     iterate.begin(system(), d);
@@ -81,6 +93,7 @@ struct OneStep {
 
   NextStep next;
   std::vector<contact::Contact> contacts;
+  CoupledContacts coupled;
   linalg::BlockSolver& solver;
   simulation::Simulator& simulator;
   StepProblem problem;

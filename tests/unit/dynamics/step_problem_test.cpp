@@ -37,7 +37,8 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   StepProblem problem;
   const NextStep next(s);
   const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-  problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+  const CoupledContacts coupled(contacts);
+  problem.build(s.model, s.state, next.drive, coupled, s.team);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<double> d(s.model.coefficients, 0.0), direction(d.size(), 0.0);
@@ -59,7 +60,7 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   std::vector<double> by_vertices(d.size());
   std::vector<Vec2> at_points;
   const auto force_of = [&](std::size_t c) {
-    const StepProblem::Row& row = problem.rows()[c];
+    const Row& row = problem.rows()[c];
     const Vec2 r = problem.relative(row, d);
     const SpringArray& of_contact = problem.springs();
     return row.gradient(of_contact.force_at(c, of_contact.y0[c] - dot(row.normal, r),
@@ -76,14 +77,14 @@ TEST_P(StepProblemOrder, MatrixIsTheDerivativeOfTheGradient) {
   const auto solver = linalg::make_block_cholesky();
   analyse(s.model, problem, *solver);
   problem.terms().assemble(*solver);
-  std::vector<StepProblem::SpringChange> springs;
+  std::vector<SpringChange> springs;
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {
-    const StepProblem::Row& row = problem.rows()[c];
+    const Row& row = problem.rows()[c];
     const Vec2 r = problem.relative(row, d);
     const SpringArray& of_contact = problem.springs();
     const SpringArray::Branch branch = of_contact.branch_at(c, of_contact.y0[c] - dot(row.normal, r),
                                                             of_contact.w0[c] + dot(row.tangent(), r));
-    springs.push_back({c, StepProblem::Place(contacts[c]), of_contact.normal_stiffness(c, branch),
+    springs.push_back({c, Place(problem.rows()[c]), of_contact.normal_stiffness(c, branch),
                        of_contact.shear_stiffness(c, branch)});
   }
   problem.add_springs(springs, *solver);
@@ -111,7 +112,8 @@ TEST_P(StepProblemOrder, ContactsLieOnCurvedEdges) {
   StepProblem problem;
   const NextStep next(s);
   const std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-  problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+  const CoupledContacts coupled(contacts);
+  problem.build(s.model, s.state, next.drive, coupled, s.team);
   const auto field = [&](int b, Vec2 reference, const std::vector<double>& coefficients) {
     const Block& block = s.model.blocks[at(b)];
     std::vector<double> phi(at(block.size));
@@ -153,7 +155,7 @@ TEST(StepProblem, EveryPressedBlockHasItsOwnTangent) {
   }
   StepProblem problem;
   const NextStep next(s);
-  problem.build(s.model, s.state, next.drive, s.model.surface, {}, {}, s.team);
+  problem.build(s.model, s.state, next.drive, ContactCoupling(), s.team);
   int raised = 0;
   for (std::size_t i = 0; i < s.model.blocks.size(); ++i) {
     const Block& block = s.model.blocks[i];
@@ -196,7 +198,8 @@ TEST_P(StepProblemOrder, IterationKnowsTheGradient) {
     StepProblem problem;
     const NextStep next(s);
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    const CoupledContacts coupled(contacts);
+    problem.build(s.model, s.state, next.drive, coupled, s.team);
     const auto solver = kind == Solver::iterative
                             ? linalg::make_block_conjugate_residual(&s.team)
                             : linalg::make_block_cholesky(kind == Solver::full ? linalg::Precision::full
@@ -233,7 +236,8 @@ TEST(StepProblem, EndsInBalanceWhereContactsBendInOnePlace) {
     StepProblem problem;
     const NextStep next(s);
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
-    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    const CoupledContacts coupled(contacts);
+    problem.build(s.model, s.state, next.drive, coupled, s.team);
     const auto solver = linalg::make_block_conjugate_residual(&s.team);
     analyse(s.model, problem, *solver);
     std::vector<double> d(s.model.coefficients, 0.0), g(d.size());
@@ -260,7 +264,8 @@ TEST_P(StepProblemOrder, AnotherLookGoesOnFromTheOneBefore) {
   const auto solve = [&](const std::function<bool()>& gives_up, std::vector<double>& d) {
     std::vector<contact::Contact> contacts = s.stepper.find_contacts(s.state);
     StepProblem problem;
-    problem.build(s.model, s.state, next.drive, s.model.surface, contacts, no_pairs(contacts), s.team);
+    const CoupledContacts coupled(contacts);
+    problem.build(s.model, s.state, next.drive, coupled, s.team);
     earlier.give(contacts, problem.springs());
     const auto solver = linalg::make_block_cholesky();
     analyse(s.model, problem, *solver);
