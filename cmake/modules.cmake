@@ -39,7 +39,7 @@ endfunction()
 # under the sanitizers the start of a process takes longer than most cases.
 function(keyblock_tests)
   add_custom_target(unit_tests)
-  set(computing geometry cutting block contact linalg dynamics simulation)
+  set(computing geometry cutting block contact linalg coupling solve dynamics simulation)
   foreach(module IN LISTS ARGN)
     file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${module}/*.cpp)
     if(sources)

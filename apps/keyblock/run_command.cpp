@@ -14,7 +14,7 @@
 #include "core/folder.h"
 #include "core/out_of_memory.h"
 #include "core/parallel.h"
-#include "dynamics/options.h"
+#include "model/options.h"
 #include "interrupt.h"
 #include "outcome.h"
 #include "progress.h"

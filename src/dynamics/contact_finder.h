@@ -6,10 +6,10 @@
 #include "contact/candidates.h"
 #include "contact/detection.h"
 #include "core/parallel.h"
-#include "dynamics/model.h"
 #include "dynamics/predicted_motion.h"
-#include "dynamics/state.h"
-#include "dynamics/step_system.h"
+#include "model/model.h"
+#include "model/state.h"
+#include "solve/step_system.h"
 
 namespace keyblock::dynamics {
 

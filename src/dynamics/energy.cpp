@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "dynamics/coupling.h"
+#include "coupling/coupling.h"
 
 namespace keyblock::dynamics {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "dynamics/model.h"
-#include "dynamics/state.h"
+#include "model/model.h"
+#include "model/state.h"
 
 namespace keyblock::dynamics {
 

@@ -6,7 +6,7 @@
 
 #include "contact/law.h"
 #include "core/index.h"
-#include "dynamics/coupling.h"
+#include "coupling/coupling.h"
 
 namespace keyblock::dynamics {
 

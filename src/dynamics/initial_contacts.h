@@ -2,7 +2,7 @@
 #include <span>
 
 #include "contact/detection.h"
-#include "dynamics/model.h"
+#include "model/model.h"
 
 namespace keyblock::dynamics {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/index.h"
-#include "dynamics/coupling.h"
-#include "dynamics/step_numbers.h"
+#include "coupling/coupling.h"
 #include "linalg/minimum_degree.h"
+#include "solve/step_numbers.h"
 
 namespace keyblock::dynamics {
 

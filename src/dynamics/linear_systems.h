@@ -6,9 +6,9 @@
 
 #include "contact/detection.h"
 #include "core/parallel.h"
-#include "dynamics/model.h"
-#include "dynamics/state.h"
 #include "linalg/block_solver.h"
+#include "model/model.h"
+#include "model/state.h"
 
 namespace keyblock::dynamics {
 

@@ -7,8 +7,8 @@
 #include "core/index.h"
 #include "core/known_size.h"
 #include "dynamics/energy.h"
-#include "dynamics/state_motion.h"
-#include "dynamics/vertex_field.h"
+#include "model/state_motion.h"
+#include "model/vertex_field.h"
 
 namespace keyblock::dynamics {
 

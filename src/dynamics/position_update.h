@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "dynamics/attempt.h"
+#include "coupling/attempt.h"
 #include "dynamics/predicted_motion.h"
 #include "dynamics/step_rules.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "dynamics/vertex_field.h"
+#include "model/vertex_field.h"
 
 namespace keyblock::dynamics {
 

@@ -6,7 +6,7 @@
 #include "contact/candidates.h"
 #include "contact/detection.h"
 #include "contact/tolerances.h"
-#include "dynamics/attempt.h"
+#include "coupling/attempt.h"
 
 namespace keyblock::dynamics {
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <span>
 
-#include "dynamics/model.h"
-#include "dynamics/state.h"
-#include "dynamics/step_problem.h"
+#include "coupling/step_problem.h"
+#include "model/model.h"
+#include "model/state.h"
 
 namespace keyblock::dynamics {
 

@@ -8,8 +8,8 @@
 #include "core/index.h"
 #include "core/lanes.h"
 #include "dynamics/energy.h"
-#include "dynamics/step_numbers.h"
-#include "dynamics/worth_threads.h"
+#include "model/worth_threads.h"
+#include "solve/step_numbers.h"
 
 namespace keyblock::dynamics {
 

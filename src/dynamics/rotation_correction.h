@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "contact/tolerances.h"
-#include "dynamics/attempt.h"
+#include "coupling/attempt.h"
 
 namespace keyblock::dynamics {
 

@@ -11,7 +11,7 @@
 #include "dynamics/initial_contacts.h"
 #include "dynamics/position_update.h"
 #include "dynamics/prescribed_motion.h"
-#include "dynamics/step_numbers.h"
+#include "solve/step_numbers.h"
 
 namespace keyblock::dynamics {
 

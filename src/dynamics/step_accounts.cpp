@@ -5,8 +5,8 @@
 
 #include "core/index.h"
 #include "core/known_size.h"
-#include "dynamics/state_motion.h"
-#include "dynamics/worth_threads.h"
+#include "model/state_motion.h"
+#include "model/worth_threads.h"
 
 namespace keyblock::dynamics {
 

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/attempt.h"
+#include "coupling/attempt.h"
 
 namespace keyblock::dynamics {
 

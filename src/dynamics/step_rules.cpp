@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "dynamics/contact_coupling.h"
-#include "dynamics/worth_threads.h"
+#include "coupling/contact_coupling.h"
+#include "model/worth_threads.h"
 
 namespace keyblock::dynamics {
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/attempt.h"
-#include "dynamics/integrator.h"
+#include "coupling/attempt.h"
+#include "model/integrator.h"
 
 namespace keyblock::dynamics {
 

@@ -4,7 +4,7 @@
 
 #include "core/index.h"
 #include "dynamics/step.h"
-#include "dynamics/step_numbers.h"
+#include "solve/step_numbers.h"
 
 namespace keyblock::dynamics {
 

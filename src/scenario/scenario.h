@@ -9,10 +9,10 @@
 
 #include "block/material.h"
 #include "core/error.h"
-#include "dynamics/options.h"
 #include "geometry/polygon.h"
 #include "loading/load.h"
 #include "loading/projection.h"
+#include "model/options.h"
 #include "rockmass/joint_set.h"
 #include "scenario/study_spec.h"
 #include "simulation/setup.h"

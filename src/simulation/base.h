@@ -2,9 +2,9 @@
 #include <optional>
 #include <span>
 
-#include "dynamics/model.h"
-#include "dynamics/state.h"
 #include "loading/time_table.h"
+#include "model/model.h"
+#include "model/state.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

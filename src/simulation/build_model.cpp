@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/index.h"
-#include "dynamics/ground_springs.h"
+#include "coupling/ground_springs.h"
 #include "geometry/quadrature.h"
 #include "simulation/outline.h"
 

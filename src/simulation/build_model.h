@@ -1,8 +1,8 @@
 #pragma once
 #include <span>
 
-#include "dynamics/model.h"
-#include "dynamics/state.h"
+#include "model/model.h"
+#include "model/state.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

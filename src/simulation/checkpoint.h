@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "dynamics/state.h"
+#include "model/state.h"
 #include "simulation/damage.h"
 #include "simulation/order_control.h"
 #include "simulation/record.h"

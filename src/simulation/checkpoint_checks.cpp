@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "dynamics/coupling.h"
+#include "coupling/coupling.h"
 
 namespace keyblock::simulation {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "dynamics/model.h"
+#include "model/model.h"
 #include "simulation/checkpoint.h"
 #include "simulation/setup.h"
 

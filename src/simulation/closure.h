@@ -2,9 +2,9 @@
 #include <optional>
 #include <span>
 
-#include "dynamics/model.h"
-#include "dynamics/state.h"
 #include "geometry/polygon.h"
+#include "model/model.h"
+#include "model/state.h"
 #include "simulation/record.h"
 
 namespace keyblock::simulation {

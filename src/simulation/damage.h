@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact/detection.h"
-#include "dynamics/model.h"
-#include "dynamics/state.h"
+#include "model/model.h"
+#include "model/state.h"
 #include "simulation/base.h"
 #include "simulation/closure.h"
 #include "simulation/joint_gauge.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "contact/detection.h"
-#include "dynamics/model.h"
+#include "model/model.h"
 #include "simulation/record.h"
 #include "simulation/setup.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/coupling.h"
+#include "coupling/coupling.h"
 
 namespace keyblock::simulation {
 

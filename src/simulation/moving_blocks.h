@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dynamics/force_balance.h"
-#include "dynamics/model.h"
+#include "model/model.h"
 
 namespace keyblock::simulation {
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "dynamics/model.h"
-#include "dynamics/state.h"
+#include "model/model.h"
+#include "model/state.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/model.h"
+#include "model/model.h"
 
 namespace keyblock::simulation {
 

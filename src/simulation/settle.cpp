@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "dynamics/coupling.h"
+#include "coupling/coupling.h"
 #include "simulation/verdict.h"
 
 namespace keyblock::simulation {

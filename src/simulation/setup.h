@@ -8,9 +8,9 @@
 #include "block/material.h"
 #include "contact/joint_properties.h"
 #include "cutting/block_system.h"
-#include "dynamics/options.h"
 #include "loading/ground_motion.h"
 #include "loading/load.h"
+#include "model/options.h"
 #include "simulation/stage.h"
 
 namespace keyblock::simulation {

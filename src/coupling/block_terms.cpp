@@ -1,0 +1,302 @@
+#include "coupling/block_terms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <type_traits>
+
+#include "block/eigenvalue_floor.h"
+#include "core/index.h"
+#include "core/known_size.h"
+#include "coupling/coupling.h"
+#include "linalg/dense_block.h"
+#include "model/turn.h"
+#include "model/worth_threads.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+/// The geometric stiffness of a dynamic step is kept above this share of its inertia. A block under extreme pressure then keeps a
+/// positive definite step; and a turn w, that the step takes for a stretch of ½ w², cannot draw more energy than
+/// twice this share of the rotation from a stress of impact. A trial of a static step has the same floor. Other static steps have none:
+/// their inertia is small, and a floor would make the tangent of a slender block under pressure wrong. Where a block buckles, the matrix
+/// is not positive definite, and the step is made shorter.
+constexpr double geometric_floor = 0.05;
+
+double floor_of(const Drive& drive, double inertia) {
+  return drive.is_static && !drive.is_trial ? HUGE_VAL : geometric_floor * inertia;
+}
+}  // namespace
+
+void BlockTerms::build(const Model& model, const State& state, const Drive& drive, ThreadTeam& team) {
+  team_ = &team;
+  if (model_ != &model) begin(model);
+  build_blocks(state, drive);
+  add_loads(drive);
+  for (const auto& coupling : model.couplings) coupling->add_terms(model, state, drive, *this);
+}
+
+void BlockTerms::begin(const Model& model) {
+  model_ = &model;
+  h_first_.clear();
+  coefficients_.clear();
+  body_force_.clear();
+  frequency_.clear();
+  largest_size_ = 0;
+  std::size_t used = 0;
+  for (const Block& block : model.blocks) {
+    largest_size_ = std::max(largest_size_, block.size);
+    h_first_.push_back(used);
+    body_force_.push_back(block.body_force());
+    frequency_.push_back(std::numbers::pi *
+                         std::sqrt(block.material.young / (block.material.density * block.area)));
+    coefficients_.emplace_back(block.first, block.first + 2 * at(block.size));
+    used += at(linalg::padded_rows(2 * block.size) * 2 * block.size);
+  }
+  h_.assign(used, 0.0);
+  b_.assign(model.coefficients, 0.0);
+  inertia_.assign(model.blocks.size(), 0.0);
+  viscous_.assign(model.blocks.size(), 0.0);
+  weight_.assign(model.blocks.size(), 0.0);
+  stress_.assign(model.blocks.size(), 0.0);
+  for (std::size_t i = 0; i < model.blocks.size() && model.gravity == Vec2{}; ++i) {
+    const block::Stress s = block::in_situ_at(model.in_situ, model.blocks[i].centroid);
+    stress_[i] = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy)});
+  }
+}
+
+/// Blocks of order 2 under so much pressure that the eigenvalues of their geometric stiffness are looked for: as many at once as there
+/// are lanes.
+struct BlockTerms::PressedBlocks {
+  std::array<std::size_t, lane_count> block;
+  std::array<block::MatrixOfOrder2, lane_count> geometric;
+  std::array<double, lane_count> floor;
+  std::size_t count = 0;
+};
+
+/// Material part of H, b, and the geometric stiffness (N − 1)², which H does not have yet.
+template <typename Size>
+void BlockTerms::linearize(Size size, std::size_t i, const State& state, const Drive& drive,
+                           Vec2 acceleration, double* geometric) {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  const double* v = &state.velocity[block.first];
+  double *b = &b_[block.first], *h = &h_[h_first_[i]];
+  block.elasticity.add_force_and_material_tangent(&state.position[block.first], viscous_[i], b, h, stride,
+                                                  geometric);
+  for (int k = 0; k < n; ++k) b[k] = -b[k] + (drive.is_static ? 0.0 : inertia_[i] * drive.step * v[k]);
+  if (!drive.is_static && !state.acceleration.empty()) {
+    const double c_a = drive.rule[i].acceleration() * block.material.density,
+                 c_f = drive.rule[i].force() * block.material.density;
+    for (std::size_t k = 0; k < at(n); ++k)
+      b[k] += c_a * state.acceleration[block.first + k] + c_f * state.force[block.first + k];
+  }
+  b[0] += block.body_force() * acceleration.x;
+  b[1] += block.body_force() * acceleration.y;
+}
+
+template <typename Size>
+void BlockTerms::build_block(Size size, std::size_t i, const State& state, const Drive& drive,
+                             Vec2 acceleration, PressedBlocks& pressed) {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  double* b = &b_[block.first];
+  std::fill(b, b + n, 0.0);
+  inertia_[i] = 0.0;
+  if (!model_->moves(i)) return;
+  double* h = &h_[h_first_[i]];
+  std::fill(h, h + 2 * stride, 0.0);  // translation; the rest is written below
+  inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
+                (drive.is_static ? drive.inertia_scale[i] : 1.0);
+  viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency_[i] * drive.step);
+  const int m = size - 1;
+  const double floor = floor_of(drive, inertia_[i]);
+  if constexpr (std::is_same_v<Size, std::integral_constant<int, 6>>) {
+    block::MatrixOfOrder2& geometric = pressed.geometric[pressed.count];
+    linearize(size, i, state, drive, acceleration, geometric.data());
+    if (!block::may_lie_below(geometric.data(), m, floor)) return finish_block(size, i, geometric.data());
+    pressed.block[pressed.count] = i;
+    pressed.floor[pressed.count] = floor;
+    if (++pressed.count == lane_count) finish_blocks(pressed);
+  } else {
+    std::array<double, 4> of_order_1;
+    std::vector<double> many(m > 2 ? at(m * m) : 0);
+    double* geometric = m > 2 ? many.data() : of_order_1.data();
+    linearize(size, i, state, drive, acceleration, geometric);
+    if (m == 2 || block::may_lie_below(geometric, m, floor)) block::raise_eigenvalues(geometric, m, floor);
+    finish_block(size, i, geometric);
+  }
+}
+
+/// What H has beside the material part: geometric stiffness (N − 1)², inertia, and the upper triangle.
+template <typename Size>
+void BlockTerms::finish_block(Size size, std::size_t i, const double* geometric) {
+  const int n = 2 * size, stride = linalg::padded_rows(n);
+  double* h = &h_[h_first_[i]];
+  model_->blocks[i].elasticity.add_geometric_tangent(geometric, h, stride);
+  for (int k = 0; k < n; ++k) h[k * stride + k] += inertia_[i];
+  for (int c = 1; c < n; ++c) {
+    for (int r = 0; r < c; ++r) h[c * stride + r] = h[r * stride + c];
+  }
+}
+
+void BlockTerms::finish_blocks(PressedBlocks& pressed) {
+  block::raise_eigenvalues(std::span(pressed.geometric).first(pressed.count),
+                           std::span(pressed.floor).first(pressed.count));
+  for (std::size_t k = 0; k < pressed.count; ++k)
+    finish_block(std::integral_constant<int, 6>{}, pressed.block[k], pressed.geometric[k].data());
+  pressed.count = 0;
+}
+
+void BlockTerms::build_blocks(const State& state, const Drive& drive) {
+  const Vec2 acceleration = model_->gravity - drive.ground_acceleration;
+  team_->for_range(model_->blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+    PressedBlocks pressed;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Block& block = model_->blocks[i];
+      with_known_size(block.size,
+                      [&](auto size) { build_block(size, i, state, drive, acceleration, pressed); });
+    }
+    finish_blocks(pressed);
+  });
+}
+
+/// Loads, and what residuals are measured by.
+void BlockTerms::add_loads(const Drive& drive) {
+  const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
+  for (std::size_t i = 0; i < model_->blocks.size(); ++i)
+    weight_[i] = std::max(body_force_[i] * g, stress_[i]);
+  for (const GeneralizedLoad& load : model_->loads) {
+    if (!model_->moves(at(load.block))) continue;
+    const Block& block = model_->blocks[at(load.block)];
+    const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < load.force.size(); ++k) {
+      b_[block.first + k] += f * load.force[k];
+      largest = std::max(largest, std::abs(load.force[k]));
+    }
+    weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
+  }
+  // Without gravity, blocks that only other blocks load are measured by the largest load.
+  const double most = weight_.empty() ? 0.0 : *std::max_element(weight_.begin(), weight_.end());
+  for (double& weight : weight_) weight = weight > 0.0 ? weight : most;
+}
+
+void BlockTerms::add_spring(std::size_t b, int axis, std::span<const double> phi, double stiffness,
+                            double force) {
+  const Block& block = model_->blocks[b];
+  const int stride = linalg::padded_rows(2 * block.size);
+  double* h = &h_[h_first_[b]];
+  for (int l = 0; l < block.size; ++l) {
+    b_[block.first + at(2 * l + axis)] += force * phi[at(l)];
+    for (int k = 0; k < block.size; ++k)
+      h[(2 * l + axis) * stride + 2 * k + axis] += stiffness * phi[at(k)] * phi[at(l)];
+  }
+}
+
+void BlockTerms::multiply(std::size_t i, std::span<const double> x, std::span<double> y) const {
+  const std::size_t first = coefficients_[i].first, end = coefficients_[i].second;
+  if (!model_->moves(i)) return std::fill(&y[first], y.data() + end, 0.0);
+  with_known_size(static_cast<int>(end - first) / 2, [&](auto size) {
+    multiply(size, i, &x[first],
+             [&](int k, int count, Lanes rows) { store_first(&y[first + at(k)], rows, count); });
+  });
+}
+
+void BlockTerms::solve_alone(std::size_t i, std::span<double> d) const {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * block.size;
+  std::copy_n(&b_[block.first], n, &d[block.first]);
+  // A block that buckles in a static step stays where it is: its residual then shows that the step has no solution.
+  if (!linalg::solve_block(n, &h_[h_first_[i]], &d[block.first])) std::fill_n(&d[block.first], n, 0.0);
+}
+
+void BlockTerms::assemble(linalg::BlockSolver& solver) const {
+  solver.clear();
+  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (model_->blocks[i].unknown >= 0) assemble_block(i, solver);
+    }
+  });
+}
+
+void BlockTerms::assemble_block(std::size_t i, linalg::BlockSolver& solver) const {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * block.size, stride = linalg::padded_rows(n);
+  double* diagonal = solver.diagonal(block.unknown);
+  if (model_->moves(i)) {
+    std::copy_n(&h_[h_first_[i]], stride * n, diagonal);
+  } else {
+    for (int k = 0; k < n; ++k) diagonal[k * stride + k] = 1.0;
+  }
+}
+
+double BlockTerms::largest_stiffness(std::size_t i) const {
+  const int n = 2 * model_->blocks[i].size, stride = linalg::padded_rows(n);
+  double largest = 0.0;
+  for (int k = 0; k < n; ++k) largest = std::max(largest, h_[h_first_[i] + at(k * stride + k)]);
+  return largest - inertia_[i];
+}
+
+double BlockTerms::residual_ratio(std::size_t i, std::span<const double> g) const {
+  if (inertia_[i] <= 0.0 || weight_[i] <= 0.0) return 0.0;
+  double largest = 0.0;
+  for (std::size_t k = coefficients_[i].first; k < coefficients_[i].second; ++k)
+    largest = std::max(largest, std::abs(g[k]));
+  return largest / weight_[i];
+}
+
+double BlockTerms::residual_ratio(std::span<const double> g) const {
+  return largest_of(*team_, model_->blocks.size(), blocks_worth_threads,
+                    [&](std::size_t i) { return residual_ratio(i, g); });
+}
+
+template <typename Size>
+BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const double* position,
+                                               const double* d, double spin, double* turn) const {
+  const Lanes inertia = broadcast(inertia_[i]);
+  double of_motion = 0.0, of_both = 0.0, of_turn = 0.0;  // dᵀ H d, dᵀ H s and sᵀ H s, without inertia
+  const auto add = [](double& sum, int count, Lanes products) {
+    for (int k = 0; k < count; ++k) sum += products[k];
+  };
+  multiply(size, i, d, [&](int first, int count, Lanes rows) {
+    const Lanes x = load_first(d + first, count);
+    add(of_motion, count, x * (rows - inertia * x));
+  });
+  in_lanes(2 * size, [&](int k, int count) { store(turn + k, turn_of(spin, position, k, count)); });
+  multiply(size, i, turn, [&](int first, int count, Lanes rows) {
+    const Lanes x = load_first(d + first, count), s = load_first(turn + first, count),
+                force = rows - inertia * s;
+    add(of_both, count, x * force);
+    add(of_turn, count, s * force);
+  });
+  ElasticLoss loss;
+  loss.damping = viscous_[i] * model_->blocks[i].elasticity.material_work(position, d);
+  loss.numerical = 0.5 * (of_motion - loss.damping);
+  loss.numerical += of_both - 0.5 * of_turn;
+  return loss;
+}
+
+BlockTerms::ElasticLoss BlockTerms::elastic_loss(const State& state, std::span<const double> d,
+                                                 std::span<const double> spin) {
+  losses_.assign(model_->blocks.size(), {});
+  team_->for_range(losses_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> turn(at(linalg::padded_rows(2 * largest_size_)));
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!model_->moves(i)) continue;
+      const Block& block = model_->blocks[i];
+      losses_[i] = with_known_size(block.size, [&](auto size) {
+        return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data());
+      });
+    }
+  });
+  ElasticLoss loss;
+  for (const ElasticLoss& of_block : losses_) {
+    loss.numerical += of_block.numerical;
+    loss.damping += of_block.damping;
+  }
+  return loss;
+}
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,196 @@
+// What contacts remember for the next step, and where their energy went.
+#include <algorithm>
+#include <cmath>
+
+#include "contact/contact_lanes.h"
+#include "contact/law.h"
+#include "core/index.h"
+#include "coupling/attempt.h"
+#include "coupling/contact_coupling.h"
+#include "model/worth_threads.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+/// n·moved or t·moved of each row, moved: the known part of its r.
+Lanes moved_along(std::span<const Row> rows, bool tangent) {
+  Lanes along{};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    along[i] = dot(tangent ? rows[i].tangent() : rows[i].normal, rows[i].moved);
+  return along;
+}
+
+/// Where the energy of as many contacts as there are lanes went in the step, and how deep they are.
+struct ContactAccounts {
+  contact::SpringLanes::Balance balance;
+  Lanes stored_before{};  ///< J per thickness, at the start
+  Lanes input{};          ///< J per thickness, by what fixed blocks are moved
+  Lanes rotation{};       ///< J per thickness, of the forces over Drive::rotation: no block gets it
+  Lanes penetration{};    ///< m
+  Lanes closed{};         ///< at the end: 1, else 0
+  void add(const ContactAccounts& other);
+  /// Zero where a lane is none of the first `count`.
+  void leave_out_beyond(std::size_t count);
+  void enter(EnergyLedger& ledger) const;
+};
+
+void ContactAccounts::add(const ContactAccounts& other) {
+  balance.stored += other.balance.stored;
+  balance.friction += other.balance.friction;
+  balance.damping += other.balance.damping;
+  balance.numerical += other.balance.numerical;
+  stored_before += other.stored_before;
+  input += other.input;
+  rotation += other.rotation;
+  penetration = largest(penetration, other.penetration);
+  closed += other.closed;
+}
+
+void ContactAccounts::leave_out_beyond(std::size_t count) {
+  if (count >= lane_count) return;
+  for (Lanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
+                       &stored_before, &input, &rotation, &penetration, &closed})
+    *lanes = where(first_lanes(count), *lanes, Lanes{});
+}
+
+void ContactAccounts::enter(EnergyLedger& ledger) const {
+  ledger.friction += sum(balance.friction);
+  ledger.input += sum(input);
+  ledger.damping += sum(balance.damping);
+  ledger.numerical += sum(balance.numerical) + sum(rotation) - sum(stored_before);
+}
+
+/// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
+ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::size_t count,
+                              std::span<contact::Memory> remembered) {
+  const Drive& drive = attempt.drive;
+  const std::span<const contact::Contact> contacts = attempt.contacts.subspan(first, count);
+  const std::span<const Row> rows = std::span(attempt.problem.rows()).subspan(first, count);
+  const SpringArray& springs = attempt.problem.springs();
+  const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
+  const contact::LawLanes law = contact::laws_of(contacts);
+  contact::MemoryLanes memory = contact::memories_of(contacts);
+  Lanes moved_normal{}, moved_shear{}, rotated_normal{}, rotated_shear{};
+  if (drive.moves_contacts()) {
+    moved_normal = moved_along(rows, false);
+    moved_shear = moved_along(rows, true);
+  }
+  for (std::size_t i = 0; i < count && !drive.rotation.empty(); ++i) {
+    rotated_normal[i] = drive.rotation[first + i].x;
+    rotated_shear[i] = drive.rotation[first + i].y;
+  }
+  const Lanes bound = at_first(springs.bound), y = at_first(springs.y), w = at_first(springs.w),
+              slipped = at_first(springs.slipped);
+  const contact::SpringLanes s(contact::SpringLanes::Constants{.normal_stiffness = law.normal_stiffness,
+                                                               .shear_stiffness = law.shear_stiffness,
+                                                               .depth = law.depth,
+                                                               .shear = memory.shear,
+                                                               .bound = bound,
+                                                               .tensile = at_first(springs.floor) < 0.0},
+                               contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
+                                                             at_first(springs.y0) + moved_normal,
+                                                             at_first(springs.w0) - moved_shear + slipped});
+  const Lanes zero{}, normal = s.normal_force(y), shear = s.shear_force(w);
+  const auto closed = s.closed(y), locked = s.locked(w);
+  ContactAccounts accounts{
+      .balance = s.balance(y, w, slipped),
+      .stored_before = memory.stored,
+      .input = -(normal * (moved_normal - rotated_normal) - shear * (moved_shear - rotated_shear)),
+      .rotation = normal * rotated_normal - shear * rotated_shear,
+      .penetration = s.penetration(y),
+      .closed = where(closed, broadcast(1.0), zero)};
+  accounts.leave_out_beyond(count);
+  const Lanes pressure = where(normal > zero, normal, zero);
+  memory.normal_force = pressure;
+  memory.bounding_force = normal;
+  if (!drive.is_static && attempt.model.solver.contact == ContactMethod::penalty) {
+    const Lanes friction = at_first(springs.friction), constant = at_first(springs.constant);
+    const auto slides = closed & ~locked & (friction > zero);
+    const Lanes owed = pressure - (bound - constant) / where(slides, friction, broadcast(1.0));
+    memory.bounding_force = where(slides, pressure + owed, normal);
+  }
+  memory.shear = where(closed, s.elastic_shear(w), zero);
+  memory.stored = accounts.balance.stored;
+  contact::keep(memory, count, [&](std::size_t i) -> contact::Memory& { return remembered[i]; });
+  for (std::size_t i = 0; i < count; ++i) {
+    remembered[i].state = closed[i] == 0   ? contact::State::open
+                          : locked[i] != 0 ? contact::State::locked
+                                           : contact::State::sliding;
+    remembered[i].bonded = contacts[i].memory.bonded;
+    remembered[i].bond_length = contacts[i].memory.bond_length;
+  }
+  return accounts;
+}
+
+/// What is otherwise with an augmented Lagrangian.
+void remember_multiplier(const Attempt& attempt, std::size_t c, std::size_t lane, contact::Memory& memory,
+                         ContactAccounts& accounts) {
+  const contact::Contact& contact = attempt.contacts[c];
+  const Row& row = attempt.problem.rows()[c];
+  const contact::Spring s = spring_of(attempt.problem, contact, c);
+  const double y = attempt.problem.springs().y[c], w = attempt.problem.springs().w[c];
+  const Vec2 r = attempt.relative[c];
+  const contact::Spring::Balance balance = s.rigid_balance(y, w, dot(row.normal, r), dot(row.tangent(), r));
+  accounts.balance.stored[lane] = memory.stored = balance.stored;
+  accounts.balance.friction[lane] = balance.friction;
+  accounts.balance.damping[lane] = balance.damping;
+  accounts.balance.numerical[lane] = balance.numerical;
+  const double penetration = -(contact.gap + dot(row.normal, r));
+  memory.offset = std::max(memory.offset, 0.0);
+  accounts.penetration[lane] = 0.0;
+  memory.multiplier = 0.0;
+  if (accounts.closed[lane] != 0.0) {
+    accounts.penetration[lane] = penetration - memory.offset;
+    memory.multiplier = s.normal_force(y) / contact.normal_stiffness;
+    memory.shear = s.shear_force(w) / contact.shear_stiffness;
+  }
+  memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
+}
+
+ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::size_t last,
+                               contact::CandidateList& list) {
+  ContactAccounts sum;
+  for (std::size_t c = first; c < last; c += lane_count) {
+    const std::size_t count = std::min<std::size_t>(lane_count, last - c);
+    const std::span<contact::Memory> remembered = std::span(list.memory).subspan(c, count);
+    ContactAccounts accounts = remember_some(attempt, c, count, remembered);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (attempt.model.solver.contact != ContactMethod::penalty)
+        remember_multiplier(attempt, c + i, i, remembered[i], accounts);
+      list.track(c + i, attempt.contacts[c + i].candidate);
+    }
+    sum.add(accounts);
+  }
+  return sum;
+}
+
+}  // namespace
+
+CouplingTotals ContactCoupling::account(const Attempt& attempt, std::span<const double> /*spin*/,
+                                        std::size_t /*first*/, std::span<double> /*memory*/,
+                                        State& state) const {
+  const std::size_t contacts = attempt.contacts.size();
+  // What was stored in contacts that have ended, a vertex that left its edge, is lost.
+  state.ledger.numerical += state.contact_energy;
+  state.contacts.make_room(contacts);
+  // Piece by piece, which are the same for any number of threads.
+  constexpr std::size_t size = 64 * lane_count;
+  std::vector<ContactAccounts> pieces((contacts + size - 1) / size);
+  attempt.team.for_range(
+      pieces.size(), contacts_worth_threads / size, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+          pieces[p] = remember_piece(attempt, p * size, std::min(contacts, (p + 1) * size), state.contacts);
+      });
+  ContactAccounts total;
+  for (const ContactAccounts& accounts : pieces) total.add(accounts);
+  total.enter(state.ledger);
+  state.contact_energy = sum(total.balance.stored);
+  CouplingTotals totals;
+  for (std::size_t i = 0; i < lane_count; ++i)
+    totals.penetration = std::max(totals.penetration, total.penetration[i]);
+  totals.closed = static_cast<int>(sum(total.closed));
+  return totals;
+}
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,186 @@
+#include "coupling/contact_coupling.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <tuple>
+
+#include "contact/contact_lanes.h"
+#include "core/index.h"
+#include "coupling/points.h"
+#include "coupling/row_owners.h"
+#include "coupling/step_problem.h"
+#include "model/worth_threads.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+/// u of the vertex of a row less that of the point of its edge, for increment D.
+Vec2 relative(const Points& points, const Row& row, std::span<const double> d) {
+  return points.displacement(row.vertex, d) -
+         lerp(points.displacement(row.from, d), points.displacement(row.to, d), row.position);
+}
+
+/// m, Δt times the velocity at the start of the step of a fixed block that is moved. What it goes in a step is the mean velocity of that.
+Vec2 moved_at_start(const Model& model, const State& state, const Drive& drive, std::size_t b) {
+  if (drive.prescribed.empty() || model.moves(b)) return {};
+  const Block& block = model.blocks[b];
+  const Vec2 before =
+      Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
+  return 0.5 * (drive.prescribed[b] + drive.step * before);
+}
+
+/// m along the tangent: what the sides of a contact that slides go against each other in the step until they have the same velocity.
+double way_to_rest(const Model& model, const State& state, const Drive& drive, const Points& points,
+                   const contact::Contact& contact, const Row& row) {
+  const Integrator& rule = drive.rule[at(row.unknown_a >= 0 ? contact.block_a : contact.block_b)];
+  const double dt = drive.step;
+  Vec2 way = rule.rest_share() * (dt * relative(points, row, state.velocity) +
+                                  moved_at_start(model, state, drive, at(contact.block_a)) -
+                                  moved_at_start(model, state, drive, at(contact.block_b)));
+  if (rule.rest_share_of_acceleration() != 0.0)
+    way += rule.rest_share_of_acceleration() * dt * dt * relative(points, row, state.acceleration);
+  const double along = dot(row.tangent(), way);
+  return along * contact.memory.shear > 0.0 ? along : 0.0;
+}
+
+/// The same of several contacts, zero of those that do not slide. Their springs are not to hold them before: what was left of the
+/// velocity would be sent back, and swing at the frequency of the steps.
+Lanes ways_to_rest(const Model& model, const State& state, const Drive& drive, const Points& points,
+                   std::span<const contact::Contact> contacts, std::span<const Row> rows) {
+  Lanes ways{};
+  if (drive.is_static || model.solver.contact != ContactMethod::penalty) return ways;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].memory.state == contact::State::sliding)
+      ways[i] = way_to_rest(model, state, drive, points, contacts[i], rows[i]);
+  }
+  return ways;
+}
+
+/// Of as many contacts as there are lanes, or fewer, with their rows; the first of them is contact `first`.
+void build_springs(const Model& model, const State& state, const Drive& drive,
+                   std::span<const contact::Contact> contacts, std::size_t first, const CouplingRows& out) {
+  SpringArray& springs = out.springs;
+  const std::span<const Row> rows = out.rows.subspan(first, contacts.size());
+  const contact::LawLanes law = contact::laws_of(contacts);
+  const contact::MemoryLanes memory = contact::memories_of(contacts);
+  const Lanes a = contact::lanes_of(
+      contacts, [&](const contact::Contact& c) { return out.points.body(at(c.block_a)).mass; });
+  const Lanes b = contact::lanes_of(
+      contacts, [&](const contact::Contact& c) { return out.points.body(at(c.block_b)).mass; });
+  const Lanes mass = where(a == 0.0, b, where(b == 0.0, a, a * b / (a + b)));
+  const auto fused = contact::lanes_where(contacts, [](const contact::Contact& c) { return c.fused; });
+  const auto bonded =
+      contact::lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
+  const auto tensile = fused | (bonded & (law.tension > 0.0));
+  const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model.solver.contact_damping / drive.step);
+  const Lanes normal = memory.bounding_normal(),
+              constant = law.cohesion + law.friction * (drive.owed_share * memory.owed());
+  const Lanes bound =
+      where(fused, broadcast(HUGE_VAL), contact::shear_strength(law.friction, normal, constant));
+  const contact::SpringLanes spring(contact::SpringLanes::Constants{
+      law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
+      damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
+  const std::size_t count = contacts.size();
+  const auto keep = [&](std::vector<double>& numbers, Lanes v) {
+    if (count == lane_count) return store(&numbers[first], v);
+    store_first(&numbers[first], v, static_cast<int>(count));
+  };
+  keep(springs.kn, spring.normal_stiffness());
+  keep(springs.ks, spring.shear_stiffness());
+  keep(springs.bound, bound);
+  keep(springs.floor, where(tensile, broadcast(-HUGE_VAL), Lanes{}));
+  keep(springs.friction, where(fused, broadcast(-1.0), law.friction));
+  keep(springs.constant, constant);
+  // The branches of the last step. What is fused never slides, whatever it did.
+  const auto was = [&](contact::State what) {
+    return contact::lanes_where(contacts, [&](const contact::Contact& c) { return c.memory.state == what; });
+  };
+  const auto slips = (bound > 0.0) & ~(was(contact::State::locked) | fused),
+             forward = slips & (spring.shear() > 0.0), backward = slips & (spring.shear() < 0.0),
+             none = ~(bound > 0.0) | (slips & ~forward & ~backward);
+  springs.set_branches(first, count,
+                       SpringArray::codes_of(tensile | ~was(contact::State::open), none, forward, backward));
+  const Lanes slipped = ways_to_rest(model, state, drive, out.points, contacts, rows);
+  keep(springs.slipped, slipped);
+  Lanes y = spring.depth(), w = spring.shear() - slipped;
+  if (drive.moves_contacts()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      y[i] -= dot(rows[i].normal, rows[i].moved);
+      w[i] += dot(rows[i].tangent(), rows[i].moved);
+    }
+  }
+  keep(springs.y0, y);
+  keep(springs.y, y);
+  keep(springs.w0, w);
+  keep(springs.w, w);
+}
+
+}  // namespace
+
+RowFacts ContactCoupling::build(const Model& model, const State& state, const Drive& drive,
+                                std::span<const double> /*memory*/, CouplingRows out) const {
+  std::atomic<bool> may_break = false, lacks_room = false, has_distant = false;
+  const auto of_some = [&](std::size_t begin, std::size_t end) {
+    RowFacts facts;
+    for (std::size_t first = begin; first < end; first += lane_count) {
+      const std::size_t last = std::min(first + lane_count, end);
+      for (std::size_t c = first; c < last; ++c) facts |= build_row(drive, c, out);
+      build_springs(model, state, drive, contacts_.subspan(first, last - first), first, out);
+    }
+    if (facts.may_break) may_break = true;
+    if (facts.lacks_room) lacks_room = true;
+    if (facts.has_distant) has_distant = true;
+  };
+  if (for_contacts_) {
+    for_contacts_(of_some);
+  } else {
+    out.team.for_range(contacts_.size(), contacts_worth_threads, of_some);
+  }
+  return {may_break, lacks_room, has_distant};
+}
+
+RowFacts ContactCoupling::build_row(const Drive& drive, std::size_t c, const CouplingRows& out) const {
+  const contact::Contact& contact = contacts_[c];
+  Row& row = out.rows[c];
+  row.vertex = static_cast<std::uint32_t>(contact.vertex);
+  std::tie(row.from, row.to) = out.points.place_contact(contact, c);
+  row.position = contact.position;
+  row.unknown_a = out.points.body(at(contact.block_a)).unknown;
+  row.unknown_b = out.points.body(at(contact.block_b)).unknown;
+  row.pair = pairs_[at(contact.candidate)];
+  row.normal = contact.normal;
+  row.moved = drive.prescribed_between(contact);
+  if (!drive.rotation.empty())
+    row.moved += drive.rotation[c].x * row.normal + drive.rotation[c].y * row.tangent();
+  out.owners.set(c, row.unknown_a, row.unknown_b);
+  return {contact.memory.bonded && !contact.fused, row.pair == Row::without_room,
+          std::abs(row.position - 0.5) > 1.0};
+}
+
+contact::Spring spring_of(const StepProblem& problem, const contact::Contact& contact, std::size_t c) {
+  const Row& row = problem.rows()[c];
+  const SpringArray& springs = problem.springs();
+  return {{.normal_stiffness = contact.normal_stiffness,
+           .shear_stiffness = contact.shear_stiffness,
+           .depth = contact.depth,
+           .shear = contact.memory.shear,
+           .bound = springs.bound[c],
+           .tensile = springs.is_tensile(c)},
+          {springs.kn[c], springs.ks[c], springs.y0[c] + dot(row.normal, row.moved),
+           springs.w0[c] - dot(row.tangent(), row.moved) + springs.slipped[c]}};
+}
+
+double reduced_mass(const Points& points, const contact::Contact& c) {
+  const double a = points.body(at(c.block_a)).mass, b = points.body(at(c.block_b)).mass;
+  return a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
+}
+
+double inertia_between(const Model& model, const StepProblem& problem, const contact::Contact& c) {
+  const std::size_t moves = at(model.blocks[at(c.block_a)].fixed ? c.block_b : c.block_a);
+  return reduced_mass(problem.points(), c) * problem.terms().inertia(moves) /
+         model.blocks[moves].material.density;
+}
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,60 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "contact/detection.h"
+#include "contact/law.h"
+#include "core/lanes.h"
+#include "coupling/coupling.h"
+#include "model/drive.h"
+#include "model/model.h"
+#include "model/state.h"
+
+namespace keyblock::dynamics {
+
+class StepProblem;
+
+/// The contacts of joints, the first kind of coupling: a row per contact, with the springs of its joint law. Contacts are found anew in
+/// every step; what they remember stands with their candidates (State::contacts).
+class ContactCoupling final : public Coupling {
+ public:
+  /// Calls of_some(first, last) for all contacts, piece by piece, each when what build() reads of it is known; threads may do so at once.
+  using ForContacts = std::function<void(const contact::Detection::OfSome& of_some)>;
+
+  /// pairs: Row::pair of every candidate of contact. for_contacts: {} where all contacts are known.
+  void begin_step(std::span<const contact::Contact> contacts, std::span<const int> pairs,
+                  ForContacts for_contacts) {
+    contacts_ = contacts;
+    pairs_ = pairs;
+    for_contacts_ = std::move(for_contacts);
+  }
+
+  [[nodiscard]] std::size_t rows() const override { return contacts_.size(); }
+  [[nodiscard]] RowKey key(std::size_t row) const override {
+    return {contacts_[row].vertex, contacts_[row].edge};
+  }
+  RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
+                 CouplingRows out) const override;
+  /// Memory of contacts too, in State::contacts.
+  CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
+                         std::span<double> memory, State& state) const override;
+
+ private:
+  RowFacts build_row(const Drive& drive, std::size_t c, const CouplingRows& out) const;
+
+  std::span<const contact::Contact> contacts_;
+  std::span<const int> pairs_;
+  ForContacts for_contacts_;
+};
+
+/// The spring of contact c in a step, at the start of the step where the `memory` of the contact has it.
+[[nodiscard]] contact::Spring spring_of(const StepProblem& problem, const contact::Contact& contact,
+                                        std::size_t c);
+/// kg/m, of the two blocks of a contact; fixed ones count as infinite.
+[[nodiscard]] double reduced_mass(const Points& points, const contact::Contact& c);
+/// N/m per thickness, inertia of the two blocks of a contact against each other in a step.
+[[nodiscard]] double inertia_between(const Model& model, const StepProblem& problem,
+                                     const contact::Contact& c);
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,23 @@
+#include "coupling/coupling.h"
+
+#include <algorithm>
+
+#include "model/model.h"
+
+namespace keyblock::dynamics {
+
+int pair_in(std::span<const std::pair<int, int>> pattern, int unknown_a, int unknown_b) {
+  if (unknown_a < 0 || unknown_b < 0) return Row::of_fixed;
+  const std::pair<int, int> pair = std::minmax(unknown_a, unknown_b);
+  const auto found = std::lower_bound(pattern.begin(), pattern.end(), pair);
+  if (found == pattern.end() || *found != pair) return Row::without_room;
+  return static_cast<int>(found - pattern.begin());
+}
+
+std::vector<int> held_blocks(const Model& model) {
+  std::vector<int> blocks;
+  for (const auto& coupling : model.couplings) coupling->add_held_blocks(blocks);
+  return blocks;
+}
+
+}  // namespace keyblock::dynamics

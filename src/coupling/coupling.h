@@ -1,0 +1,125 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "coupling/row.h"
+#include "coupling/spring_array.h"
+
+namespace keyblock::dynamics {
+
+struct Attempt;
+class BlockTerms;
+struct Drive;
+struct Model;
+class Points;
+class RowOwners;
+struct State;
+
+/// A material point of a block, by the block's basis functions there.
+struct MaterialPoint {
+  int block = 0;
+  std::vector<double> phi;  ///< N values
+};
+
+/// What some rows of a step are, that all of the problem asks for.
+struct RowFacts {
+  bool may_break = false;    ///< there are bonds that may break in this step
+  bool lacks_room = false;   ///< the solver's pattern does not have the pair of blocks
+  bool has_distant = false;  ///< the vertex is beyond an end of its edge by more than half of the edge
+  RowFacts& operator|=(const RowFacts& other) {
+    may_break |= other.may_break;
+    lacks_room |= other.lacks_room;
+    has_distant |= other.has_distant;
+    return *this;
+  }
+};
+
+/// What the rows of a coupling are together at the end of a step.
+struct CouplingTotals {
+  double penetration = 0.0;  ///< m, largest depth of a contact
+  int closed = 0;            ///< contacts
+  CouplingTotals& operator+=(const CouplingTotals& other) {
+    penetration = std::max(penetration, other.penetration);
+    closed += other.closed;
+    return *this;
+  }
+};
+
+/// Where a coupling writes its rows.
+struct CouplingRows {
+  std::size_t first;     ///< its first row in the problem
+  std::span<Row> rows;   ///< its own rows
+  SpringArray& springs;  ///< of all rows: those of rows[k] stand at first + k
+  Points& points;
+  RowOwners& owners;
+  ThreadTeam& team;
+};
+
+/// A kind of energy between two blocks, or between a block and the ground: contacts of joints, supports, springs between points. It is
+/// part of what a step minimizes, in one of two ways (docs/theory.md, section "Couplings"):
+///
+///   - *terms*: ½ Dᵀ K D − fᵀ D of single blocks, added to H and b (BlockTerms);
+///   - *rows*: the potential of two springs each, which act on the relative displacement of two points (Row, SpringArray).
+///
+/// Its description does not change during a run. What it remembers from step to step stands in State, so that a run that is resumed knows
+/// it: `memory_size` numbers, which are zero before the first step.
+class Coupling {
+ public:
+  using BlockPairs = std::vector<std::pair<int, int>>;
+  /// Names a row from step to step.
+  using RowKey = std::pair<int, int>;
+
+  Coupling() = default;
+  Coupling(const Coupling&) = delete;
+  Coupling& operator=(const Coupling&) = delete;
+  virtual ~Coupling() = default;
+
+  /// Material points that the rows connect: in the problem, Points::material_point.
+  [[nodiscard]] virtual std::span<const MaterialPoint> points() const { return {}; }
+  /// Adds the pairs of blocks that the matrix of a step needs room for.
+  virtual void add_pairs(BlockPairs& /*pairs*/) const {}
+  [[nodiscard]] virtual std::size_t memory_size() const { return 0; }
+
+  /// Adds its terms to those of the blocks.
+  virtual void add_terms(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
+                         BlockTerms& /*terms*/) const {}
+  /// Number of its rows in the step at hand.
+  [[nodiscard]] virtual std::size_t rows() const { return 0; }
+  /// Of a row, among its own rows; the first number is not negative.
+  [[nodiscard]] virtual RowKey key(std::size_t row) const { return {0, static_cast<int>(row)}; }
+  /// Writes its rows and their springs, unstretched by D.
+  virtual RowFacts build(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
+                         std::span<const double> /*memory*/, CouplingRows /*out*/) const {
+    return {};
+  }
+
+  /// Before blocks are moved: where its energy went in the step, into the ledger, and what it stores at the end as the step has it, into
+  /// the energy of its kind in the state; what it remembers. `first`: its first row. spin: rad, by which the step turns each block.
+  virtual CouplingTotals account(const Attempt& /*attempt*/, std::span<const double> /*spin*/,
+                                 std::size_t /*first*/, std::span<double> /*memory*/,
+                                 State& /*state*/) const {
+    return {};
+  }
+  /// J per thickness, that it stores where blocks are.
+  [[nodiscard]] virtual double stored_energy(const Model& /*model*/, const State& /*state*/, double /*time*/,
+                                             std::span<const double> /*memory*/) const {
+    return 0.0;
+  }
+
+  /// Adds the blocks that it holds to the ground.
+  virtual void add_held_blocks(std::vector<int>& /*blocks*/) const {}
+  /// Adds to the forces of blocks, N per thickness, by what its stiffness multiplies of a coordinate of this `extent`, m: their rounding
+  /// error is a few ε of it.
+  virtual void add_rounding_forces(const Model& /*model*/, double /*extent*/,
+                                   std::span<double> /*force*/) const {}
+};
+
+/// Row::pair of two blocks, given by Block::unknown, in a pattern (State::pattern).
+[[nodiscard]] int pair_in(std::span<const std::pair<int, int>> pattern, int unknown_a, int unknown_b);
+/// The blocks that couplings hold to the ground.
+[[nodiscard]] std::vector<int> held_blocks(const Model& model);
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,40 @@
+#pragma once
+#include <vector>
+
+#include "coupling/coupling.h"
+#include "loading/time_table.h"
+
+namespace keyblock::dynamics {
+
+/// A spring from a material point to the ground in one direction; edges are many of them, with Gauss weights.
+struct GroundSpring {
+  int block = 0;
+  int axis = 0;               ///< 0: x, 1: y
+  std::vector<double> phi;    ///< N values at the point
+  double anchor = 0.0;        ///< m, coordinate of the point at the start
+  double stiffness = 0.0;     ///< N/m per thickness
+  loading::TimeTable motion;  ///< m; empty: none
+
+  /// Coordinate of the ground end at a time.
+  [[nodiscard]] double target(double time) const { return anchor + (motion.empty() ? 0.0 : motion(time)); }
+};
+
+/// Supports: a coupling of single blocks with the ground, by terms.
+class GroundSprings final : public Coupling {
+ public:
+  explicit GroundSprings(std::vector<GroundSpring> springs) : springs_(std::move(springs)) {}
+
+  void add_terms(const Model& model, const State& state, const Drive& drive,
+                 BlockTerms& terms) const override;
+  CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
+                         std::span<double> memory, State& state) const override;
+  [[nodiscard]] double stored_energy(const Model& model, const State& state, double time,
+                                     std::span<const double> memory) const override;
+  void add_held_blocks(std::vector<int>& blocks) const override;
+  void add_rounding_forces(const Model& model, double extent, std::span<double> force) const override;
+
+ private:
+  std::vector<GroundSpring> springs_;
+};
+
+}  // namespace keyblock::dynamics

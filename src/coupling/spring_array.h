@@ -1,0 +1,184 @@
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "core/lanes.h"
+#include "core/parallel.h"
+#include "model/worth_threads.h"
+
+namespace keyblock::dynamics {
+
+/// The springs of all contacts of a step (contact::Spring), by component: what an open-close iteration reads of them and how far they
+/// are stretched. Normal and shear spring of contact c give
+///
+///     N = k_n y  where y > floor, else 0          T = clamp(k_s w, ±bound)
+///
+/// with penetration y and shear displacement w, and floor −∞ for a bond, which also pulls.
+class SpringArray {
+ public:
+  enum class Shear : std::int8_t { backward = -1, held = 0, forward = 1, none = 2 };
+  /// The branch of the two piecewise linear laws that a contact is on.
+  struct Branch {
+    bool closed = false;        ///< the normal spring acts
+    Shear shear = Shear::none;  ///< held: the shear spring acts; forward, backward: at the bound; none: T = 0
+    /// Whether the same springs act.
+    [[nodiscard]] bool same_springs(Branch other) const {
+      return closed == other.closed && (shear == Shear::held) == (other.shear == Shear::held);
+    }
+    friend bool operator==(Branch, Branch) = default;
+  };
+  static_assert(sizeof(Branch) == sizeof(std::uint16_t) && std::has_unique_object_representations_v<Branch>);
+  /// N and T.
+  struct Force {
+    double normal = 0.0, shear = 0.0;
+    [[nodiscard]] bool is_zero() const { return normal == 0.0 && shear == 0.0; }
+    friend Force operator-(Force a, Force b) { return {a.normal - b.normal, a.shear - b.shear}; }
+  };
+
+  void resize(std::size_t n) {
+    size_ = n;
+    for (std::vector<double>* v :
+         {&kn, &ks, &bound, &floor, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
+      v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
+    branch.resize(n);
+    bounds_updated = false;
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// tensile: a bond, which pulls.
+  void set_law(std::size_t c, double largest_shear, bool tensile) {
+    bound[c] = largest_shear;
+    floor[c] = tensile ? -HUGE_VAL : 0.0;
+  }
+  [[nodiscard]] bool is_tensile(std::size_t c) const { return floor[c] < 0.0; }
+
+  /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
+  void shift(std::size_t c, double penetration, double shear) {
+    y0[c] += penetration;
+    w0[c] += shear;
+    y[c] += penetration;
+    w[c] += shear;
+  }
+  /// The shear spring holds from where the step begins, not from where a velocity ends (StepProblem::ways_to_rest).
+  void hold_from_start(std::size_t c) {
+    shift(c, 0.0, slipped[c]);
+    slipped[c] = 0.0;
+  }
+  /// Goes on along the direction of search; `branch` stays that of where it was.
+  void go(double alpha, std::size_t begin, std::size_t end) {
+    const auto add = [&](std::vector<double>& to, const std::vector<double>& change, std::size_t c,
+                         int count) {
+      store_first(&to[c], load_first(&to[c], count) + alpha * load_first(&change[c], count), count);
+    };
+    in_lanes(static_cast<int>(end - begin), [&](int first, int count) {
+      add(y, dy, begin + static_cast<std::size_t>(first), count);
+      add(w, dw, begin + static_cast<std::size_t>(first), count);
+    });
+  }
+
+  [[nodiscard]] Branch branch_at(std::size_t c, double penetration, double displacement) const {
+    const double elastic = ks[c] * displacement;
+    return {penetration > floor[c], bound[c] <= 0.0       ? Shear::none
+                                    : elastic > bound[c]  ? Shear::forward
+                                    : elastic < -bound[c] ? Shear::backward
+                                                          : Shear::held};
+  }
+  /// As codes, of as many contacts as there are lanes; `held` where the shear spring is none of the others.
+  [[nodiscard]] static LaneCondition codes_of(LaneCondition closed, LaneCondition none, LaneCondition forward,
+                                              LaneCondition backward) {
+    const auto code = [](Branch p) { return std::int64_t{std::bit_cast<std::uint16_t>(p)}; };
+    return (closed & code({true, Shear::held})) | (none & code({false, Shear::none})) |
+           (forward & code({false, Shear::forward})) | (backward & code({false, Shear::backward}));
+  }
+  /// Those of `count` contacts from c on.
+  void set_branches(std::size_t c, std::size_t count, LaneCondition branches) {
+    std::uint16_t codes[lane_count];
+    store_codes(codes, branches);
+    std::memcpy(static_cast<void*>(&branch[c]), &codes, count * sizeof(Branch));
+  }
+  /// branch_at of as many contacts as there are lanes, from c on.
+  [[nodiscard]] LaneCondition branches_at(std::size_t c, Lanes penetration, Lanes displacement) const {
+    const Lanes elastic = load(&ks[c]) * displacement, most = load(&bound[c]);
+    const auto none = most <= 0.0, forward = ~none & (elastic > most),
+               backward = ~none & ~forward & (elastic < -most);
+    return codes_of(penetration > load(&floor[c]), none, forward, backward);
+  }
+  /// Whether one of them leaves its `branch` by α along the direction of search; beyond the last one it may say so of none.
+  [[nodiscard]] bool any_leaves(std::size_t c, double alpha) const {
+    const Lanes a = broadcast(alpha);
+    const auto now = branches_at(c, load(&y[c]) + a * load(&dy[c]), load(&w[c]) + a * load(&dw[c]));
+    std::uint16_t codes[lane_count] = {};
+    if (c + lane_count <= size_) {
+      std::memcpy(&codes, &branch[c], sizeof(codes));
+    } else {
+      std::memcpy(&codes, &branch[c], (size_ - c) * sizeof(Branch));
+    }
+    return any(now != lane_codes(codes));
+  }
+  /// Stretches the springs of `count` contacts, at most as many as there are lanes, from c on, by a displacement of the two sides against
+  /// each other along normal and tangent.
+  void stretch(std::size_t c, std::size_t count, Lanes normal, Lanes tangent) {
+    const Lanes penetration = load(&y0[c]) - normal, displacement = load(&w0[c]) + tangent;
+    store_first(&y[c], penetration, static_cast<int>(count));
+    store_first(&w[c], displacement, static_cast<int>(count));
+    set_branches(c, count, branches_at(c, penetration, displacement));
+  }
+  [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
+    return {penetration > floor[c] ? kn[c] * penetration : 0.0,
+            std::clamp(ks[c] * displacement, -bound[c], bound[c])};
+  }
+  [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
+  /// N per thickness, of the contact that presses or pulls most; 0: none does.
+  [[nodiscard]] double largest_normal_force(ThreadTeam& team) const {
+    constexpr std::size_t width = lane_count;
+    return largest_of(
+        team, (size_ + width - 1) / width, contacts_worth_threads / width, [&](std::size_t group) {
+          const std::size_t c = group * width;
+          const Lanes zero{}, penetration = load(&y[c]),
+                              force = where(penetration > load(&floor[c]), load(&kn[c]) * penetration, zero);
+          return largest(where(first_lanes(size_ - c), largest(force, -force), zero));
+        });
+  }
+  /// N/m per thickness, of the stiffest normal spring; 0: there is none.
+  [[nodiscard]] double largest_stiffness(ThreadTeam& team) const {
+    constexpr std::size_t width = lane_count;
+    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width,
+                      [&](std::size_t group) {
+                        const std::size_t c = group * width;
+                        return largest(where(first_lanes(size_ - c), load(&kn[c]), Lanes{}));
+                      });
+  }
+  /// On the straight line that goes on from a branch.
+  [[nodiscard]] Force force_on(std::size_t c, Branch p, double penetration, double displacement) const {
+    return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
+                                                  : p.shear == Shear::none
+                                                      ? 0.0
+                                                      : static_cast<int>(p.shear) * bound[c]};
+  }
+  /// Stiffness of a branch.
+  [[nodiscard]] double normal_stiffness(std::size_t c, Branch p) const { return p.closed ? kn[c] : 0.0; }
+  [[nodiscard]] double shear_stiffness(std::size_t c, Branch p) const {
+    return p.shear == Shear::held ? ks[c] : 0.0;
+  }
+
+  std::vector<double> kn, ks;        ///< N/m per thickness
+  std::vector<double> bound, floor;  ///< N per thickness; m
+  std::vector<double> friction;      ///< μ; −1: the bound is not Coulomb's
+  /// N per thickness, of the bound μN + this: the cohesion of a bond, the friction that a contact owes.
+  std::vector<double> constant;
+  std::vector<double> y0, w0;   ///< m, at D = 0
+  std::vector<double> slipped;  ///< m, slip of the step that w does not have
+  std::vector<double> y, w;     ///< m, now
+  std::vector<double> dy, dw;   ///< m, of the direction of search
+  std::vector<Branch> branch;   ///< of (y, w)
+  bool bounds_updated = false;  ///< bounds are no more those of the last step
+
+ private:
+  std::size_t size_ = 0;
+};
+
+}  // namespace keyblock::dynamics

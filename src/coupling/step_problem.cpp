@@ -1,0 +1,119 @@
+#include "coupling/step_problem.h"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+
+#include "core/known_size.h"
+#include "core/lanes.h"
+
+namespace keyblock::dynamics {
+
+void StepProblem::begin(const Model& model) {
+  model_ = &model;
+  points_.begin(model);
+  block_of_unknown_.clear();
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (model.blocks[b].unknown >= 0) block_of_unknown_.push_back(b);
+  }
+}
+
+void StepProblem::build(const Model& model, const State& state, const Drive& drive, const Coupling& contacts,
+                        ThreadTeam& team) {
+  team_ = &team;
+  is_static_ = drive.is_static;
+  if (model_ != &model) begin(model);
+  terms_.build(model, state, drive, team);
+  parts_.clear();
+  std::size_t rows = 0;
+  const auto add_part = [&](const Coupling& coupling) {
+    parts_.push_back({&coupling, rows});
+    rows += coupling.rows();
+  };
+  add_part(contacts);
+  for (const auto& coupling : model.couplings) add_part(*coupling);
+  rows_.resize(rows);
+  springs_.resize(rows);
+  points_.resize(rows);
+  owners_.resize(rows, team);
+  facts_ = {};
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const auto [coupling, first] = parts_[k];
+    const std::span<const double> memory = k == 0 ? std::span<const double>() : state.couplings[k - 1];
+    facts_ |= coupling->build(
+        model, state, drive, memory,
+        {first, std::span(rows_).subspan(first, coupling->rows()), springs_, points_, owners_, team});
+  }
+  owners_.find_ranges(team);
+}
+
+void StepProblem::name_rows(std::vector<Coupling::RowKey>& keys) const {
+  keys.clear();
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    for (std::size_t row = 0; row < parts_[k].coupling->rows(); ++row) {
+      const auto [first, second] = parts_[k].coupling->key(row);
+      keys.emplace_back(first - static_cast<int>(k), second);
+    }
+  }
+}
+
+void StepProblem::find_pairs(const State& state) {
+  for (Row& row : rows_) row.pair = pair_in(state.pattern, row.unknown_a, row.unknown_b);
+  facts_.lacks_room = false;
+}
+
+void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>& a,
+                             std::vector<double>& b) const {
+  a.assign(2 * at(points_.body_of(row.vertex).size), 0.0);
+  b.assign(2 * at(points_.body_of(row.from).size), 0.0);
+  points_.add_force(row.vertex, direction, a.data());
+  points_.add_force(row.from, -(1.0 - row.position) * direction, b.data());
+  points_.add_force(row.to, -row.position * direction, b.data());
+}
+
+void StepProblem::add_gathered_forces(std::span<const Vec2> forces, std::span<double> out) const {
+  team_->for_range(blocks(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) points_.add_forces(b, forces, out);
+  });
+}
+
+void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2> forces,
+                                std::span<double> g) const {
+  team_->for_range(blocks(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t first = terms_.coefficients(i).first, last = terms_.coefficients(i).second;
+      with_known_size(model_->moves(i) ? points_.body(i).size : 0, [&](auto size) {
+        if constexpr (std::is_same_v<decltype(size), int>) {
+          terms_.multiply(i, d, g);
+          for (std::size_t k = first; k < last; ++k) g[k] -= terms_.right()[k];
+          points_.add_forces(i, forces, g);
+        } else {
+          std::array<Lanes, (2 * at(size) + lane_count - 1) / lane_count> terms;
+          terms_.multiply(size, i, &d[first], [&](int k, int count, Lanes rows) {
+            terms[at(k / lane_count)] = rows - load_first(&terms_.right()[first + at(k)], count);
+          });
+          const auto start = [&](int k) {
+            const Lanes& of = terms[at(2 * k / lane_count)];
+            return Pair{of[2 * k % lane_count], of[2 * k % lane_count + 1]};
+          };
+          points_.add_forces(size, i, forces, start, &g[first]);
+        }
+      });
+    }
+  });
+}
+
+void StepProblem::gradient(std::span<const double> d, std::span<double> g) const {
+  for (std::size_t i = 0; i < blocks(); ++i) terms_.multiply(i, d, g);
+  for (std::size_t k = 0; k < g.size(); ++k) g[k] -= terms_.right()[k];
+  for (std::size_t c = 0; c < rows_.size(); ++c) {
+    const Row& row = rows_[c];
+    const Vec2 r = relative(row, d);
+    const SpringArray::Force force =
+        springs_.force_at(c, springs_.y0[c] - dot(row.normal, r), springs_.w0[c] + dot(row.tangent(), r));
+    if (!force.is_zero()) add_force(row, row.gradient(force), g);
+  }
+}
+
+}  // namespace keyblock::dynamics

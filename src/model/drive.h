@@ -1,0 +1,38 @@
+#pragma once
+#include <span>
+
+#include "contact/contact.h"
+#include "geometry/vec2.h"
+#include "model/integrator.h"
+
+namespace keyblock::dynamics {
+
+/// What drives one step.
+struct Drive {
+  double step = 0.0;         ///< s, Δt
+  double end_time = 0.0;     ///< s, at which loads and supports are taken
+  Vec2 ground_acceleration;  ///< m/s², mean over the step
+  double owed_share = 0.0;   ///< length of the last dynamic step over that of this one; static: 0
+  bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
+  /// Static only: factor on the inertia of each block.
+  std::span<const double> inertia_scale;
+  /// Static only: the step is tried, to see how far blocks go. Π is bounded from below whatever its inertia.
+  bool is_trial = false;
+  std::span<const Integrator> rule;  ///< of each block
+  /// m, of each block: what a fixed block is moved by in the step; empty when none is.
+  std::span<const Vec2> prescribed;
+  /// m, of each contact: by how much more than linear in D its vertex is from the point of the edge at the end of the step, as its blocks
+  /// turn, across the edge (x) and, of a bond, along it (y); empty: by nothing.
+  std::span<const Vec2> rotation;
+
+  /// Whether there is a known part of the relative displacement of contacts.
+  [[nodiscard]] bool moves_contacts() const { return !prescribed.empty() || !rotation.empty(); }
+  /// m, what block a is moved by less what block b is.
+  [[nodiscard]] Vec2 prescribed_between(const contact::Contact& c) const {
+    return prescribed.empty() ? Vec2{}
+                              : prescribed[static_cast<std::size_t>(c.block_a)] -
+                                    prescribed[static_cast<std::size_t>(c.block_b)];
+  }
+};
+
+}  // namespace keyblock::dynamics

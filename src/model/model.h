@@ -1,0 +1,82 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "block/basis.h"
+#include "block/elasticity.h"
+#include "block/pose.h"
+#include "contact/surface.h"
+#include "contact/tolerances.h"
+#include "loading/time_table.h"
+#include "model/options.h"
+
+namespace keyblock::dynamics {
+
+class Coupling;
+
+/// One block as mechanics sees it; constant during a run.
+struct Block {
+  // First, and together, what every step reads.
+  std::size_t first =
+      0;         ///< its coefficients start here in State::position: a_0x, a_0y, a_1x, …; fixed blocks last
+  int size = 0;  ///< N, number of basis functions; 2N unknowns
+  int unknown = -1;  ///< number among the blocks that move; −1: fixed
+  bool fixed = false;
+  double area = 0.0;    ///< m², of the reference polygon
+  Vec2 centroid;        ///< m, likewise
+  double radius = 0.0;  ///< m, from the centroid to the farthest vertex
+  Material material;
+  block::Pose pose;
+  block::Elasticity elasticity;
+  Polygon reference;
+  block::Basis basis;
+  int edge_order = 1;  ///< contact divides the edges as for a block of this order at least; 1: it does not
+  /// Force per unit acceleration on coefficient 0, ρ √A; the others feel no uniform body force.
+  [[nodiscard]] double body_force() const { return material.density * std::sqrt(area); }
+  [[nodiscard]] double mass() const { return material.density * area; }
+};
+
+/// A force that follows its block: vector Q of 2N generalized forces times a factor table.
+struct GeneralizedLoad {
+  int block = 0;
+  std::vector<double> force;  ///< N/m per thickness, ∫ φ_k q dΓ
+  loading::TimeTable factor;  ///< empty: 1
+};
+
+/// A fixed block that is moved rigidly by a prescribed displacement.
+struct PrescribedMotion {
+  int block = 0;
+  Vec2 start;               ///< m, centroid before the run
+  loading::TimeTable x, y;  ///< m; empty: none
+
+  /// Where the centroid is at a time.
+  [[nodiscard]] Vec2 centroid(double time) const {
+    return start + Vec2{x.empty() ? 0.0 : x(time), y.empty() ? 0.0 : y(time)};
+  }
+};
+
+/// Everything that does not change during a run but by excavation.
+struct Model {
+  std::vector<Block> blocks;
+  contact::Surface surface;
+  std::vector<Vec2> reference;    ///< position of its vertices
+  std::vector<int> outline_edge;  ///< of its edges: the edge of a polygon it lies on; all count, ring by ring
+  std::vector<contact::JointLaw> laws;
+  std::vector<GeneralizedLoad> loads;
+  std::vector<std::shared_ptr<const Coupling>> couplings;  ///< all except contacts
+  std::vector<PrescribedMotion> motions;
+  std::optional<InSituStress> in_situ;
+  Vec2 gravity;             ///< m/s²
+  double block_size = 1.0;  ///< m, √(mean area of the blocks that move)
+  SolverOptions solver;
+
+  std::size_t unknowns = 0;      ///< coefficients of the blocks that are not fixed; they come first
+  std::size_t coefficients = 0;  ///< of all blocks
+
+  /// Asked for all blocks in every step, of two short arrays.
+  [[nodiscard]] bool moves(std::size_t b) const { return surface.fixed[b] == 0 && surface.present[b] != 0; }
+};
+
+}  // namespace keyblock::dynamics

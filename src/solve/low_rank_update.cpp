@@ -1,0 +1,216 @@
+#include "solve/low_rank_update.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "solve/step_numbers.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+using Force = SpringArray::Force;
+
+/// Takes the force of one spring out of the gradient.
+void leave_out(const StepSystem& system, Iterate& iterate, std::size_t contact, bool normal, double force) {
+  iterate.add_force(system, contact, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0);
+}
+
+bool is_exact(const StepSystem& system, bool is_kept) {
+  return !is_kept && system.solver.low_rank()->is_exact();
+}
+
+}  // namespace
+
+std::vector<std::size_t> LowRankUpdate::contacts() const {
+  std::vector<std::size_t> contacts;
+  for (const Spring spring : updated_) contacts.push_back(spring.contact);
+  return contacts;
+}
+
+bool LowRankUpdate::minimize(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
+                             bool from_zero, OpenCloseResult& result) {
+  if (!iterate_until_done(system, iterate, matrix, is_kept, from_zero, result)) {
+    iterate.place_if_moved(system);
+    iterate.find_gradient(system);
+    return false;
+  }
+  if (is_exact(system, is_kept)) find_rest(system, iterate, matrix);
+  result.changes += updated_.size();
+  return true;
+}
+
+/// Finds the gradient where what the factor gets wrong is to be refined away. `wants`: whether.
+bool LowRankUpdate::refines(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool wants) {
+  if (!wants) return false;
+  iterate.find_gradient(system);
+  leave_out_wanted(system, iterate, matrix);
+  return true;
+}
+
+bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix,
+                                       bool is_kept, bool from_zero, OpenCloseResult& result) {
+  const std::span<double> direction = std::span(iterate.direction).first(system.problem.unknowns());
+  const double enough =
+      (is_kept ? step_numbers::kept_share : step_numbers::linear_share) * system.options.tolerance;
+  if (!begin(system, iterate, matrix, is_kept, enough, from_zero, direction)) return false;
+  go(system, iterate, matrix, direction, result);
+  for (int refinements = 0;;) {
+    if (updated_.size() + wanted_.size() > step_numbers::most_corrected) return false;
+    take_wanted(system, matrix);
+    const std::size_t fresh = wanted_.size();
+    // What the factor gets wrong is refined away at the end, until nothing of it is left, and what that of an earlier step does
+    // along with the first springs that come to be updated.
+    const bool wants = fresh == 0 ? !is_exact(system, is_kept) : is_kept && refinements == 0;
+    const bool fits = !refines(system, iterate, matrix, wants) || iterate.out_of_balance(system) <= enough;
+    if (fits && fresh == 0) return true;
+    if (fits) {
+      std::ranges::fill(direction, 0.0);
+    } else {
+      if (refinements++ == step_numbers::most_refinements) return false;
+      ++result.refinements;
+      iterate.turn_against_gradient(direction.size());
+    }
+    if (!solve(system, matrix, fresh, direction)) return false;
+    go(system, iterate, matrix, direction, result);
+  }
+}
+
+/// The first way from D, into `direction`. False when it is not found.
+bool LowRankUpdate::begin(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
+                          double enough, bool from_zero, std::span<double> direction) {
+  if (!from_zero) {
+    matrix.find_differing(system);
+    find_wanted(system.springs(), matrix);
+    leave_out_wanted(system, iterate, matrix);
+    iterate.turn_against_gradient(direction.size());
+    return solve(system, matrix, 0, direction);
+  }
+  start_on_lines(system, iterate, matrix);
+  if (is_kept || system.solver.low_rank()->is_exact())
+    return solve(system, matrix, updated_.size(), direction);
+  // A long way: what its last digits lack would have springs seem to act otherwise that do not.
+  const Profile::Scope scope(system.profile, Phase::solution);
+  system.solver.solve(direction, std::span(iterate.residual).first(direction.size()),
+                      system.excess_over(enough), linalg::BlockSolver::Residual::estimated);
+  return system.solver.solved();
+}
+
+/// −∇Π at D = 0 into the direction, with all springs on the straight lines of the factored matrix.
+void LowRankUpdate::start_on_lines(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix) {
+  const SpringArray& springs = system.springs();
+  const std::span<const double> right = system.problem.terms().right();
+  std::copy(right.begin(), right.end(), iterate.direction.begin());
+  const auto minus_gradient = [&](std::size_t c) {
+    return -1.0 * system.row(c).gradient(springs.force_on(c, matrix.branch(c), springs.y0[c], springs.w0[c]));
+  };
+  system.problem.add_forces(minus_gradient, iterate.vertex_force, iterate.direction);
+}
+
+/// D ← D + direction; springs that act otherwise than the matrix has them there and are not updated yet, into wanted_.
+void LowRankUpdate::go(const StepSystem& system, Iterate& iterate, StepMatrix& matrix,
+                       std::span<const double> direction, OpenCloseResult& result) {
+  ++result.iterations;
+  const std::span<double> d = iterate.increment;
+  in_lanes(static_cast<int>(direction.size()), [&](int k, int count) {
+    store_first(&d[at(k)], load_first(&d[at(k)], count) + load_first(&direction[at(k)], count), count);
+  });
+  for (const std::size_t b : matrix.free_blocks()) system.problem.terms().solve_alone(b, d);
+  iterate.place(system);
+  matrix.find_differing(system);
+  find_wanted(system.springs(), matrix);
+}
+
+/// The way that the springs on their lines would go, in `direction`, becomes that with the springs that are updated, the last `fresh` of which
+/// are on the straight lines of the matrix so far. False when their forces are not found; none are updated then.
+bool LowRankUpdate::solve(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh,
+                          std::span<double> direction) {
+  linalg::LowRankSolver& halves = *system.solver.low_rank();
+  {
+    const Profile::Scope scope(system.profile, Phase::solution);
+    halves.forward_solve(direction, base_);
+  }
+  if (!find_forces(system, matrix, fresh)) {
+    reset();
+    return false;
+  }
+  const Profile::Scope scope(system.profile, Phase::solution);
+  corrections_.finish(halves, base_, direction);
+  return true;
+}
+
+/// How the forces of the springs that are updated change on the way from D. False when that is not found.
+bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh) {
+  const SpringArray& springs = system.springs();
+  laws_.clear();
+  stretch_.clear();
+  force_.assign(updated_.size(), 0.0);
+  for (std::size_t k = 0; k < updated_.size(); ++k) {
+    const auto [c, normal] = updated_[k];
+    const Force constant = springs.force_on(c, matrix.branch(c), 0.0, 0.0);
+    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D is right.
+    const double in_matrix = normal ? matrix.normal_stiffness(c) : matrix.shear_stiffness(c);
+    const double now = normal ? springs.kn[c] : springs.ks[c];
+    const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
+    stretch_.push_back(scale * (normal ? springs.y[c] : springs.w[c]));
+    Corrections::Law& law = laws_.emplace_back();
+    law.stiffness = stiffness;
+    law.low = normal ? springs.floor[c] : -springs.bound[c];
+    law.high = normal ? HUGE_VAL : springs.bound[c];
+    law.line_stiffness = in_matrix;
+    law.line_force = normal ? constant.normal : constant.shear;
+    const bool is_fresh = k + fresh >= updated_.size();
+    if (!is_fresh) force_[k] = law.excess(stretch_.back());
+    law.line_force += force_[k];
+  }
+  if (!corrections_.solve(*system.solver.low_rank(), base_, laws_, stretch_)) return false;
+  for (std::size_t k = 0; k < updated_.size(); ++k) force_[k] += corrections_.forces()[k];
+  return true;
+}
+
+/// Springs of the contacts that differ from the matrix and are not updated yet.
+void LowRankUpdate::find_wanted(const SpringArray& springs, const StepMatrix& matrix) {
+  wanted_.clear();
+  for (const std::size_t c : matrix.differing()) {
+    const SpringArray::Branch is = springs.branch[c], line = matrix.branch(c);
+    for (const bool normal : {true, false}) {
+      const Spring spring{c, normal};
+      if (normal ? is.closed == line.closed : is.shear == line.shear) continue;
+      if (std::find(updated_.begin(), updated_.end(), spring) == updated_.end()) wanted_.push_back(spring);
+    }
+  }
+}
+
+/// Those in wanted_ are updated from now on.
+void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
+  for (const Spring spring : wanted_) {
+    const Row& row = system.row(spring.contact);
+    system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), part_a_, part_b_);
+    corrections_.add(*system.solver.low_rank(), {row.unknown_a, part_a_}, {row.unknown_b, part_b_});
+    updated_.push_back(spring);
+    matrix.take_hold(system.problem, row);
+  }
+}
+
+/// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.
+void LowRankUpdate::leave_out_wanted(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix) {
+  for (const Spring spring : wanted_) {
+    const Force force = matrix.force_beside(system.springs(), spring.contact);
+    leave_out(system, iterate, spring.contact, spring.normal, spring.normal ? force.normal : force.shear);
+  }
+  if (!wanted_.empty()) iterate.gradient_changed();
+}
+
+/// ∇Π where all but the springs that differ are on the straight lines of a matrix that has been solved exactly: what these do otherwise than
+/// they have been updated to.
+void LowRankUpdate::find_rest(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix) {
+  std::fill(iterate.gradient.begin(), iterate.gradient.end(), 0.0);
+  iterate.gradient_changed();
+  for (const std::size_t c : matrix.differing())
+    iterate.add_force(system, c, matrix.force_beside(system.springs(), c));
+  for (std::size_t k = 0; k < updated_.size(); ++k)
+    leave_out(system, iterate, updated_[k].contact, updated_[k].normal, force_[k]);
+}
+
+}  // namespace keyblock::dynamics

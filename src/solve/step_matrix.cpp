@@ -1,0 +1,133 @@
+#include "solve/step_matrix.h"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "core/index.h"
+
+namespace keyblock::dynamics {
+
+void StepMatrix::assemble(const StepSystem& system) {
+  const SpringArray& springs = system.springs();
+  system.problem.terms().assemble(system.solver);
+  const std::size_t n = springs.size();
+  normal_stiffness_.resize(n);
+  shear_stiffness_.resize(n);
+  places_.resize(n);
+  held_.assign(system.problem.blocks(), 0);
+  free_.clear();
+  branches_ = springs.branch;
+  system.team.for_range(n, contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      normal_stiffness_[c] = springs.normal_stiffness(c, branches_[c]);
+      shear_stiffness_[c] = springs.shear_stiffness(c, branches_[c]);
+      places_[c] = Place(system.row(c));
+    }
+  });
+  for (std::size_t c = 0; c < n; ++c) {
+    if (has_spring(c)) count_held(system, c, 1);
+  }
+  system.problem.add_springs(normal_stiffness_, shear_stiffness_, system.solver);
+  is_assembled_ = true;
+}
+
+bool StepMatrix::update(const StepSystem& system) {
+  const SpringArray& springs = system.springs();
+  const bool turned = !free_.empty();
+  for (const std::size_t b : free_) {
+    system.problem.terms().assemble_block(b, system.solver);
+    system.solver.touch(system.problem.unknown(b));
+  }
+  free_.clear();
+  changes_.clear();
+  find_differing(system);
+  for (const std::size_t c : differing_) {
+    const Branch from = std::exchange(branches_[c], springs.branch[c]), to = branches_[c];
+    if (from.same_springs(to)) continue;
+    const bool had_spring = has_spring(c);
+    const double normal = springs.normal_stiffness(c, to), shear = springs.shear_stiffness(c, to),
+                 normal_before = std::exchange(normal_stiffness_[c], normal),
+                 shear_before = std::exchange(shear_stiffness_[c], shear);
+    if (normal == normal_before && shear == shear_before) continue;
+    const Place now(system.row(c)), before = std::exchange(places_[c], now);
+    if (now == before) {
+      changes_.push_back({c, now, normal - normal_before, shear - shear_before});
+    } else {
+      // Of an earlier step: what it has there is taken away as it was, or the matrix would not stay positive definite.
+      changes_.push_back({c, before, -normal_before, -shear_before});
+      changes_.push_back({c, now, normal, shear});
+    }
+    count_held(system, c, static_cast<int>(has_spring(c)) - static_cast<int>(had_spring));
+    const Row& row = system.row(c);
+    if (row.unknown_a >= 0) system.solver.touch(row.unknown_a);
+    if (row.unknown_b >= 0) system.solver.touch(row.unknown_b);
+  }
+  system.problem.add_springs(changes_, system.solver);
+  return turned || !changes_.empty();
+}
+
+void StepMatrix::find_differing(const StepSystem& system) {
+  constexpr std::size_t group = 32;
+  const SpringArray& springs = system.springs();
+  const auto any_differs_from = [&](std::size_t c) {
+    return std::memcmp(&springs.branch[c], &branches_[c],
+                       std::min(group, branches_.size() - c) * sizeof(Branch)) != 0;
+  };
+  const auto differs = [&](std::size_t c) { return springs.branch[c] != branches_[c]; };
+  find_few<group>(system.team, springs.size(), contacts_worth_threads, any_differs_from, differs, differing_);
+}
+
+std::size_t StepMatrix::count_differing(const SpringArray& springs) const {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < springs.size(); ++c) count += springs.branch[c] != branches_[c] ? 1 : 0;
+  return count;
+}
+
+void StepMatrix::take_branches_with_the_same_springs(const StepSystem& system) {
+  const SpringArray& springs = system.springs();
+  system.team.for_range(springs.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (branches_[c].same_springs(springs.branch[c])) branches_[c] = springs.branch[c];
+    }
+  });
+}
+
+void StepMatrix::carry(std::span<const std::size_t> now, std::size_t gone, std::size_t contacts) {
+  const auto carry_one = [&](auto& of_contact) {
+    std::remove_reference_t<decltype(of_contact)> carried(contacts);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      if (now[k] != gone) carried[now[k]] = of_contact[k];
+    }
+    of_contact = std::move(carried);
+  };
+  carry_one(branches_);
+  carry_one(normal_stiffness_);
+  carry_one(shear_stiffness_);
+  carry_one(places_);
+}
+
+void StepMatrix::find_free_blocks(const StepSystem& system, std::span<const std::size_t> updated) {
+  for (const std::size_t c : updated) count_held(system, c, 1);
+  free_.clear();
+  for (std::size_t b = 0; b < held_.size(); ++b) {
+    if (system.problem.model().moves(b) && held_[at(system.problem.unknown(b))] == 0) free_.push_back(b);
+  }
+  for (const std::size_t c : updated) count_held(system, c, -1);
+}
+
+void StepMatrix::take_hold(const StepProblem& problem, const Row& row) {
+  std::erase_if(free_, [&](std::size_t b) {
+    return problem.unknown(b) == row.unknown_a || problem.unknown(b) == row.unknown_b;
+  });
+}
+
+/// Counts what holds the blocks of a contact.
+void StepMatrix::count_held(const StepSystem& system, std::size_t c, int count) {
+  const Row& row = system.row(c);
+  if (row.unknown_a >= 0) held_[at(row.unknown_a)] += count;
+  if (row.unknown_b >= 0) held_[at(row.unknown_b)] += count;
+}
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,70 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "solve/step_system.h"
+
+namespace keyblock::dynamics {
+
+/// The matrix of a step, ∇²Π on certain branches of the laws of its contacts, in the memory of a linear solver: which springs it has, and
+/// how it comes to have those that act.
+class StepMatrix {
+ public:
+  using Branch = SpringArray::Branch;
+
+  /// At the start of a step; `is_known`: the solver has the matrix of an earlier step, which update() brings to this one.
+  void begin_step(bool is_known) { is_assembled_ = is_known; }
+  /// The next update() makes it anew.
+  void forget() { is_assembled_ = false; }
+  [[nodiscard]] bool is_assembled() const { return is_assembled_; }
+
+  /// Makes it for the branches that the contacts are on.
+  void assemble(const StepSystem& system);
+  /// Brings it to the branches that the contacts are on now, and one of an earlier step to how its free blocks are turned. False when it
+  /// has not changed.
+  bool update(const StepSystem& system);
+
+  /// Of a contact, for which it was made.
+  [[nodiscard]] Branch branch(std::size_t c) const { return branches_[c]; }
+  /// N/m per thickness, of the spring of a contact in it; 0: it has none.
+  [[nodiscard]] double normal_stiffness(std::size_t c) const { return normal_stiffness_[c]; }
+  [[nodiscard]] double shear_stiffness(std::size_t c) const { return shear_stiffness_[c]; }
+  [[nodiscard]] bool has_spring(std::size_t c) const {
+    return normal_stiffness_[c] != 0.0 || shear_stiffness_[c] != 0.0;
+  }
+  /// By how much the force of a contact differs from its straight line in the matrix.
+  [[nodiscard]] SpringArray::Force force_beside(const SpringArray& springs, std::size_t c) const {
+    return springs.force(c) - springs.force_on(c, branches_[c], springs.y[c], springs.w[c]);
+  }
+  /// Finds the contacts that are on another branch than in the matrix.
+  void find_differing(const StepSystem& system);
+  /// As found last.
+  [[nodiscard]] std::span<const std::size_t> differing() const { return differing_; }
+  [[nodiscard]] std::size_t count_differing(const SpringArray& springs) const;
+  /// Where the same springs act the matrix is the same: branches that differ in nothing else are taken for its own.
+  void take_branches_with_the_same_springs(const StepSystem& system);
+  /// What is known by contact goes over to the contacts of another step: now[k] of each of these, `gone` where it went.
+  void carry(std::span<const std::size_t> now, std::size_t gone, std::size_t contacts);
+
+  /// Blocks that no spring of the matrix holds, nor any at `updated` contacts. They may turn fast, which the factor of an earlier step knows
+  /// nothing of, and are solved alone.
+  void find_free_blocks(const StepSystem& system, std::span<const std::size_t> updated);
+  [[nodiscard]] std::span<const std::size_t> free_blocks() const { return free_; }
+  void forget_free_blocks() { free_.clear(); }
+  /// The blocks of this contact are free no more.
+  void take_hold(const StepProblem& problem, const Row& row);
+
+ private:
+  void count_held(const StepSystem& system, std::size_t c, int count);
+
+  std::vector<Branch> branches_;                            ///< per contact
+  std::vector<double> normal_stiffness_, shear_stiffness_;  ///< N/m per thickness, per contact
+  std::vector<Place> places_;                               ///< of these springs
+  std::vector<int> held_;  ///< per unknown block: contacts that have such springs
+  std::vector<std::size_t> free_;
+  std::vector<std::size_t> differing_;
+  std::vector<SpringChange> changes_;  ///< scratch
+  bool is_assembled_ = false;          ///< in this step
+};
+
+}  // namespace keyblock::dynamics
