@@ -50,9 +50,10 @@ struct CouplingTotals {
 
 /// Where a coupling writes its rows.
 struct CouplingRows {
-  std::size_t first;     ///< its first row in the problem
-  std::span<Row> rows;   ///< its own rows
-  SpringArray& springs;  ///< of all rows: those of rows[k] stand at first + k
+  std::size_t first;        ///< its first row in the problem
+  std::size_t first_point;  ///< its first material point
+  std::span<Row> rows;      ///< its own rows
+  SpringArray& springs;     ///< of all rows: those of rows[k] stand at first + k
   Points& points;
   RowOwners& owners;
   ThreadTeam& team;

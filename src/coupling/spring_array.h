@@ -49,6 +49,23 @@ class SpringArray {
   }
   [[nodiscard]] std::size_t size() const { return size_; }
 
+  /// A row of a coupling other than contacts, at D = 0. Both springs push and pull; 0: there is none.
+  struct TwoSided {
+    double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
+    double largest_shear = 0.0;                            ///< N per thickness
+    double normal = 0.0, shear = 0.0;                      ///< m, y₀ and w₀
+  };
+  void set_row(std::size_t c, const TwoSided& row) {
+    kn[c] = row.normal_stiffness;
+    ks[c] = row.shear_stiffness;
+    set_law(c, row.largest_shear, true);
+    friction[c] = -1.0;
+    constant[c] = slipped[c] = 0.0;
+    y0[c] = y[c] = row.normal;
+    w0[c] = w[c] = row.shear;
+    branch[c] = branch_at(c, row.normal, row.shear);
+  }
+
   /// tensile: a bond, which pulls.
   void set_law(std::size_t c, double largest_shear, bool tensile) {
     bound[c] = largest_shear;

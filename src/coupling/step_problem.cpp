@@ -38,12 +38,14 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
   points_.resize(rows);
   owners_.resize(rows, team);
   facts_ = {};
+  std::size_t first_point = 0;
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     const auto [coupling, first] = parts_[k];
     const std::span<const double> memory = k == 0 ? std::span<const double>() : state.couplings[k - 1];
-    facts_ |= coupling->build(
-        model, state, drive, memory,
-        {first, std::span(rows_).subspan(first, coupling->rows()), springs_, points_, owners_, team});
+    facts_ |= coupling->build(model, state, drive, memory,
+                              {first, first_point, std::span(rows_).subspan(first, coupling->rows()),
+                               springs_, points_, owners_, team});
+    first_point += coupling->points().size();
   }
   owners_.find_ranges(team);
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/vec2.h"
 #include "loading/time_table.h"
@@ -33,6 +34,14 @@ struct Support {
   bool along_x = true, along_y = true;
   std::optional<double> stiffness;  ///< N/m per thickness at a point, Pa/m on a stretch; default 1000 × young
   TimeTable motion_x, motion_y;     ///< m, prescribed displacement of the ground end; empty: none
+};
+
+/// A spring between points of two blocks.
+struct Spring {
+  Vec2 from, to;                     ///< its ends, in reference position
+  std::string from_block, to_block;  ///< empty: the first block that holds the point
+  double stiffness = 0.0;            ///< N/m per thickness
+  std::optional<double> yield;       ///< N per thickness, largest force; empty: none
 };
 
 }  // namespace keyblock::loading

@@ -124,6 +124,11 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   for (loading::Support& support : setup.supports) {
     for (Vec2& p : support.points) p -= origin;
   }
+  setup.springs = scenario.springs;
+  for (loading::Spring& spring : setup.springs) {
+    spring.from -= origin;
+    spring.to -= origin;
+  }
 }
 
 void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {

@@ -55,6 +55,7 @@ class Facts {
     shaking();
     if (!scenario_.loads.empty()) add("loads", std::to_string(scenario_.loads.size()));
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
+    if (!scenario_.springs.empty()) add("springs", std::to_string(scenario_.springs.size()));
     return std::move(facts_);
   }
 

@@ -9,6 +9,7 @@ namespace keyblock::scenario {
 namespace {
 
 using loading::Load;
+using loading::Spring;
 using loading::Support;
 
 const BlockSpec* find_block(const Scenario& scenario, const std::string& name) {
@@ -200,6 +201,40 @@ void read_support(TableReader& t, Support& support, const Scenario& scenario) {
           });
 }
 
+/// The block of one end, if it is named.
+const BlockSpec* read_end(TableReader& t, std::string_view key, Vec2& point, std::string_view block_key,
+                          std::string& name, std::string_view which, const Scenario& scenario) {
+  const bool given = t.point(key, point, {.meaning = which, .unit = "m", .required = true});
+  t.reference(block_key, name, "block",
+              {.meaning = "The block of that end.", .fallback = "the first block that holds the point"});
+  const BlockSpec* block = find_block(scenario, name);
+  if (given) check_point(t, key, block, point);
+  return block;
+}
+
+void read_spring(TableReader& t, Spring& spring, const Scenario& scenario) {
+  const BlockSpec* from = read_end(t, "from", spring.from, "from_block", spring.from_block,
+                                   "One end, a point of a block.", scenario);
+  const BlockSpec* to = read_end(t, "to", spring.to, "to_block", spring.to_block,
+                                 "The other end, a point of another block.", scenario);
+  if (from != nullptr && from == to)
+    t.fail("to_block", fmt::format("the block '{}' at both ends", to->name), "another block");
+  if (spring.from == spring.to && t.find("from") != nullptr && t.find("to") != nullptr)
+    t.fail("to", "the same point as from", "a point of another block at a distance");
+  t.number("stiffness", spring.stiffness,
+           {.meaning = "Force per elongation, per unit thickness.",
+            .unit = "N/m per m",
+            .required = true,
+            .above = 0.0});
+  t.number(
+      "yield", spring.yield,
+      {.meaning = "Largest force, in tension and compression, per unit thickness. At it the spring yields "
+                  "and keeps its elongation.",
+       .unit = "N/m",
+       .above = 0.0,
+       .fallback = "it never yields"});
+}
+
 }  // namespace
 
 void read_loading(TableReader& root, Scenario& scenario) {
@@ -220,6 +255,11 @@ void read_loading(TableReader& root, Scenario& scenario) {
   root.tables("support", scenario.supports,
               {.meaning = "Springs from points, or from a straight stretch of boundary, to the ground."},
               [&](TableReader& t, Support& support) { read_support(t, support, scenario); });
+  root.tables(
+      "spring", scenario.springs,
+      {.meaning = "A straight spring between points of two blocks, without force at the start. It turns "
+                  "with the line between its ends. It ends where a block of it is excavated."},
+      [&](TableReader& t, Spring& spring) { read_spring(t, spring, scenario); });
 }
 
 }  // namespace keyblock::scenario

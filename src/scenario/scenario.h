@@ -154,6 +154,7 @@ struct Scenario {
   std::vector<MotionSpec> motions;
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
+  std::vector<loading::Spring> springs;
   std::vector<simulation::History> histories;
   std::vector<simulation::Stage> stages;  ///< indices are those of `excavations` and `motions`
   simulation::DamageLimits damage;

@@ -79,6 +79,7 @@ constexpr Synonym all_synonyms[] = {
     // The rest
     {"pressure", "traction"},
     {"supports", "support"},
+    {"springs", "spring"},
     {"loads", "load"},
     {"hist monitor", "history", true},
     {"damp damping", "rock_damping"},

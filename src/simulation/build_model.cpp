@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "coupling/ground_springs.h"
+#include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
 #include "simulation/outline.h"
 
@@ -154,9 +155,47 @@ void add_supports(const RunSetup& setup, Model& model) {
     model.couplings.push_back(std::make_shared<dynamics::GroundSprings>(std::move(springs)));
 }
 
+/// The block of one end of a spring: `name`, or the first that holds the point.
+std::size_t block_of_end(const RunSetup& setup, const Model& model, const std::string& name, Vec2 p,
+                         const std::string& key) {
+  if (!name.empty()) {
+    const std::size_t b = block_named(setup, name, key + "_block");
+    require_on_block(model.blocks[b].reference, p, key, name);
+    return b;
+  }
+  for (std::size_t b = 0; b < setup.properties.size(); ++b) {
+    if (lies_in(model.blocks[b].reference, p)) return b;
+  }
+  refuse(key, fmt::format("the point ({}, {})", p.x, p.y), "a point of a block");
+}
+
+void add_springs(const RunSetup& setup, Model& model) {
+  std::vector<dynamics::PointSpring> springs;
+  std::vector<dynamics::MaterialPoint> points;
+  for (std::size_t k = 0; k < setup.springs.size(); ++k) {
+    const loading::Spring& spring = setup.springs[k];
+    const std::string key = fmt::format("spring[{}]", k);
+    const std::size_t a = block_of_end(setup, model, spring.from_block, spring.from, key + ".from"),
+                      b = block_of_end(setup, model, spring.to_block, spring.to, key + ".to");
+    if (a == b) refuse(key + ".to", "a point of the block of from", "a point of another block");
+    if (model.blocks[a].fixed && model.blocks[b].fixed)
+      refuse(key + ".to", "a point of a fixed block, as from is", "a block that moves at one end");
+    for (const auto& [block, p] : {std::pair(a, spring.from), std::pair(b, spring.to)}) {
+      dynamics::MaterialPoint& point = points.emplace_back(dynamics::MaterialPoint{
+          static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))});
+      model.blocks[block].basis.evaluate(p, point.phi.data());
+    }
+    springs.push_back({spring.stiffness, spring.yield.value_or(HUGE_VAL), norm(spring.from - spring.to)});
+  }
+  if (!springs.empty())
+    model.couplings.push_back(
+        std::make_shared<dynamics::PointSprings>(std::move(springs), std::move(points)));
+}
+
 /// In an order that stays the same: State::couplings is in it.
 void add_couplings(const RunSetup& setup, Model& model) {
   add_supports(setup, model);
+  add_springs(setup, model);
 }
 
 void add_prescribed_motions(const RunSetup& setup, Model& model) {

@@ -104,6 +104,7 @@ struct RunSetup {
   std::vector<loading::GroundMotion> motions;
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
+  std::vector<loading::Spring> springs;
   std::vector<Stage> stages;
   std::vector<History> histories;
   DamageLimits damage;

@@ -1,0 +1,115 @@
+#include "coupling/point_springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "coupling/attempt.h"
+#include "coupling/points.h"
+#include "coupling/row_owners.h"
+#include "model/drive.h"
+#include "model/vertex_field.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+Vec2 position_of(const Model& model, const State& state, const MaterialPoint& point) {
+  const Block& block = model.blocks[at(point.block)];
+  return field_at(point.phi.data(), block.size, &state.position[block.first]);
+}
+
+}  // namespace
+
+void PointSprings::add_pairs(BlockPairs& pairs) const {
+  for (std::size_t k = 0; k < springs_.size(); ++k) pairs.emplace_back(end(k, 0).block, end(k, 1).block);
+}
+
+/// Where one of its blocks is excavated, a spring does nothing.
+bool PointSprings::is_there(const Model& model, std::size_t k) const {
+  return model.surface.present[at(end(k, 0).block)] != 0 && model.surface.present[at(end(k, 1).block)] != 0;
+}
+
+Vec2 PointSprings::chord(const Model& model, const State& state, std::size_t k) const {
+  return position_of(model, state, end(k, 0)) - position_of(model, state, end(k, 1));
+}
+
+double PointSprings::elongation(const Model& model, const State& state, std::size_t k,
+                                std::span<const double> memory) const {
+  return norm(chord(model, state, k)) - springs_[k].length - memory[k];
+}
+
+RowFacts PointSprings::build(const Model& model, const State& state, const Drive& drive,
+                             std::span<const double> memory, CouplingRows out) const {
+  RowFacts facts;
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const std::size_t a = at(end(k, 0).block), b = at(end(k, 1).block);
+    const Vec2 line = chord(model, state, k);
+    const double length = norm(line);
+    Row& row = out.rows[k];
+    row.vertex = out.points.material_point(2 * k + out.first_point);
+    row.from = row.to = row.vertex + 1;
+    row.position = 0.0;
+    row.unknown_a = out.points.body(a).unknown;
+    row.unknown_b = out.points.body(b).unknown;
+    row.pair = pair_in(state.pattern, row.unknown_a, row.unknown_b);
+    if (length > 0.0) row.normal = {line.y / length, -line.x / length};
+    row.moved = drive.prescribed.empty() ? Vec2{} : drive.prescribed[a] - drive.prescribed[b];
+    out.owners.set(out.first + k, row.unknown_a, row.unknown_b);
+    facts.lacks_room |= row.pair == Row::without_room;
+    const PointSpring& spring = springs_[k];
+    const double stretch = elongation(model, state, k, memory),
+                 force = std::clamp(spring.stiffness * stretch, -spring.yield, spring.yield);
+    if (length > 0.0 && is_there(model, k)) {
+      out.springs.set_row(out.first + k, {.normal_stiffness = std::max(force, 0.0) / length,
+                                          .shear_stiffness = spring.stiffness,
+                                          .largest_shear = spring.yield,
+                                          .normal = -dot(row.normal, row.moved),
+                                          .shear = stretch + dot(row.tangent(), row.moved)});
+    } else {
+      out.springs.set_row(out.first + k, {});
+    }
+  }
+  return facts;
+}
+
+CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const double> /*spin*/,
+                                     std::size_t first, std::span<double> memory, State& state) const {
+  const SpringArray& rows = attempt.problem.springs();
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const std::size_t c = first + k;
+    if (rows.ks[c] == 0.0) continue;
+    const Row& row = attempt.problem.rows()[c];
+    const double stiffness = springs_[k].stiffness, before = elongation(attempt.model, state, k, memory);
+    const SpringArray::Force force = rows.force(c);
+    const Vec2 on_points = row.gradient(force);  // that stretches the spring
+    const double elastic = force.shear / stiffness, yielded = rows.w[c] - elastic;
+    const double stored_before = 0.5 * stiffness * before * before,
+                 stored = 0.5 * stiffness * elastic * elastic, dissipated = std::abs(force.shear * yielded);
+    memory[k] += yielded;
+    state.support_energy += stored;
+    state.ledger.friction += dissipated;
+    state.ledger.input += dot(on_points, row.moved);
+    state.ledger.numerical += dot(on_points, attempt.relative[c]) - (stored - stored_before) - dissipated;
+  }
+  return {};
+}
+
+double PointSprings::stored_energy(const Model& model, const State& state, double /*time*/,
+                                   std::span<const double> memory) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    if (!is_there(model, k)) continue;
+    const double stretch = elongation(model, state, k, memory);
+    sum += 0.5 * springs_[k].stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
+void PointSprings::add_rounding_forces(const Model& /*model*/, double extent, std::span<double> force) const {
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    for (const std::size_t which : {0, 1}) force[at(end(k, which).block)] += springs_[k].stiffness * extent;
+  }
+}
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,57 @@
+#pragma once
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "coupling/coupling.h"
+
+namespace keyblock::dynamics {
+
+/// A straight spring between material points of two blocks.
+struct PointSpring {
+  double stiffness = 0.0;  ///< N/m per thickness
+  double yield =
+      0.0;  ///< N per thickness, largest force in tension and compression; infinite: it never yields
+  double length = 0.0;  ///< m, without force, before the run
+};
+
+/// Springs between points of blocks: a coupling by rows. The shear spring of a row acts along the line between its points,
+///
+///     T = clamp(k (length now − length without force − p), ±yield)
+///
+/// with p the elongation that has yielded, in the memory. The normal spring acts across the line with T/L where T pulls: by that the force
+/// turns with the line within the step. Lengths are those of the positions at the start of the step, so that nothing drifts.
+class PointSprings final : public Coupling {
+ public:
+  /// points: two for each spring, its first end and its second.
+  PointSprings(std::vector<PointSpring> springs, std::vector<MaterialPoint> points)
+      : springs_(std::move(springs)), points_(std::move(points)) {}
+
+  [[nodiscard]] std::span<const MaterialPoint> points() const override { return points_; }
+  void add_pairs(BlockPairs& pairs) const override;
+  [[nodiscard]] std::size_t memory_size() const override { return springs_.size(); }
+
+  [[nodiscard]] std::size_t rows() const override { return springs_.size(); }
+  RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
+                 CouplingRows out) const override;
+  CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
+                         std::span<double> memory, State& state) const override;
+  [[nodiscard]] double stored_energy(const Model& model, const State& state, double time,
+                                     std::span<const double> memory) const override;
+  void add_rounding_forces(const Model& model, double extent, std::span<double> force) const override;
+
+ private:
+  [[nodiscard]] const MaterialPoint& end(std::size_t k, std::size_t which) const {
+    return points_[2 * k + which];
+  }
+  [[nodiscard]] bool is_there(const Model& model, std::size_t k) const;
+  /// From the second end to the first, m.
+  [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
+  [[nodiscard]] double elongation(const Model& model, const State& state, std::size_t k,
+                                  std::span<const double> memory) const;
+
+  std::vector<PointSpring> springs_;
+  std::vector<MaterialPoint> points_;
+};
+
+}  // namespace keyblock::dynamics
