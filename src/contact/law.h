@@ -1,10 +1,48 @@
 #pragma once
+#include <limits>
 #include <type_traits>
 #include <utility>
 
 #include "core/lanes.h"
 
 namespace keyblock::contact {
+
+/// The law of a spring: force f(e) = clamp(k e, low, high) over its stretch e. It has three branches: the straight lines on which the force is
+/// `low`, k e, and `high`; an end of the elastic branch belongs to the branch beside it. Convex potential: low ≤ 0 ≤ high.
+///
+/// Normal and shear spring of every contact are two of these, and so are the springs of other couplings: what is solved, the open-close
+/// iteration and the low-rank update, asks here.
+///
+/// Number: double, or Lanes for as many springs at once.
+template <typename Number>
+struct ClampedSpring {
+  using Condition = std::remove_cvref_t<decltype(std::declval<Number>() > std::declval<Number>())>;
+  Number stiffness{};    ///< k, N/m per thickness
+  Number low{}, high{};  ///< N per thickness
+
+  [[nodiscard]] Number force(Number e) const {
+    const Number elastic = stiffness * e;
+    return where(elastic < low, low, where(high < elastic, high, elastic));
+  }
+  [[nodiscard]] Condition is_low(Number e) const { return stiffness * e <= low; }
+  [[nodiscard]] Condition is_high(Number e) const { return high <= stiffness * e; }
+  [[nodiscard]] Condition is_elastic(Number e) const {
+    const Number elastic = stiffness * e;
+    return (low < elastic) & (elastic < high);
+  }
+};
+
+/// The normal spring of a contact presses; that of a bond pulls as well.
+template <typename Number, typename Condition>
+ClampedSpring<Number> normal_spring(Number stiffness, Condition tensile) {
+  const Number infinite = Number{} + std::numeric_limits<double>::infinity();
+  return {stiffness, where(tensile, -infinite, Number{}), infinite};
+}
+/// The shear spring holds up to the bound.
+template <typename Number>
+ClampedSpring<Number> shear_spring(Number stiffness, Number bound) {
+  return {stiffness, -bound, bound};
+}
 
 /// The potential of one contact in one step, convex in D: a one-sided normal spring with a dashpot (two-sided for a bond
 /// in tension) and a shear spring with a dashpot, cut off at the Coulomb bound, which is frozen during a solve. With the
@@ -52,13 +90,10 @@ class BasicSpring {
   [[nodiscard]] Number shear() const { return origin_; }  ///< w at D = 0
   [[nodiscard]] Number bound() const { return bound_; }
 
-  [[nodiscard]] Condition closed(Number y) const { return tensile_ | (y > zero); }
+  [[nodiscard]] Condition closed(Number y) const { return normal_spring(normal_, tensile_).is_elastic(y); }
   [[nodiscard]] Condition locked(Number w) const { return magnitude(shear_ * w) <= bound_; }
-  [[nodiscard]] Number normal_force(Number y) const { return where(closed(y), normal_ * y, zero); }
-  [[nodiscard]] Number shear_force(Number w) const {
-    const Number elastic = shear_ * w;
-    return where(elastic < -bound_, -bound_, where(bound_ < elastic, bound_, elastic));
-  }
+  [[nodiscard]] Number normal_force(Number y) const { return normal_spring(normal_, tensile_).force(y); }
+  [[nodiscard]] Number shear_force(Number w) const { return shear_spring(shear_, bound_).force(w); }
   /// Minus the integral of the forces: ∂potential/∂y = N, ∂potential/∂w = T.
   [[nodiscard]] Number potential(Number y, Number w) const {
     const Number force = magnitude(shear_force(w));

@@ -87,7 +87,7 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
                                                                .depth = law.depth,
                                                                .shear = memory.shear,
                                                                .bound = bound,
-                                                               .tensile = at_first(springs.floor) < 0.0},
+                                                               .tensile = at_first(springs.low) < 0.0},
                                contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
                                                              at_first(springs.y0) + moved_normal,
                                                              at_first(springs.w0) - moved_shear + slipped});

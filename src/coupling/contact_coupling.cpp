@@ -90,7 +90,7 @@ void build_springs(const Model& model, const State& state, const Drive& drive,
   keep(springs.kn, spring.normal_stiffness());
   keep(springs.ks, spring.shear_stiffness());
   keep(springs.bound, bound);
-  keep(springs.floor, where(tensile, broadcast(-HUGE_VAL), Lanes{}));
+  keep(springs.low, contact::normal_spring(Lanes{}, tensile).low);
   keep(springs.friction, where(fused, broadcast(-1.0), law.friction));
   keep(springs.constant, constant);
   // The branches of the last step. What is fused never slides, whatever it did.

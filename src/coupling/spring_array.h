@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "contact/law.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
 #include "model/worth_threads.h"
@@ -15,9 +16,10 @@ namespace keyblock::dynamics {
 /// The springs of all contacts of a step (contact::Spring), by component: what an open-close iteration reads of them and how far they
 /// are stretched. Normal and shear spring of contact c give
 ///
-///     N = k_n y  where y > floor, else 0          T = clamp(k_s w, ±bound)
+///     N = clamp(k_n y, low, ∞)          T = clamp(k_s w, ±bound)
 ///
-/// with penetration y and shear displacement w, and floor −∞ for a bond, which also pulls.
+/// with penetration y and shear displacement w; low is 0, and −∞ for a bond, which also pulls. Their branches and lines are those of
+/// contact::ClampedSpring.
 class SpringArray {
  public:
   enum class Shear : std::int8_t { backward = -1, held = 0, forward = 1, none = 2 };
@@ -42,7 +44,7 @@ class SpringArray {
   void resize(std::size_t n) {
     size_ = n;
     for (std::vector<double>* v :
-         {&kn, &ks, &bound, &floor, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
+         {&kn, &ks, &bound, &low, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
       v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
     branch.resize(n);
     bounds_updated = false;
@@ -69,9 +71,28 @@ class SpringArray {
   /// tensile: a bond, which pulls.
   void set_law(std::size_t c, double largest_shear, bool tensile) {
     bound[c] = largest_shear;
-    floor[c] = tensile ? -HUGE_VAL : 0.0;
+    low[c] = tensile ? -HUGE_VAL : 0.0;
   }
-  [[nodiscard]] bool is_tensile(std::size_t c) const { return floor[c] < 0.0; }
+  [[nodiscard]] bool is_tensile(std::size_t c) const { return low[c] < 0.0; }
+
+  using Law = contact::ClampedSpring<double>;
+  using LawLanes = contact::ClampedSpring<Lanes>;
+  [[nodiscard]] Law normal_law(std::size_t c) const { return {kn[c], low[c], HUGE_VAL}; }
+  [[nodiscard]] Law shear_law(std::size_t c) const { return contact::shear_spring(ks[c], bound[c]); }
+  /// Of as many rows as there are lanes, from c on.
+  [[nodiscard]] LawLanes normal_laws(std::size_t c) const {
+    return {load(&kn[c]), load(&low[c]), broadcast(HUGE_VAL)};
+  }
+  [[nodiscard]] LawLanes shear_laws(std::size_t c) const {
+    return contact::shear_spring(load(&ks[c]), load(&bound[c]));
+  }
+  /// N per thickness, the bound of shear by Coulomb's law where the normal spring presses with `normal`.
+  [[nodiscard]] double strength(std::size_t c, double normal) const {
+    return contact::shear_strength(friction[c], normal, constant[c]);
+  }
+  [[nodiscard]] Lanes strengths(std::size_t c, Lanes normal) const {
+    return contact::shear_strength(load(&friction[c]), normal, load(&constant[c]));
+  }
 
   /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
   void shift(std::size_t c, double penetration, double shear) {
@@ -98,11 +119,11 @@ class SpringArray {
   }
 
   [[nodiscard]] Branch branch_at(std::size_t c, double penetration, double displacement) const {
-    const double elastic = ks[c] * displacement;
-    return {penetration > floor[c], bound[c] <= 0.0       ? Shear::none
-                                    : elastic > bound[c]  ? Shear::forward
-                                    : elastic < -bound[c] ? Shear::backward
-                                                          : Shear::held};
+    const Law shear = shear_law(c);
+    return {!normal_law(c).is_low(penetration), bound[c] <= 0.0               ? Shear::none
+                                                : shear.is_high(displacement) ? Shear::forward
+                                                : shear.is_low(displacement)  ? Shear::backward
+                                                                              : Shear::held};
   }
   /// As codes, of as many contacts as there are lanes; `held` where the shear spring is none of the others.
   [[nodiscard]] static LaneCondition codes_of(LaneCondition closed, LaneCondition none, LaneCondition forward,
@@ -119,10 +140,10 @@ class SpringArray {
   }
   /// branch_at of as many contacts as there are lanes, from c on.
   [[nodiscard]] LaneCondition branches_at(std::size_t c, Lanes penetration, Lanes displacement) const {
-    const Lanes elastic = load(&ks[c]) * displacement, most = load(&bound[c]);
-    const auto none = most <= 0.0, forward = ~none & (elastic > most),
-               backward = ~none & ~forward & (elastic < -most);
-    return codes_of(penetration > load(&floor[c]), none, forward, backward);
+    const LawLanes shear = shear_laws(c);
+    const auto none = shear.high <= 0.0, forward = ~none & shear.is_high(displacement),
+               backward = ~none & ~forward & shear.is_low(displacement);
+    return codes_of(~normal_laws(c).is_low(penetration), none, forward, backward);
   }
   /// Whether one of them leaves its `branch` by α along the direction of search; beyond the last one it may say so of none.
   [[nodiscard]] bool any_leaves(std::size_t c, double alpha) const {
@@ -145,20 +166,18 @@ class SpringArray {
     set_branches(c, count, branches_at(c, penetration, displacement));
   }
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
-    return {penetration > floor[c] ? kn[c] * penetration : 0.0,
-            std::clamp(ks[c] * displacement, -bound[c], bound[c])};
+    return {normal_law(c).force(penetration), shear_law(c).force(displacement)};
   }
   [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
   /// N per thickness, of the contact that presses or pulls most; 0: none does.
   [[nodiscard]] double largest_normal_force(ThreadTeam& team) const {
     constexpr std::size_t width = lane_count;
-    return largest_of(
-        team, (size_ + width - 1) / width, contacts_worth_threads / width, [&](std::size_t group) {
-          const std::size_t c = group * width;
-          const Lanes zero{}, penetration = load(&y[c]),
-                              force = where(penetration > load(&floor[c]), load(&kn[c]) * penetration, zero);
-          return largest(where(first_lanes(size_ - c), largest(force, -force), zero));
-        });
+    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width,
+                      [&](std::size_t group) {
+                        const std::size_t c = group * width;
+                        const Lanes zero{}, force = normal_laws(c).force(load(&y[c]));
+                        return largest(where(first_lanes(size_ - c), largest(force, -force), zero));
+                      });
   }
   /// N/m per thickness, of the stiffest normal spring; 0: there is none.
   [[nodiscard]] double largest_stiffness(ThreadTeam& team) const {
@@ -182,9 +201,9 @@ class SpringArray {
     return p.shear == Shear::held ? ks[c] : 0.0;
   }
 
-  std::vector<double> kn, ks;        ///< N/m per thickness
-  std::vector<double> bound, floor;  ///< N per thickness; m
-  std::vector<double> friction;      ///< μ; −1: the bound is not Coulomb's
+  std::vector<double> kn, ks;      ///< N/m per thickness
+  std::vector<double> bound, low;  ///< N per thickness, largest |T| and least N
+  std::vector<double> friction;    ///< μ; −1: the bound is not Coulomb's
   /// N per thickness, of the bound μN + this: the cohesion of a bond, the friction that a contact owes.
   std::vector<double> constant;
   std::vector<double> y0, w0;   ///< m, at D = 0

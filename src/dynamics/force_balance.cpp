@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/law.h"
 #include "core/index.h"
 #include "coupling/coupling.h"
 
@@ -89,8 +88,7 @@ void ForceBalance::measure(const Model& model, StepProblem& problem) {
   SpringArray& springs = problem.springs();
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
-    springs.bound[c] =
-        contact::shear_strength(springs.friction[c], springs.force(c).normal, springs.constant[c]);
+    springs.bound[c] = springs.strength(c, springs.force(c).normal);
   }
   zero_.assign(model.coefficients, 0.0);
   gradient_.resize(model.coefficients);

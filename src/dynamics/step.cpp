@@ -132,7 +132,7 @@ std::vector<ContactForce> Stepper::forces() const {
     ContactForce& force = forces[k];
     force.gap = c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
     force.normal = springs.force(k).normal;
-    if (!(springs.y[k] > springs.floor[k])) continue;
+    if (springs.normal_law(k).is_low(springs.y[k])) continue;
     force.shear = springs.force(k).shear;
     const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
     force.state = holds ? contact::State::locked : contact::State::sliding;

@@ -7,19 +7,6 @@
 
 namespace keyblock::dynamics {
 
-double Corrections::Law::excess(double stretch) const {
-  return std::clamp(stiffness * stretch, low, high) - (line_force + line_stiffness * stretch);
-}
-
-int Corrections::Law::branch(double stretch) const {
-  const double elastic = stiffness * stretch;
-  return elastic <= low ? -1 : elastic >= high ? 1 : 0;
-}
-
-double Corrections::Law::excess_stiffness(double stretch) const {
-  return (branch(stretch) == 0 ? stiffness : 0.0) - line_stiffness;
-}
-
 void Corrections::add(linalg::LowRankSolver& solver, linalg::LowRankSolver::Part a,
                       linalg::LowRankSolver::Part b) {
   if (half_.size() == size_) half_.emplace_back();
@@ -108,7 +95,7 @@ bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const dou
       stiffness_[s] = laws[s].excess_stiffness(stretch_[s]);
       branch_[s] = laws[s].branch(stretch_[s]);
       missing = std::max(missing, std::abs(missing_[s]));
-      largest = std::max({largest, std::abs(force_[s]), laws[s].stiffness * std::abs(stretch_[s])});
+      largest = std::max({largest, std::abs(force_[s]), laws[s].spring.stiffness * std::abs(stretch_[s])});
     }
     if (missing <= rounding * largest) return true;
     if (!find_direction()) return false;

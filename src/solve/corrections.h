@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/law.h"
 #include "linalg/block_solver.h"
 
 namespace keyblock::dynamics {
@@ -17,16 +18,22 @@ namespace keyblock::dynamics {
 /// unknowns as springs.
 class Corrections {
  public:
-  /// Force of a spring clamp(k e, low, high), and the straight line f₀ + k₀ e that goes on as the matrix has it in its place; k₀ is 0 or k.
+  /// A spring, and the straight line f₀ + k₀ e that goes on as the matrix has it in its place; k₀ is 0 or k.
   struct Law {
-    double stiffness = 0.0, low = 0.0, high = 0.0;
+    contact::ClampedSpring<double> spring;
     double line_stiffness = 0.0, line_force = 0.0;
 
     /// β, N per thickness: the force beyond the straight line; and ∂β/∂e.
-    [[nodiscard]] double excess(double stretch) const;
-    [[nodiscard]] double excess_stiffness(double stretch) const;
+    [[nodiscard]] double excess(double stretch) const {
+      return spring.force(stretch) - (line_force + line_stiffness * stretch);
+    }
+    [[nodiscard]] double excess_stiffness(double stretch) const {
+      return (spring.is_elastic(stretch) ? spring.stiffness : 0.0) - line_stiffness;
+    }
     /// −1, 1: at `low`, at `high`; 0: the spring acts.
-    [[nodiscard]] int branch(double stretch) const;
+    [[nodiscard]] int branch(double stretch) const {
+      return spring.is_low(stretch) ? -1 : spring.is_high(stretch) ? 1 : 0;
+    }
   };
 
   void clear() { size_ = 0; }

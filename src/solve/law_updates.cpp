@@ -127,10 +127,10 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
         const std::size_t c = group * lane_count;
         const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
         const Lanes zero{}, y = at_c(springs.y), mu = at_c(springs.friction);
-        const Lanes normal = where(y > at_c(springs.floor), at_c(springs.kn) * y, zero);
+        const Lanes normal = springs.normal_laws(c).force(y);
         // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const Lanes wanted = contact::shear_strength(mu, normal, at_c(springs.constant)),
-                    elastic = at_c(springs.ks) * at_c(springs.w), bound_now = at_c(springs.bound),
+        const Lanes wanted = springs.strengths(c, normal), elastic = at_c(springs.ks) * at_c(springs.w),
+                    bound_now = at_c(springs.bound),
                     change = largest(least(elastic, wanted), -wanted) -
                              largest(least(elastic, bound_now), -bound_now);
         const auto counts = (mu >= zero) & first_lanes(springs.size() - c);
@@ -139,9 +139,7 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
-  const auto bound = [&](std::size_t c) {
-    return contact::shear_strength(springs.friction[c], springs.force(c).normal, springs.constant[c]);
-  };
+  const auto bound = [&](std::size_t c) { return springs.strength(c, springs.force(c).normal); };
   // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
   // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
@@ -222,9 +220,8 @@ bool LawUpdates::renew_bonds(const StepSystem& system, Iterate& iterate) {
   using step_numbers::settled_strength;
   SpringArray& springs = system.springs();
   return for_bonds(system, [&](std::size_t c) {
-    const double strength = contact::shear_strength(springs.friction[c], springs.force(c).normal,
-                                                    springs.constant[c]),
-                 bound = springs.bound[c], elastic = std::abs(springs.ks[c] * springs.w[c]);
+    const double strength = springs.strength(c, springs.force(c).normal), bound = springs.bound[c],
+                 elastic = std::abs(springs.ks[c] * springs.w[c]);
     if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled_strength * bound)
       return false;
     iterate.change_spring(system, c, [&] { springs.bound[c] = strength; });

@@ -155,9 +155,8 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
     const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
     stretch_.push_back(scale * (normal ? springs.y[c] : springs.w[c]));
     Corrections::Law& law = laws_.emplace_back();
-    law.stiffness = stiffness;
-    law.low = normal ? springs.floor[c] : -springs.bound[c];
-    law.high = normal ? HUGE_VAL : springs.bound[c];
+    law.spring = normal ? springs.normal_law(c) : springs.shear_law(c);
+    law.spring.stiffness = stiffness;
     law.line_stiffness = in_matrix;
     law.line_force = normal ? constant.normal : constant.shear;
     const bool is_fresh = k + fresh >= updated_.size();

@@ -71,22 +71,22 @@ TEST(Corrections, ReachTheMinimum) {
       }
       spring.rest = uniform(random);
       Corrections::Law& law = spring.law;
-      law.stiffness = 100.0 * std::exp(uniform(random));
+      law.spring.stiffness = 100.0 * std::exp(uniform(random));
       if (random() % 2 == 0) {  // that does not pull
-        law.high = HUGE_VAL;
+        law.spring.high = HUGE_VAL;
       } else {  // with friction, or the bound zero
-        law.high = random() % 4 == 0 ? 0.0 : 30.0 * (1.0 + uniform(random));
-        law.low = -law.high;
+        law.spring.high = random() % 4 == 0 ? 0.0 : 30.0 * (1.0 + uniform(random));
+        law.spring.low = -law.spring.high;
       }
-      if (random() % 2 == 0) law.line_stiffness = law.stiffness;
-      if (law.line_stiffness == 0.0 && std::isfinite(law.high)) law.line_force = law.high;
+      if (random() % 2 == 0) law.line_stiffness = law.spring.stiffness;
+      if (law.line_stiffness == 0.0 && std::isfinite(law.spring.high)) law.line_force = law.spring.high;
       if (law.line_stiffness > 0.0) {
         const Eigen::VectorXd v = spring.derivative();
         for (int i = 0; i < unknowns; ++i) {
           for (int j = 0; j < unknowns; ++j) {
             if (v[i] != 0.0 && v[j] != 0.0)
               chain.add(i / block_size, i % block_size, j / block_size, j % block_size,
-                        law.stiffness * v[i] * v[j]);
+                        law.spring.stiffness * v[i] * v[j]);
           }
         }
       }
