@@ -279,20 +279,20 @@ BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const d
 }
 
 BlockTerms::ElasticLoss BlockTerms::elastic_loss(const State& state, std::span<const double> d,
-                                                 std::span<const double> spin) {
-  losses_.assign(model_->blocks.size(), {});
-  team_->for_range(losses_.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+                                                 std::span<const double> spin) const {
+  std::vector<ElasticLoss> losses(model_->blocks.size());
+  team_->for_range(losses.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<double> turn(at(linalg::padded_rows(2 * largest_size_)));
     for (std::size_t i = begin; i < end; ++i) {
       if (!model_->moves(i)) continue;
       const Block& block = model_->blocks[i];
-      losses_[i] = with_known_size(block.size, [&](auto size) {
+      losses[i] = with_known_size(block.size, [&](auto size) {
         return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data());
       });
     }
   });
   ElasticLoss loss;
-  for (const ElasticLoss& of_block : losses_) {
+  for (const ElasticLoss& of_block : losses) {
     loss.numerical += of_block.numerical;
     loss.damping += of_block.damping;
   }

@@ -75,7 +75,7 @@ class BlockTerms {
     double damping = 0.0;  ///< by the viscosity of the rock
   };
   [[nodiscard]] ElasticLoss elastic_loss(const State& state, std::span<const double> d,
-                                         std::span<const double> spin);
+                                         std::span<const double> spin) const;
 
  private:
   struct PressedBlocks;
@@ -103,12 +103,11 @@ class BlockTerms {
   std::vector<double> h_;             ///< H of each, columns of padded_rows(2N)
   std::vector<double> b_;
   std::vector<double> inertia_;
-  std::vector<double> viscous_;      ///< per block, β/Δt: viscosity of the rock over its stiffness
-  std::vector<double> body_force_;   ///< per block, Block::body_force
-  std::vector<double> frequency_;    ///< rad/s, per block: its first elastic one, about
-  std::vector<double> weight_;       ///< per block, N-like scale of its coefficients
-  std::vector<double> stress_;       ///< the same of its in-situ stress, where there is no gravity; else 0
-  std::vector<ElasticLoss> losses_;  ///< scratch, per block
+  std::vector<double> viscous_;     ///< per block, β/Δt: viscosity of the rock over its stiffness
+  std::vector<double> body_force_;  ///< per block, Block::body_force
+  std::vector<double> frequency_;   ///< rad/s, per block: its first elastic one, about
+  std::vector<double> weight_;      ///< per block, N-like scale of its coefficients
+  std::vector<double> stress_;      ///< the same of its in-situ stress, where there is no gravity; else 0
 };
 
 }  // namespace keyblock::dynamics

@@ -10,9 +10,11 @@ namespace keyblock::dynamics {
 void Points::begin(const Model& model) {
   surface_ = &model.surface;
   bodies_.clear();
+  block_of_unknown_.clear();
   for (const Block& block : model.blocks) {
     bodies_.push_back({static_cast<std::uint32_t>(block.first), block.fixed ? 0 : block.size, block.unknown,
                        block.fixed ? 0.0 : block.mass()});
+    if (block.unknown >= 0) block_of_unknown_.push_back(bodies_.size() - 1);
   }
   most_vertices_ = 0;
   for (const contact::DividedEdge& edge : surface_->divided)

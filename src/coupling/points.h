@@ -43,7 +43,8 @@ class Points {
   }
 
   [[nodiscard]] const Body& body(std::size_t block) const { return bodies_[block]; }
-  [[nodiscard]] std::span<const Body> bodies() const { return bodies_; }
+  /// The block with this number among the unknown ones.
+  [[nodiscard]] std::size_t block_of_unknown(std::size_t unknown) const { return block_of_unknown_[unknown]; }
   [[nodiscard]] const Body& body_of(std::uint32_t point) const { return bodies_[at(block_of(point))]; }
 
   /// u of increment D, m, at every point of so many rows.
@@ -120,7 +121,8 @@ class Points {
   void displace_on_curve(std::size_t c, std::span<Vec2> u) const;
 
   const contact::Surface* surface_ = nullptr;
-  std::vector<Body> bodies_;
+  std::vector<Body> bodies_;  ///< of every block
+  std::vector<std::size_t> block_of_unknown_;
   std::vector<const double*> phi_of_point_;         ///< of material points
   std::vector<int> block_of_point_;                 ///< likewise
   std::vector<std::vector<std::size_t>> of_block_;  ///< material points of each block; empty: there are none

@@ -169,25 +169,6 @@ class SpringArray {
     return {normal_law(c).force(penetration), shear_law(c).force(displacement)};
   }
   [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
-  /// N per thickness, of the contact that presses or pulls most; 0: none does.
-  [[nodiscard]] double largest_normal_force(ThreadTeam& team) const {
-    constexpr std::size_t width = lane_count;
-    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width,
-                      [&](std::size_t group) {
-                        const std::size_t c = group * width;
-                        const Lanes zero{}, force = normal_laws(c).force(load(&y[c]));
-                        return largest(where(first_lanes(size_ - c), largest(force, -force), zero));
-                      });
-  }
-  /// N/m per thickness, of the stiffest normal spring; 0: there is none.
-  [[nodiscard]] double largest_stiffness(ThreadTeam& team) const {
-    constexpr std::size_t width = lane_count;
-    return largest_of(team, (size_ + width - 1) / width, contacts_worth_threads / width,
-                      [&](std::size_t group) {
-                        const std::size_t c = group * width;
-                        return largest(where(first_lanes(size_ - c), load(&kn[c]), Lanes{}));
-                      });
-  }
   /// On the straight line that goes on from a branch.
   [[nodiscard]] Force force_on(std::size_t c, Branch p, double penetration, double displacement) const {
     return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
@@ -216,5 +197,26 @@ class SpringArray {
  private:
   std::size_t size_ = 0;
 };
+
+/// N per thickness, of the row that presses or pulls most; 0: none does.
+inline double largest_normal_force(const SpringArray& springs, ThreadTeam& team) {
+  constexpr std::size_t width = lane_count;
+  return largest_of(team, (springs.size() + width - 1) / width, contacts_worth_threads / width,
+                    [&](std::size_t group) {
+                      const std::size_t c = group * width;
+                      const Lanes zero{}, force = springs.normal_laws(c).force(load(&springs.y[c]));
+                      return largest(where(first_lanes(springs.size() - c), largest(force, -force), zero));
+                    });
+}
+
+/// N/m per thickness, of the stiffest normal spring; 0: there is none.
+inline double largest_stiffness(const SpringArray& springs, ThreadTeam& team) {
+  constexpr std::size_t width = lane_count;
+  return largest_of(team, (springs.size() + width - 1) / width, contacts_worth_threads / width,
+                    [&](std::size_t group) {
+                      const std::size_t c = group * width;
+                      return largest(where(first_lanes(springs.size() - c), load(&springs.kn[c]), Lanes{}));
+                    });
+}
 
 }  // namespace keyblock::dynamics

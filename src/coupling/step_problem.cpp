@@ -10,20 +10,12 @@
 
 namespace keyblock::dynamics {
 
-void StepProblem::begin(const Model& model) {
-  model_ = &model;
-  points_.begin(model);
-  block_of_unknown_.clear();
-  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
-    if (model.blocks[b].unknown >= 0) block_of_unknown_.push_back(b);
-  }
-}
-
 void StepProblem::build(const Model& model, const State& state, const Drive& drive, const Coupling& contacts,
                         ThreadTeam& team) {
   team_ = &team;
   is_static_ = drive.is_static;
-  if (model_ != &model) begin(model);
+  if (model_ != &model) points_.begin(model);
+  model_ = &model;
   terms_.build(model, state, drive, team);
   parts_.clear();
   std::size_t rows = 0;
@@ -60,8 +52,8 @@ void StepProblem::name_rows(std::vector<Coupling::RowKey>& keys) const {
   }
 }
 
-void StepProblem::find_pairs(const State& state) {
-  for (Row& row : rows_) row.pair = pair_in(state.pattern, row.unknown_a, row.unknown_b);
+void StepProblem::find_pairs(std::span<const std::pair<int, int>> pattern) {
+  for (Row& row : rows_) row.pair = pair_in(pattern, row.unknown_a, row.unknown_b);
   facts_.lacks_room = false;
 }
 
@@ -75,14 +67,14 @@ void StepProblem::derivative(const Row& row, Vec2 direction, std::vector<double>
 }
 
 void StepProblem::add_gathered_forces(std::span<const Vec2> forces, std::span<double> out) const {
-  team_->for_range(blocks(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) points_.add_forces(b, forces, out);
   });
 }
 
 void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2> forces,
                                 std::span<double> g) const {
-  team_->for_range(blocks(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
+  team_->for_range(model_->blocks.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = terms_.coefficients(i).first, last = terms_.coefficients(i).second;
       with_known_size(model_->moves(i) ? points_.body(i).size : 0, [&](auto size) {
@@ -106,15 +98,16 @@ void StepProblem::gradient_with(std::span<const double> d, std::span<const Vec2>
   });
 }
 
-void StepProblem::gradient(std::span<const double> d, std::span<double> g) const {
-  for (std::size_t i = 0; i < blocks(); ++i) terms_.multiply(i, d, g);
-  for (std::size_t k = 0; k < g.size(); ++k) g[k] -= terms_.right()[k];
-  for (std::size_t c = 0; c < rows_.size(); ++c) {
-    const Row& row = rows_[c];
-    const Vec2 r = relative(row, d);
+void gradient_by_rows(const StepProblem& problem, std::span<const double> d, std::span<double> g) {
+  const SpringArray& springs = problem.springs();
+  for (std::size_t b = 0; b < problem.model().blocks.size(); ++b) problem.terms().multiply(b, d, g);
+  for (std::size_t k = 0; k < g.size(); ++k) g[k] -= problem.terms().right()[k];
+  for (std::size_t c = 0; c < problem.rows().size(); ++c) {
+    const Row& row = problem.rows()[c];
+    const Vec2 r = problem.relative(row, d);
     const SpringArray::Force force =
-        springs_.force_at(c, springs_.y0[c] - dot(row.normal, r), springs_.w0[c] + dot(row.tangent(), r));
-    if (!force.is_zero()) add_force(row, row.gradient(force), g);
+        springs.force_at(c, springs.y0[c] - dot(row.normal, r), springs.w0[c] + dot(row.tangent(), r));
+    if (!force.is_zero()) problem.add_force(row, row.gradient(force), g);
   }
 }
 

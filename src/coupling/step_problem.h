@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -40,9 +41,8 @@ class StepProblem {
   void name_rows(std::vector<Coupling::RowKey>& keys) const;
   [[nodiscard]] const RowFacts& facts() const { return facts_; }
   /// After the solver's pattern has changed.
-  void find_pairs(const State& state);
+  void find_pairs(std::span<const std::pair<int, int>> pattern);
 
-  [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   /// Of every row. Built at D = 0, on the branches that acted in the last step.
   [[nodiscard]] SpringArray& springs() { return springs_; }
@@ -50,17 +50,8 @@ class StepProblem {
   [[nodiscard]] const Points& points() const { return points_; }
   /// H, b and what residuals are measured by: of blocks, loads and supports.
   [[nodiscard]] const BlockTerms& terms() const { return terms_; }
-  [[nodiscard]] BlockTerms& terms() { return terms_; }
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] bool is_static() const { return is_static_; }
-
-  [[nodiscard]] std::size_t blocks() const { return points_.bodies().size(); }
-  /// Unknowns come first among the coefficients; those of fixed blocks follow.
-  [[nodiscard]] std::size_t unknowns() const { return model_->unknowns; }
-  /// Block::unknown.
-  [[nodiscard]] int unknown(std::size_t block) const { return points_.body(block).unknown; }
-  /// The block with this number among the unknown ones.
-  [[nodiscard]] std::size_t block(std::size_t unknown) const { return block_of_unknown_[unknown]; }
 
   /// u of increment D, m, at every point (Points).
   void displace(std::span<const double> d, std::vector<Vec2>& u) const {
@@ -71,8 +62,6 @@ class StepProblem {
     return points_.displacement(row.vertex, d) -
            lerp(points_.displacement(row.from, d), points_.displacement(row.to, d), row.position);
   }
-  /// g = ∇Π(D), row by row: the oracle of what the open-close iteration does by way of the vertices.
-  void gradient(std::span<const double> d, std::span<double> g) const;
   void add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const;
   /// The same at all rows.
   void add_springs(std::span<const double> normal, std::span<const double> shear,
@@ -103,7 +92,6 @@ class StepProblem {
   }
 
  private:
-  void begin(const Model& model);
   /// What the rows do to every vertex and material point.
   template <typename ForceOf>
   void gather_forces(const ForceOf& force_of, std::vector<Vec2>& at_points) const {
@@ -142,7 +130,9 @@ class StepProblem {
   SpringArray springs_;  ///< of every row
   RowFacts facts_;
   bool is_static_ = false;
-  std::vector<std::size_t> block_of_unknown_;
 };
+
+/// g = ∇Π(D), row by row: the oracle of what the open-close iteration does by way of the vertices.
+void gradient_by_rows(const StepProblem& problem, std::span<const double> d, std::span<double> g);
 
 }  // namespace keyblock::dynamics

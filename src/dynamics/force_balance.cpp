@@ -46,7 +46,8 @@ void ForceBalance::find_scales(const Model& model, const StepProblem& problem) {
   for (std::size_t c = 0; c < problem.springs().size(); ++c) {
     const SpringArray::Force force = problem.springs().force(c);
     for (const int unknown : {problem.rows()[c].unknown_a, problem.rows()[c].unknown_b})
-      if (unknown >= 0) force_[problem.block(at(unknown))] += std::hypot(force.normal, force.shear);
+      if (unknown >= 0)
+        force_[problem.points().block_of_unknown(at(unknown))] += std::hypot(force.normal, force.shear);
   }
   for (std::size_t b = 0; b < n; ++b)
     force_[b] = model.moves(b) ? force_[b] / std::sqrt(model.blocks[b].area) : 0.0;
@@ -72,7 +73,8 @@ void ForceBalance::find_rounding(const Model& model, const StepProblem& problem)
   for (std::size_t c = 0; c < problem.springs().size(); ++c) {
     if (problem.springs().force(c).is_zero()) continue;
     for (const int unknown : {problem.rows()[c].unknown_a, problem.rows()[c].unknown_b})
-      if (unknown >= 0) force_[problem.block(at(unknown))] += problem.springs().kn[c] * extent;
+      if (unknown >= 0)
+        force_[problem.points().block_of_unknown(at(unknown))] += problem.springs().kn[c] * extent;
   }
   for (const auto& coupling : model.couplings) coupling->add_rounding_forces(model, extent, force_);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {

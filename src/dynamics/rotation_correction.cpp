@@ -145,8 +145,8 @@ Verdict RotationCorrection::check(const Attempt& attempt) {
     return Verdict::accepted;
   const double work = tolerated_work(attempt, std::max(moved, turn * largest_radius_));
   const SpringArray& springs = attempt.problem.springs();
-  if (may_be_known && missed_at_most <= tolerated(work, springs.largest_normal_force(attempt.team),
-                                                  springs.largest_stiffness(attempt.team)))
+  if (may_be_known && missed_at_most <= tolerated(work, largest_normal_force(springs, attempt.team),
+                                                  largest_stiffness(springs, attempt.team)))
     return Verdict::accepted;
   found_.assign(attempt.contacts.size(), {});
   Verdict verdict = Verdict::accepted;

@@ -177,7 +177,7 @@ void Stepper::build(State& state, const Drive& drive, bool knows_contacts) {
   problem_.build(model_, state, drive, contact_coupling_, team_);
   if (problem_.facts().lacks_room) {
     systems_.make_room(model_, finder_.contacts(), state);
-    problem_.find_pairs(state);
+    problem_.find_pairs(state.pattern);
   }
   if (model_.solver.accelerators.earlier_attempt)
     earlier_attempt_.give(finder_.contacts(), problem_.springs());
@@ -272,7 +272,7 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   const Attempt solved = solution(state, drive);
   {
     const Profile::Scope scope(profile_, Phase::energy);
-    accounts_.account_for_blocks(solved, rotation_.spin(), problem_, state);
+    accounts_.account_for_blocks(solved, rotation_.spin(), state);
   }
   const Profile::Scope scope(profile_, Phase::update);
   const CouplingTotals totals = account_for_couplings(solved, rotation_.spin(), state);

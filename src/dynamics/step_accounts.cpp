@@ -36,16 +36,16 @@ StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_
   return work;
 }
 
-void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const double> spin,
-                                      StepProblem& problem, State& state) {
+void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const double> spin, State& state) {
   const Model& model = attempt.model;
+  const BlockTerms& terms = attempt.problem.terms();
   EnergyLedger& ledger = state.ledger;
-  const BlockTerms::ElasticLoss elastic = problem.terms().elastic_loss(state, attempt.increment, spin);
+  const BlockTerms::ElasticLoss elastic = terms.elastic_loss(state, attempt.increment, spin);
   ledger.numerical += elastic.numerical;
   ledger.damping += elastic.damping;
   work_.assign(model.blocks.size(), {});
   for_moving_blocks(model, attempt.team,
-                    [&](std::size_t b) { work_[b] = work_of(attempt, b, problem.terms().inertia(b)); });
+                    [&](std::size_t b) { work_[b] = work_of(attempt, b, terms.inertia(b)); });
   for (const BlockWork& work : work_) {
     ledger.numerical += work.numerical;
     ledger.input += work.input;

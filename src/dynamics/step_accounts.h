@@ -11,8 +11,7 @@ namespace keyblock::dynamics {
 class StepAccounts {
  public:
   /// spin: rad, per block.
-  void account_for_blocks(const Attempt& attempt, std::span<const double> spin, StepProblem& problem,
-                          State& state);
+  void account_for_blocks(const Attempt& attempt, std::span<const double> spin, State& state);
 
  private:
   /// J per thickness.

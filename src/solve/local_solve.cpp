@@ -16,7 +16,7 @@ bool LocalSolve::solve(const StepSystem& system, Iterate& iterate, double enough
   find_all(
       system.team, ratios.size(), blocks_worth_threads,
       [&](std::size_t b) { return ratios[b] > step_numbers::elsewhere_share * enough; }, out_of_balance_);
-  for (std::size_t& b : out_of_balance_) b = at(problem.unknown(b));
+  for (std::size_t& b : out_of_balance_) b = at(problem.points().body(b).unknown);
   if (!system.solver.local()->find_local(out_of_balance_, reach_)) return false;
   take_reach(system);
   for (const std::size_t b : blocks_) {
@@ -29,7 +29,7 @@ bool LocalSolve::solve(const StepSystem& system, Iterate& iterate, double enough
       largest = std::max(largest, problem.terms().residual_ratio(b, residual));
     return largest / enough;
   };
-  const std::size_t n = problem.unknowns();
+  const std::size_t n = problem.model().unknowns;
   system.solver.local()->solve_local(std::span(iterate.direction).first(n),
                                      std::span(iterate.residual).first(n), excess);
   is_active_ = true;
@@ -49,7 +49,7 @@ void LocalSolve::find_contacts_of_blocks(const StepSystem& system) {
     }
   };
   // Counted two places on: in the next one stands where a block begins, until it is filled, and then where the block after it does.
-  first_contact_.assign(system.problem.blocks() + 2, 0);
+  first_contact_.assign(system.problem.model().blocks.size() + 2, 0);
   for_ends([&](std::size_t block, std::size_t /*contact*/) { ++first_contact_[block + 2]; });
   std::partial_sum(first_contact_.begin(), first_contact_.end(), first_contact_.begin());
   contacts_of_block_.resize(first_contact_.back());
@@ -61,7 +61,7 @@ void LocalSolve::find_contacts_of_blocks(const StepSystem& system) {
 /// What the next solution reaches. A contact of two blocks that move comes once, with the first of them.
 void LocalSolve::take_reach(const StepSystem& system) {
   find_contacts_of_blocks(system);
-  is_taken_.assign(system.problem.blocks(), 0);
+  is_taken_.assign(system.problem.model().blocks.size(), 0);
   contacts_.clear();
   for (const std::size_t block : std::span(reach_.blocks).first(reach_.moved)) {
     for (std::size_t i = first_contact_[block]; i < first_contact_[block + 1]; ++i) {
@@ -73,7 +73,8 @@ void LocalSolve::take_reach(const StepSystem& system) {
   }
   moved_ = reach_.moved;
   blocks_.clear();
-  for (const std::size_t unknown : reach_.blocks) blocks_.push_back(system.problem.block(unknown));
+  for (const std::size_t unknown : reach_.blocks)
+    blocks_.push_back(system.problem.points().block_of_unknown(unknown));
 }
 
 /// Blocks beside those that move stand still: the displacement is that of another direction there.

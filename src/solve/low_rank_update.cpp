@@ -51,7 +51,7 @@ bool LowRankUpdate::refines(const StepSystem& system, Iterate& iterate, StepMatr
 
 bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix,
                                        bool is_kept, bool from_zero, OpenCloseResult& result) {
-  const std::span<double> direction = std::span(iterate.direction).first(system.problem.unknowns());
+  const std::span<double> direction = std::span(iterate.direction).first(system.problem.model().unknowns);
   const double enough =
       (is_kept ? step_numbers::kept_share : step_numbers::linear_share) * system.options.tolerance;
   if (!begin(system, iterate, matrix, is_kept, enough, from_zero, direction)) return false;

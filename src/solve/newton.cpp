@@ -65,7 +65,7 @@ bool Newton::solve(const StepSystem& system, Iterate& iterate, bool exact, const
                         [&](std::size_t begin, std::size_t end) {
                           for (std::size_t k = begin; k < end; ++k) direction[k] = -gradient[k];
                         });
-  const std::size_t n = system.problem.unknowns();
+  const std::size_t n = system.problem.model().unknowns;
   system.solver.solve(std::span(direction).first(n), std::span(iterate.residual).first(n),
                       system.excess_over(enough(forcing)), residual_kind(exact));
   return system.solver.solved();
@@ -92,7 +92,7 @@ bool Newton::go_along(const StepSystem& system, Iterate& iterate, double enough,
 /// Takes what the last linear solution left over below the share of the tolerance. False when it cannot be had.
 bool Newton::improve(const StepSystem& system, Iterate& iterate, bool exact) const {
   const Profile::Scope scope(system.profile, Phase::solution);
-  const std::size_t n = system.problem.unknowns();
+  const std::size_t n = system.problem.model().unknowns;
   system.solver.improve(std::span(iterate.direction).first(n), std::span(iterate.residual).first(n),
                         system.excess_over(step_numbers::linear_share * system.options.tolerance),
                         residual_kind(exact));

@@ -16,7 +16,7 @@ void StepMatrix::assemble(const StepSystem& system) {
   normal_stiffness_.resize(n);
   shear_stiffness_.resize(n);
   places_.resize(n);
-  held_.assign(system.problem.blocks(), 0);
+  held_.assign(system.problem.model().blocks.size(), 0);
   free_.clear();
   branches_ = springs.branch;
   system.team.for_range(n, contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -38,7 +38,7 @@ bool StepMatrix::update(const StepSystem& system) {
   const bool turned = !free_.empty();
   for (const std::size_t b : free_) {
     system.problem.terms().assemble_block(b, system.solver);
-    system.solver.touch(system.problem.unknown(b));
+    system.solver.touch(system.problem.points().body(b).unknown);
   }
   free_.clear();
   changes_.clear();
@@ -112,14 +112,16 @@ void StepMatrix::find_free_blocks(const StepSystem& system, std::span<const std:
   for (const std::size_t c : updated) count_held(system, c, 1);
   free_.clear();
   for (std::size_t b = 0; b < held_.size(); ++b) {
-    if (system.problem.model().moves(b) && held_[at(system.problem.unknown(b))] == 0) free_.push_back(b);
+    if (system.problem.model().moves(b) && held_[at(system.problem.points().body(b).unknown)] == 0)
+      free_.push_back(b);
   }
   for (const std::size_t c : updated) count_held(system, c, -1);
 }
 
 void StepMatrix::take_hold(const StepProblem& problem, const Row& row) {
   std::erase_if(free_, [&](std::size_t b) {
-    return problem.unknown(b) == row.unknown_a || problem.unknown(b) == row.unknown_b;
+    return problem.points().body(b).unknown == row.unknown_a ||
+           problem.points().body(b).unknown == row.unknown_b;
   });
 }
 

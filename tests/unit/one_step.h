@@ -19,18 +19,12 @@ inline void analyse(const Model& model, StepProblem& problem, linalg::BlockSolve
   for (const Block& block : model.blocks) {
     if (!block.fixed) sizes.push_back(2 * block.size);
   }
-  const auto for_rows = [&](const auto& body) {
-    for (Row& row : problem.rows()) {
-      if (row.unknown_a < 0 || row.unknown_b < 0) continue;
-      body(row, std::pair<int, int>(std::minmax(row.unknown_a, row.unknown_b)));
-    }
-  };
   std::set<std::pair<int, int>> found;
-  for_rows([&](Row&, std::pair<int, int> pair) { found.insert(pair); });
+  for (const Row& row : problem.rows()) {
+    if (row.unknown_a >= 0 && row.unknown_b >= 0) found.insert(std::minmax(row.unknown_a, row.unknown_b));
+  }
   const std::vector<std::pair<int, int>> pairs(found.begin(), found.end());
-  for_rows([&](Row& row, std::pair<int, int> pair) {
-    row.pair = static_cast<int>(std::ranges::lower_bound(pairs, pair) - pairs.begin());
-  });
+  problem.find_pairs(pairs);
   solver.analyse(sizes, pairs);
 }
 
@@ -87,7 +81,7 @@ struct OneStep {
   /// Residual ratio of the gradient at d, contact by contact.
   [[nodiscard]] double out_of_balance() const {
     std::vector<double> g(d.size());
-    problem.gradient(d, g);
+    gradient_by_rows(problem, d, g);
     return problem.terms().residual_ratio(g);
   }
 

@@ -84,7 +84,7 @@ TEST(SpringArray, LargestForceIsThatOfTheContactThatPressesOrPullsMost) {
     double expected = 0.0;
     for (std::size_t c = 0; c < n; ++c) expected = std::max(expected, std::abs(springs.force(c).normal));
     ThreadTeam team(1);
-    EXPECT_EQ(springs.largest_normal_force(team), expected) << n;
+    EXPECT_EQ(largest_normal_force(springs, team), expected) << n;
   }
 }
 

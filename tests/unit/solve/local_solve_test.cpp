@@ -36,7 +36,7 @@ struct StruckWall {
   [[nodiscard]] std::vector<double> matrix_times(std::span<const double> x) const {
     const StepProblem& problem = step->problem;
     std::vector<double> y(x.size(), 0.0);
-    for (std::size_t b = 0; b < problem.blocks(); ++b) {
+    for (std::size_t b = 0; b < problem.model().blocks.size(); ++b) {
       if (problem.model().moves(b)) problem.terms().multiply(b, x, y);
     }
     for (std::size_t c = 0; c < problem.rows().size(); ++c) {

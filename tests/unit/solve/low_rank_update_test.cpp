@@ -104,7 +104,7 @@ TEST(LowRankUpdate, GivesUpWhereTooManySpringsAct) {
   EXPECT_FALSE(with.minimize(true));
   EXPECT_LE(with.update.size(), step_numbers::most_corrected);
   std::vector<double> g(with.step.d.size());
-  with.step.problem.gradient(with.step.d, g);
+  gradient_by_rows(with.step.problem, with.step.d, g);
   EXPECT_GT(with.step.out_of_balance(), s.model.solver.tolerance);
   EXPECT_LT(apart(g, with.step.iterate.gradient), 1e-9 * largest_of(g));
 }
