@@ -108,7 +108,8 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
 
 void PointSprings::add_rounding_forces(const Model& /*model*/, double extent, std::span<double> force) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    for (const std::size_t which : {0, 1}) force[at(end(k, which).block)] += springs_[k].stiffness * extent;
+    for (const std::size_t which : {std::size_t{0}, std::size_t{1}})
+      force[at(end(k, which).block)] += springs_[k].stiffness * extent;
   }
 }
 

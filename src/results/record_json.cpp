@@ -149,6 +149,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"pgv", r.pgv},
                           {"arias", r.arias},
                           {"equilibrium_reached", r.equilibrium_reached},
+                          {"still", r.still},
                           {"worst_residual_ratio", r.worst_residual_ratio},
                           {"way", r.way},
                           {"way_share", r.way_share},
@@ -189,6 +190,7 @@ StageLine read_stage_json(const std::string& text) {
     if (json.contains("pgv")) r.pgv = number(json.at("pgv"));  // not in files of version 0.1
     if (json.contains("arias")) r.arias = number(json.at("arias"));
     json.at("equilibrium_reached").get_to(r.equilibrium_reached);
+    r.still = json.value("still", false);
     r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
     if (json.contains("way")) r.way = number(json.at("way"));
     if (json.contains("way_share")) r.way_share = number(json.at("way_share"));

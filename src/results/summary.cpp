@@ -82,6 +82,7 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"arias_m_s", r.arias},
           {"wall_time_s", r.wall_time},
           {"interrupted", r.interrupted},
+          {"still", r.still},
           {"equilibrium", equilibrium(r)},
           {"standing", standing_json(r.standing)},
           {"largest_speed_m_s", r.largest_speed},

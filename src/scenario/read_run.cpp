@@ -22,6 +22,8 @@ constexpr Word<dynamics::TimeIntegration> integrators[] = {
 constexpr Word<dynamics::ContactMethod> contact_methods[] = {
     {"penalty", dynamics::ContactMethod::penalty},
     {"augmented-lagrangian", dynamics::ContactMethod::augmented_lagrangian}};
+// Whether a stage ends when all is still.
+constexpr Word<bool> stage_ends[] = {{"duration", false}, {"still", true}};
 constexpr Word<LinearSolver> linear_solvers[] = {{"automatic", LinearSolver::automatic},
                                                  {"block", LinearSolver::block},
                                                  {"iterative", LinearSolver::iterative},
@@ -77,6 +79,23 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .required = known && stage.kind == StageKind::rest,
                  .above = 0.0,
                  .fallback = "that of the motion; required to rest"}));
+  const bool dynamic = any || stage.kind != StageKind::settle;
+  t.word("until", stage.until_still, stage_ends,
+         only(dynamic, "kind = \"shake\" or \"rest\"",
+              {.meaning =
+                   "`still`: the stage ends before its duration is over, once nothing moves, slips or turns "
+                   "any more; "
+                   "under a motion not before its acceleration stays below a twentieth of the largest."}));
+  const bool still = t.documenting() || stage.until_still;
+  t.number(
+      "still_time", stage.still_time,
+      only(still, "until = \"still\"", {.meaning = "So long nothing may move.", .unit = "s", .above = 0.0}));
+  t.number("still_distance", stage.still_distance,
+           only(still, "until = \"still\"",
+                {.meaning = "How far a point of a block may go in that time.",
+                 .unit = "m",
+                 .above = 0.0,
+                 .fallback = "a twentieth of [damage] slip"}));
   const std::string settle_steps = std::to_string(simulation::default_settle_steps);
   t.integer("max_steps", stage.max_steps,
             only(settle, "kind = \"settle\"",

@@ -60,6 +60,7 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.standing);
   archive(s.wall_time);
   archive(s.interrupted);
+  archive(s.still);
   archive(s.motion_time);
   archive(s.motion);
 }
@@ -110,6 +111,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.settler.blocks.astray);
   archive(s.settler.blocks.state);
   archive(s.settler.blocks.candidates);
+  archive(s.still.since);
+  archive(s.still.places);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);

@@ -8,6 +8,7 @@
 #include "simulation/record.h"
 #include "simulation/settle.h"
 #include "simulation/setup.h"
+#include "simulation/stillness.h"
 
 namespace keyblock::simulation {
 
@@ -18,6 +19,7 @@ struct RunState {
   DamageGauge::Memory damage;
   OrderControl::Memory orders;
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
+  Stillness::Memory still;  ///< of the stage at hand, if it ends when all is still
   int stage = 0;
   long stage_step = 0;          ///< steps done in it
   double stage_start = 0.0;     ///< s, simulated time at which it began

@@ -160,6 +160,11 @@ bool is_record(const StageRecord& record, const Stage& stage, std::size_t blocks
          record.motion_time.size() == record.motion.size();
 }
 
+bool is_still(const Stillness::Memory& still, const Model& model) {
+  return std::isfinite(still.since) &&
+         (still.places.empty() || still.places.size() == model.surface.position.size());
+}
+
 bool has_counts(const RunState& state) {
   const OpenCloseStatistics& s = state.record.open_close;
   const Reported& r = state.reported;
@@ -202,6 +207,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";
+  if (!is_still(state.still, model)) return "places of other vertices";
   for (std::size_t k = 0; k < state.record.stages.size(); ++k)
     if (!is_record(state.record.stages[k], setup.stages[k], blocks)) return "stages that are not of this run";
   const OverlapRecord& overlap = state.record.max_overlap;

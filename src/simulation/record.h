@@ -199,6 +199,7 @@ struct StageRecord {
   std::optional<Standing> standing;  ///< none where there are excavations
   double wall_time = 0.0;            ///< s
   bool interrupted = false;
+  bool still = false;  ///< it ended before `planned_duration`, as nothing moved any more
   /// The motion as applied, thinned to what a plot needs: time in the stage (s), acceleration (m/s²).
   std::vector<double> motion_time;
   std::vector<Vec2> motion;

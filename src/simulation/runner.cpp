@@ -20,6 +20,7 @@ namespace keyblock::simulation {
 namespace {
 
 constexpr long checkpoint_steps = 2000;   // between places in a stage for a checkpoint
+constexpr double still_share = 0.05;      // of DamageLimits::slip: how far points may go where all is still
 constexpr double shortest_repeat = 0.01;  // of the time of a run so far, that a checkpoint in a stage saves
 
 using Clock = std::chrono::steady_clock;
@@ -190,11 +191,24 @@ void Runner::begin_stage() {
     begin_settling();
     return;
   }
+  if (record.stage.until_still) begin_waiting(is_new);
   stage_->most_steps = static_cast<long>(step_count(record.planned_duration.value_or(0.0), setup_.time_step));
   if (record.stage.kind == StageKind::shake) {
     stage_->motion.emplace(setup_.motions.at(static_cast<std::size_t>(record.stage.motion)),
                            record.stage.scale, record.start_time);
   }
+}
+
+/// For the time when nothing moves any more.
+void Runner::begin_waiting(bool is_new) {
+  const Stage& stage = stage_->record.stage;
+  double begin = 0.0;
+  if (stage.kind == StageKind::shake)
+    begin = end_of_shaking(setup_.motions.at(static_cast<std::size_t>(stage.motion)),
+                           stage_->record.planned_duration.value_or(0.0));
+  stage_->stillness.emplace(stage.still_distance.value_or(still_share * setup_.damage.slip), stage.still_time,
+                            begin);
+  if (!is_new) stage_->stillness->restore(now_.still);
 }
 
 void Runner::begin_settling() {
@@ -212,8 +226,8 @@ void Runner::begin_settling() {
 }
 
 bool Runner::stage_is_over() const {
-  return stage_->is_in_equilibrium || now_.stage_step >= stage_->most_steps || is_within_step_ ||
-         is_set(options_.stop);
+  return stage_->is_in_equilibrium || stage_->is_still || now_.stage_step >= stage_->most_steps ||
+         is_within_step_ || is_set(options_.stop);
 }
 
 /// Whether the step came to its end: one that does not is given up, as the run is to stop.
@@ -243,7 +257,10 @@ StageOutlook Runner::static_step(dynamics::StepReport& report) {
 StageOutlook Runner::dynamic_step(dynamics::StepReport& report) {
   report = stepper_->advance(now_.mechanics, setup_.time_step, stage_->motion ? &*stage_->motion : nullptr);
   const auto taken = static_cast<double>(now_.stage_step + 1);
-  return {stage_->most_steps - now_.stage_step - 1, taken / static_cast<double>(stage_->most_steps), 0.0};
+  stage_->is_still =
+      stage_->stillness && stage_->stillness->is_still(model_.surface, taken * setup_.time_step);
+  return {stage_->is_still ? 0 : stage_->most_steps - now_.stage_step - 1,
+          taken / static_cast<double>(stage_->most_steps), 0.0};
 }
 
 void Runner::after_step(const dynamics::StepReport& report, const StageOutlook& outlook) {
@@ -269,7 +286,8 @@ void Runner::end_stage() {
     record.way_share = record.way / model_.block_size;
     record.moving = settler.moving(*stepper_);
   } else {
-    record.interrupted = record.interrupted || now_.stage_step < stage_->most_steps;
+    record.still = stage_->is_still && now_.stage_step < stage_->most_steps;
+    record.interrupted = record.interrupted || (!record.still && now_.stage_step < stage_->most_steps);
     // Time from the number of steps, so that stages start at the same time whatever has been added up.
     record.duration = static_cast<double>(now_.stage_step) * setup_.time_step;
     if (!record.interrupted) now_.mechanics.time = record.start_time + record.duration;
@@ -307,6 +325,7 @@ void Runner::checkpoint() {
   if (within_stage && elapsed - now_.wall_time < shortest_repeat * elapsed) return;
   if (options_.directory.empty()) return;
   if (stage_ && stage_->settler) now_.settler = stage_->settler->memory();
+  if (stage_ && stage_->stillness) now_.still = stage_->stillness->memory();
   now_.damage = gauge_.memory();
   now_.orders = orders_.memory();
   now_.wall_time = elapsed;

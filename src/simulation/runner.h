@@ -68,6 +68,7 @@ class Runner {
   bool change_orders(bool (OrderControl::*change)(dynamics::Model&, dynamics::State&));
   void begin_stage();
   void begin_settling();
+  void begin_waiting(bool is_new);
   bool take_step(dynamics::StepReport& report);
   StageOutlook static_step(dynamics::StepReport& report);
   StageOutlook dynamic_step(dynamics::StepReport& report);

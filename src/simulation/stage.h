@@ -17,12 +17,16 @@ constexpr int default_settle_steps = 3000;
 struct Stage {
   std::string name;
   StageKind kind = StageKind::settle;
-  std::vector<int> excavate;       ///< excavations opened at the start, by index
-  int motion = -1;                 ///< shake: index of the ground motion
-  double scale = 1.0;              ///< shake: factor on the accelerations
-  std::optional<double> duration;  ///< s; shake: default the motion's
-  std::optional<int> max_steps;    ///< settle
-  double tolerance = 1e-4;         ///< settle: largest residual of a block over its weight at equilibrium
+  std::vector<int> excavate;  ///< excavations opened at the start, by index
+  int motion = -1;            ///< shake: index of the ground motion
+  double scale = 1.0;         ///< shake: factor on the accelerations
+  std::optional<double>
+      duration;              ///< s; shake: default the motion's; the longest, where it ends when all is still
+  bool until_still = false;  ///< shake, rest: it ends once nothing moves any more (Stillness)
+  double still_time = 0.5;   ///< s, for so long
+  std::optional<double> still_distance;  ///< m, by more than this; default a twentieth of DamageLimits::slip
+  std::optional<int> max_steps;          ///< settle
+  double tolerance = 1e-4;  ///< settle: largest residual of a block over its weight at equilibrium
 };
 
 }  // namespace keyblock::simulation

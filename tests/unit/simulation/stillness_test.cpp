@@ -1,0 +1,103 @@
+#include "simulation/stillness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../fresh_folder.h"
+#include "../scene.h"
+
+namespace keyblock::simulation {
+namespace {
+
+/// A block that slides to rest on a floor from 1 m/s, at φ = 30°: v²/2μg is 88 mm, which take v/μg = 0.18 s.
+RunSetup slide(double duration, double time_step = 0.001) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 8.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 1.0, 0.5);
+  scene.setup.time_step = time_step;
+  scene.setup.properties[1].velocity = {1.0, 0.0};
+  Stage rest = stage("slide", StageKind::rest, duration);
+  rest.until_still = true;
+  rest.still_time = 0.1;
+  scene.setup.stages = {rest, stage("after", StageKind::rest, 0.05)};
+  return scene.setup;
+}
+
+// The stage ends so long after the block has come to rest as is asked for, and the next one follows there.
+TEST(Stillness, EndsAStageWhenNothingMoves) {
+  RunObserver nobody;
+  const RunRecord record = run(slide(5.0), {}, nobody);
+  ASSERT_EQ(record.stages.size(), 2u);
+  EXPECT_TRUE(record.stages[0].still);
+  EXPECT_FALSE(record.stages[0].interrupted);
+  EXPECT_FALSE(record.interrupted);
+  EXPECT_NEAR(record.stages[0].duration, 0.18 + 0.1, 0.03);
+  EXPECT_EQ(record.stages[0].planned_duration, 5.0);
+  EXPECT_EQ(record.stages[1].start_time, record.stages[0].duration);
+  EXPECT_FALSE(record.stages[1].still);
+}
+
+// What still moves at the end of the duration is cut off there, as without `until`.
+TEST(Stillness, ADurationThatIsOverEndsTheStage) {
+  RunObserver nobody;
+  const RunRecord record = run(slide(0.15), {}, nobody);
+  EXPECT_FALSE(record.stages[0].still);
+  EXPECT_FALSE(record.stages[0].interrupted);
+  EXPECT_EQ(record.stages[0].duration, 0.15);
+}
+
+// A run that is interrupted while it waits, and resumed, waits on.
+TEST(Stillness, AResumedRunEndsInTheSameBits) {
+  const RunSetup setup = slide(5.0, 5e-5);
+  RunObserver nobody;
+  const RunRecord whole = run(setup, {}, nobody);
+  const FreshFolder folder;
+  RunOptions options;
+  options.directory = folder;
+  Stopper stopper(4500);  // after the checkpoint at 4000, in which it waits
+  options.stop = &stopper.stop;
+  EXPECT_TRUE(run(setup, options, stopper).interrupted);
+  options.stop = nullptr;
+  options.resume = true;
+  const RunRecord resumed = run(setup, options, nobody);
+  EXPECT_EQ(resumed.state_hash, whole.state_hash);
+  EXPECT_EQ(resumed.stages[0].steps, whole.stages[0].steps);
+}
+
+// A pause in a record is not its end.
+TEST(Stillness, ShakingIsOverWhenItStaysWeak) {
+  const loading::GroundMotion motion(
+      "two", {0.0, 1.0, 2.0, 3.0, 4.0, 5.0},
+      {{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}, {0.0, 4.0}, {0.1, 0.0}, {0.0, 0.0}});
+  EXPECT_EQ(end_of_shaking(motion, 5.0), 3.0);
+  EXPECT_EQ(end_of_shaking(motion, 2.0), 1.0);
+}
+
+// Only vertices that are there count, and one that is nowhere never stays.
+TEST(Stillness, LooksAtVerticesThatAreThere) {
+  contact::Surface surface;
+  surface.block = {0, 1};
+  surface.present = {1, 1};
+  surface.position = {{0.0, 0.0}, {1.0, 0.0}};
+  Stillness stillness(0.1, 1.0, 0.5);
+  EXPECT_FALSE(stillness.is_still(surface, 0.4));
+  EXPECT_TRUE(stillness.memory().places.empty());
+  EXPECT_FALSE(stillness.is_still(surface, 0.5));
+  surface.position[1].x = 1.2;
+  EXPECT_FALSE(stillness.is_still(surface, 1.4));
+  EXPECT_FALSE(stillness.is_still(surface, 2.3));
+  surface.position[1].x = 1.25;
+  EXPECT_TRUE(stillness.is_still(surface, 2.4));
+  surface.position[0].y = -1.0;
+  EXPECT_FALSE(stillness.is_still(surface, 2.5));
+  surface.present[0] = 0;
+  surface.position[0].y = -2.0;
+  EXPECT_FALSE(stillness.is_still(surface, 3.4));
+  EXPECT_TRUE(stillness.is_still(surface, 3.5));
+  surface.position[1].x = std::nan("");
+  EXPECT_FALSE(stillness.is_still(surface, 3.6));
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
