@@ -1,6 +1,7 @@
 #include "linalg/block_cholesky.h"
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 
 #include "core/index.h"
@@ -67,6 +68,19 @@ bool BlockCholesky::factor() {
   return factor_in_double();
 }
 
+/// Numbers of the columns that two paths have in common: all from where they meet.
+std::size_t BlockCholesky::shared_size(const ForwardVector& x, const ForwardVector& y) const {
+  const std::size_t most = std::min(x.path.size(), y.path.size());
+  std::size_t depth = 0;
+  constexpr std::size_t some = 8;
+  while (depth + some <= most && std::memcmp(&x.path[depth], &y.path[depth], some * sizeof(x.path[0])) == 0)
+    depth += some;
+  while (depth < most && x.path[depth] == y.path[depth]) ++depth;
+  if (depth == 0) return 0;
+  const std::size_t last = x.path[depth - 1];
+  return pattern_.above[last] + at(pattern_.stride[last]);
+}
+
 /// Brings x into the order of elimination.
 void BlockCholesky::to_columns(std::span<const double> x, std::span<double> by_column) const {
   for (std::size_t j = 0; j < pattern_.columns(); ++j)
@@ -126,30 +140,63 @@ void BlockCholesky::solve(std::span<double> x, std::span<double> residual, const
   from_columns(right_, x);
 }
 
-void BlockCholesky::forward_solve(Part a, Part b, ForwardVector& w) {
+/// v, at the columns on its path.
+void BlockCholesky::begin_path(const PairVector& v, ForwardVector& w) const {
   std::size_t first = BlockPattern::none;
-  for (const Part& part : {a, b}) {
+  for (const Part& part : {v.a, v.b}) {
     if (part.block >= 0) first = std::min(first, column(part.block));
   }
   w.column = static_cast<int>(first);
   w.values.assign(pattern_.above[first] + at(pattern_.stride[first]), 0.0);
-  for (const Part& part : {a, b}) {
+  for (const Part& part : {v.a, v.b}) {
     if (part.block >= 0)
       std::copy(part.values.begin(), part.values.end(), &w.values[pattern_.above[column(part.block)]]);
   }
-  with_factor([&](auto& factor) { factor.forward(pattern_, w); });
+  w.path.clear();
+  for (std::size_t j = first; j != BlockPattern::none; j = pattern_.parent[j])
+    w.path.push_back(static_cast<std::uint32_t>(j));
+  std::ranges::reverse(w.path);
+}
+
+void BlockCholesky::forward_solve(std::span<const PairVector> vs, std::span<ForwardVector> ws) {
+  for (std::size_t k = 0; k < vs.size(); ++k) begin_path(vs[k], ws[k]);
+  with_factor([&](auto& factor) {
+    for (std::size_t k = 0; k < ws.size(); k += numbers::forward_group)
+      factor.forward(pattern_, ws.subspan(k, std::min(numbers::forward_group, ws.size() - k)));
+  });
 }
 
 double BlockCholesky::product(const ForwardVector& x, const ForwardVector& y) const {
-  // The paths have all in common from where they meet.
-  constexpr std::size_t none = BlockPattern::none;
-  std::size_t i = at(x.column), j = at(y.column);
-  while (i != j && i != none && j != none) (i < j ? i : j) = pattern_.parent[std::min(i, j)];
-  if (i != j || i == none) return 0.0;
-  Lanes t{};
-  for (std::size_t k = 0; k < pattern_.above[i] + at(pattern_.stride[i]); k += row_padding)
-    add_lane_product(&x.values[k], &y.values[k], t);
-  return sum(t);
+  double product = 0.0;
+  find_products(x, {&y, 1}, {&product, 1});
+  return product;
+}
+
+void BlockCholesky::find_products(const ForwardVector& x, std::span<const ForwardVector> ys,
+                                  std::span<double> products) const {
+  constexpr std::size_t group = 4;
+  for (std::size_t first = 0; first < ys.size(); first += group) {
+    const std::span<const ForwardVector> some = ys.subspan(first, std::min(group, ys.size() - first));
+    std::size_t ends[group] = {}, all = x.values.size();
+    const double* of[group];
+    for (std::size_t k = 0; k < group; ++k) {
+      const ForwardVector& y = some[std::min(k, some.size() - 1)];
+      ends[k] =
+          k > 0 && y.column == some[std::min(k, some.size()) - 1].column ? ends[k - 1] : shared_size(x, y);
+      all = std::min(all, ends[k]);
+      of[k] = y.values.data();
+    }
+    Lanes t[group]{};
+    for (std::size_t l = 0; l < all; l += row_padding) {
+      const Lanes x_l = load(&x.values[l]);
+      for (std::size_t k = 0; k < group; ++k) t[k] = add_product(x_l, load(of[k] + l), t[k]);
+    }
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      for (std::size_t l = all; l < ends[k]; l += row_padding)
+        t[k] = add_product(load(&x.values[l]), load(of[k] + l), t[k]);
+      products[first + k] = sum(t[k]);
+    }
+  }
 }
 
 double BlockCholesky::product(const ForwardVector& x, std::span<const double> y) const {

@@ -26,9 +26,11 @@ class BlockCholesky final : public BlockSolver, public LowRankSolver {
   [[nodiscard]] bool serves_later_steps() const override { return true; }
   [[nodiscard]] bool solved() const override { return solved_; }
   [[nodiscard]] bool is_exact() const override { return in_double_; }
-  void forward_solve(Part a, Part b, ForwardVector& w) override;
+  void forward_solve(std::span<const PairVector> vs, std::span<ForwardVector> ws) override;
   void forward_solve(std::span<const double> b, std::vector<double>& w) override;
   [[nodiscard]] double product(const ForwardVector& x, const ForwardVector& y) const override;
+  void find_products(const ForwardVector& x, std::span<const ForwardVector> ys,
+                     std::span<double> products) const override;
   [[nodiscard]] double product(const ForwardVector& x, std::span<const double> y) const override;
   void backward_solve(std::span<const double> w, std::span<const ForwardVector> ws,
                       std::span<const double> factor, std::span<double> x) override;
@@ -37,6 +39,8 @@ class BlockCholesky final : public BlockSolver, public LowRankSolver {
   [[nodiscard]] std::size_t column(int block) const {
     return pattern_.position[static_cast<std::size_t>(block)];
   }
+  [[nodiscard]] std::size_t shared_size(const ForwardVector& x, const ForwardVector& y) const;
+  void begin_path(const PairVector& v, ForwardVector& w) const;
   [[nodiscard]] bool factor_in_double();
   void to_columns(std::span<const double> x, std::span<double> by_column) const;
   void from_columns(std::span<const double> by_column, std::span<double> x) const;

@@ -225,12 +225,54 @@ void BlockFactor<Number>::backward(const BlockPattern& pattern, std::span<double
   });
 }
 
+/// The same of two vectors on their paths, which share what is read of L.
 template <typename Number>
-void BlockFactor<Number>::forward(const BlockPattern& pattern, ForwardVector& w) {
-  const auto of_row = [&](std::size_t i) { return &w.values[pattern.above[i]]; };
+template <int equal>
+void BlockFactor<Number>::eliminate_two(const BlockPattern& pattern, std::size_t j, ForwardVector& v,
+                                        ForwardVector& w) {
+  const auto of_row = [&](ForwardVector& x) {
+    return [&](std::size_t i) { return &x.values[pattern.above[i]]; };
+  };
+  if constexpr (equal != 6) {
+    eliminate<equal>(pattern, j, of_row(v)(j), of_row(v));
+    eliminate<equal>(pattern, j, of_row(w)(j), of_row(w));
+  } else {
+    double *v_j = of_row(v)(j), *w_j = of_row(w)(j);
+    for (double* y : {v_j, w_j}) {
+      multiply(1, equal, &values_[pattern.column_value[j]], y, solved_.data());
+      store(y, load(solved_.data()));
+    }
+    const TwoFactors<equal> factors(v_j, w_j);
+    for (std::size_t e = pattern.row_start[j]; e < pattern.row_start[j + 1]; ++e) {
+      const std::size_t above = pattern.above[pattern.rows[e]];
+      factors.subtract_product(&values_[pattern.row_value[e]], &v.values[above], &w.values[above]);
+    }
+  }
+}
+
+template <typename Number>
+void BlockFactor<Number>::forward(const BlockPattern& pattern, std::span<ForwardVector> ws) {
+  at_.clear();
+  for (const ForwardVector& w : ws) at_.push_back(static_cast<std::size_t>(w.column));
   for_equal_size(pattern, [&]<int equal>() {
-    for (std::size_t j = at(w.column); j != BlockPattern::none; j = pattern.parent[j])
+    for (;;) {
+      const std::size_t j = *std::min_element(at_.begin(), at_.end());
+      if (j == BlockPattern::none) break;
+      ForwardVector* waiting = nullptr;
+      for (std::size_t k = 0; k < ws.size(); ++k) {
+        if (at_[k] != j) continue;
+        at_[k] = pattern.parent[j];
+        if (waiting == nullptr) {
+          waiting = &ws[k];
+        } else {
+          eliminate_two<equal>(pattern, j, *waiting, ws[k]);
+          waiting = nullptr;
+        }
+      }
+      if (waiting == nullptr) continue;
+      const auto of_row = [&](std::size_t i) { return &waiting->values[pattern.above[i]]; };
       eliminate<equal>(pattern, j, of_row(j), of_row);
+    }
   });
 }
 

@@ -30,8 +30,8 @@ class BlockFactor {
   /// y ← L⁻¹ y and y ← L⁻ᵀ y, of vectors by columns.
   void forward(const BlockPattern& pattern, std::span<double> y);
   void backward(const BlockPattern& pattern, std::span<double> y);
-  /// y ← L⁻¹ y, on the path from w.column to the root.
-  void forward(const BlockPattern& pattern, ForwardVector& w);
+  /// w ← L⁻¹ w of a few, each on the path from its column to the root.
+  void forward(const BlockPattern& pattern, std::span<ForwardVector> ws);
 
  private:
   // `equal`: unknowns of every block where all have as many, so that loops have a known length; 0 where not.
@@ -46,12 +46,15 @@ class BlockFactor {
   int gather(const BlockPattern& pattern, std::size_t j, int c, const double* y);
   template <int equal, int columns>
   int divide(const BlockPattern& pattern, std::size_t j, int c, double* y);
+  template <int equal>
+  void eliminate_two(const BlockPattern& pattern, std::size_t j, ForwardVector& v, ForwardVector& w);
   template <int equal, typename OfRow>
   void eliminate(const BlockPattern& pattern, std::size_t j, double* y, const OfRow& of_row);
 
   std::vector<Number> values_;       ///< as the pattern has them; diagonal blocks are L_jj⁻¹
   std::vector<std::uint8_t> stale_;  ///< per column: to be factored anew
   std::vector<Number*> target_;      ///< scratch of update_column: row → block of the column at hand
+  std::vector<std::size_t> at_;      ///< scratch of forward: where each of some vectors is on its path
   std::vector<double> solved_, scale_, diagonal_;  ///< scratch of one block
 };
 

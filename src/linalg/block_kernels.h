@@ -303,6 +303,38 @@ void subtract_times(int lanes, int columns, const Stored* a, const Number* x, Nu
   }
 }
 
+/// y −= A x as subtract_times() does, of two pairs of y and x and blocks A of n columns, up to eight rows; the x stay in registers.
+template <int n>
+class TwoFactors {
+ public:
+  TwoFactors(const double* x, const double* other) {
+    for (int j = 0; j < n; ++j) {
+      x_[j] = Of::all(x[j]);
+      other_[j] = Of::all(other[j]);
+    }
+  }
+  template <typename Stored>
+  void subtract_product(const Stored* a, double* y, double* other) const {
+    for (int l = 0; l < row_padding; l += width) {
+      Register t = Of::load_from(y + l), s = Of::load_from(other + l);
+#pragma GCC unroll 12
+      for (int j = 0; j < n; ++j) {
+        const Register column = Of::load_from(a + j * row_padding + l);
+        t = linalg::subtract_product(column, x_[j], t);
+        s = linalg::subtract_product(column, other_[j], s);
+      }
+      Of::store_to(y + l, t);
+      Of::store_to(other + l, s);
+    }
+  }
+
+ private:
+  using Of = Registers<double, row_padding>;
+  using Register = typename Of::Register;
+  static constexpr int width = sizeof(Register) / sizeof(double);
+  Register x_[n], other_[n];
+};
+
 /// t_j += A_j ∘ x, the products of column j of A with x lane by lane; their sum is (Aᵀ x)_j. As many columns as t has.
 template <typename Stored, typename Number, typename Products, int columns>
 void add_lane_products(int lanes, const Stored* a, const Number* x, Products (&t)[columns]) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -76,8 +77,9 @@ class BlockSolver {
 /// L⁻¹ b, with A = L Lᵀ, of a b that belongs to one block or to two that have a pair. It is zero except in the columns on a path of the
 /// elimination tree: from the first of the two blocks that is eliminated to the root.
 struct ForwardVector {
-  int column = -1;             ///< where the path begins
-  std::vector<double> values;  ///< of the columns on the path, those of the root first
+  int column = -1;                  ///< where the path begins
+  std::vector<double> values;       ///< of the columns on the path, those of the root first
+  std::vector<std::uint32_t> path;  ///< these columns
 };
 
 /// Of a direct solver: forward substitution with the last factor, for low-rank updates. With w = L⁻¹ a, a change of A along a aᵀ needs no more
@@ -92,12 +94,19 @@ class LowRankSolver {
     int block = -1;
     std::span<const double> values;
   };
-  /// w = L⁻¹ (a + b). The two blocks have a pair, or one of them is −1.
-  virtual void forward_solve(Part a, Part b, ForwardVector& w) = 0;
+  /// a + b; the two blocks have a pair, or one of them is −1.
+  struct PairVector {
+    Part a, b;
+  };
+  /// w = L⁻¹ v of each, which share what is read of L on their way to the root; the same bits as one by one.
+  virtual void forward_solve(std::span<const PairVector> vs, std::span<ForwardVector> ws) = 0;
   /// w = L⁻¹ b, of all columns, for a b of all blocks.
   virtual void forward_solve(std::span<const double> b, std::vector<double>& w) = 0;
   /// xᵀ y, for x = L⁻¹ a and y = L⁻¹ b that is aᵀ A⁻¹ b.
   [[nodiscard]] virtual double product(const ForwardVector& x, const ForwardVector& y) const = 0;
+  /// The same of x and each y, into `products`.
+  virtual void find_products(const ForwardVector& x, std::span<const ForwardVector> ys,
+                             std::span<double> products) const = 0;
   [[nodiscard]] virtual double product(const ForwardVector& x, std::span<const double> y) const = 0;
   /// x = L⁻ᵀ (w + Σ factor_k ws_k).
   virtual void backward_solve(std::span<const double> w, std::span<const ForwardVector> ws,

@@ -58,6 +58,8 @@ inline constexpr double least_single_pivot = 1e-5;
 /// Solutions in single precision, each of what the solutions before it left over, at most; then the factor has double precision. Larger: more of
 /// them for nothing. Smaller: more factors in double precision.
 inline constexpr int most_refinements = 5;
+/// Vectors that go to the root together. Larger: more of them wait for each other where their paths have not met.
+inline constexpr std::size_t forward_group = 8;
 /// An excess that is estimated to be less needs no check; below 1. Larger: solutions that have to go on.
 inline constexpr double sure_excess = 0.1;
 

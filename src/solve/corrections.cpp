@@ -2,78 +2,84 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "linalg/registers.h"
 #include "solve/line_search.h"
 
 namespace keyblock::dynamics {
 
-void Corrections::add(linalg::LowRankSolver& solver, linalg::LowRankSolver::Part a,
-                      linalg::LowRankSolver::Part b) {
-  if (half_.size() == size_) half_.emplace_back();
-  solver.forward_solve(a, b, half_[size_]);
-  compliance_.resize(size_ * (size_ + 1) / 2);
-  for (std::size_t t = 0; t <= size_; ++t) compliance_.push_back(solver.product(half_[t], half_[size_]));
-  ++size_;
-}
-
-double Corrections::compliance_times(std::size_t s, std::span<const double> x) const {
-  double sum = 0.0;
-  for (std::size_t t = 0; t < size_; ++t) sum += compliance(s, t) * x[t];
-  return sum;
-}
-
-/// Matrix and right side of the springs with ∂β/∂e ≠ 0.
-void Corrections::assemble() {
-  curved_.clear();
+void Corrections::add(linalg::LowRankSolver& solver,
+                      std::span<const linalg::LowRankSolver::PairVector> springs) {
+  const std::size_t first = size_;
+  size_ += springs.size();
+  if (half_.size() < size_) half_.resize(size_);
+  make_room(size_);
+  const std::span<linalg::ForwardVector> fresh = std::span(half_).subspan(first, springs.size());
+  solver.forward_solve(springs, fresh);
   for (std::size_t s = 0; s < size_; ++s) {
-    if (stiffness_[s] != 0.0) curved_.push_back(s);
-  }
-  const std::size_t n = curved_.size();
-  triangle_.resize(n * n);
-  right_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t s = curved_[i];
-    right_[i] = missing_[s] / stiffness_[s];
-    for (std::size_t t = 0; t < size_; ++t) {
-      if (stiffness_[t] == 0.0) right_[i] -= compliance(s, t) * missing_[t];
-    }
-    for (std::size_t j = 0; j <= i; ++j) triangle_[i * n + j] = compliance(s, curved_[j]);
-    triangle_[i * n + i] += 1.0 / stiffness_[s];
+    const std::size_t from = std::max(s, first);
+    solver.find_products(half_[s], fresh.subspan(from - first), {compliances(s) + from, size_ - from});
+    for (std::size_t t = from; t < size_; ++t) compliances(t)[s] = compliances(s)[t];
   }
 }
 
-/// L D Lᵀ in place of the matrix, and L⁻¹ in front of the right side. False where there is none.
-bool Corrections::factor() {
-  const std::size_t n = curved_.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    double* row = &triangle_[i * n];
-    for (std::size_t j = 0; j < i; ++j) {
-      const double* other = &triangle_[j * n];
-      for (std::size_t k = 0; k < j; ++k) row[j] -= row[k] * other[k];  // row: L D so far
-    }
-    for (std::size_t j = 0; j < i; ++j) {
-      const double scaled = row[j] / triangle_[j * n + j];
-      row[i] -= scaled * row[j];
-      right_[i] -= scaled * right_[j];
-      row[j] = scaled;
-    }
-    if (row[i] == 0.0 || !std::isfinite(row[i])) return false;
+/// For rows and columns of so many springs; beyond them all is zero.
+void Corrections::make_room(std::size_t springs) {
+  if (springs <= room_) return;
+  const std::size_t room = (springs + springs / 2 + lane_count - 1) / lane_count * lane_count;
+  std::vector<double> roomy(room * room, 0.0);
+  for (std::size_t s = 0; s < room_; ++s) std::copy_n(compliances(s), room_, &roomy[s * room]);
+  compliance_ = std::move(roomy);
+  room_ = room;
+}
+
+/// C times the direction.
+void Corrections::find_step() {
+  step_.assign(room_, 0.0);
+  for (std::size_t s = 0; s < size_; ++s) {
+    if (direction_[s] == 0.0) continue;
+    const double* row = compliances(s);
+    for (std::size_t t = 0; t < size_; t += lane_count)
+      store(&step_[t], linalg::add_product(broadcast(direction_[s]), load(row + t), load(&step_[t])));
   }
-  return true;
+}
+
+/// The springs with ∂β/∂e ≠ 0, and the factor of their matrix as far as it is the same.
+void Corrections::find_curved() {
+  std::size_t same = 0, count = 0;
+  const std::size_t before = curved_.size();
+  for (std::size_t s = 0; s < size_; ++s) {
+    if (stiffness_[s] == 0.0) continue;
+    if (same == count && count < before && curved_[count] == s && curved_stiffness_[count] == stiffness_[s])
+      ++same;
+    curved_.resize(std::max(curved_.size(), count + 1));
+    curved_stiffness_.resize(curved_.size());
+    curved_[count] = s;
+    curved_stiffness_[count++] = stiffness_[s];
+  }
+  curved_.resize(count);
+  curved_stiffness_.resize(count);
+  kept_ = same;
 }
 
 /// (1 + diag(∂β/∂e) C) d = β − φ. Springs with ∂β/∂e = 0 give d at once; the others the symmetric matrix C + diag(∂e/∂β), positive
 /// definite among springs that the matrix lacks, negative definite among those that it has too many: L D Lᵀ needs no pivots.
 bool Corrections::find_direction() {
+  find_curved();
+  const auto entry = [&](std::size_t i, std::size_t j) {
+    const double compliance = compliances(curved_[i])[curved_[j]];
+    return i == j ? compliance + 1.0 / curved_stiffness_[i] : compliance;
+  };
+  if (!factor_.factor(curved_.size(), kept_, entry)) return false;
   direction_ = missing_;
-  assemble();
-  if (!factor()) return false;
-  const std::size_t n = curved_.size();
-  for (std::size_t i = 0; i < n; ++i) right_[i] /= triangle_[i * n + i];
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t j = 0; j < i; ++j) right_[j] -= triangle_[i * n + j] * right_[i];
-  }
-  for (std::size_t i = 0; i < n; ++i) direction_[curved_[i]] = right_[i];
+  for (const std::size_t s : curved_) direction_[s] = 0.0;
+  find_step();  // of the springs that are not curved
+  right_.clear();
+  for (const std::size_t s : curved_) right_.push_back(missing_[s] / stiffness_[s] - step_[s]);
+  factor_.solve(right_);
+  for (std::size_t i = 0; i < curved_.size(); ++i) direction_[curved_[i]] = right_[i];
+  find_step();
   return true;
 }
 
@@ -85,7 +91,6 @@ bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const dou
   stiffness_.resize(size_);
   missing_.resize(size_);
   branch_.resize(size_);
-  step_.resize(size_);
   force_.assign(size_, 0.0);
   for (std::size_t s = 0; s < size_; ++s) stretch_[s] = stretch[s] + solver.product(half_[s], half);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -100,10 +105,7 @@ bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const dou
     if (missing <= rounding * largest) return true;
     if (!find_direction()) return false;
     double start = 0.0;
-    for (std::size_t s = 0; s < size_; ++s) {
-      step_[s] = compliance_times(s, direction_);
-      start -= step_[s] * missing_[s];
-    }
+    for (std::size_t s = 0; s < size_; ++s) start -= step_[s] * missing_[s];
     const auto slope = [&](double alpha) {
       double sum = 0.0;
       for (std::size_t s = 0; s < size_; ++s)

@@ -4,6 +4,7 @@
 
 #include "contact/law.h"
 #include "linalg/block_solver.h"
+#include "linalg/bordered_factor.h"
 
 namespace keyblock::dynamics {
 
@@ -36,10 +37,13 @@ class Corrections {
     }
   };
 
-  void clear() { size_ = 0; }
+  void clear() {
+    size_ = 0;
+    factor_.clear();
+  }
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Adds a spring; a and b: the parts of a_s.
-  void add(linalg::LowRankSolver& solver, linalg::LowRankSolver::Part a, linalg::LowRankSolver::Part b);
+  /// Adds springs, with their a_s.
+  void add(linalg::LowRankSolver& solver, std::span<const linalg::LowRankSolver::PairVector> springs);
   /// φ, given half of −A⁻¹ g, the law of every spring and its stretch at D. False when it is not found.
   [[nodiscard]] bool solve(const linalg::LowRankSolver& solver, std::span<const double> half,
                            std::span<const Law> laws, std::span<const double> stretch);
@@ -48,25 +52,28 @@ class Corrections {
   void finish(linalg::LowRankSolver& solver, std::span<const double> half, std::span<double> d);
 
  private:
-  [[nodiscard]] double compliance(std::size_t s, std::size_t t) const {
-    return s < t ? compliance_[t * (t + 1) / 2 + s] : compliance_[s * (s + 1) / 2 + t];
-  }
-  [[nodiscard]] double compliance_times(std::size_t s, std::span<const double> x) const;
-  void assemble();
-  [[nodiscard]] bool factor();
+  /// Row s of C.
+  [[nodiscard]] double* compliances(std::size_t s) { return &compliance_[s * room_]; }
+  void make_room(std::size_t springs);
+  void find_step();
+  void find_curved();
   [[nodiscard]] bool find_direction();
 
   std::size_t size_ = 0;
   std::vector<linalg::ForwardVector> half_;  ///< L⁻¹ a_s; of the first size_
-  std::vector<double> compliance_;           ///< lower triangle by rows
-  std::vector<double> force_;                ///< φ
+  std::vector<double> compliance_;           ///< C, by rows of `room_` numbers
+  std::size_t room_ = 0;
+  std::vector<double> force_;  ///< φ
+  // The springs with ∂β/∂e ≠ 0, and the factor of their matrix C + diag(∂e/∂β).
+  std::vector<std::size_t> curved_;
+  std::vector<double> curved_stiffness_;
+  linalg::BorderedFactor factor_;
+  std::size_t kept_ = 0;  ///< of its rows, the first that are those of the last direction
   // Scratch.
   std::vector<double> stretch_, stiffness_, missing_;  ///< e; ∂β/∂e; β − φ
   std::vector<int> branch_;
   std::vector<double> direction_, step_;  ///< of φ; what it takes off e
-  std::vector<std::size_t> curved_;       ///< springs with ∂β/∂e ≠ 0
-  std::vector<double> triangle_, right_;
-  std::vector<double> scaled_;
+  std::vector<double> right_, scaled_;
 };
 
 }  // namespace keyblock::dynamics

@@ -176,20 +176,40 @@ void LowRankUpdate::find_wanted(const SpringArray& springs, const StepMatrix& ma
     for (const bool normal : {true, false}) {
       const Spring spring{c, normal};
       if (normal ? is.closed == line.closed : is.shear == line.shear) continue;
-      if (std::find(updated_.begin(), updated_.end(), spring) == updated_.end()) wanted_.push_back(spring);
+      const bool is_updated = spring.number() < is_updated_.size() && is_updated_[spring.number()];
+      if (!is_updated) wanted_.push_back(spring);
     }
+  }
+}
+
+void LowRankUpdate::mark_updated(Spring spring) {
+  if (is_updated_.size() <= spring.number()) is_updated_.resize(spring.number() + 1, false);
+  is_updated_[spring.number()] = true;
+}
+
+void LowRankUpdate::carry(std::span<const std::size_t> now) {
+  is_updated_.clear();
+  for (Spring& spring : updated_) {
+    spring.contact = now[spring.contact];
+    mark_updated(spring);
   }
 }
 
 /// Those in wanted_ are updated from now on.
 void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
-  for (const Spring spring : wanted_) {
+  if (parts_.size() < wanted_.size()) parts_.resize(wanted_.size());
+  vectors_.clear();
+  for (std::size_t k = 0; k < wanted_.size(); ++k) {
+    const Spring spring = wanted_[k];
+    auto& [a, b] = parts_[k];
     const Row& row = system.row(spring.contact);
-    system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), part_a_, part_b_);
-    corrections_.add(*system.solver.low_rank(), {row.unknown_a, part_a_}, {row.unknown_b, part_b_});
+    system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), a, b);
+    vectors_.push_back({{row.unknown_a, a}, {row.unknown_b, b}});
     updated_.push_back(spring);
+    mark_updated(spring);
     matrix.take_hold(system.problem, row);
   }
+  corrections_.add(*system.solver.low_rank(), vectors_);
 }
 
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -24,22 +25,21 @@ class LowRankUpdate {
   void reset() {
     corrections_.clear();
     updated_.clear();
+    is_updated_.clear();
   }
   /// Springs that are updated.
   [[nodiscard]] std::size_t size() const { return corrections_.size(); }
   /// Their contacts.
   [[nodiscard]] std::vector<std::size_t> contacts() const;
   /// Goes over to the contacts of another step, as StepMatrix::carry(); none is gone.
-  void carry(std::span<const std::size_t> now) {
-    for (Spring& spring : updated_) spring.contact = now[spring.contact];
-  }
+  void carry(std::span<const std::size_t> now);
 
  private:
   /// The normal or the shear spring of a contact.
   struct Spring {
     std::size_t contact;
     bool normal;
-    friend bool operator==(Spring, Spring) = default;
+    [[nodiscard]] std::size_t number() const { return 2 * contact + (normal ? 0 : 1); }
   };
   bool refines(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool wants);
   bool iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
@@ -52,6 +52,7 @@ class LowRankUpdate {
   bool solve(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh,
              std::span<double> direction);
   bool find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh);
+  void mark_updated(Spring spring);
   void find_wanted(const SpringArray& springs, const StepMatrix& matrix);
   void take_wanted(const StepSystem& system, StepMatrix& matrix);
   void leave_out_wanted(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix);
@@ -59,12 +60,15 @@ class LowRankUpdate {
 
   Corrections corrections_;  ///< of the springs in updated_
   std::vector<Spring> updated_;
-  std::vector<Spring> wanted_;  ///< act otherwise than the matrix has them, and are not updated yet
-  std::vector<double> force_;   ///< N per thickness, per updated spring: what it does otherwise than its line
-  std::vector<double> base_;    ///< L⁻¹ of the right hand side with which no spring is updated
+  std::vector<bool> is_updated_;  ///< by Spring::number(), as far as any is
+  std::vector<Spring> wanted_;    ///< act otherwise than the matrix has them, and are not updated yet
+  std::vector<double> force_;  ///< N per thickness, per updated spring: what it does otherwise than its line
+  std::vector<double> base_;   ///< L⁻¹ of the right hand side with which no spring is updated
   // Scratch.
   std::vector<Corrections::Law> laws_;
-  std::vector<double> stretch_, part_a_, part_b_;
+  std::vector<double> stretch_;
+  std::vector<std::array<std::vector<double>, 2>> parts_;  ///< of the two blocks of a spring
+  std::vector<linalg::LowRankSolver::PairVector> vectors_;
 };
 
 }  // namespace keyblock::dynamics

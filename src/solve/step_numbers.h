@@ -32,8 +32,10 @@ inline constexpr double elsewhere_share = 0.5;
 
 // ── low-rank updates and kept factors ────────────────────────────────────────────────────────────────────────────────
 
-/// Springs, beyond which a factorization takes less than the update.
-inline constexpr std::size_t most_corrected = 64;
+/// Springs, beyond which a factorization takes less than the update. Hard steps of tunnels change 100 to 150.
+inline constexpr std::size_t most_corrected = 200;
+/// Springs that act otherwise, beyond which a solution with the matrix at hand is not tried again.
+inline constexpr std::size_t most_differing = 66;
 /// As many as are expected in the next step, with which a factor is worth keeping.
 inline constexpr std::size_t most_kept = 32;
 /// More refinements than these take what a factorization does.

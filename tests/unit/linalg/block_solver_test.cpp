@@ -104,13 +104,14 @@ void expect_forward_vectors_of_solutions(std::unique_ptr<BlockSolver> (*make)(),
       ASSERT_EQ(low_rank.is_exact(), exact);
       std::mt19937 random(seed);
       std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-      std::vector<ForwardVector> forward;
+      std::vector<std::array<std::vector<double>, 2>> parts(12);
+      std::vector<LowRankSolver::PairVector> pair_vectors;
       Eigen::MatrixXd vectors = Eigen::MatrixXd::Zero(p.dense.rows(), 12);
       std::vector<double> factor;
       for (int k = 0; k < 12; ++k) {
         const auto [i, j] = p.pairs[random() % p.pairs.size()];
-        std::vector<double> values[2];
-        for (int side = 0; side < (k % 3 == 0 ? 1 : 2); ++side) {
+        std::array<std::vector<double>, 2>& values = parts[static_cast<std::size_t>(k)];
+        for (std::size_t side = 0; side < (k % 3 == 0 ? 1U : 2U); ++side) {
           const int block = side == 0 ? i : j;
           const int first = std::accumulate(p.sizes.begin(), p.sizes.begin() + block, 0);
           for (int u = 0; u < p.sizes[static_cast<std::size_t>(block)]; ++u) {
@@ -118,9 +119,19 @@ void expect_forward_vectors_of_solutions(std::unique_ptr<BlockSolver> (*make)(),
             vectors(first + u, k) = values[side].back();
           }
         }
-        forward.emplace_back();
-        low_rank.forward_solve({i, values[0]}, {values[1].empty() ? -1 : j, values[1]}, forward.back());
+        pair_vectors.push_back({{i, values[0]}, {values[1].empty() ? -1 : j, values[1]}});
         factor.push_back(uniform(random));
+      }
+      std::vector<ForwardVector> forward(pair_vectors.size());
+      low_rank.forward_solve(pair_vectors, forward);
+      for (std::size_t k = 0; k < forward.size(); ++k) {
+        ForwardVector alone;
+        low_rank.forward_solve({&pair_vectors[k], 1}, {&alone, 1});
+        EXPECT_EQ(forward[k].values, alone.values);
+        std::vector<double> products(forward.size());
+        low_rank.find_products(alone, forward, products);
+        for (std::size_t l = 0; l < forward.size(); ++l)
+          EXPECT_EQ(products[l], low_rank.product(forward[l], alone));
       }
       const Eigen::MatrixXd solved = p.dense.ldlt().solve(vectors), product = vectors.transpose() * solved;
       for (std::size_t k = 0; k < forward.size(); ++k) {

@@ -103,8 +103,11 @@ TEST(Corrections, ReachTheMinimum) {
     Corrections corrections;
     std::vector<Corrections::Law> laws;
     std::vector<double> stretch, d(unknowns);
+    std::vector<linalg::LowRankSolver::PairVector> vectors;
+    for (const Spring& s : springs) vectors.push_back({{s.block, s.a}, {s.block + 1, s.b}});
+    corrections.add(halves, std::span(vectors).first(15));
+    corrections.add(halves, std::span(vectors).subspan(15));
     for (const Spring& s : springs) {
-      corrections.add(halves, {s.block, s.a}, {s.block + 1, s.b});
       laws.push_back(s.law);
       stretch.push_back(s.rest);
     }
