@@ -85,14 +85,18 @@ bool Corrections::find_direction() {
 
 bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const double> half,
                         std::span<const Law> laws, std::span<const double> stretch) {
-  constexpr int most_iterations = 60;
-  constexpr double rounding = 1e-13;
   stretch_.resize(size_);
   stiffness_.resize(size_);
   missing_.resize(size_);
   branch_.resize(size_);
   force_.assign(size_, 0.0);
   for (std::size_t s = 0; s < size_; ++s) stretch_[s] = stretch[s] + solver.product(half_[s], half);
+  return solve(laws);
+}
+
+bool Corrections::solve(std::span<const Law> laws) {
+  constexpr int most_iterations = 60;
+  constexpr double rounding = 1e-13;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     double largest = 0.0, missing = 0.0;
     for (std::size_t s = 0; s < size_; ++s) {

@@ -119,7 +119,8 @@ bool LawUpdates::reverse_sliding(const StepSystem& system, Iterate& iterate, dou
   return true;
 }
 
-bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, double tolerance) {
+bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, double tolerance,
+                               FollowedBounds& followed) {
   SpringArray& springs = system.springs();
   const auto [errors, scales] = sum_of<Sums>(
       system.team, (springs.size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
@@ -150,18 +151,38 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
       ratio > 0.5 * bound_error_)
     bound_damping_ = std::max(0.5 * bound_damping_, step_numbers::least_damping);
   bound_error_ = ratio;
+  // Static steps change more springs than are worth correcting, and have no end of updates to fear.
+  if (system.updates_by_low_rank() && system.options.accelerators.followed_bounds &&
+      !system.problem.is_static())
+    choose_followed(system, followed);
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
     const double missing = bound(c) - springs.bound[c];
-    const double gained = bound_steps_[c].missing - missing;
+    const BoundStep& last = bound_steps_[c];
+    const double gained = last.missing - missing;
     double share = 1.0;
-    if (!first && bound_steps_[c].taken * gained > 0.0)
-      share = std::clamp(bound_steps_[c].taken / gained, step_numbers::least_bound_share, 1.0);
+    // A bound that was followed since has come to where it is on a way of its own.
+    if (!first && last.bound == springs.bound[c] && last.taken * gained > 0.0)
+      share = std::clamp(last.taken / gained, step_numbers::least_bound_share, 1.0);
     share *= bound_damping_;
-    bound_steps_[c] = {missing, share * missing};
     iterate.change_spring(system, c, [&] { springs.bound[c] += share * missing; });
+    bound_steps_[c] = {missing, share * missing, springs.bound[c]};
   }
   return true;
+}
+
+/// By what new bounds change the shear forces of contacts.
+void LawUpdates::choose_followed(const StepSystem& system, FollowedBounds& followed) {
+  const SpringArray& springs = system.springs();
+  changes_.clear();
+  for (std::size_t c = 0; c < springs.size(); ++c) {
+    if (springs.friction[c] < 0.0) continue;
+    const double wanted = contact::shear_strength(springs.friction[c], springs.force(c).normal,
+                                                  springs.constant[c]),
+                 change = std::clamp(springs.ks[c] * springs.w[c], -wanted, wanted) - springs.force(c).shear;
+    if (change != 0.0) changes_.push_back({c, change * change});
+  }
+  followed.choose(changes_);
 }
 
 /// Adds the shifts, times a share, to the forces that belong to no displacement.

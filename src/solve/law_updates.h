@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "solve/followed_bounds.h"
 #include "solve/iterate.h"
 
 namespace keyblock::dynamics {
@@ -24,27 +25,31 @@ class LawUpdates {
   /// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when nothing
   /// penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls.
   bool augment(const StepSystem& system, Iterate& iterate, double tolerance);
-  /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2).
-  bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance);
+  /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2). Those that
+  /// change most are followed from then on.
+  bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance, FollowedBounds& followed);
 
  private:
   void sum_bounds(const StepSystem& system);
   [[nodiscard]] bool reverses(const StepSystem& system, std::size_t c) const;
+  void choose_followed(const StepSystem& system, FollowedBounds& followed);
   void shift_forces(const StepSystem& system, Iterate& iterate, double share);
 
   // Contacts that turn round.
   std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
   std::vector<std::size_t> reversed_;  ///< contacts; scratch
 
-  // Bounds. By how much one was wrong, and the change it got for it, N per thickness.
+  // Bounds. By how much one was wrong, the change it got for it, and what it became, N per thickness.
   struct BoundStep {
-    double missing = 0.0, taken = 0.0;
+    double missing = 0.0, taken = 0.0, bound = 0.0;
   };
   std::vector<BoundStep>
       bound_steps_;             ///< per contact, of the last update in this step; empty before the first
   int bound_updates_ = 0;       ///< in this step
   double bound_error_ = 0.0;    ///< of the last of them, over all bounds
   double bound_damping_ = 1.0;  ///< share of its way that each contact goes
+
+  std::vector<FollowedBounds::Change> changes_;  ///< scratch
 
   // Multipliers.
   std::vector<Vec2> violation_;    ///< m, per contact: penetration and drift; scratch

@@ -81,6 +81,7 @@ bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterat
 bool LowRankUpdate::begin(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
                           double enough, bool from_zero, std::span<double> direction) {
   if (!from_zero) {
+    take_followed(system, matrix);
     matrix.find_differing(system);
     find_wanted(system.springs(), matrix);
     leave_out_wanted(system, iterate, matrix);
@@ -164,6 +165,7 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
     law.line_force += force_[k];
   }
   if (!corrections_.solve(*system.solver.low_rank(), base_, laws_, stretch_)) return false;
+  if (!bounds_.contacts().empty() && !follow_bounds(system, matrix)) return false;
   for (std::size_t k = 0; k < updated_.size(); ++k) force_[k] += corrections_.forces()[k];
   return true;
 }
@@ -176,23 +178,53 @@ void LowRankUpdate::find_wanted(const SpringArray& springs, const StepMatrix& ma
     for (const bool normal : {true, false}) {
       const Spring spring{c, normal};
       if (normal ? is.closed == line.closed : is.shear == line.shear) continue;
-      const bool is_updated = spring.number() < is_updated_.size() && is_updated_[spring.number()];
-      if (!is_updated) wanted_.push_back(spring);
+      if (!is_updated(spring)) wanted_.push_back(spring);
     }
   }
 }
 
-void LowRankUpdate::mark_updated(Spring spring) {
-  if (is_updated_.size() <= spring.number()) is_updated_.resize(spring.number() + 1, false);
-  is_updated_[spring.number()] = true;
+void LowRankUpdate::remember_places() {
+  place_.clear();
+  for (std::size_t k = 0; k < updated_.size(); ++k) {
+    const std::size_t number = updated_[k].number();
+    if (place_.size() <= number) place_.resize(number + 1, 0);
+    place_[number] = k + 1;
+  }
 }
 
 void LowRankUpdate::carry(std::span<const std::size_t> now) {
-  is_updated_.clear();
-  for (Spring& spring : updated_) {
-    spring.contact = now[spring.contact];
-    mark_updated(spring);
+  for (Spring& spring : updated_) spring.contact = now[spring.contact];
+  remember_places();
+}
+
+/// The springs of contacts whose bounds are followed are updated, whatever they do.
+void LowRankUpdate::take_followed(const StepSystem& system, StepMatrix& matrix) {
+  wanted_.clear();
+  for (const std::size_t c : bounds_.contacts()) {
+    for (const bool normal : {true, false}) {
+      if (!is_updated({c, normal})) wanted_.push_back({c, normal});
+    }
   }
+  if (!wanted_.empty()) take_wanted(system, matrix);
+}
+
+/// Bounds, and the forces with them. False when these are not found.
+bool LowRankUpdate::follow_bounds(const StepSystem& system, const StepMatrix& matrix) {
+  SpringArray& springs = system.springs();
+  followed_.clear();
+  for (const std::size_t c : bounds_.contacts()) {
+    if (!is_updated({c, true}) || !is_updated({c, false})) return true;
+    followed_.push_back({place_[Spring{c, true}.number()] - 1, place_[Spring{c, false}.number()] - 1});
+  }
+  if (!bounds_.settle(system, followed_, laws_, corrections_)) return false;
+  for (std::size_t k = 0; k < followed_.size(); ++k) {
+    const std::size_t c = bounds_.contacts()[k], shear = followed_[k].shear;
+    // The line of a spring at its bound moves with that.
+    const double before = springs.force_on(c, matrix.branch(c), 0.0, 0.0).shear;
+    springs.bound[c] = laws_[shear].high;
+    force_[shear] -= springs.force_on(c, matrix.branch(c), 0.0, 0.0).shear - before;
+  }
+  return true;
 }
 
 /// Those in wanted_ are updated from now on.
@@ -206,10 +238,10 @@ void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
     system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), a, b);
     vectors_.push_back({{row.unknown_a, a}, {row.unknown_b, b}});
     updated_.push_back(spring);
-    mark_updated(spring);
     matrix.take_hold(system.problem, row);
   }
   corrections_.add(*system.solver.low_rank(), vectors_);
+  remember_places();
 }
 
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solve/corrections.h"
+#include "solve/followed_bounds.h"
 #include "solve/iterate.h"
 #include "solve/step_matrix.h"
 
@@ -25,8 +26,10 @@ class LowRankUpdate {
   void reset() {
     corrections_.clear();
     updated_.clear();
-    is_updated_.clear();
+    place_.clear();
   }
+  /// Bounds of friction that follow the normal forces on the way to the minimum; not on the way from zero.
+  [[nodiscard]] FollowedBounds& bounds() { return bounds_; }
   /// Springs that are updated.
   [[nodiscard]] std::size_t size() const { return corrections_.size(); }
   /// Their contacts.
@@ -52,7 +55,12 @@ class LowRankUpdate {
   bool solve(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh,
              std::span<double> direction);
   bool find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh);
-  void mark_updated(Spring spring);
+  void remember_places();
+  [[nodiscard]] bool is_updated(Spring spring) const {
+    return spring.number() < place_.size() && place_[spring.number()] > 0;
+  }
+  void take_followed(const StepSystem& system, StepMatrix& matrix);
+  bool follow_bounds(const StepSystem& system, const StepMatrix& matrix);
   void find_wanted(const SpringArray& springs, const StepMatrix& matrix);
   void take_wanted(const StepSystem& system, StepMatrix& matrix);
   void leave_out_wanted(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix);
@@ -60,13 +68,16 @@ class LowRankUpdate {
 
   Corrections corrections_;  ///< of the springs in updated_
   std::vector<Spring> updated_;
-  std::vector<bool> is_updated_;  ///< by Spring::number(), as far as any is
-  std::vector<Spring> wanted_;    ///< act otherwise than the matrix has them, and are not updated yet
-  std::vector<double> force_;  ///< N per thickness, per updated spring: what it does otherwise than its line
-  std::vector<double> base_;   ///< L⁻¹ of the right hand side with which no spring is updated
+  std::vector<std::size_t>
+      place_;  ///< by Spring::number(): 1 + where it is in updated_; 0, or beyond: nowhere
+  FollowedBounds bounds_;
+  std::vector<Spring> wanted_;  ///< act otherwise than the matrix has them, and are not updated yet
+  std::vector<double> force_;   ///< N per thickness, per updated spring: what it does otherwise than its line
+  std::vector<double> base_;    ///< L⁻¹ of the right hand side with which no spring is updated
   // Scratch.
   std::vector<Corrections::Law> laws_;
   std::vector<double> stretch_;
+  std::vector<FollowedBounds::Springs> followed_;
   std::vector<std::array<std::vector<double>, 2>> parts_;  ///< of the two blocks of a spring
   std::vector<linalg::LowRankSolver::PairVector> vectors_;
 };

@@ -11,6 +11,7 @@ void OpenClose::begin(const StepSystem& system, std::span<double> d) {
   iterate_.begin(system, d);
   laws_.begin();
   newton_.begin(system);
+  update_.bounds().reset();
   bond_updates_ = misses_ = 0;
   const bool is_kept = kept_.begin_step(system, matrix_, update_);
   // Without halves the matrix of an earlier step is brought to this one; with them its factor is used as it is.
@@ -97,7 +98,7 @@ OpenClose::Minimum OpenClose::update(const StepSystem& system, int& tries, bool&
 /// With a low-rank update where the solver can do so, and Newton's method where too many springs act otherwise.
 bool OpenClose::minimize(const StepSystem& system, bool warm, double enough, OpenCloseResult& result) {
   const int limit = result.iterations + system.options.max_iterations;
-  const bool updates = system.options.accelerators.low_rank_update && system.solver.low_rank() != nullptr;
+  const bool updates = system.updates_by_low_rank();
   bool from_zero = false;
   Minimum minimum = begin_minimum(system, warm, updates, from_zero);
   for (int tries = updates ? step_numbers::most_tries : 0;
@@ -162,7 +163,7 @@ OpenCloseResult OpenClose::solve(const StepSystem& system, std::span<double> d,
     const double tolerance =
         springs.bounds_updated || augmented ? options.bound_accuracy : options.bound_tolerance;
     if (result.bound_updates < options.max_bound_updates &&
-        laws_.update_bounds(system, iterate_, tolerance)) {
+        laws_.update_bounds(system, iterate_, tolerance, update_.bounds())) {
       springs.bounds_updated = true;
       result.given_up = ++result.bound_updates == 1 && gives_up && gives_up();
       if (result.given_up) break;

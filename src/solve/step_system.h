@@ -26,6 +26,9 @@ struct StepSystem {
   Profile& profile;
 
   [[nodiscard]] SpringArray& springs() const { return problem.springs(); }
+  [[nodiscard]] bool updates_by_low_rank() const {
+    return options.accelerators.low_rank_update && solver.low_rank() != nullptr;
+  }
   [[nodiscard]] const contact::Contact& contact(std::size_t c) const { return contacts.contacts[c]; }
   [[nodiscard]] const Row& row(std::size_t c) const { return problem.rows()[c]; }
   /// How many times what is enough the residual of a linear system is.

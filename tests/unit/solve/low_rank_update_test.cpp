@@ -91,7 +91,7 @@ TEST(LowRankUpdate, ResetForgetsTheSprings) {
 
 // Stones that are all thrown into the air at once. What was done until then is a state from which Newton's method goes on.
 TEST(LowRankUpdate, GivesUpWhereTooManySpringsAct) {
-  constexpr int stones = 30;
+  constexpr int stones = 80;
   simulation::Scene scene(1e8, 30.0);
   scene.rectangle({-1.0, -1.0}, 2.0 * stones + 2.0, 1.0, 0.0, true);
   for (int k = 0; k < stones; ++k) scene.rectangle({2.0 * k, 0.0}, 1.0, 0.5);

@@ -1,0 +1,88 @@
+#include "solve/followed_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/law.h"
+#include "solve/step_numbers.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+double force_of(const Corrections::Law& law, double stretch) {
+  return std::clamp(law.stiffness * stretch, law.low, law.high);
+}
+
+}  // namespace
+
+void FollowedBounds::choose(std::vector<Change>& changes) {
+  std::erase_if(changes, [&](const Change& change) {
+    return std::ranges::find(contacts_, change.contact) != contacts_.end();
+  });
+  std::ranges::sort(changes, [](const Change& a, const Change& b) {
+    return a.squared != b.squared ? a.squared > b.squared : a.contact < b.contact;
+  });
+  double rest = 0.0;
+  for (const Change& change : changes) rest += change.squared;
+  const double enough = step_numbers::not_followed * step_numbers::not_followed * rest;
+  for (const Change& change : changes) {
+    if (rest <= enough || contacts_.size() == step_numbers::most_followed) break;
+    contacts_.push_back(change.contact);
+    rest -= change.squared;
+  }
+}
+
+/// By how much bounds are wrong. Returns how much that is of them all (L2), of what changes shear forces.
+double FollowedBounds::find_missing(const StepSystem& system, std::span<const Springs> springs,
+                                    std::span<const Corrections::Law> laws, const Corrections& corrections) {
+  const std::span<const double> stretch = corrections.stretches();
+  double error = 0.0, scale = 0.0;
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    const auto [normal, shear] = springs[k];
+    const std::size_t c = contacts_[k];
+    const double wanted = contact::shear_strength(
+        system.springs().friction[c], force_of(laws[normal], stretch[normal]), system.springs().constant[c]);
+    const double elastic = laws[shear].stiffness * stretch[shear],
+                 change = std::clamp(elastic, -wanted, wanted) - force_of(laws[shear], stretch[shear]);
+    missing_[k] = wanted - laws[shear].high;
+    error += change * change;
+    scale += wanted * wanted;
+  }
+  return scale > 0.0 ? std::sqrt(error / scale) : 0.0;
+}
+
+/// Each bound goes the share of its way that the last step shows to be right for it (secant).
+void FollowedBounds::take_steps(std::span<const Springs> springs, std::span<Corrections::Law> laws,
+                                double damping) {
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    const auto [missing, taken] = steps_[k];
+    const double gained = missing - missing_[k];
+    double share = damping;
+    if (taken * gained > 0.0) share *= std::clamp(taken / gained, step_numbers::least_bound_share, 1.0);
+    steps_[k] = {missing_[k], share * missing_[k]};
+    Corrections::Law& law = laws[springs[k].shear];
+    law.high += share * missing_[k];
+    law.low = -law.high;
+  }
+}
+
+bool FollowedBounds::settle(const StepSystem& system, std::span<const Springs> springs,
+                            std::span<Corrections::Law> laws, Corrections& corrections) {
+  const double enough = step_numbers::followed_share * system.options.bound_accuracy;
+  missing_.assign(springs.size(), 0.0);
+  steps_.assign(springs.size(), {});
+  double before = HUGE_VAL, damping = 1.0;
+  for (int round = 0; round < step_numbers::most_followed_rounds; ++round) {
+    const double error = find_missing(system, springs, laws, corrections);
+    if (error <= enough) break;
+    if (round >= step_numbers::undamped_updates && error > 0.5 * before)
+      damping = std::max(0.5 * damping, step_numbers::least_damping);
+    before = error;
+    take_steps(springs, laws, damping);
+    if (!corrections.solve(laws)) return false;
+  }
+  return true;
+}
+
+}  // namespace keyblock::dynamics
