@@ -20,8 +20,8 @@ import tempfile
 import bench
 import scenes
 
-NAMES = ["kept-factor", "low-rank-update", "local-solve", "increment-history", "earlier-attempt", "early-impacts",
-         "steady-pairs", "single-precision"]
+NAMES = ["kept-factor", "low-rank-update", "followed-bounds", "local-solve", "increment-history", "earlier-attempt",
+         "early-impacts", "steady-pairs", "single-precision"]
 
 
 def processor_seconds(keyblock, scene, arguments):

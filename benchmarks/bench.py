@@ -38,6 +38,12 @@ def tunnel(order, duration=None):
     return TUNNEL, overrides if duration is None else [*overrides, f"{QUAKE}.duration={duration}"]
 
 
+def hard_tunnel(name):
+    """One whose steps are hard, by its file."""
+    text = (ROOT / "benchmarks" / "hard-tunnels" / f"{name}.toml").read_text()
+    return text.replace('"../../examples/motions/', f'"{ROOT}/examples/motions/'), []
+
+
 # s of shaking, the same for all: their first steps are unlike those that follow, and one frame is written in each
 GRIDS = 0.08
 
@@ -47,6 +53,8 @@ STEPS = {
     "tunnel, order 2": (lambda: tunnel(2), QUAKE_STAGE, None, []),
     "tunnel, order 1, first 2 s": (lambda: tunnel(1, 2.0), QUAKE_STAGE, None, []),
     "tunnel, order 2, first 2 s": (lambda: tunnel(2, 2.0), QUAKE_STAGE, None, []),
+    "hard tunnel, steep sets": (lambda: hard_tunnel("steep-sets"), "quake", None, []),
+    "hard tunnel, blocky": (lambda: hard_tunnel("blocky"), "quake", None, []),
     "wall of 512 bricks": (lambda: (scenes.wall(20, 25, 1.0), []), "shake", 0.4, []),
     "wall of 2,025 bricks": (lambda: (scenes.wall(40, 50, 0.4), []), "shake", 1.8, []),
     "grid of 1,000 blocks": (lambda: (scenes.grid(1_000, GRIDS), []), "shake", None, []),

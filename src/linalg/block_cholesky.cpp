@@ -174,28 +174,19 @@ double BlockCholesky::product(const ForwardVector& x, const ForwardVector& y) co
 
 void BlockCholesky::find_products(const ForwardVector& x, std::span<const ForwardVector> ys,
                                   std::span<double> products) const {
-  constexpr std::size_t group = 4;
-  for (std::size_t first = 0; first < ys.size(); first += group) {
-    const std::span<const ForwardVector> some = ys.subspan(first, std::min(group, ys.size() - first));
-    std::size_t ends[group] = {}, all = x.values.size();
-    const double* of[group];
-    for (std::size_t k = 0; k < group; ++k) {
-      const ForwardVector& y = some[std::min(k, some.size() - 1)];
-      ends[k] =
-          k > 0 && y.column == some[std::min(k, some.size()) - 1].column ? ends[k - 1] : shared_size(x, y);
-      all = std::min(all, ends[k]);
-      of[k] = y.values.data();
+  std::size_t shared = 0;
+  for (std::size_t k = 0; k < ys.size();) {
+    // Those of the same column have the same path.
+    if (k == 0 || ys[k].column != ys[k - 1].column) shared = shared_size(x, ys[k]);
+    const bool two = k + 1 < ys.size() && ys[k + 1].column == ys[k].column;
+    const double *y = ys[k].values.data(), *other = ys[two ? k + 1 : k].values.data();
+    Lanes t{}, s{};
+    for (std::size_t l = 0; l < shared; l += row_padding) {
+      add_lane_product(&x.values[l], y + l, t);
+      add_lane_product(&x.values[l], other + l, s);
     }
-    Lanes t[group]{};
-    for (std::size_t l = 0; l < all; l += row_padding) {
-      const Lanes x_l = load(&x.values[l]);
-      for (std::size_t k = 0; k < group; ++k) t[k] = add_product(x_l, load(of[k] + l), t[k]);
-    }
-    for (std::size_t k = 0; k < some.size(); ++k) {
-      for (std::size_t l = all; l < ends[k]; l += row_padding)
-        t[k] = add_product(load(&x.values[l]), load(of[k] + l), t[k]);
-      products[first + k] = sum(t[k]);
-    }
+    products[k++] = sum(t);
+    if (two) products[k++] = sum(s);
   }
 }
 

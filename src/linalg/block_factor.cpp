@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #include "core/index.h"
 #include "linalg/block_kernels.h"
@@ -250,28 +251,35 @@ void BlockFactor<Number>::eliminate_two(const BlockPattern& pattern, std::size_t
   }
 }
 
+/// The same of those vectors that are at column j of their paths; these go on to the next one.
+template <typename Number>
+template <int equal>
+void BlockFactor<Number>::eliminate_on_paths(const BlockPattern& pattern, std::size_t j,
+                                             std::span<ForwardVector> ws) {
+  ForwardVector* waiting = nullptr;
+  for (std::size_t k = 0; k < ws.size(); ++k) {
+    if (at_[k] != j) continue;
+    at_[k] = pattern.parent[j];
+    if (waiting == nullptr) {
+      waiting = &ws[k];
+    } else {
+      eliminate_two<equal>(pattern, j, *std::exchange(waiting, nullptr), ws[k]);
+    }
+  }
+  if (waiting == nullptr) return;
+  const auto of_row = [&](std::size_t i) { return &waiting->values[pattern.above[i]]; };
+  eliminate<equal>(pattern, j, of_row(j), of_row);
+}
+
 template <typename Number>
 void BlockFactor<Number>::forward(const BlockPattern& pattern, std::span<ForwardVector> ws) {
   at_.clear();
-  for (const ForwardVector& w : ws) at_.push_back(static_cast<std::size_t>(w.column));
+  for (const ForwardVector& w : ws) at_.push_back(at(w.column));
   for_equal_size(pattern, [&]<int equal>() {
     for (;;) {
-      const std::size_t j = *std::min_element(at_.begin(), at_.end());
-      if (j == BlockPattern::none) break;
-      ForwardVector* waiting = nullptr;
-      for (std::size_t k = 0; k < ws.size(); ++k) {
-        if (at_[k] != j) continue;
-        at_[k] = pattern.parent[j];
-        if (waiting == nullptr) {
-          waiting = &ws[k];
-        } else {
-          eliminate_two<equal>(pattern, j, *waiting, ws[k]);
-          waiting = nullptr;
-        }
-      }
-      if (waiting == nullptr) continue;
-      const auto of_row = [&](std::size_t i) { return &waiting->values[pattern.above[i]]; };
-      eliminate<equal>(pattern, j, of_row(j), of_row);
+      const std::size_t first = *std::min_element(at_.begin(), at_.end());
+      if (first == BlockPattern::none) break;
+      eliminate_on_paths<equal>(pattern, first, ws);
     }
   });
 }

@@ -48,6 +48,8 @@ class BlockFactor {
   int divide(const BlockPattern& pattern, std::size_t j, int c, double* y);
   template <int equal>
   void eliminate_two(const BlockPattern& pattern, std::size_t j, ForwardVector& v, ForwardVector& w);
+  template <int equal>
+  void eliminate_on_paths(const BlockPattern& pattern, std::size_t j, std::span<ForwardVector> ws);
   template <int equal, typename OfRow>
   void eliminate(const BlockPattern& pattern, std::size_t j, double* y, const OfRow& of_row);
 

@@ -29,6 +29,8 @@ class BorderedFactor {
   /// Numbers of the groups before group g.
   static std::size_t start(std::size_t g) { return width * width * g * (g + 1) / 2; }
   double* column(std::size_t g, std::size_t j) { return &values_[start(g) + j * width]; }
+  template <typename Entry>
+  void load_rows(std::size_t g, const Entry& entry);
   void eliminate(std::size_t g, std::size_t h);
   [[nodiscard]] bool factor_diagonal(std::size_t g);
 
@@ -39,26 +41,29 @@ class BorderedFactor {
   std::vector<double> right_;    ///< scratch
 };
 
+/// What the matrix has in the rows of group g, up to the diagonal.
+template <typename Entry>
+void BorderedFactor::load_rows(std::size_t g, const Entry& entry) {
+  for (std::size_t j = 0; j < (g + 1) * width; ++j) {
+    double* to = column(g, j);
+    for (std::size_t i = g * width; i < (g + 1) * width; ++i)
+      *to++ = i < j ? 0.0 : i < size_ ? entry(i, j) : i == j ? 1.0 : 0.0;
+  }
+}
+
 template <typename Entry>
 bool BorderedFactor::factor(std::size_t n, std::size_t kept, const Entry& entry) {
   const std::size_t groups = (n + width - 1) / width;
   std::size_t g = std::min(kept, size_) / width;
   size_ = n;
   if (values_.size() < start(groups)) values_.resize(start(groups + 2));
-  inverse_.resize(width * groups);
+  inverse_.resize(groups * width);
+  scaled_.resize(groups * width * width);
   for (; g < groups; ++g) {
-    const std::size_t first = g * width;
-    for (std::size_t j = 0; j < first + width; ++j) {
-      double* to = column(g, j);
-      for (std::size_t r = 0; r < width; ++r) {
-        const std::size_t i = first + r;
-        to[r] = i < j ? 0.0 : i < n ? entry(i, j) : i == j ? 1.0 : 0.0;
-      }
-    }
-    scaled_.resize((first + width) * width);
+    load_rows(g, entry);
     for (std::size_t h = 0; h < g; ++h) eliminate(g, h);
     if (factor_diagonal(g)) continue;
-    size_ = 0;
+    clear();
     return false;
   }
   return true;

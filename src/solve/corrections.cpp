@@ -24,7 +24,7 @@ void Corrections::add(linalg::LowRankSolver& solver,
   }
 }
 
-/// For rows and columns of so many springs; beyond them all is zero.
+/// For rows and columns of so many springs.
 void Corrections::make_room(std::size_t springs) {
   if (springs <= room_) return;
   const std::size_t room = (springs + springs / 2 + lane_count - 1) / lane_count * lane_count;
@@ -45,40 +45,36 @@ void Corrections::find_step() {
   }
 }
 
-/// The springs with ∂β/∂e ≠ 0, and the factor of their matrix as far as it is the same.
-void Corrections::find_curved() {
-  std::size_t same = 0, count = 0;
-  const std::size_t before = curved_.size();
+/// The springs with ∂β/∂e ≠ 0, and how many of the first are those of the last direction, with the same ∂β/∂e.
+std::size_t Corrections::find_curved() {
+  std::size_t count = 0, same = 0;
   for (std::size_t s = 0; s < size_; ++s) {
     if (stiffness_[s] == 0.0) continue;
-    if (same == count && count < before && curved_[count] == s && curved_stiffness_[count] == stiffness_[s])
-      ++same;
-    curved_.resize(std::max(curved_.size(), count + 1));
-    curved_stiffness_.resize(curved_.size());
-    curved_[count] = s;
-    curved_stiffness_[count++] = stiffness_[s];
+    const Curved now{s, stiffness_[s]};
+    if (count == curved_.size()) curved_.emplace_back();
+    if (same == count && curved_[count] == now) ++same;
+    curved_[count++] = now;
   }
   curved_.resize(count);
-  curved_stiffness_.resize(count);
-  kept_ = same;
+  return same;
 }
 
 /// (1 + diag(∂β/∂e) C) d = β − φ. Springs with ∂β/∂e = 0 give d at once; the others the symmetric matrix C + diag(∂e/∂β), positive
 /// definite among springs that the matrix lacks, negative definite among those that it has too many: L D Lᵀ needs no pivots.
 bool Corrections::find_direction() {
-  find_curved();
+  const std::size_t same = find_curved();
   const auto entry = [&](std::size_t i, std::size_t j) {
-    const double compliance = compliances(curved_[i])[curved_[j]];
-    return i == j ? compliance + 1.0 / curved_stiffness_[i] : compliance;
+    const double compliance = compliances(curved_[i].spring)[curved_[j].spring];
+    return i == j ? compliance + 1.0 / curved_[i].stiffness : compliance;
   };
-  if (!factor_.factor(curved_.size(), kept_, entry)) return false;
+  if (!factor_.factor(curved_.size(), same, entry)) return false;
   direction_ = missing_;
-  for (const std::size_t s : curved_) direction_[s] = 0.0;
+  for (const Curved& curved : curved_) direction_[curved.spring] = 0.0;
   find_step();  // of the springs that are not curved
   right_.clear();
-  for (const std::size_t s : curved_) right_.push_back(missing_[s] / stiffness_[s] - step_[s]);
+  for (const auto& [s, stiffness] : curved_) right_.push_back(missing_[s] / stiffness - step_[s]);
   factor_.solve(right_);
-  for (std::size_t i = 0; i < curved_.size(); ++i) direction_[curved_[i]] = right_[i];
+  for (std::size_t i = 0; i < curved_.size(); ++i) direction_[curved_[i].spring] = right_[i];
   find_step();
   return true;
 }

@@ -60,7 +60,7 @@ class Corrections {
   [[nodiscard]] double* compliances(std::size_t s) { return &compliance_[s * room_]; }
   void make_room(std::size_t springs);
   void find_step();
-  void find_curved();
+  [[nodiscard]] std::size_t find_curved();
   [[nodiscard]] bool find_direction();
 
   std::size_t size_ = 0;
@@ -68,11 +68,14 @@ class Corrections {
   std::vector<double> compliance_;           ///< C, by rows of `room_` numbers
   std::size_t room_ = 0;
   std::vector<double> force_;  ///< φ
-  // The springs with ∂β/∂e ≠ 0, and the factor of their matrix C + diag(∂e/∂β).
-  std::vector<std::size_t> curved_;
-  std::vector<double> curved_stiffness_;
-  linalg::BorderedFactor factor_;
-  std::size_t kept_ = 0;  ///< of its rows, the first that are those of the last direction
+  /// A spring with ∂β/∂e ≠ 0.
+  struct Curved {
+    std::size_t spring = 0;
+    double stiffness = 0.0;  ///< ∂β/∂e
+    friend bool operator==(const Curved&, const Curved&) = default;
+  };
+  std::vector<Curved> curved_;
+  linalg::BorderedFactor factor_;  ///< of their matrix C + diag(∂e/∂β)
   // Scratch.
   std::vector<double> stretch_, stiffness_, missing_;  ///< e; ∂β/∂e; β − φ
   std::vector<int> branch_;

@@ -17,11 +17,18 @@ void leave_out(const StepSystem& system, Iterate& iterate, std::size_t contact, 
   iterate.add_force(system, contact, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0);
 }
 
-bool is_exact(const StepSystem& system, bool is_kept) {
-  return !is_kept && system.solver.low_rank()->is_exact();
+}  // namespace
+
+std::size_t LowRankUpdate::limit(const StepSystem& system) {
+  using namespace step_numbers;
+  // Without inertia little is left of a block whose springs are taken away.
+  if (system.problem.is_static()) return least_corrected;
+  return std::clamp(system.problem.blocks() / blocks_of_corrected, least_corrected, most_corrected);
 }
 
-}  // namespace
+bool LowRankUpdate::is_exact(const StepSystem& system, bool is_kept) const {
+  return !is_kept && system.solver.low_rank()->is_exact() && updated_.size() <= step_numbers::most_exact;
+}
 
 std::vector<std::size_t> LowRankUpdate::contacts() const {
   std::vector<std::size_t> contacts;
@@ -57,7 +64,7 @@ bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterat
   if (!begin(system, iterate, matrix, is_kept, enough, from_zero, direction)) return false;
   go(system, iterate, matrix, direction, result);
   for (int refinements = 0;;) {
-    if (updated_.size() + wanted_.size() > step_numbers::most_corrected) return false;
+    if (updated_.size() + wanted_.size() > limit(system)) return false;
     take_wanted(system, matrix);
     const std::size_t fresh = wanted_.size();
     // What the factor gets wrong is refined away at the end, until nothing of it is left, and what that of an earlier step does
@@ -197,7 +204,7 @@ void LowRankUpdate::carry(std::span<const std::size_t> now) {
   remember_places();
 }
 
-/// The springs of contacts whose bounds are followed are updated, whatever they do.
+/// The springs of contacts whose bounds are followed are updated, whatever they do, while there is room for them.
 void LowRankUpdate::take_followed(const StepSystem& system, StepMatrix& matrix) {
   wanted_.clear();
   for (const std::size_t c : bounds_.contacts()) {
@@ -205,10 +212,11 @@ void LowRankUpdate::take_followed(const StepSystem& system, StepMatrix& matrix) 
       if (!is_updated({c, normal})) wanted_.push_back({c, normal});
     }
   }
-  if (!wanted_.empty()) take_wanted(system, matrix);
+  const bool is_room = updated_.size() + wanted_.size() <= limit(system);
+  if (is_room && !wanted_.empty()) take_wanted(system, matrix);
 }
 
-/// Bounds, and the forces with them. False when these are not found.
+/// Bounds, and the forces with them, where all springs are there that it takes. False when forces are not found.
 bool LowRankUpdate::follow_bounds(const StepSystem& system, const StepMatrix& matrix) {
   SpringArray& springs = system.springs();
   followed_.clear();

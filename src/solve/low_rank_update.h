@@ -30,6 +30,8 @@ class LowRankUpdate {
   }
   /// Bounds of friction that follow the normal forces on the way to the minimum; not on the way from zero.
   [[nodiscard]] FollowedBounds& bounds() { return bounds_; }
+  /// Springs that it updates, at most.
+  [[nodiscard]] static std::size_t limit(const StepSystem& system);
   /// Springs that are updated.
   [[nodiscard]] std::size_t size() const { return corrections_.size(); }
   /// Their contacts.
@@ -55,6 +57,7 @@ class LowRankUpdate {
   bool solve(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh,
              std::span<double> direction);
   bool find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh);
+  [[nodiscard]] bool is_exact(const StepSystem& system, bool is_kept) const;
   void remember_places();
   [[nodiscard]] bool is_updated(Spring spring) const {
     return spring.number() < place_.size() && place_[spring.number()] > 0;

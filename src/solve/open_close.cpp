@@ -84,8 +84,8 @@ OpenClose::Minimum OpenClose::begin_minimum(const StepSystem& system, bool warm,
 OpenClose::Minimum OpenClose::update(const StepSystem& system, int& tries, bool& from_zero,
                                      OpenCloseResult& result) {
   const bool is_worth_it =
-      tries > 0 &&
-      (result.iterations == 0 || matrix_.count_differing(system.springs()) <= step_numbers::most_differing);
+      tries > 0 && (result.iterations == 0 ||
+                    matrix_.count_differing(system.springs()) <= LowRankUpdate::limit(system) / 3);
   if (!is_worth_it) return Minimum::not_found;
   if (update_.minimize(system, iterate_, matrix_, kept_.is_kept(), std::exchange(from_zero, false), result) &&
       iterate_.out_of_balance(system) < system.options.tolerance)

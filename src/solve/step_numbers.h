@@ -32,10 +32,12 @@ inline constexpr double elsewhere_share = 0.5;
 
 // ── low-rank updates and kept factors ────────────────────────────────────────────────────────────────────────────────
 
-/// Springs, beyond which a factorization takes less than the update. Hard steps of tunnels change 100 to 150.
-inline constexpr std::size_t most_corrected = 200;
-/// Springs that act otherwise, beyond which a solution with the matrix at hand is not tried again.
-inline constexpr std::size_t most_differing = 66;
+/// Springs, beyond which a factorization takes less than the update: one for so many blocks, within limits, as factorizations of large models
+/// take longer. Hard steps of tunnels change 100 to 150.
+inline constexpr std::size_t blocks_of_corrected = 6, least_corrected = 64, most_corrected = 200;
+/// Springs up to which updates keep all digits of an exact factor. Beyond, the exact gradient says what they got wrong: all springs of a block
+/// may be taken away, of which little is left.
+inline constexpr std::size_t most_exact = 64;
 /// As many as are expected in the next step, with which a factor is worth keeping.
 inline constexpr std::size_t most_kept = 32;
 /// More refinements than these take what a factorization does.

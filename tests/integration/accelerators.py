@@ -6,8 +6,8 @@ import unittest
 from program import ROOT, Scenario
 
 NAMES = (
-    "kept-factor", "low-rank-update", "local-solve", "increment-history", "earlier-attempt", "early-impacts", "steady-pairs",
-    "single-precision",
+    "kept-factor", "low-rank-update", "followed-bounds", "local-solve", "increment-history", "earlier-attempt", "early-impacts",
+    "steady-pairs", "single-precision",
 )  # fmt: skip
 # These do not change any bit of a small model that is factored.
 SAME_BITS = ("local-solve", "steady-pairs", "single-precision")
