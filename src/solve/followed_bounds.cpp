@@ -8,14 +8,6 @@
 
 namespace keyblock::dynamics {
 
-namespace {
-
-double force_of(const Corrections::Law& law, double stretch) {
-  return std::clamp(law.stiffness * stretch, law.low, law.high);
-}
-
-}  // namespace
-
 void FollowedBounds::choose(std::vector<Change>& changes) {
   std::erase_if(changes, [&](const Change& change) {
     return std::ranges::find(contacts_, change.contact) != contacts_.end();
@@ -40,12 +32,11 @@ double FollowedBounds::find_missing(const StepSystem& system, std::span<const Sp
   double error = 0.0, scale = 0.0;
   for (std::size_t k = 0; k < springs.size(); ++k) {
     const auto [normal, shear] = springs[k];
-    const std::size_t c = contacts_[k];
-    const double wanted = contact::shear_strength(
-        system.springs().friction[c], force_of(laws[normal], stretch[normal]), system.springs().constant[c]);
-    const double elastic = laws[shear].stiffness * stretch[shear],
-                 change = std::clamp(elastic, -wanted, wanted) - force_of(laws[shear], stretch[shear]);
-    missing_[k] = wanted - laws[shear].high;
+    const SpringArray::Law& law = laws[shear].spring;
+    const double wanted = system.springs().strength(contacts_[k], laws[normal].spring.force(stretch[normal]));
+    const double change =
+        contact::shear_spring(law.stiffness, wanted).force(stretch[shear]) - law.force(stretch[shear]);
+    missing_[k] = wanted - law.high;
     error += change * change;
     scale += wanted * wanted;
   }
@@ -61,9 +52,8 @@ void FollowedBounds::take_steps(std::span<const Springs> springs, std::span<Corr
     double share = damping;
     if (taken * gained > 0.0) share *= std::clamp(taken / gained, step_numbers::least_bound_share, 1.0);
     steps_[k] = {missing_[k], share * missing_[k]};
-    Corrections::Law& law = laws[springs[k].shear];
-    law.high += share * missing_[k];
-    law.low = -law.high;
+    SpringArray::Law& law = laws[springs[k].shear].spring;
+    law = contact::shear_spring(law.stiffness, law.high + share * missing_[k]);
   }
 }
 

@@ -177,9 +177,9 @@ void LawUpdates::choose_followed(const StepSystem& system, FollowedBounds& follo
   changes_.clear();
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
-    const double wanted = contact::shear_strength(springs.friction[c], springs.force(c).normal,
-                                                  springs.constant[c]),
-                 change = std::clamp(springs.ks[c] * springs.w[c], -wanted, wanted) - springs.force(c).shear;
+    const double wanted = springs.strength(c, springs.force(c).normal),
+                 change = contact::shear_spring(springs.ks[c], wanted).force(springs.w[c]) -
+                          springs.force(c).shear;
     if (change != 0.0) changes_.push_back({c, change * change});
   }
   followed.choose(changes_);

@@ -23,7 +23,8 @@ std::size_t LowRankUpdate::limit(const StepSystem& system) {
   using namespace step_numbers;
   // Without inertia little is left of a block whose springs are taken away.
   if (system.problem.is_static()) return least_corrected;
-  return std::clamp(system.problem.blocks() / blocks_of_corrected, least_corrected, most_corrected);
+  return std::clamp(system.problem.model().blocks.size() / blocks_of_corrected, least_corrected,
+                    most_corrected);
 }
 
 bool LowRankUpdate::is_exact(const StepSystem& system, bool is_kept) const {
@@ -229,7 +230,7 @@ bool LowRankUpdate::follow_bounds(const StepSystem& system, const StepMatrix& ma
     const std::size_t c = bounds_.contacts()[k], shear = followed_[k].shear;
     // The line of a spring at its bound moves with that.
     const double before = springs.force_on(c, matrix.branch(c), 0.0, 0.0).shear;
-    springs.bound[c] = laws_[shear].high;
+    springs.bound[c] = laws_[shear].spring.high;
     force_[shear] -= springs.force_on(c, matrix.branch(c), 0.0, 0.0).shear - before;
   }
   return true;

@@ -45,8 +45,7 @@ simulation::Scene wall() {
 std::pair<double, double> error_of_bounds(const SpringArray& springs, const FollowedBounds& bounds) {
   double error = 0.0, scale = 0.0;
   for (const std::size_t c : bounds.contacts()) {
-    const double wanted =
-        contact::shear_strength(springs.friction[c], springs.force(c).normal, springs.constant[c]);
+    const double wanted = springs.strength(c, springs.force(c).normal);
     error += std::pow(std::clamp(springs.ks[c] * springs.w[c], -wanted, wanted) - springs.force(c).shear, 2);
     scale += wanted * wanted;
   }
