@@ -90,4 +90,9 @@ void BorderedFactor::solve(std::span<double> x) {
   std::copy_n(right_.begin(), x.size(), x.begin());
 }
 
+void add_multiple(double scale, const double* row, std::size_t n, double* out) {
+  for (std::size_t k = 0; k < n; k += lane_count)
+    store(out + k, add_product(broadcast(scale), load(row + k), load(out + k)));
+}
+
 }  // namespace keyblock::linalg

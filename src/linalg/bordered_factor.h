@@ -41,6 +41,9 @@ class BorderedFactor {
   std::vector<double> right_;    ///< scratch
 };
 
+/// out += scale · row, of n numbers; both have room for n rounded up to whole registers.
+void add_multiple(double scale, const double* row, std::size_t n, double* out);
+
 /// What the matrix has in the rows of group g, up to the diagonal.
 template <typename Entry>
 void BorderedFactor::load_rows(std::size_t g, const Entry& entry) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "linalg/registers.h"
 #include "solve/line_search.h"
 
 namespace keyblock::dynamics {
@@ -38,10 +37,7 @@ void Corrections::make_room(std::size_t springs) {
 void Corrections::find_step() {
   step_.assign(room_, 0.0);
   for (std::size_t s = 0; s < size_; ++s) {
-    if (direction_[s] == 0.0) continue;
-    const double* row = compliances(s);
-    for (std::size_t t = 0; t < size_; t += lane_count)
-      store(&step_[t], linalg::add_product(broadcast(direction_[s]), load(row + t), load(&step_[t])));
+    if (direction_[s] != 0.0) linalg::add_multiple(direction_[s], compliances(s), size_, step_.data());
   }
 }
 
