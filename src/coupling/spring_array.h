@@ -101,7 +101,7 @@ class SpringArray {
     y[c] += penetration;
     w[c] += shear;
   }
-  /// The shear spring holds from where the step begins, not from where a velocity ends (StepProblem::ways_to_rest).
+  /// The shear spring holds from where the step begins, not from where a velocity ends (ContactCoupling).
   void hold_from_start(std::size_t c) {
     shift(c, 0.0, slipped[c]);
     slipped[c] = 0.0;

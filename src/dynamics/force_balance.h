@@ -16,7 +16,7 @@ namespace keyblock::dynamics {
 ///
 /// (all coefficients; a force F at the centroid is F/√A). The scale is the weight ρ√A g of the block, or the largest generalized force of
 /// a load on it where this is more. Without gravity, a block that only contacts load is measured by its contacts: the sum of their forces
-/// over √A, at least 10⁻⁴ of the largest of all blocks, at most what the step measures it by (StepProblem::weight).
+/// over √A, at least 10⁻⁴ of the largest of all blocks, at most what the step measures it by (BlockTerms::weight).
 class ForceBalance {
  public:
   struct OfBlock {

@@ -10,6 +10,23 @@
 
 namespace keyblock::linalg {
 
+namespace {
+
+/// Numbers of the columns that two paths have in common: all from where they meet.
+std::size_t shared_size(const BlockPattern& pattern, const ForwardVector& x, const ForwardVector& y) {
+  const std::size_t most = std::min(x.path.size(), y.path.size());
+  std::size_t depth = 0;
+  constexpr std::size_t some = 8;
+  while (depth + some <= most && std::memcmp(&x.path[depth], &y.path[depth], some * sizeof(x.path[0])) == 0)
+    depth += some;
+  while (depth < most && x.path[depth] == y.path[depth]) ++depth;
+  if (depth == 0) return 0;
+  const std::size_t last = x.path[depth - 1];
+  return pattern.above[last] + at(pattern.stride[last]);
+}
+
+}  // namespace
+
 void BlockCholesky::analyse(std::span<const int> sizes, std::span<const std::pair<int, int>> pairs) {
   pattern_ = BlockPattern(sizes, pairs);
   matrix_ = BlockMatrix(pattern_, pairs);
@@ -66,19 +83,6 @@ bool BlockCholesky::factor() {
     if (double_) double_->make_stale();
   }
   return factor_in_double();
-}
-
-/// Numbers of the columns that two paths have in common: all from where they meet.
-std::size_t BlockCholesky::shared_size(const ForwardVector& x, const ForwardVector& y) const {
-  const std::size_t most = std::min(x.path.size(), y.path.size());
-  std::size_t depth = 0;
-  constexpr std::size_t some = 8;
-  while (depth + some <= most && std::memcmp(&x.path[depth], &y.path[depth], some * sizeof(x.path[0])) == 0)
-    depth += some;
-  while (depth < most && x.path[depth] == y.path[depth]) ++depth;
-  if (depth == 0) return 0;
-  const std::size_t last = x.path[depth - 1];
-  return pattern_.above[last] + at(pattern_.stride[last]);
 }
 
 /// Brings x into the order of elimination.
@@ -177,7 +181,7 @@ void BlockCholesky::find_products(const ForwardVector& x, std::span<const Forwar
   std::size_t shared = 0;
   for (std::size_t k = 0; k < ys.size();) {
     // Those of the same column have the same path.
-    if (k == 0 || ys[k].column != ys[k - 1].column) shared = shared_size(x, ys[k]);
+    if (k == 0 || ys[k].column != ys[k - 1].column) shared = shared_size(pattern_, x, ys[k]);
     const bool two = k + 1 < ys.size() && ys[k + 1].column == ys[k].column;
     const double *y = ys[k].values.data(), *other = ys[two ? k + 1 : k].values.data();
     Lanes t{}, s{};

@@ -39,7 +39,6 @@ class BlockCholesky final : public BlockSolver, public LowRankSolver {
   [[nodiscard]] std::size_t column(int block) const {
     return pattern_.position[static_cast<std::size_t>(block)];
   }
-  [[nodiscard]] std::size_t shared_size(const ForwardVector& x, const ForwardVector& y) const;
   void begin_path(const PairVector& v, ForwardVector& w) const;
   [[nodiscard]] bool factor_in_double();
   void to_columns(std::span<const double> x, std::span<double> by_column) const;

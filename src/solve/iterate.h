@@ -41,7 +41,7 @@ class Iterate {
   }
   /// The same where the gradient changed at these blocks only.
   void gradient_changed_at(const StepSystem& system, std::span<const std::size_t> blocks);
-  /// Per block, by how much it is out of balance by the gradient: StepProblem::residual_ratio.
+  /// Per block, by how much it is out of balance by the gradient: BlockTerms::residual_ratio.
   [[nodiscard]] std::span<const double> ratios(const StepSystem& system);
   /// The largest of them.
   [[nodiscard]] double out_of_balance(const StepSystem& system);

@@ -13,7 +13,7 @@ class LawUpdates {
   /// At the start of a step.
   void begin();
 
-  /// A spring that holds from where the velocity ends (StepProblem::ways_to_rest) would turn the friction of a contact that does not rest
+  /// A spring that holds from where the velocity ends (ContactCoupling) would turn the friction of a contact that does not rest
   /// there always too late or too early. Such contacts get springs that turn where the way of the step does, if that changes the shear
   /// forces by more than `tolerance` of the bounds (L2 over all contacts).
   bool reverse_sliding(const StepSystem& system, Iterate& iterate, double tolerance);

@@ -16,10 +16,9 @@ namespace keyblock::dynamics {
 /// What the factor gets wrong, of an earlier step or of single precision, shows in the exact gradient and is refined away.
 class LowRankUpdate {
  public:
-  /// Goes from D, where springs and gradient are, or from zero, where the gradient need not be, to the minimum. is_kept: the factor is of an
-  /// earlier step. Springs that act otherwise
-  /// become more until no other does, so that this ends. False when they are too many, when their forces are not found, and when what the
-  /// factor gets wrong is not refined away; springs and gradient are those of D in any case.
+  /// Goes to the minimum: from D, where springs and gradient are, or from zero, where the gradient need not be. is_kept: the factor is of an
+  /// earlier step. Springs that act otherwise become more until no other does, so that this ends. False when they are too many, when their
+  /// forces are not found, and when what the factor gets wrong is not refined away. Springs and gradient are those of D in any case.
   bool minimize(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept, bool from_zero,
                 OpenCloseResult& result);
   /// Forgets the springs that are updated: the factor is another.
