@@ -16,12 +16,6 @@ namespace keyblock::dynamics {
 
 namespace {
 
-/// u of the vertex of a row less that of the point of its edge, for increment D.
-Vec2 relative(const Points& points, const Row& row, std::span<const double> d) {
-  return points.displacement(row.vertex, d) -
-         lerp(points.displacement(row.from, d), points.displacement(row.to, d), row.position);
-}
-
 /// m, Δt times the velocity at the start of the step of a fixed block that is moved. What it goes in a step is the mean velocity of that.
 Vec2 moved_at_start(const Model& model, const State& state, const Drive& drive, std::size_t b) {
   if (drive.prescribed.empty() || model.moves(b)) return {};
@@ -36,11 +30,12 @@ double way_to_rest(const Model& model, const State& state, const Drive& drive, c
                    const contact::Contact& contact, const Row& row) {
   const Integrator& rule = drive.rule[at(row.unknown_a >= 0 ? contact.block_a : contact.block_b)];
   const double dt = drive.step;
-  Vec2 way = rule.rest_share() * (dt * relative(points, row, state.velocity) +
+  Vec2 way = rule.rest_share() * (dt * relative_displacement(points, row, state.velocity) +
                                   moved_at_start(model, state, drive, at(contact.block_a)) -
                                   moved_at_start(model, state, drive, at(contact.block_b)));
   if (rule.rest_share_of_acceleration() != 0.0)
-    way += rule.rest_share_of_acceleration() * dt * dt * relative(points, row, state.acceleration);
+    way +=
+        rule.rest_share_of_acceleration() * dt * dt * relative_displacement(points, row, state.acceleration);
   const double along = dot(row.tangent(), way);
   return along * contact.memory.shear > 0.0 ? along : 0.0;
 }
@@ -119,6 +114,13 @@ void build_springs(const Model& model, const State& state, const Drive& drive,
 
 }  // namespace
 
+void ContactCoupling::add_pairs(BlockPairs& pairs) const {
+  for (const contact::Contact& c : contacts_) {
+    const std::pair pair(c.block_a, c.block_b);
+    if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
+  }
+}
+
 RowFacts ContactCoupling::build(const Model& model, const State& state, const Drive& drive,
                                 std::span<const double> /*memory*/, CouplingRows out) const {
   std::atomic<bool> may_break = false, lacks_room = false, has_distant = false;
@@ -177,7 +179,8 @@ double reduced_mass(const Points& points, const contact::Contact& c) {
   return a == 0.0 ? b : b == 0.0 ? a : a * b / (a + b);
 }
 
-double inertia_between(const Model& model, const StepProblem& problem, const contact::Contact& c) {
+double inertia_between(const StepProblem& problem, const contact::Contact& c) {
+  const Model& model = problem.model();
   const std::size_t moves = at(model.blocks[at(c.block_a)].fixed ? c.block_b : c.block_a);
   return reduced_mass(problem.points(), c) * problem.terms().inertia(moves) /
          model.blocks[moves].material.density;

@@ -30,6 +30,7 @@ class ContactCoupling final : public Coupling {
     for_contacts_ = std::move(for_contacts);
   }
 
+  void add_pairs(BlockPairs& pairs) const override;
   [[nodiscard]] std::size_t rows() const override { return contacts_.size(); }
   [[nodiscard]] RowKey key(std::size_t row) const override {
     return {contacts_[row].vertex, contacts_[row].edge};
@@ -54,7 +55,6 @@ class ContactCoupling final : public Coupling {
 /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
 [[nodiscard]] double reduced_mass(const Points& points, const contact::Contact& c);
 /// N/m per thickness, inertia of the two blocks of a contact against each other in a step.
-[[nodiscard]] double inertia_between(const Model& model, const StepProblem& problem,
-                                     const contact::Contact& c);
+[[nodiscard]] double inertia_between(const StepProblem& problem, const contact::Contact& c);
 
 }  // namespace keyblock::dynamics

@@ -34,11 +34,6 @@ Vec2 PointSprings::chord(const Model& model, const State& state, std::size_t k) 
   return position_of(model, state, end(k, 0)) - position_of(model, state, end(k, 1));
 }
 
-double PointSprings::elongation(const Model& model, const State& state, std::size_t k,
-                                std::span<const double> memory) const {
-  return norm(chord(model, state, k)) - springs_[k].length - memory[k];
-}
-
 RowFacts PointSprings::build(const Model& model, const State& state, const Drive& drive,
                              std::span<const double> memory, CouplingRows out) const {
   RowFacts facts;
@@ -58,7 +53,7 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
     out.owners.set(out.first + k, row.unknown_a, row.unknown_b);
     facts.lacks_room |= row.pair == Row::without_room;
     const PointSpring& spring = springs_[k];
-    const double stretch = elongation(model, state, k, memory),
+    const double stretch = stretch_of(k, length, memory),
                  force = std::clamp(spring.stiffness * stretch, -spring.yield, spring.yield);
     if (length > 0.0 && is_there(model, k)) {
       out.springs.set_row(out.first + k, {.normal_stiffness = std::max(force, 0.0) / length,
@@ -80,7 +75,8 @@ CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const dou
     const std::size_t c = first + k;
     if (rows.ks[c] == 0.0) continue;
     const Row& row = attempt.problem.rows()[c];
-    const double stiffness = springs_[k].stiffness, before = elongation(attempt.model, state, k, memory);
+    const double stiffness = springs_[k].stiffness,
+                 before = stretch_of(k, norm(chord(attempt.model, state, k)), memory);
     const SpringArray::Force force = rows.force(c);
     const Vec2 on_points = row.gradient(force);  // that stretches the spring
     const double elastic = force.shear / stiffness, yielded = rows.w[c] - elastic;
@@ -100,7 +96,7 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
   double sum = 0.0;
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     if (!is_there(model, k)) continue;
-    const double stretch = elongation(model, state, k, memory);
+    const double stretch = stretch_of(k, norm(chord(model, state, k)), memory);
     sum += 0.5 * springs_[k].stiffness * stretch * stretch;
   }
   return sum;
@@ -108,8 +104,8 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
 
 void PointSprings::add_rounding_forces(const Model& /*model*/, double extent, std::span<double> force) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    for (const std::size_t which : {std::size_t{0}, std::size_t{1}})
-      force[at(end(k, which).block)] += springs_[k].stiffness * extent;
+    force[at(end(k, 0).block)] += springs_[k].stiffness * extent;
+    force[at(end(k, 1).block)] += springs_[k].stiffness * extent;
   }
 }
 

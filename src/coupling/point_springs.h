@@ -47,8 +47,10 @@ class PointSprings final : public Coupling {
   [[nodiscard]] bool is_there(const Model& model, std::size_t k) const;
   /// From the second end to the first, m.
   [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
-  [[nodiscard]] double elongation(const Model& model, const State& state, std::size_t k,
-                                  std::span<const double> memory) const;
+  /// m, that has not yielded, of a spring of this length.
+  [[nodiscard]] double stretch_of(std::size_t k, double length, std::span<const double> memory) const {
+    return length - springs_[k].length - memory[k];
+  }
 
   std::vector<PointSpring> springs_;
   std::vector<MaterialPoint> points_;

@@ -131,6 +131,13 @@ class Points {
   std::size_t most_vertices_ = 0;                   ///< of a divided edge; 0: no edge is divided
 };
 
+/// r of a row for increment D, m, except for the known part.
+[[nodiscard]] inline Vec2 relative_displacement(const Points& points, const Row& row,
+                                                std::span<const double> d) {
+  return points.displacement(row.vertex, d) -
+         lerp(points.displacement(row.from, d), points.displacement(row.to, d), row.position);
+}
+
 template <typename OfPoint>
 void Points::for_material_points(std::size_t block, const OfPoint& of_point) const {
   if (of_block_.empty()) return;

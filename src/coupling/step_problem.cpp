@@ -45,8 +45,9 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
 void StepProblem::name_rows(std::vector<Coupling::RowKey>& keys) const {
   keys.clear();
   for (std::size_t k = 0; k < parts_.size(); ++k) {
-    for (std::size_t row = 0; row < parts_[k].coupling->rows(); ++row) {
-      const auto [first, second] = parts_[k].coupling->key(row);
+    const Coupling& coupling = *parts_[k].coupling;
+    for (std::size_t row = 0, rows = coupling.rows(); row < rows; ++row) {
+      const auto [first, second] = coupling.key(row);
       keys.emplace_back(first - static_cast<int>(k), second);
     }
   }

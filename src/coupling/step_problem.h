@@ -59,8 +59,7 @@ class StepProblem {
   }
   /// r of a row for increment D, except for the known part.
   [[nodiscard]] Vec2 relative(const Row& row, std::span<const double> d) const {
-    return points_.displacement(row.vertex, d) -
-           lerp(points_.displacement(row.from, d), points_.displacement(row.to, d), row.position);
+    return relative_displacement(points_, row, d);
   }
   void add_springs(std::span<const SpringChange> changes, linalg::BlockSolver& solver) const;
   /// The same at all rows.

@@ -53,14 +53,11 @@ void LinearSystems::find_pairs(const Model& model, const State& state) {
   knows_pairs_ = true;
 }
 
-void LinearSystems::make_room(const Model& model, std::span<const contact::Contact> contacts, State& state) {
-  std::vector<Unknowns> used;
-  for (const contact::Contact& c : contacts) {
-    const Unknowns pair = unknowns_of(model, c.block_a, c.block_b);
-    if (pair.first >= 0 && (used.empty() || used.back() != pair)) used.push_back(pair);
-  }
+void LinearSystems::make_room(const Model& model, const Coupling& contacts, State& state) {
   Coupling::BlockPairs coupled;
+  contacts.add_pairs(coupled);
   for (const auto& coupling : model.couplings) coupling->add_pairs(coupled);
+  std::vector<Unknowns> used;
   for (const auto& [a, b] : coupled) {
     const Unknowns pair = unknowns_of(model, a, b);
     if (pair.first >= 0) used.push_back(pair);

@@ -20,7 +20,7 @@ class LinearSystems {
   /// Where the pair of blocks of every candidate is in the pattern. Both are in order.
   void find_pairs(const Model& model, const State& state);
   /// Room in the matrix for every pair of blocks that has contacts or another coupling. Pairs that have contacts no more keep their room until they are many.
-  void make_room(const Model& model, std::span<const contact::Contact> contacts, State& state);
+  void make_room(const Model& model, const Coupling& contacts, State& state);
   /// After the pattern or the candidates have changed in another way.
   void forget();
 

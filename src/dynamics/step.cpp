@@ -72,7 +72,8 @@ void Stepper::start(State& state) {
   finder_.find_at_rest(motion_, state);
   state.contact_energy += begin_contacts(model_, finder_.tolerances(), finder_.contacts());
   contact::keep_memory(finder_.contacts(), state.contacts, team_);
-  systems_.make_room(model_, finder_.contacts(), state);
+  contact_coupling_.begin_step(finder_.contacts(), {}, {});
+  systems_.make_room(model_, contact_coupling_, state);
 }
 
 void Stepper::resume(State& state) {
@@ -176,7 +177,7 @@ void Stepper::build(State& state, const Drive& drive, bool knows_contacts) {
                                knows_contacts ? ContactCoupling::ForContacts{} : describe);
   problem_.build(model_, state, drive, contact_coupling_, team_);
   if (problem_.facts().lacks_room) {
-    systems_.make_room(model_, finder_.contacts(), state);
+    systems_.make_room(model_, contact_coupling_, state);
     problem_.find_pairs(state.pattern);
   }
   if (model_.solver.accelerators.earlier_attempt)

@@ -10,7 +10,7 @@ namespace keyblock::dynamics {
 
 /// Sums over the run, J per thickness.
 struct EnergyLedger {
-  double friction = 0.0;   ///< dissipated
+  double friction = 0.0;   ///< dissipated by slip, and by springs that yield
   double damping = 0.0;    ///< dissipated by the dashpots of contacts and the viscosity of the rock
   double input = 0.0;      ///< done by ground motion, loads and moved supports
   double numerical = 0.0;  ///< dissipated by the time integration

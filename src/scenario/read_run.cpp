@@ -82,10 +82,9 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   const bool dynamic = any || stage.kind != StageKind::settle;
   t.word("until", stage.until_still, stage_ends,
          only(dynamic, "kind = \"shake\" or \"rest\"",
-              {.meaning =
-                   "`still`: the stage ends before its duration is over, once nothing moves, slips or turns "
-                   "any more; "
-                   "under a motion not before its acceleration stays below a twentieth of the largest."}));
+              {.meaning = "`still`: the stage ends before its duration, once nothing moves, slips or turns "
+                          "any more. A shaking stage does not end before its acceleration stays below a "
+                          "twentieth of the largest."}));
   const bool still = t.documenting() || stage.until_still;
   t.number(
       "still_time", stage.still_time,

@@ -43,14 +43,11 @@ double FollowedBounds::find_missing(const StepSystem& system, std::span<const Sp
   return scale > 0.0 ? std::sqrt(error / scale) : 0.0;
 }
 
-/// Each bound goes the share of its way that the last step shows to be right for it (secant).
+/// Each bound goes the share of its way that its last step shows to be right, and all of them `damping` of that.
 void FollowedBounds::take_steps(std::span<const Springs> springs, std::span<Corrections::Law> laws,
                                 double damping) {
   for (std::size_t k = 0; k < springs.size(); ++k) {
-    const auto [missing, taken] = steps_[k];
-    const double gained = missing - missing_[k];
-    double share = damping;
-    if (taken * gained > 0.0) share *= std::clamp(taken / gained, step_numbers::least_bound_share, 1.0);
+    const double share = damping * steps_[k].share(missing_[k]);
     steps_[k] = {missing_[k], share * missing_[k]};
     SpringArray::Law& law = laws[springs[k].shear].spring;
     law = contact::shear_spring(law.stiffness, law.high + share * missing_[k]);

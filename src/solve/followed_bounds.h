@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "solve/bound_step.h"
 #include "solve/corrections.h"
 #include "solve/step_system.h"
 
@@ -35,17 +36,13 @@ class FollowedBounds {
                             std::span<Corrections::Law> laws, Corrections& corrections);
 
  private:
-  /// By how much a bound is wrong, and the change it got for it, N per thickness.
-  struct Step {
-    double missing = 0.0, taken = 0.0;
-  };
   [[nodiscard]] double find_missing(const StepSystem& system, std::span<const Springs> springs,
                                     std::span<const Corrections::Law> laws, const Corrections& corrections);
   void take_steps(std::span<const Springs> springs, std::span<Corrections::Law> laws, double damping);
 
   std::vector<std::size_t> contacts_;
-  std::vector<double> missing_;  ///< N per thickness, of their bounds; scratch
-  std::vector<Step> steps_;      ///< the last of each; scratch
+  std::vector<double> missing_;   ///< N per thickness, of their bounds; scratch
+  std::vector<BoundStep> steps_;  ///< the last of each; scratch
 };
 
 }  // namespace keyblock::dynamics

@@ -81,8 +81,7 @@ bool LawUpdates::reverses(const StepSystem& system, std::size_t c) const {
   const double of_both = std::max(sliding_bound_[at(contact.block_a)], sliding_bound_[at(contact.block_b)]);
   // This contact brings its share of the mass to rest, from a velocity that `slipped` is the way of (with θ = 1 exactly).
   const double share = of_both > 0.0 ? springs.bound[c] / of_both : 1.0,
-               holds =
-                   shear - share * inertia_between(system.problem.model(), system.problem, contact) * slipped;
+               holds = shear - share * inertia_between(system.problem, contact) * slipped;
   return holds * slipped < 0.0 && std::abs(holds) > springs.bound[c];
 }
 
@@ -127,25 +126,21 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
       [&](std::size_t group) {
         const std::size_t c = group * lane_count;
         const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
-        const Lanes zero{}, y = at_c(springs.y), mu = at_c(springs.friction);
-        const Lanes normal = springs.normal_laws(c).force(y);
+        const Lanes zero{}, normal = springs.normal_laws(c).force(at_c(springs.y)), w = at_c(springs.w);
         // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const Lanes wanted = springs.strengths(c, normal), elastic = at_c(springs.ks) * at_c(springs.w),
-                    bound_now = at_c(springs.bound),
-                    change = largest(least(elastic, wanted), -wanted) -
-                             largest(least(elastic, bound_now), -bound_now);
-        const auto counts = (mu >= zero) & first_lanes(springs.size() - c);
+        const Lanes wanted = springs.strengths(c, normal),
+                    change = contact::shear_spring(at_c(springs.ks), wanted).force(w) -
+                             springs.shear_laws(c).force(w);
+        const auto counts = (at_c(springs.friction) >= zero) & first_lanes(springs.size() - c);
         return Sums{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
       });
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
   const auto bound = [&](std::size_t c) { return springs.strength(c, springs.force(c).normal); };
-  // Two contacts of a wedge may hand a bound to and fro for ever: a contact goes the share of the way that the last update
-  // shows to be right for it (secant).
   const bool first = bound_steps_.empty();
   bound_steps_.resize(springs.size());
-  // More of them may do so in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates of
+  // Contacts may hand bounds on in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates of
   // a static step have not settled it, all go half as far whenever the error does not fall by a half.
   if (system.problem.is_static() && ++bound_updates_ > step_numbers::undamped_updates &&
       ratio > 0.5 * bound_error_)
@@ -158,15 +153,12 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
     const double missing = bound(c) - springs.bound[c];
-    const BoundStep& last = bound_steps_[c];
-    const double gained = last.missing - missing;
-    double share = 1.0;
+    KnownStep& last = bound_steps_[c];
     // A bound that was followed since has come to where it is on a way of its own.
-    if (!first && last.bound == springs.bound[c] && last.taken * gained > 0.0)
-      share = std::clamp(last.taken / gained, step_numbers::least_bound_share, 1.0);
-    share *= bound_damping_;
+    const bool is_known = !first && last.bound == springs.bound[c];
+    const double share = bound_damping_ * (is_known ? last.step.share(missing) : 1.0);
     iterate.change_spring(system, c, [&] { springs.bound[c] += share * missing; });
-    bound_steps_[c] = {missing, share * missing, springs.bound[c]};
+    last = {{missing, share * missing}, springs.bound[c]};
   }
   return true;
 }
@@ -225,8 +217,7 @@ bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tole
   shift_.assign(springs.size(), {});
   for (std::size_t c = 0; c < system.contacts.contacts.size(); ++c) {
     if (!springs.branch[c].closed) continue;
-    const double inertia =
-        multiplier_share_ * inertia_between(system.problem.model(), system.problem, system.contact(c));
+    const double inertia = multiplier_share_ * inertia_between(system.problem, system.contact(c));
     // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
     const double multiplier =
         springs.is_tensile(c) ? HUGE_VAL : std::max(0.0, springs.y[c] - violation_[c].x);

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "solve/bound_step.h"
 #include "solve/followed_bounds.h"
 #include "solve/iterate.h"
 
@@ -39,11 +40,12 @@ class LawUpdates {
   std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
   std::vector<std::size_t> reversed_;  ///< contacts; scratch
 
-  // Bounds. By how much one was wrong, the change it got for it, and what it became, N per thickness.
-  struct BoundStep {
-    double missing = 0.0, taken = 0.0, bound = 0.0;
+  // Bounds.
+  struct KnownStep {
+    BoundStep step;
+    double bound = 0.0;  ///< N per thickness, what it led to
   };
-  std::vector<BoundStep>
+  std::vector<KnownStep>
       bound_steps_;             ///< per contact, of the last update in this step; empty before the first
   int bound_updates_ = 0;       ///< in this step
   double bound_error_ = 0.0;    ///< of the last of them, over all bounds
