@@ -39,7 +39,7 @@ struct Support {
 /// A spring between points of two blocks.
 struct Spring {
   Vec2 from, to;                     ///< its ends, in reference position
-  std::string from_block, to_block;  ///< empty: the first block that holds the point
+  std::string from_block, to_block;  ///< empty: the block that holds the point
   double stiffness = 0.0;            ///< N/m per thickness
   std::optional<double> yield;       ///< N per thickness, largest force; empty: none
 };

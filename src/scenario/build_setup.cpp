@@ -15,6 +15,7 @@
 #include "scenario/stage_steps.h"
 #include "simulation/feasibility.h"
 #include "simulation/history_block.h"
+#include "simulation/spring_blocks.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -150,6 +151,25 @@ void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std:
   }
 }
 
+// Ends of springs, which only the cut blocks tell, show at their keys.
+void check_springs(const Scenario& scenario, const RunSetup& setup, std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < setup.springs.size(); ++k) {
+    try {
+      const simulation::SpringBlocks blocks = simulation::spring_blocks(setup, k);
+      for (const std::size_t block : {blocks.from, blocks.to}) {
+        const auto stage = simulation::excavating_stage(setup, block);
+        if (stage)
+          notes.push_back(
+              fmt::format("{}: an end lies in rock that the stage '{}' excavates; the spring ends there",
+                          join_index("spring", k), setup.stages[*stage].name));
+      }
+    } catch (const InputError& error) {
+      const Diagnostic& mistake = error.diagnostics().front();
+      fail(scenario, mistake.key, mistake.found, mistake.expected);
+    }
+  }
+}
+
 void check_size(const Scenario& scenario, const std::vector<BlockProperties>& properties) {
   double unknowns = 0.0;
   for (const BlockProperties& block : properties) {
@@ -209,6 +229,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
   place_histories(scenario, setup, notes);
+  check_springs(scenario, setup, notes);
   if (auto mistakes = stage_mistakes(scenario, setup.motions); !mistakes.empty())
     throw InputError(std::move(mistakes));
   add_stage_warnings(scenario, notes);

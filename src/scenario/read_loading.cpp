@@ -206,7 +206,9 @@ const BlockSpec* read_end(TableReader& t, std::string_view key, Vec2& point, std
                           std::string& name, std::string_view which, const Scenario& scenario) {
   const bool given = t.point(key, point, {.meaning = which, .unit = "m", .required = true});
   t.reference(block_key, name, "block",
-              {.meaning = "The block of that end.", .fallback = "the first block that holds the point"});
+              {.meaning = "The block of that end.",
+               .fallback = "the block that holds the point; of several, one that no stage excavates or the "
+                           "one excavated last"});
   const BlockSpec* block = find_block(scenario, name);
   if (given) check_point(t, key, block, point);
   return block;

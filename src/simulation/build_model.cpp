@@ -8,12 +8,13 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/error.h"
 #include "core/index.h"
 #include "coupling/ground_springs.h"
 #include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
 #include "simulation/outline.h"
+#include "simulation/refuse.h"
+#include "simulation/spring_blocks.h"
 
 namespace keyblock::simulation {
 
@@ -21,14 +22,6 @@ using dynamics::Block;
 using dynamics::Model;
 
 namespace {
-
-[[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& expected) {
-  Diagnostic diagnostic;
-  diagnostic.key = key;
-  diagnostic.found = found;
-  diagnostic.expected = expected;
-  throw InputError(std::move(diagnostic));
-}
 
 contact::JointLaw law_of(const JointProperties& joint) {
   return {std::tan(joint.friction * std::numbers::pi / 180.0),
@@ -155,31 +148,12 @@ void add_supports(const RunSetup& setup, Model& model) {
     model.couplings.push_back(std::make_shared<dynamics::GroundSprings>(std::move(springs)));
 }
 
-/// The block of one end of a spring: `name`, or the first that holds the point.
-std::size_t block_of_end(const RunSetup& setup, const Model& model, const std::string& name, Vec2 p,
-                         const std::string& key) {
-  if (!name.empty()) {
-    const std::size_t b = block_named(setup, name, key + "_block");
-    require_on_block(model.blocks[b].reference, p, key, name);
-    return b;
-  }
-  for (std::size_t b = 0; b < setup.properties.size(); ++b) {
-    if (lies_in(model.blocks[b].reference, p)) return b;
-  }
-  refuse(key, fmt::format("the point ({}, {})", p.x, p.y), "a point of a block");
-}
-
 void add_springs(const RunSetup& setup, Model& model) {
   std::vector<dynamics::PointSpring> springs;
   std::vector<dynamics::MaterialPoint> points;
   for (std::size_t k = 0; k < setup.springs.size(); ++k) {
     const loading::Spring& spring = setup.springs[k];
-    const std::string key = fmt::format("spring[{}]", k);
-    const std::size_t a = block_of_end(setup, model, spring.from_block, spring.from, key + ".from"),
-                      b = block_of_end(setup, model, spring.to_block, spring.to, key + ".to");
-    if (a == b) refuse(key + ".to", "a point of the block of from", "a point of another block");
-    if (model.blocks[a].fixed && model.blocks[b].fixed)
-      refuse(key + ".to", "a point of a fixed block, as from is", "a block that moves at one end");
+    const auto [a, b] = spring_blocks(setup, k);
     for (const auto& [block, p] : {std::pair(a, spring.from), std::pair(b, spring.to)}) {
       dynamics::MaterialPoint& point = points.emplace_back(dynamics::MaterialPoint{
           static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))});

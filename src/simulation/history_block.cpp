@@ -14,12 +14,12 @@ std::optional<std::size_t> excavating_stage(const RunSetup& setup, std::size_t b
   return std::nullopt;
 }
 
-std::optional<std::size_t> history_block(const RunSetup& setup, const History& history) {
+std::optional<std::size_t> block_at(const RunSetup& setup, const std::string& name, Vec2 point) {
   std::optional<std::size_t> found;
   std::size_t found_until = 0;
   for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
-    if (!history.block.empty() && setup.properties[b].name != history.block) continue;
-    if (!lies_in(setup.system.blocks[b].polygon, history.point)) continue;
+    if (!name.empty() && setup.properties[b].name != name) continue;
+    if (!lies_in(setup.system.blocks[b].polygon, point)) continue;
     const std::size_t until = excavating_stage(setup, b).value_or(setup.stages.size());
     if (found && until <= found_until) continue;
     found = b;

@@ -119,6 +119,15 @@ TEST(BuildSetup, AHistoryNeedsABlock) {
   EXPECT_EQ(refusal(parse(runnable_domain + history, {"history.h.point=[0.1, 0.1]"})), "");
 }
 
+TEST(BuildSetup, ASpringNeedsTwoBlocks) {
+  const std::string spring = "[[spring]]\nfrom = [0.1, 0.1]\nto = [5.0, 1.0]\nstiffness = 1e6\n";
+  EXPECT_THAT(refusal(parse(runnable_domain + spring)),
+              HasSubstr(":41:6: spring[0].to: found [5, 1], outside; expected a point of a block"));
+  EXPECT_THAT(refusal(parse(runnable_domain + spring, {"spring.0.to=[0.11, 0.1]"})),
+              HasSubstr("spring[0].to: found a point of the block of from"));
+  EXPECT_EQ(refusal(parse(runnable_domain + spring, {"spring.0.to=[0.9, 0.9]"})), "");
+}
+
 TEST(BuildSetup, AStageTakesAStepAtLeast) {
   const auto refused = [](const std::vector<std::string>& overrides) {
     return refusal(parse(two_blocks, overrides));
