@@ -34,7 +34,8 @@ void BlockTerms::build(const Model& model, const State& state, const Drive& driv
   if (model_ != &model) begin(model);
   build_blocks(state, drive);
   add_loads(drive);
-  for (const auto& coupling : model.couplings) coupling->add_terms(model, state, drive, *this);
+  for (std::size_t k = 0; k < model.couplings.size(); ++k)
+    model.couplings[k]->add_terms(model, state, drive, state.couplings[k], *this);
 }
 
 void BlockTerms::begin(const Model& model) {

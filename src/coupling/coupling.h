@@ -5,8 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "coupling/rock_column.h"
 #include "coupling/row.h"
 #include "coupling/spring_array.h"
+#include "geometry/vec2.h"
 
 namespace keyblock::dynamics {
 
@@ -86,7 +88,7 @@ class Coupling {
 
   /// Adds its terms to those of the blocks.
   virtual void add_terms(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
-                         BlockTerms& /*terms*/) const {}
+                         std::span<const double> /*memory*/, BlockTerms& /*terms*/) const {}
   /// Number of its rows in the step at hand.
   [[nodiscard]] virtual std::size_t rows() const { return 0; }
   /// Of a row, among its own rows; the first number is not negative.
@@ -108,6 +110,11 @@ class Coupling {
   [[nodiscard]] virtual double stored_energy(const Model& /*model*/, const State& /*state*/, double /*time*/,
                                              std::span<const double> /*memory*/) const {
     return 0.0;
+  }
+
+  /// How the ground moves at a place, where the model does not disturb it. Places are those before the run.
+  [[nodiscard]] virtual GroundMove far_ground(std::span<const double> /*memory*/, Vec2 /*place*/) const {
+    return {};
   }
 
   /// Adds the blocks that it holds to the ground.

@@ -23,7 +23,7 @@ double along_axis(const Model& model, const GroundSpring& spring, std::span<cons
 }  // namespace
 
 void GroundSprings::add_terms(const Model& model, const State& state, const Drive& drive,
-                              BlockTerms& terms) const {
+                              std::span<const double> /*memory*/, BlockTerms& terms) const {
   for (const GroundSpring& spring : springs_) {
     if (!model.moves(at(spring.block))) continue;
     const double stretch = along_axis(model, spring, state.position) - spring.target(drive.end_time);

@@ -24,7 +24,7 @@ class GroundSprings final : public Coupling {
  public:
   explicit GroundSprings(std::vector<GroundSpring> springs) : springs_(std::move(springs)) {}
 
-  void add_terms(const Model& model, const State& state, const Drive& drive,
+  void add_terms(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
                  BlockTerms& terms) const override;
   CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
                          std::span<double> memory, State& state) const override;

@@ -65,13 +65,7 @@ bool is_impact(const Attempt& attempt, std::size_t c, double least) {
 }  // namespace
 
 void StepRules::choose(const Model& model, const State& state, bool is_static) {
-  const SolverOptions& options = model.solver;
-  const Integrator shi = Integrator::shi(options.theta);
-  Integrator chosen = shi;
-  if (options.integrator == TimeIntegration::average_acceleration)
-    chosen = Integrator::average_acceleration();
-  if (options.integrator == TimeIntegration::generalized_alpha)
-    chosen = Integrator::generalized_alpha(options.spectral_radius);
+  const Integrator shi = Integrator::shi(model.solver.theta), chosen = Integrator::of(model.solver);
   const bool dynamic = !is_static && !state.acceleration_known.empty();
   for (std::size_t b = 0; b < rule_.size(); ++b)
     rule_[b] = dynamic && state.acceleration_known[b] != 0 ? chosen : shi;

@@ -1,5 +1,6 @@
 #pragma once
 #include "core/lanes.h"
+#include "model/options.h"
 
 namespace keyblock::dynamics {
 
@@ -38,9 +39,27 @@ class Integrator {
     return newmark((2.0 * radius - 1.0) / (radius + 1.0), radius / (radius + 1.0));
   }
 
+  /// The rule of a scenario.
+  static Integrator of(const SolverOptions& options) {
+    switch (options.integrator) {
+      case TimeIntegration::shi:
+        break;
+      case TimeIntegration::average_acceleration:
+        return average_acceleration();
+      case TimeIntegration::generalized_alpha:
+        return generalized_alpha(options.spectral_radius);
+    }
+    return shi(options.theta);
+  }
+
   [[nodiscard]] double inertia() const { return inertia_; }            ///< c
   [[nodiscard]] double acceleration() const { return acceleration_; }  ///< c_a
   [[nodiscard]] double force() const { return force_; }                ///< c_F
+
+  /// ∂v′/∂D, times Δt.
+  [[nodiscard]] double end_velocity_share() const {
+    return family_ == Family::shi ? 1.0 + theta_ : gamma_ / beta_;
+  }
 
   /// D of a step with v′ = 0 is this share of Δt v, and the next of Δt² a.
   [[nodiscard]] double rest_share() const {

@@ -14,6 +14,7 @@ struct EnergyLedger {
   double damping = 0.0;    ///< dissipated by the dashpots of contacts and the viscosity of the rock
   double input = 0.0;      ///< done by ground motion, loads and moved supports
   double numerical = 0.0;  ///< dissipated by the time integration
+  double radiated = 0.0;   ///< carried away by waves through the boundary
 };
 
 /// Everything that changes from step to step, and all that a restart needs.

@@ -160,8 +160,8 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
   for (const simulation::StepRow& row : run.steps) {
     const simulation::Energy& e = row.energy;
-    const double residual =
-        e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
+    const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping +
+                            e.radiated + e.numerical - e.input;
     // In the order of step_columns in page_header.cpp.
     const double values[] = {double(row.stage),
                              row.time,
@@ -176,6 +176,7 @@ void add_steps(const results::RunData& run, ArrayPack& pack) {
                              e.contact,
                              e.friction,
                              e.damping,
+                             e.radiated,
                              e.numerical,
                              e.input,
                              residual};

@@ -114,19 +114,19 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
   for (const ArrayPack::Entry& e : arrays.entries())
     entries.push_back({{"name", e.name}, {"type", e.type}, {"offset", e.offset}, {"count", e.count}});
   const results::Areas area = results::areas(run.model, run.run);
-  const ordered_json header{
-      {"model", model_json(run.model)},
-      {"run", run_json(run)},
-      {"area", {{"blocks_m2", area.blocks}, {"excavated_m2", area.excavated}}},
-      {"recorded_frames", run.frames.size()},
-      {"displacement_quantum", displacement_quantum(run)},
-      {"stress_quantum", stress_quantum(run)},
-      {"steps_between_rows", steps_between_rows(run.steps)},
-      // In the order of the values in add_steps, page_arrays.cpp.
-      {"step_columns",
-       {"stage", "time", "iterations", "step_size", "penetration", "max_displacement", "closed_contacts",
-        "kinetic", "strain", "gravity", "contact", "friction", "damping", "numerical", "input", "residual"}},
-      {"arrays", entries}};
+  const ordered_json header{{"model", model_json(run.model)},
+                            {"run", run_json(run)},
+                            {"area", {{"blocks_m2", area.blocks}, {"excavated_m2", area.excavated}}},
+                            {"recorded_frames", run.frames.size()},
+                            {"displacement_quantum", displacement_quantum(run)},
+                            {"stress_quantum", stress_quantum(run)},
+                            {"steps_between_rows", steps_between_rows(run.steps)},
+                            // In the order of the values in add_steps, page_arrays.cpp.
+                            {"step_columns",
+                             {"stage", "time", "iterations", "step_size", "penetration", "max_displacement",
+                              "closed_contacts", "kinetic", "strain", "gravity", "contact", "friction",
+                              "damping", "radiated", "numerical", "input", "residual"}},
+                            {"arrays", entries}};
   return script_json(header.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 

@@ -84,7 +84,10 @@ ordered_json energy_json(const simulation::Energy& energy) {
 
 simulation::Energy read_energy(const ordered_json& json) {
   simulation::Energy energy;
-  for (const auto& [name, member] : energy_fields) energy.*member = number(json.at(name));
+  for (const auto& [name, member] : energy_fields) {
+    if (member != &simulation::Energy::radiated || json.contains(name))
+      energy.*member = number(json.at(name));
+  }
   return energy;
 }
 

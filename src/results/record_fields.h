@@ -17,7 +17,8 @@ inline constexpr std::pair<const char*, double simulation::Energy::*> energy_fie
     {"damping", &simulation::Energy::damping},
     {"input", &simulation::Energy::input},
     {"numerical", &simulation::Energy::numerical},
-    {"residual_ratio", &simulation::Energy::residual_ratio}};
+    {"residual_ratio", &simulation::Energy::residual_ratio},
+    {"radiated", &simulation::Energy::radiated}};  // results of earlier versions do not have it
 static_assert(sizeof(simulation::Energy) == std::size(energy_fields) * sizeof(double),
               "a term of the energy is missing");
 

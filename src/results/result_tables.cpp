@@ -18,6 +18,7 @@ using hdf5::read_array;
 using hdf5::read_column;
 
 constexpr std::size_t energy_terms = std::size(energy_fields);
+constexpr std::size_t first_energy_terms = 9;  // of results of the first version
 constexpr std::size_t history_values = 7;
 
 static_assert(sizeof(simulation::HistoryRow::Point) == history_values * sizeof(double));
@@ -322,7 +323,8 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
              penetration = read_column<double>(group, "penetration");
   const auto max_displacement = read_column<double>(group, "max_displacement");
   const auto energy = read_array<double>(group, "energy");
-  require(energy.width() == energy_terms, "steps/energy");
+  const std::size_t terms = energy.width();
+  require(terms >= first_energy_terms && terms <= energy_terms, "steps/energy");
   std::vector<simulation::StepRow> rows(
       common_rows(time, {stage.rows(), iterations.rows(), closed_contacts.rows(), step.rows(),
                          step_size.rows(), penetration.rows(), max_displacement.rows(), energy.rows()}));
@@ -336,8 +338,8 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
                max_displacement.values[k],
                closed_contacts.values[k],
                {}};
-    for (std::size_t i = 0; i < energy_terms; ++i) {
-      rows[k].energy.*energy_fields[i].second = energy.values[energy_terms * k + i];
+    for (std::size_t i = 0; i < terms; ++i) {
+      rows[k].energy.*energy_fields[i].second = energy.values[terms * k + i];
     }
   }
   return rows;

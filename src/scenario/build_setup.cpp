@@ -6,6 +6,7 @@
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
 #include "scenario/expected_blocks.h"
+#include "scenario/far_rock.h"
 #include "scenario/ground_facts.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
@@ -208,6 +209,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   if (scenario.domain) {
     const Domain& domain = *scenario.domain;
     setup.frame = domain.frame;
+    setup.has_domain = true;
     setup.domain = {Vec2{domain.x.first, domain.y.first} - origin,
                     Vec2{domain.x.second, domain.y.second} - origin};
   }
@@ -220,12 +222,17 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
     setup.excavations.push_back({scenario.excavations[k].name, std::move(outline)});
   }
 
+  setup.boundary = boundary_of(scenario, setup.joints, origin.y);
   setup.gravity = scenario.gravity;
   setup.in_situ = in_situ_stress(scenario, top_of(scenario, setup.system));
   setup.time_step = scenario.time_step;
   setup.motions = read_motions(scenario, notes);
+  take_to_outcrop(scenario, setup.motions);
   setup.files = input_files(scenario);
   for (const GroundFact& fact : ground_facts(scenario)) setup.ground.emplace_back(fact.name, fact.value);
+  if (setup.boundary) {
+    for (auto& fact : boundary_facts(*setup.boundary)) setup.ground.push_back(std::move(fact));
+  }
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
   place_histories(scenario, setup, notes);
@@ -239,6 +246,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.solver = scenario.solver;
   add_block_warnings(scenario, blocks, notes);
   add_shaking_warnings(scenario, setup.motions, notes);
+  add_boundary_warnings(scenario, setup, notes);
   if (const simulation::JointClosure soft = simulation::largest_closure(setup);
       soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
     notes.push_back(fmt::format(

@@ -159,7 +159,8 @@ class Plausibility {
     if (!in_situ.depth && (in_situ.sxx > 0.0 || in_situ.syy > 0.0)) {
       warn("in_situ: a positive stress is tension");
     }
-    if (scenario_.domain && !scenario_.domain->frame && !scenario_.accepted.free_boundary) {
+    if (scenario_.domain && !scenario_.domain->frame && !scenario_.boundary &&
+        !scenario_.accepted.free_boundary) {
       warn(
           "in_situ{}: nothing holds the stress at a free boundary{}, and the rock expands as the run begins; "
           "boundary = \"frame\" holds it",

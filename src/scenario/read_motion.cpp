@@ -17,6 +17,9 @@ constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
                                         {"linear", Baseline::linear},
                                         {"taper", Baseline::taper}};
 
+constexpr Word<MotionPlace> places[] = {
+    {"outcrop", MotionPlace::outcrop}, {"inside", MotionPlace::inside}, {"base", MotionPlace::base}};
+
 // How a file is read. `given` holds where there is a file to read, `file_condition` says so.
 void read_reading(TableReader& t, MotionComponentSpec& component, bool given,
                   std::string_view file_condition) {
@@ -143,6 +146,11 @@ bool has_file(const TableReader& t, std::string_view key) {
 void read_motion(TableReader& t, MotionSpec& motion) {
   motion.path = t.path();
   t.name("name", motion.name, "motion", {.meaning = "Name, for the stages that use it.", .required = true});
+  t.word(
+      "at", motion.place, places,
+      {.meaning = "Where it was recorded. `outcrop`: on free rock, as most records are; `inside`: the wave "
+                  "that goes up in the rock below; `base`: the motion of the base itself.",
+       .fallback = "\"outcrop\" over a compliant base, else \"base\""});
   const bool listed = t.find("components") != nullptr;
   const bool record = listed || has_file(t, "x") || has_file(t, "y");
   const bool documenting = t.documenting();

@@ -222,7 +222,8 @@ void read_contact_method(TableReader& t, dynamics::SolverOptions& solver) {
 }
 
 void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
-  t.word("integrator", solver.integrator, integrators, {.meaning = "Rule of time integration."});
+  t.word("integrator", solver.integrator, integrators,
+         {.meaning = "Rule of time integration. With [boundary] the default is \"generalized-alpha\"."});
   const auto rule_is = [&](dynamics::TimeIntegration rule) {
     return t.documenting() || solver.integrator == rule;
   };
@@ -310,6 +311,8 @@ void read_run(TableReader& root, Scenario& scenario) {
                          "stages of kind "
                          "\"settle\"."},
              [&](TableReader& t) { read_automatic_order(t, scenario.automatic); });
+  // Waves keep their height by this rule, and stiff joints do not ring.
+  if (scenario.boundary) scenario.solver.integrator = dynamics::TimeIntegration::generalized_alpha;
   root.table("solver", {.meaning = "How steps are solved. The defaults suit rock at engineering scale."},
              [&](TableReader& t) { read_solver(t, scenario.solver); });
 }

@@ -22,6 +22,7 @@ class Consistency {
     const Value* section = root_.find("section");
     if (section == nullptr || section->find("azimuth") == nullptr) check_without_azimuth();
     check_trace_counts();
+    check_motion_places();
     check_weights();
     check_excavations();
   }
@@ -73,6 +74,18 @@ class Consistency {
            fmt::format("about {:.2g} traces in the domain", count),
            fmt::format("at most {:.0e}; spacing, length or gap are too small for this domain",
                        rockmass::max_traces));
+    }
+  }
+
+  // A rigid base does what the motion says; below a compliant one are waves.
+  void check_motion_places() {
+    const bool compliant = scenario_.boundary && scenario_.boundary->compliant;
+    for (const MotionSpec& motion : scenario_.motions) {
+      if (!motion.place || compliant == (*motion.place != MotionPlace::base)) continue;
+      const std::string key = join_path(motion.path, "at");
+      fail(key, key, compliant ? "\"base\" over a compliant base" : "a motion of waves over a rigid base",
+           compliant ? "\"outcrop\" or \"inside\", or [boundary] base = \"rigid\""
+                     : "\"base\", or [boundary] with base = \"compliant\"");
     }
   }
 
@@ -177,6 +190,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   root.point("gravity", scenario.gravity, {.meaning = "Acceleration of gravity.", .unit = "m/s²"});
   read_rock_mass(root, scenario);
   read_shapes(root, scenario);
+  read_boundary(root, scenario);
   read_loading(root, scenario);
   read_run(root, scenario);
   read_study(root, scenario);

@@ -15,6 +15,7 @@
 #include "model/options.h"
 #include "rockmass/joint_set.h"
 #include "scenario/study_spec.h"
+#include "simulation/boundary.h"
 #include "simulation/setup.h"
 #include "simulation/stage.h"
 
@@ -104,6 +105,30 @@ struct InSituSpec {
   double sxx = 0.0, syy = 0.0, sxy = 0.0;  ///< Pa, without depth
 };
 
+/// Rock beside the model, from its top downwards.
+struct RockLayerSpec {
+  double top = 0.0;                          ///< m, height
+  double density = 0.0, vs = 0.0, vp = 0.0;  ///< kg/m³, m/s, m/s
+  std::string path;
+};
+
+/// [boundary]
+struct BoundarySpec {
+  bool compliant = true;
+  simulation::Sides sides = simulation::Sides::free_field;
+  bool overburden = false;
+  std::optional<double> density, vs, vp;  ///< of the half-space below
+  std::vector<RockLayerSpec> column;      ///< empty: the rock of the model
+  double frequency = 25.0;                ///< Hz
+};
+
+/// Where a motion was recorded.
+enum class MotionPlace {
+  outcrop,  ///< on free rock
+  inside,   ///< the wave that goes up
+  base,     ///< what the base of the model does
+};
+
 struct MotionComponentSpec {
   std::filesystem::path file;
   std::optional<int> channel;  ///< component of a file that holds several, counted from 1
@@ -122,6 +147,7 @@ struct MotionSpec {
   loading::Baseline baseline = loading::Baseline::none;
   loading::AccelerationTable x, y;
   std::optional<loading::Sine> sine_x, sine_y;
+  std::optional<MotionPlace> place;  ///< empty: on an outcrop over a compliant base, else at the base
   std::string path;
 };
 
@@ -141,6 +167,7 @@ struct Scenario {
   Vec2 gravity{0.0, -9.81};  ///< m/s²
   std::optional<double> section_azimuth;
   std::optional<Domain> domain;
+  std::optional<BoundarySpec> boundary;
   RockKeys rock;  ///< all set
   JointKeys joints;
   std::vector<JointSetSpec> joint_sets;

@@ -16,6 +16,8 @@ void read_scenario(TableReader& root, Scenario& scenario);
 void read_rock_mass(TableReader& root, Scenario& scenario);
 /// What is built into it: [[excavation]], [[block]].
 void read_shapes(TableReader& root, Scenario& scenario);
+/// [boundary], after [domain], [rock] and what is built into them.
+void read_boundary(TableReader& root, Scenario& scenario);
 /// [in_situ], [[motion]], [[load]], [[support]].
 void read_loading(TableReader& root, Scenario& scenario);
 /// One [[motion]].

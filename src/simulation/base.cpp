@@ -30,6 +30,16 @@ bool move_alike(std::span<const FixedMotion> fixed) {
   return true;
 }
 
+dynamics::GroundMove far_ground(const dynamics::Model& model, const dynamics::State& state, Vec2 place) {
+  dynamics::GroundMove move;
+  for (std::size_t k = 0; k < model.couplings.size(); ++k) {
+    const dynamics::GroundMove of_one = model.couplings[k]->far_ground(state.couplings[k], place);
+    move.displacement += of_one.displacement;
+    move.velocity += of_one.velocity;
+  }
+  return move;
+}
+
 Base::Base(const RunSetup& setup, const dynamics::Model& model) : model_(model) {
   std::vector<FixedMotion> fixed;
   for (std::size_t b = 0; b < setup.properties.size(); ++b) {
@@ -48,13 +58,13 @@ Vec2 Base::of_block(const std::vector<double>& coefficients) const {
   return Vec2{coefficients[block.first], coefficients[block.first + 1]} / std::sqrt(block.area);
 }
 
-Vec2 Base::displacement(const dynamics::State& state) const {
-  if (!block_) return {};
+Vec2 Base::displacement(const dynamics::State& state, Vec2 place) const {
+  if (!block_) return far_ground(model_, state, place).displacement;
   return of_block(state.position) - model_.blocks[*block_].centroid;
 }
 
-Vec2 Base::velocity(const dynamics::State& state) const {
-  return block_ ? of_block(state.velocity) : Vec2{};
+Vec2 Base::velocity(const dynamics::State& state, Vec2 place) const {
+  return block_ ? of_block(state.velocity) : far_ground(model_, state, place).velocity;
 }
 
 }  // namespace keyblock::simulation

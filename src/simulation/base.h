@@ -2,6 +2,7 @@
 #include <optional>
 #include <span>
 
+#include "coupling/coupling.h"
 #include "loading/time_table.h"
 #include "model/model.h"
 #include "model/state.h"
@@ -18,16 +19,19 @@ struct FixedMotion {
 /// Whether all fixed blocks make one motion: the same displacement at all times. True where there are none.
 bool move_alike(std::span<const FixedMotion> fixed);
 
-/// What damage is counted against: the fixed blocks, where all of them make one motion. Where they do not, there is no common base, and
+/// m and m/s: how the ground would move at a place, before the run, if the model were not there. Zero without a seismic boundary.
+dynamics::GroundMove far_ground(const dynamics::Model& model, const dynamics::State& state, Vec2 place);
+
+/// What damage is counted against: the ground far away where there is a seismic boundary; else the fixed blocks, where all of them make one motion. Where they do not, there is no common base, and
 /// damage is counted in space. So it is without fixed blocks.
 class Base {
  public:
   Base(const RunSetup& setup, const dynamics::Model& model);
 
-  /// m, since the start of the run.
-  [[nodiscard]] Vec2 displacement(const dynamics::State& state) const;
+  /// m, since the start of the run, at a place before it.
+  [[nodiscard]] Vec2 displacement(const dynamics::State& state, Vec2 place) const;
   /// m/s.
-  [[nodiscard]] Vec2 velocity(const dynamics::State& state) const;
+  [[nodiscard]] Vec2 velocity(const dynamics::State& state, Vec2 place) const;
 
  private:
   [[nodiscard]] Vec2 of_block(const std::vector<double>& coefficients) const;

@@ -12,6 +12,7 @@
 #include "coupling/ground_springs.h"
 #include "coupling/point_springs.h"
 #include "geometry/quadrature.h"
+#include "simulation/build_boundary.h"
 #include "simulation/outline.h"
 #include "simulation/refuse.h"
 #include "simulation/spring_blocks.h"
@@ -170,6 +171,7 @@ void add_springs(const RunSetup& setup, Model& model) {
 void add_couplings(const RunSetup& setup, Model& model) {
   add_supports(setup, model);
   add_springs(setup, model);
+  if (setup.boundary) model.couplings.push_back(build_boundary(setup, model));
 }
 
 void add_prescribed_motions(const RunSetup& setup, Model& model) {

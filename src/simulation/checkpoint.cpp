@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000e;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'000f;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/index.h"
+#include "simulation/base.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -22,7 +23,7 @@ int moving_block_at(const dynamics::Model& model, Vec2 point) {
   return inside >= 0 ? inside : first(&lies_in);
 }
 
-// Distance of the ends of a diameter now; nothing where one of them is in no block.
+// Distance of the ends of a diameter now, without what the ground far away moves between them; nothing where one of them is in no block.
 std::optional<double> length(const Diameter& d, const dynamics::Model& model, const dynamics::State& state) {
   Vec2 now[2];
   for (int end = 0; end < 2; ++end) {
@@ -34,6 +35,7 @@ std::optional<double> length(const Diameter& d, const dynamics::Model& model, co
     block.basis.evaluate(d.ends[end], phi.data());
     for (std::size_t k = 0; k < phi.size(); ++k)
       now[end] += phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
+    now[end] -= far_ground(model, state, d.ends[end]).displacement;
   }
   return norm(now[0] - now[1]);
 }

@@ -69,8 +69,11 @@ Polygon deformed_polygon(const dynamics::Model& model, std::size_t block) {
 
 void DamageGauge::start(const dynamics::State& state, std::span<const contact::Contact> contacts) {
   reference_.start.clear();
-  for (const dynamics::Block& block : model_.blocks) reference_.start.push_back(centroid_now(block, state));
-  reference_.base = base_.displacement(state);
+  reference_.base.clear();
+  for (const dynamics::Block& block : model_.blocks) {
+    reference_.start.push_back(centroid_now(block, state));
+    reference_.base.push_back(base_.displacement(state, block.centroid));
+  }
   reference_.turn.clear();
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) reference_.turn.push_back(turn_of(model_, b));
   joints_.start(contacts);
@@ -101,7 +104,7 @@ void DamageGauge::restore(Memory memory) {
 
 Polygon DamageGauge::polygon_on_base(std::size_t block, const dynamics::State& state) const {
   Polygon polygon = deformed_polygon(model_, block);
-  const Vec2 base = base_.displacement(state);
+  const Vec2 base = base_.displacement(state, model_.blocks[block].centroid);
   for (std::size_t r = 0; r < polygon.ring_count(); ++r) {
     for (Vec2& p : polygon.ring(r)) p -= base;
   }
@@ -119,7 +122,7 @@ double DamageGauge::fall_distance(const dynamics::Block& block) const {
 }
 
 Vec2 DamageGauge::displacement(std::size_t block, const dynamics::State& state) const {
-  const Vec2 base = base_.displacement(state) - reference_.base;
+  const Vec2 base = base_.displacement(state, model_.blocks[block].centroid) - reference_.base[block];
   return centroid_now(model_.blocks[block], state) - reference_.start[block] - base;
 }
 
@@ -147,7 +150,7 @@ double DamageGauge::largest_speed(const dynamics::State& state) const {
     const dynamics::Block& block = model_.blocks[b];
     const Vec2 velocity =
         Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
-    largest = std::max(largest, norm(velocity - base_.velocity(state)));
+    largest = std::max(largest, norm(velocity - base_.velocity(state, block.centroid)));
   }
   return largest;
 }

@@ -52,7 +52,7 @@ class DamageGauge {
     std::vector<std::uint8_t> open;  ///< per excavation
     std::vector<Vec2> start;         ///< centroids, per block
     std::vector<double> turn;        ///< rad, of every block against its reference position
-    Vec2 base;                       ///< m, displacement of the base
+    std::vector<Vec2> base;          ///< m, displacement of the base, per block
     Diameter height, width;          ///< of the first excavation
   };
   /// All that is remembered, for checkpoints.

@@ -21,13 +21,14 @@ Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, 
   e.friction = ledger.friction;
   e.damping = ledger.damping;
   e.numerical = ledger.numerical;
+  e.radiated = ledger.radiated;
   e.input = ledger.input;
   e.gravity = dynamics::gravity_energy(model, state) - initial;
-  const double residual =
-      e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.numerical - e.input;
+  const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.radiated +
+                          e.numerical - e.input;
   double largest = 0.0;
   for (const double term :
-       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.numerical, e.input}) {
+       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.radiated, e.numerical, e.input}) {
     largest = std::max(largest, std::abs(term));
   }
   e.residual_ratio = residual == 0.0 ? 0.0 : std::abs(residual) / largest;  // no number where a term is none

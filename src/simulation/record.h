@@ -103,7 +103,7 @@ struct HistoryRow {
 };
 
 /// Energies in J per metre thickness. Losses and inputs accumulate from the start of the first stage.
-/// kinetic + strain + gravity + contact + friction + damping + numerical − input = residual ≈ 0.
+/// kinetic + strain + gravity + contact + friction + damping + radiated + numerical − input = residual ≈ 0.
 struct Energy {
   double kinetic = 0.0;
   double strain = 0.0;
@@ -115,6 +115,7 @@ struct Energy {
       0.0;  ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
   double numerical = 0.0;       ///< dissipated by the time integration, computed step by step
   double residual_ratio = 0.0;  ///< |residual| over the largest term
+  double radiated = 0.0;        ///< carried away by waves through a seismic boundary
 };
 
 /// How the steps went, one row now and then.

@@ -11,6 +11,7 @@
 #include "loading/ground_motion.h"
 #include "loading/load.h"
 #include "model/options.h"
+#include "simulation/boundary.h"
 #include "simulation/stage.h"
 
 namespace keyblock::simulation {
@@ -93,7 +94,9 @@ struct RunSetup {
   cutting::BlockSystem system;
   std::vector<BlockProperties> properties;  ///< one per block of `system`
   bool frame = false;                       ///< fixed blocks around the domain
-  Box domain;                               ///< where the frame is; unused without one
+  bool has_domain = false;
+  Box domain;                        ///< if there is one
+  std::optional<Boundary> boundary;  ///< the rock around the model; none: a frame, or nothing
   JointTable joints;
   std::vector<std::string> joint_set_names, trace_map_names;
   std::vector<Excavation> excavations;

@@ -184,6 +184,7 @@ export function solverPlots(run: Run, clock: Clock): Plot[] {
     ["contact", "#CC79A7"],
     ["friction", "#D55E00"],
     ["damping", "#E69F00"],
+    ["radiated", "#8B5FBF"],
     ["numerical", "#56B4E9"],
     ["input", "#B8A900"],
   ];

@@ -99,7 +99,7 @@ TEST(Run, StaticStepsAreWrittenWithTheirPseudoTimeStep) {
 void expect_equal_energies(const Energy& one, const Energy& other) {
   for (const auto term :
        {&Energy::kinetic, &Energy::strain, &Energy::gravity, &Energy::contact, &Energy::friction,
-        &Energy::damping, &Energy::input, &Energy::numerical, &Energy::residual_ratio})
+        &Energy::damping, &Energy::radiated, &Energy::input, &Energy::numerical, &Energy::residual_ratio})
     EXPECT_EQ(one.*term, other.*term);
 }
 

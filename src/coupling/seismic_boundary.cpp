@@ -1,0 +1,279 @@
+#include "coupling/seismic_boundary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "coupling/attempt.h"
+#include "coupling/block_terms.h"
+#include "model/drive.h"
+#include "model/turn.h"
+#include "model/vertex_field.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+constexpr std::size_t numbers_of_point = 6, motion_begin = 1;
+
+Vec2 by_axis(Vec2 a, Vec2 b) {
+  return {a.x * b.x, a.y * b.y};
+}
+
+/// m, since before the run.
+Vec2 displacement_of(const BoundaryPoint& p, const Model& model, const State& state) {
+  const Block& block = model.blocks[at(p.point.block)];
+  return field_at(p.point.phi.data(), block.size, &state.position[block.first]) - p.place;
+}
+
+/// m, by which a turn of its block moves a point.
+Vec2 turn_at(const BoundaryPoint& p, const Block& block, double spin, std::span<const double> position) {
+  Vec2 turned;
+  const std::vector<double>& phi = p.point.phi;
+  for (std::size_t i = 0; i < phi.size(); ++i)
+    turned += phi[i] * Vec2{turn_of(spin, &position[block.first], 2 * i),
+                            turn_of(spin, &position[block.first], 2 * i + 1)};
+  return turned;
+}
+
+/// Its motion, and of each node the displacement at which the dynamic steps began.
+std::size_t size_of(const RockColumn& column) {
+  return column.memory_size() + 2 * column.heights().size();
+}
+
+/// The memory of the far rock with this number.
+template <typename Numbers>
+Numbers memory_of(std::span<const FarRock> far, std::size_t points, Numbers memory, std::size_t k) {
+  std::size_t begin = motion_begin + numbers_of_point * points;
+  for (std::size_t i = 0; i < k; ++i) begin += size_of(far[i].column);
+  return memory.subspan(begin, size_of(far[k].column));
+}
+
+/// In a static step, rock far away is at rest where the last dynamic one left it.
+void rest(const RockColumn& column, std::span<double> memory) {
+  const std::span<double> before = memory.subspan(column.memory_size());
+  const std::span<const double> moved = column.displacements(memory);
+  for (std::size_t k = 0; k < moved.size(); ++k) before[k] += moved[k];
+  std::fill_n(memory.begin(), column.memory_size(), 0.0);
+}
+
+}  // namespace
+
+/// Tractions are those beyond the one before the run.
+struct SeismicBoundary::PointMemory {
+  Vec2 anchor;    ///< m, u_a
+  Vec2 offset;    ///< Pa, t_a or t_0
+  Vec2 traction;  ///< Pa, at the end of the last step
+
+  static PointMemory read(std::span<const double> memory, std::size_t k) {
+    const double* m = &memory[motion_begin + numbers_of_point * k];
+    return {{m[0], m[1]}, {m[2], m[3]}, {m[4], m[5]}};
+  }
+  void write(std::span<double> memory, std::size_t k) const {
+    double* m = &memory[motion_begin + numbers_of_point * k];
+    m[0] = anchor.x, m[1] = anchor.y;
+    m[2] = offset.x, m[3] = offset.y;
+    m[4] = traction.x, m[5] = traction.y;
+  }
+};
+
+/// dead − spring (stretch + d) − dashpot (velocity + share d), Pa, for an increment d of the point; x and y alike.
+struct SeismicBoundary::Law {
+  Vec2 dead;
+  Vec2 spring, stretch;  ///< Pa/m, and m at the start of the step
+  Vec2 dashpot;          ///< Pa s/m
+  Vec2 velocity;         ///< m/s, v′ − v_far of d = 0
+  double share = 0.0;    ///< ∂v′/∂d, 1/s
+
+  [[nodiscard]] Vec2 stiffness() const { return spring + share * dashpot; }
+  [[nodiscard]] Vec2 viscous(Vec2 d) const { return -by_axis(dashpot, velocity + share * d); }
+  [[nodiscard]] Vec2 traction(Vec2 d) const { return dead - by_axis(spring, stretch + d) + viscous(d); }
+};
+
+/// The boundary in a step from a state: of which kind it is, what the far rock does in it, and the laws of its points.
+class SeismicBoundary::Step {
+ public:
+  Step(const SeismicBoundary& of, const Model& model, const State& state, const Drive& drive,
+       std::span<const double> memory)
+      : of_(of),
+        model_(model),
+        state_(state),
+        drive_(drive),
+        memory_(memory),
+        after_(memory.begin(), memory.end()) {
+    for (std::size_t k = 0; k < of_.far_.size(); ++k) {
+      const RockColumn& column = of_.far_[k].column;
+      const std::span<double> after = far_after(k);
+      if (drive_.is_static) {
+        rest(column, after);
+      } else {
+        column.step(after, drive_.step, Integrator::of(model_.solver), drive_.ground_acceleration, after);
+      }
+    }
+    after_[0] = drive_.is_static ? 0.0 : 1.0;
+  }
+
+  /// Whether springs held the point until now, and dashpots do from now on.
+  [[nodiscard]] bool lets_go(const BoundaryPoint& p) const {
+    return p.absorbs && !drive_.is_static && memory_[0] == 0.0;
+  }
+  /// What the point remembers as it is of use in this kind of step.
+  [[nodiscard]] PointMemory start(std::size_t k) const {
+    const BoundaryPoint& p = of_.points_[k];
+    PointMemory m = PointMemory::read(memory_, k);
+    const bool takes_hold = p.absorbs && drive_.is_static && memory_[0] != 0.0;
+    if (lets_go(p) || takes_hold) m.offset = m.traction;
+    if (takes_hold) m.anchor = displacement(p);
+    return m;
+  }
+  [[nodiscard]] Law law(const PointMemory& m, std::size_t k) const {
+    const BoundaryPoint& p = of_.points_[k];
+    Law law;
+    law.dead = p.traction + m.offset;
+    if (drive_.is_static || !p.absorbs) {
+      law.spring = p.springs;
+      law.stretch = displacement(p) - m.anchor;
+      return law;
+    }
+    law.dashpot = p.dashpots;
+    const Integrator& rule = drive_.rule[at(p.point.block)];
+    law.share = rule.end_velocity_share() / drive_.step;
+    law.velocity = coasting(p, rule);
+    if (p.far < 0) return law;
+    const RockColumn& column = of_.far_[at(p.far)].column;
+    const std::span<const double> after = far_after(at(p.far));
+    law.dead += column.stress(after, p.in_far).on(p.normal);
+    law.velocity -= column.motion(after, p.in_far).velocity;
+    return law;
+  }
+  /// The memory after the step, except for what the points have.
+  [[nodiscard]] std::span<double> after() { return after_; }
+
+ private:
+  [[nodiscard]] std::span<double> far_after(std::size_t k) {
+    return memory_of(of_.far_, of_.points_.size(), std::span<double>(after_), k);
+  }
+  [[nodiscard]] std::span<const double> far_after(std::size_t k) const {
+    return memory_of(of_.far_, of_.points_.size(), std::span<const double>(after_), k);
+  }
+  [[nodiscard]] Vec2 displacement(const BoundaryPoint& p) const { return displacement_of(p, model_, state_); }
+  /// m/s: v′ of D = 0, which is linear in the motion at the start.
+  [[nodiscard]] Vec2 coasting(const BoundaryPoint& p, const Integrator& rule) const {
+    const Block& block = model_.blocks[at(p.point.block)];
+    const auto of_point = [&](const std::vector<double>& coefficients) {
+      if (coefficients.empty()) return Lanes{};
+      const Vec2 v = field_at(p.point.phi.data(), block.size, &coefficients[block.first]);
+      return lanes_from(v.x, v.y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    };
+    const Motion start{of_point(state_.velocity), of_point(state_.acceleration), of_point(state_.force)};
+    const Lanes end = rule.end(start, Lanes{}, drive_.step).velocity;
+    return {end[0], end[1]};
+  }
+
+  const SeismicBoundary& of_;
+  const Model& model_;
+  const State& state_;
+  const Drive& drive_;
+  std::span<const double> memory_;
+  std::vector<double> after_;
+};
+
+std::size_t SeismicBoundary::memory_size() const {
+  std::size_t size = motion_begin + numbers_of_point * points_.size();
+  for (const FarRock& far : far_) size += size_of(far.column);
+  return size;
+}
+
+void SeismicBoundary::add_terms(const Model& model, const State& state, const Drive& drive,
+                                std::span<const double> memory, BlockTerms& terms) const {
+  const Step step(*this, model, state, drive, memory);
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const BoundaryPoint& p = points_[k];
+    const std::size_t b = at(p.point.block);
+    if (!model.moves(b)) continue;
+    const Law law = step.law(step.start(k), k);
+    const Vec2 stiffness = p.length * law.stiffness(), force = p.length * law.traction({});
+    terms.add_spring(b, 0, p.point.phi, stiffness.x, force.x);
+    terms.add_spring(b, 1, p.point.phi, stiffness.y, force.y);
+  }
+}
+
+CouplingTotals SeismicBoundary::account(const Attempt& attempt, std::span<const double> spin,
+                                        std::size_t /*first*/, std::span<double> memory, State& state) const {
+  const Model& model = attempt.model;
+  Step step(*this, model, state, attempt.drive, memory);
+  EnergyLedger& ledger = state.ledger;
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const BoundaryPoint& p = points_[k];
+    const Block& block = model.blocks[at(p.point.block)];
+    if (!model.moves(at(p.point.block))) continue;
+    PointMemory m = step.start(k);
+    if (step.lets_go(p)) ledger.input -= stored(model, state, PointMemory::read(memory, k), k);
+    const Law law = step.law(m, k);
+    const Vec2 d = field_at(p.point.phi.data(), block.size, &attempt.increment[block.first]),
+               turned = turn_at(p, block, spin[at(p.point.block)], state.position), stretch = law.stretch + d,
+               not_stretched = by_axis(d - 0.5 * turned, turned);
+    state.support_energy += 0.5 * p.length * dot(law.spring, by_axis(stretch, stretch));
+    ledger.input += p.length * dot(law.dead, d);
+    ledger.radiated -= p.length * dot(law.viscous(d), d);
+    // BlockTerms::elastic_loss has taken both for springs that do not turn with their block.
+    ledger.numerical -= p.length * (dot(law.spring, not_stretched) +
+                                    law.share * dot(law.dashpot, 0.5 * by_axis(d, d) + not_stretched));
+    m.traction = law.traction(d) - p.traction;
+    m.write(step.after(), k);
+  }
+  std::copy(step.after().begin(), step.after().end(), memory.begin());
+  return {};
+}
+
+double SeismicBoundary::stored(const Model& model, const State& state, const PointMemory& m,
+                               std::size_t k) const {
+  const BoundaryPoint& p = points_[k];
+  const Vec2 stretch = displacement_of(p, model, state) - m.anchor;
+  return 0.5 * p.length * dot(p.springs, by_axis(stretch, stretch));
+}
+
+double SeismicBoundary::stored_energy(const Model& model, const State& state, double /*time*/,
+                                      std::span<const double> memory) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const BoundaryPoint& p = points_[k];
+    if (!model.moves(at(p.point.block)) || (p.absorbs && memory[0] != 0.0)) continue;
+    sum += stored(model, state, PointMemory::read(memory, k), k);
+  }
+  return sum;
+}
+
+GroundMove SeismicBoundary::far_ground(std::span<const double> memory, Vec2 place) const {
+  const auto move = [&](std::size_t k) -> GroundMove {
+    const RockColumn& column = far_[k].column;
+    const std::span<const double> of_column = memory_of(std::span(far_), points_.size(), memory, k);
+    const RockColumn::Place at_height = column.place_of(place.y);
+    const GroundMove now = column.motion(of_column, at_height);
+    const Vec2 before = column.at_place(of_column.subspan(column.memory_size()), at_height);
+    return {now.displacement + before, now.velocity};
+  };
+  if (far_.empty()) return {};
+  const GroundMove left = move(0);
+  if (far_.size() == 1) return left;
+  const GroundMove right = move(far_.size() - 1);
+  const double share = std::clamp((place.x - far_.front().x) / (far_.back().x - far_.front().x), 0.0, 1.0);
+  return {lerp(left.displacement, right.displacement, share), lerp(left.velocity, right.velocity, share)};
+}
+
+void SeismicBoundary::add_held_blocks(std::vector<int>& blocks) const {
+  for (const BoundaryPoint& p : points_) {
+    if (p.springs != Vec2{}) blocks.push_back(p.point.block);
+  }
+}
+
+void SeismicBoundary::add_rounding_forces(const Model& model, double extent, std::span<double> force) const {
+  for (const BoundaryPoint& p : points_) {
+    double largest = 0.0;
+    for (const double phi : p.point.phi) largest = std::max(largest, std::abs(phi));
+    force[at(p.point.block)] += p.length * std::max(p.springs.x, p.springs.y) * extent * largest *
+                                std::sqrt(model.blocks[at(p.point.block)].area);
+  }
+}
+
+}  // namespace keyblock::dynamics

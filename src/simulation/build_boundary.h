@@ -1,0 +1,16 @@
+#pragma once
+#include <memory>
+
+#include "coupling/seismic_boundary.h"
+#include "model/model.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+
+/// The rectangle whose sides are the boundary: the domain, or without one what just holds all blocks. Local coordinates.
+Box boundary_box(const RunSetup& setup);
+
+/// The rock around the model: on all edges of moving blocks that lie on a side of the rectangle. setup.boundary must be there.
+std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup, const dynamics::Model& model);
+
+}  // namespace keyblock::simulation

@@ -1,0 +1,163 @@
+#include "coupling/seismic_boundary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "../fresh_folder.h"
+#include "../scene.h"
+#include "simulation/build_boundary.h"
+
+namespace keyblock::simulation {
+namespace {
+
+constexpr double rock_density = 2600.0, rock_young = 2e8;
+
+loading::GroundMotion wavelet(Vec2 direction, double peak) {
+  std::vector<double> times;
+  std::vector<Vec2> accelerations;
+  for (int k = 0; k <= 400; ++k) {
+    const double t = 0.0025 * k, squared = std::pow(std::numbers::pi * 4.0 * (t - 0.4), 2);
+    times.push_back(t);
+    accelerations.push_back(peak * (1.0 - 2.0 * squared) * std::exp(-squared) * direction);
+  }
+  return {"wavelet", times, accelerations};
+}
+
+/// Four by five blocks of soft rock, glued together: 20 m wide and high, on a half-space.
+RunSetup ground(Sides sides = Sides::free_field) {
+  Scene scene(rock_young, 40.0, rock_density);
+  for (int row = 0; row < 5; ++row) {
+    for (int column = 0; column < 4; ++column) scene.rectangle({5.0 * column, 4.0 * row}, 5.0, 4.0);
+  }
+  RunSetup setup = std::move(scene.setup);
+  setup.joints.standard.cohesion = setup.joints.standard.tension = 1e9;
+  setup.time_step = 0.0025;
+  setup.solver.integrator = dynamics::TimeIntegration::generalized_alpha;
+  Boundary boundary;
+  boundary.sides = sides;
+  dynamics::RockLayer rock{.density = rock_density};
+  rock.shear = rock_young / 2.4;
+  rock.upright = rock_young / (1.0 - 0.04);
+  rock.sideways = 0.2 * rock.upright;
+  boundary.layers = {rock};
+  boundary.dashpots = rock.impedance();
+  setup.boundary = boundary;
+  setup.motions = {wavelet({0.8, 0.6}, 3.0)};
+  setup.stages = {stage("settle", StageKind::settle), stage("shake", StageKind::shake),
+                  stage("after", StageKind::rest, 0.1), stage("again", StageKind::settle)};
+  return setup;
+}
+
+RunRecord run_of(const RunSetup& setup, RunOptions options = {}) {
+  RunObserver nobody;
+  return run(setup, std::move(options), nobody);
+}
+
+TEST(SeismicBoundary, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
+  const RunSetup setup = ground();
+  const RunRecord whole = run_of(setup);
+  RunOptions two;
+  two.threads = 2;
+  EXPECT_EQ(run_of(setup, two).state_hash, whole.state_hash);
+  const FreshFolder folder;
+  Stopper stopper(whole.stages[0].steps + 250);
+  RunOptions options;
+  options.directory = folder;
+  options.stop = &stopper.stop;
+  EXPECT_TRUE(run(setup, options, stopper).interrupted);
+  options.stop = nullptr;
+  options.resume = true;
+  const RunRecord resumed = run_of(setup, options);
+  EXPECT_EQ(resumed.state_hash, whole.state_hash);
+  EXPECT_EQ(resumed.energy.radiated, whole.energy.radiated);
+}
+
+// The ground sways by a centimetre and more against the outcrop, and nothing has happened to it.
+TEST(SeismicBoundary, CountsDamageAgainstTheGroundFarAway) {
+  RunSetup setup = ground();
+  setup.motions = {wavelet({1.0, 0.0}, 10.0)};
+  setup.gravity = {};
+  setup.stages = {stage("shake", StageKind::shake), stage("after", StageKind::rest, 1.0)};
+  double sway = 0.0;
+  RunOptions options;
+  options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
+    const dynamics::Block& top = runner.model().blocks.back();
+    sway =
+        std::max(sway, std::abs(runner.state().position[top.first] / std::sqrt(top.area) - top.centroid.x));
+  };
+  const RunRecord record = run_of(setup, options);
+  EXPECT_GT(sway, 0.013);
+  for (const StageRecord& s : record.stages) {
+    EXPECT_EQ(s.damage.loosened_area, 0.0) << s.stage.name;
+    EXPECT_LT(s.damage.displacement_max, 1e-3) << s.stage.name;
+  }
+}
+
+// Waves carry away what the shaking brings, and the books balance.
+TEST(SeismicBoundary, AccountsForWhatItTakes) {
+  for (const Sides sides : {Sides::free_field, Sides::viscous, Sides::roller}) {
+    const RunRecord record = run_of(ground(sides));
+    EXPECT_LT(record.energy.residual_ratio, 1e-4);
+    EXPECT_GT(record.energy.radiated, 0.0);
+    EXPECT_FALSE(record.interrupted);
+  }
+}
+
+// Long after the shaking all is where it was: on an elastic half-space nothing stays displaced.
+TEST(SeismicBoundary, ComesBackToRest) {
+  RunSetup setup = ground();
+  setup.stages[2].duration = 2.0;
+  RunOptions options;
+  double fastest = 0.0;
+  options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
+    fastest = 0.0;
+    for (const double v : runner.state().velocity) fastest = std::max(fastest, std::abs(v));
+  };
+  setup.stages.pop_back();
+  run_of(setup, options);
+  EXPECT_LT(fastest, 1e-5);
+}
+
+// Blocks of the frame's kind are not boundary, nor are edges within the model; a column reaches up to the ground of its side.
+TEST(SeismicBoundary, StandsOnTheSidesOfTheModel) {
+  RunSetup setup = ground();
+  setup.system.blocks.erase(setup.system.blocks.begin() + 19);  // at the upper right
+  setup.properties.erase(setup.properties.begin() + 19);
+  dynamics::Model model = build_model(setup);
+  const auto* boundary = dynamic_cast<const dynamics::SeismicBoundary*>(model.couplings.back().get());
+  ASSERT_NE(boundary, nullptr);
+  double base = 0.0, sides = 0.0;
+  for (const dynamics::BoundaryPoint& p : boundary->boundary_points()) {
+    (p.normal.y != 0.0 ? base : sides) += p.length;
+    EXPECT_TRUE(p.absorbs);
+    EXPECT_EQ(p.far, p.normal.x > 0.0 ? 1 : p.normal.x < 0.0 ? 0 : -1);
+  }
+  EXPECT_DOUBLE_EQ(base, 20.0);
+  EXPECT_DOUBLE_EQ(sides, 20.0 + 16.0);
+  ASSERT_EQ(boundary->far_rock().size(), 2u);
+  EXPECT_EQ(boundary->far_rock()[0].column.heights().back(), 20.0);
+  EXPECT_EQ(boundary->far_rock()[1].column.heights().back(), 16.0);
+}
+
+// The top of a deep model is under the weight above, which the stress of the rock holds: nothing moves.
+TEST(SeismicBoundary, HoldsTheStressThatWasThere) {
+  RunSetup setup = ground();
+  InSituStress stress;
+  stress.syy = -1e6;
+  stress.sxx = -0.5e6;
+  stress.sxy = 0.1e6;
+  setup.gravity = {};
+  setup.in_situ = stress;
+  setup.boundary->overburden = true;
+  setup.boundary->depth = 40.0;
+  Scene scene(rock_young, 40.0, rock_density);
+  scene.setup = setup;
+  Simulator s(scene);
+  s.run(0.5, setup.time_step);
+  for (const double v : s.state.velocity) EXPECT_NEAR(v, 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace keyblock::simulation
