@@ -70,7 +70,7 @@ StepReport Stepper::relax(State& state, const StaticStep& static_step) {
 }
 
 /// Contacts are those that the next static step would begin with.
-void Stepper::measure_balance(State& state) {
+const StepProblem& Stepper::measure_balance(State& state) {
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;
@@ -81,6 +81,7 @@ void Stepper::measure_balance(State& state) {
   find(state, drive);
   build(state, drive, false);
   balance_.measure(model_, problem_);
+  return problem_;
 }
 
 }  // namespace keyblock::dynamics

@@ -11,6 +11,8 @@ export interface Series {
   /** Drawn as steps or points where a line between rows would say too much. */
   style?: "line" | "steps";
   width?: number;
+  /** Rows are few, and each is marked. */
+  dots?: boolean;
 }
 
 export interface PlotOptions {
@@ -184,7 +186,7 @@ export class Plot {
             label: s.name,
             stroke: colorOf(s),
             width: s.width ?? 1.2,
-            points: { show: false },
+            points: s.dots ? { show: true, size: 5, fill: colorOf(s) } : { show: false },
             pxAlign: 0,
             spanGaps: false,
             value: (_: uPlot, v: number | null) => significant(v, 4),
