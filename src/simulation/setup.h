@@ -51,7 +51,7 @@ struct SupportPressure {
 struct Excavation {
   std::string name;
   Ring outline;  ///< counter-clockwise, local coordinates
-  SupportPressure pressure;
+  SupportPressure pressure = {};
 };
 
 struct History {

@@ -46,7 +46,7 @@ void StagedOpening::keep_forces(const Stage& stage, dynamics::State& state,
   std::vector<std::uint8_t> seen(model_.blocks.size(), 0);
   for (const auto& [e, target] : stage.release) {
     if (!contains(stage.excavate, e)) continue;
-    if (problem == nullptr) problem = &stepper.measure_balance(state);
+    if (problem == nullptr) problem = &stepper.find_forces(state);
     std::vector<std::uint8_t> sources(model_.blocks.size(), 0);
     for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
       sources[b] = seen[b] == 0 && contains(setup_.system.blocks[b].excavations, e);
