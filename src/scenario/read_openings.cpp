@@ -45,24 +45,29 @@ class ReleaseReader {
       return of.second == 1.0 && !in_parts && contains(stage_.excavate, static_cast<std::size_t>(of.first));
     });
     std::ranges::sort(stage_.release);
-    if (in_parts && stage_.release.empty() && t_.context().mistakes.empty())
+    if (in_parts && stage_.release.empty() && !has_mistake_)
       t_.fail("release_steps", "parts of nothing", "an excavation that the stage opens or releases further");
   }
 
  private:
+  template <typename... Texts>
+  void fail_at(const Value& value, const std::string& path, Texts... texts) {
+    has_mistake_ = true;
+    t_.fail_at(value, path, texts...);
+  }
   void set(int excavation, double share) { before_.at(static_cast<std::size_t>(excavation)) = share; }
 
   bool is_share(const Value& value, const std::string& path, const char* else_what) {
     if (value.is_number() && value.number >= 0.0 && value.number <= 1.0) return true;
-    t_.fail_at(value, path, describe(value),
-               fmt::format("a number from 0 to 1{}{}", *else_what ? ", " : "", else_what));
+    fail_at(value, path, describe(value),
+            fmt::format("a number from 0 to 1{}{}", *else_what ? ", " : "", else_what));
     return false;
   }
 
   void add(std::size_t e, double share, const Value* value, const std::string& path) {
     if (share < before_[e]) {
-      t_.fail_at(*value, path, fmt::format("{} for the excavation '{}'", share, names_[e]),
-                 fmt::format("at least {}, which an earlier stage has released", before_[e]));
+      fail_at(*value, path, fmt::format("{} for the excavation '{}'", share, names_[e]),
+              fmt::format("at least {}, which an earlier stage has released", before_[e]));
       return;
     }
     stage_.release.emplace_back(static_cast<int>(e), share);
@@ -76,7 +81,7 @@ class ReleaseReader {
       add(e, share, value, t_.path() + ".release");
     }
     if (!any && value != nullptr)
-      t_.fail("release", fmt::format("{} of nothing", share),
+      fail_at(*value, t_.path() + ".release", fmt::format("{} of nothing", share),
               "a stage that excavates, or one after an excavation that is released in part");
   }
 
@@ -85,15 +90,15 @@ class ReleaseReader {
       const std::string path = join_path(t_.path() + ".release", item.key);
       const auto found = std::ranges::find(names_, item.key);
       if (found == names_.end()) {
-        t_.fail_at(item, path, fmt::format("\"{}\"", item.key),
-                   fmt::format("the name of a [[excavation]]: {}", list_words(names_)),
-                   suggestion(item.key, names_));
+        fail_at(item, path, fmt::format("\"{}\"", item.key),
+                fmt::format("the name of a [[excavation]]: {}", list_words(names_)),
+                suggestion(item.key, names_));
         continue;
       }
       const auto e = static_cast<std::size_t>(found - names_.begin());
       if (before_[e] == not_open) {
-        t_.fail_at(item, path, fmt::format("\"{}\", which is not open", item.key),
-                   "an excavation that this stage or an earlier one takes out");
+        fail_at(item, path, fmt::format("\"{}\", which is not open", item.key),
+                "an excavation that this stage or an earlier one takes out");
       } else if (is_share(item, path, "")) {
         add(e, item.number, &item, path);
       }
@@ -104,6 +109,7 @@ class ReleaseReader {
   Stage& stage_;
   std::vector<double> before_;  ///< per excavation, released before the stage
   std::vector<std::string> names_;
+  bool has_mistake_ = false;
 };
 
 constexpr std::string_view pressure_type = "number, rows [[time, value], …], or table of numbers by stage";

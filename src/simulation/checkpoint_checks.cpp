@@ -117,10 +117,12 @@ bool are_points(std::span<const ReleasePoint> points, const RunSetup& setup) {
   });
 }
 
-bool is_opening(const StagedOpening::Memory& memory, const State& s, const RunSetup& setup,
-                const Model& model) {
+bool is_opening(const RunState& state, const RunSetup& setup, const Model& model) {
+  const StagedOpening::Memory& memory = state.opening;
+  const State& s = state.mechanics;
   if (memory.part < 0 || !are_points(memory.points, setup)) return false;
-  if (memory.before.empty()) return memory.start.empty() && memory.points.empty();
+  const bool is_within_stage = state.stage_step > 0 && !s.walls.left.empty();
+  if (memory.before.empty()) return memory.start.empty() && memory.points.empty() && !is_within_stage;
   if (s.walls.left.empty() || memory.before.size() != setup.excavations.size() ||
       memory.start.size() != memory.before.size() || !all_finite(memory.before))
     return false;
@@ -239,7 +241,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!has_numbers(state.mechanics)) return "positions or velocities that are no finite numbers";
   if (!are_contacts(state.mechanics.contacts, model.surface) || !is_pattern(state.mechanics.pattern, model))
     return "contacts that cannot be";
-  if (!are_walls(state.mechanics, setup, model) || !is_opening(state.opening, state.mechanics, setup, model))
+  if (!are_walls(state.mechanics, setup, model) || !is_opening(state, setup, model))
     return "loads on walls that cannot be";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
