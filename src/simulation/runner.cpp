@@ -256,7 +256,7 @@ StageOutlook Runner::static_step(dynamics::StepReport& report) {
     settler.begin_again();
     balances = false;
   }
-  if (balances && opening_.release_next(stage_->record.stage, now_.mechanics, *stepper_)) {
+  if (balances && opening_.go_on(stage_->record.stage, now_.mechanics, *stepper_)) {
     settler.begin_again();
     balances = false;
   }

@@ -103,10 +103,9 @@ void StagedOpening::release(const Stage& stage, dynamics::State& state) const {
   }
 }
 
-bool StagedOpening::release_next(const Stage& stage, dynamics::State& state,
-                                 const dynamics::Stepper& stepper) {
+bool StagedOpening::go_on(const Stage& stage, dynamics::State& state, const dynamics::Stepper& stepper) {
   if (!is_used(state)) return false;
-  drop_free(state, stepper);
+  if (drop_free(state, stepper)) return true;
   if (memory_.part >= parts(stage)) return false;
   record_all(state);
   ++memory_.part;
@@ -142,7 +141,7 @@ void StagedOpening::drop_moved(const DamageGauge& gauge, dynamics::State& state)
   }
 }
 
-void StagedOpening::drop_free(dynamics::State& state, const dynamics::Stepper& stepper) const {
+bool StagedOpening::drop_free(dynamics::State& state, const dynamics::Stepper& stepper) const {
   std::vector<std::uint8_t> is_pressed(model_.blocks.size(), 0);
   const std::vector<dynamics::ContactForce> forces = stepper.forces();
   for (std::size_t k = 0; k < forces.size(); ++k) {
@@ -150,10 +149,14 @@ void StagedOpening::drop_free(dynamics::State& state, const dynamics::Stepper& s
     const contact::Contact& contact = stepper.contacts()[k];
     is_pressed[at(contact.block_a)] = is_pressed[at(contact.block_b)] = 1;
   }
+  bool drops = false;
   for (const dynamics::WallForce& force : state.walls.forces) {
     const std::size_t b = at(model_.surface.block[at(force.vertex)]);
-    if (is_pressed[b] == 0) state.walls.left[b] = 1;
+    if (is_pressed[b] != 0 || state.walls.left[b] != 0) continue;
+    state.walls.left[b] = 1;
+    drops = true;
   }
+  return drops;
 }
 
 }  // namespace keyblock::simulation

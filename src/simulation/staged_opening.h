@@ -22,8 +22,9 @@ class StagedOpening {
   void keep_forces(const Stage& stage, dynamics::State& state, dynamics::Stepper& stepper) const;
   /// Afterwards: the first part is released, and pressures are those of the stage.
   void begin_stage(int stage, dynamics::State& state);
-  /// At equilibrium: releases the next part. False where none is left.
-  bool release_next(const Stage& stage, dynamics::State& state, const dynamics::Stepper& stepper);
+  /// At equilibrium: drops the loads of blocks that nothing presses or, without such, releases the next part. False where nothing is left to
+  /// do.
+  bool go_on(const Stage& stage, dynamics::State& state, const dynamics::Stepper& stepper);
   /// After a step.
   void drop_moved(const DamageGauge& gauge, dynamics::State& state) const;
   /// The curve of the stage.
@@ -45,7 +46,8 @@ class StagedOpening {
   void release(const Stage& stage, dynamics::State& state) const;
   void record(int excavation, const dynamics::State& state);
   void record_all(const dynamics::State& state);
-  void drop_free(dynamics::State& state, const dynamics::Stepper& stepper) const;
+  /// Whether there was one that felt its loads until now.
+  bool drop_free(dynamics::State& state, const dynamics::Stepper& stepper) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;

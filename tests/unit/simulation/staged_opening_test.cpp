@@ -24,6 +24,7 @@ Scene pressed_blocks() {
   }
   scene.setup.system.blocks[8].excavations = {0};
   scene.setup.excavations.push_back({"middle", {{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}});
+  scene.setup.gravity = {};
   scene.setup.in_situ = InSituStress{.sxx = -1e6, .syy = -1e6};
   scene.setup.time_step = 0.002;
   return scene;
@@ -92,15 +93,21 @@ TEST(StagedOpening, PartsSumToTheWhole) {
 
 TEST(StagedOpening, AllReleasedIsWhereOpeningAtOnceEnds) {
   Scene scene = pressed_blocks();
+  // So little that corners do not slip past each other: what they do depends on the way.
+  scene.setup.in_situ = InSituStress{.sxx = -1e5, .syy = -1e5};
   scene.setup.stages = {settles(), opens("open", 1.0, 5)};
   const RunRecord in_parts = run_of(scene.setup);
+  scene.setup.stages[1].release_steps = 1;
+  const RunRecord in_one_part = run_of(scene.setup);
   scene.setup.stages[1].release.clear();
   const RunRecord at_once = run_of(scene.setup);
   EXPECT_TRUE(at_once.stages[1].release.empty());
+  EXPECT_EQ(in_one_part.state_hash, at_once.state_hash);
   const double whole = at_once.stages[1].damage.closure_vertical;
   EXPECT_GT(whole, 1e-5);
-  EXPECT_NEAR(in_parts.stages[1].damage.closure_vertical, whole, 1e-3 * whole);
-  EXPECT_LT(in_parts.energy.residual_ratio, 1e-6);
+  EXPECT_NEAR(in_parts.stages[1].damage.closure_vertical, whole, 1e-5 * whole);
+  EXPECT_LT(in_parts.energy.residual_ratio, at_once.energy.residual_ratio);
+  EXPECT_LT(in_parts.energy.residual_ratio, 1e-5);
 }
 
 TEST(StagedOpening, GoesOnFromACheckpointInTheSameBits) {
@@ -128,12 +135,12 @@ TEST(StagedOpening, GoesOnFromACheckpointInTheSameBits) {
   }
 }
 
-/// A block of 1 m between frictionless faces, on rock that is excavated.
-Scene hanging_block() {
+/// A block between frictionless faces, so far from them, on rock that is excavated.
+Scene hanging_block(double gap) {
   Scene scene(1e10, 0.0);
   scene.rectangle({-3.0, 0.0}, 2.5, 1.0, 0.0, true);
   scene.rectangle({0.5, 0.0}, 2.5, 1.0, 0.0, true);
-  scene.rectangle({-0.5, 0.0}, 1.0, 1.0);
+  scene.rectangle({-0.5 + gap, 0.0}, 1.0 - 2.0 * gap, 1.0);
   scene.rectangle({-2.0, -1.0}, 4.0, 1.0);
   scene.rectangle({-3.0, -2.0}, 6.0, 1.0, 0.0, true);
   scene.setup.gravity = {0.0, -g};
@@ -144,17 +151,19 @@ Scene hanging_block() {
 }
 
 TEST(StagedOpening, ForcesOnABlockThatNothingElsePressesEnd) {
-  Scene scene = hanging_block();
+  Scene scene = hanging_block(0.01);
   scene.setup.stages = {settles(), opens("open", 0.0, 1), stage("rest", StageKind::rest, 0.1)};
   RunObserver nobody;
   Runner runner(scene.setup, {}, nobody);
   while (!runner.done()) runner.advance();
   EXPECT_EQ(runner.state().walls.left[2], 1);
-  EXPECT_NEAR(runner.finish().stages[2].damage.displacement_max, 0.5 * g * 0.1 * 0.1, 0.03 * 0.5 * g * 0.01);
+  const RunRecord record = runner.finish();
+  const double fall = record.stages[2].damage.displacement_max - record.stages[1].damage.displacement_max;
+  EXPECT_NEAR(fall, 0.5 * g * 0.1 * 0.1, 0.03 * 0.5 * g * 0.1 * 0.1);
 }
 
 TEST(SupportPressure, IsThatOfTheStage) {
-  Scene scene = hanging_block();
+  Scene scene = hanging_block(0.0);
   const double weight = 2600.0 * g;
   scene.setup.stages = {settles(), stage("open", StageKind::rest, 0.1), stage("less", StageKind::rest, 0.1)};
   scene.setup.stages[1].excavate = {0};
@@ -166,7 +175,7 @@ TEST(SupportPressure, IsThatOfTheStage) {
 }
 
 TEST(SupportPressure, FollowsATable) {
-  Scene scene = hanging_block();
+  Scene scene = hanging_block(0.0);
   const double weight = 2600.0 * g;
   scene.setup.stages = {settles(), stage("open", StageKind::rest, 0.2)};
   scene.setup.stages[1].excavate = {0};
