@@ -14,9 +14,9 @@ export function releasePlots(run: Run, clock: Clock): Plot[] {
   return run.header.model.excavations.flatMap((name, e) => {
     const points = all.filter((p) => p.excavation === e);
     if (points.length < 2) return [];
-    const largest = Math.max(
-      ...points.flatMap((p) => curves.map(({ key }) => Math.abs(p[key] ?? 0))),
-    );
+    const largest = Math.max(...points.flatMap((p) => curves.map(({ key }) => Math.abs(p[key] ?? 0))));
+    // Where later excavations have taken the wall away, there is none.
+    const drawn = curves.filter(({ key }) => points.some((p) => p[key] !== null));
     const inMetres = largest >= 1;
     const pointAt = (step: number) => points.filter((p) => p.step <= step).at(-1);
     return [
@@ -26,7 +26,8 @@ export function releasePlots(run: Run, clock: Clock): Plot[] {
           unit: inMetres ? "m" : "mm",
           xName: "released share",
           x: points.map((p) => p.released),
-          series: curves.map(({ name: curve, key, color }) => ({
+          xRange: [0, 1.03],
+          series: drawn.map(({ name: curve, key, color }) => ({
             name: curve,
             values: points.map((p) => (p[key] === null ? null : (inMetres ? 1 : 1e3) * p[key])),
             color,
