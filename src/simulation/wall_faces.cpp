@@ -1,5 +1,7 @@
 #include "simulation/wall_faces.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -7,6 +9,7 @@
 
 #include "contact/tolerances.h"
 #include "core/index.h"
+#include "simulation/refuse.h"
 
 namespace keyblock::simulation {
 
@@ -101,7 +104,12 @@ std::shared_ptr<const dynamics::Coupling> wall_loads(const RunSetup& setup, cons
   for (std::size_t e = 0; e < setup.excavations.size(); ++e) {
     const SupportPressure& pressure = setup.excavations[e].pressure;
     if (pressure.empty()) continue;
-    pressures.push_back({static_cast<int>(e), wall_faces(setup, model, e, pressure.arc), pressure.over_time});
+    std::vector<dynamics::WallFace> faces = wall_faces(setup, model, e, pressure.arc);
+    if (faces.empty())
+      refuse(fmt::format("excavation.{}.pressure", setup.excavations[e].name),
+             pressure.arc ? "no rock along this arc of the outline" : "no rock along the outline",
+             "faces of blocks that are neither fixed nor taken out with it");
+    pressures.push_back({static_cast<int>(e), std::move(faces), pressure.over_time});
   }
   const bool releases =
       std::ranges::any_of(setup.stages, [](const Stage& stage) { return !stage.release.empty(); });

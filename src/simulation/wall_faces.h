@@ -16,7 +16,7 @@ std::vector<dynamics::WallFace> wall_faces(const RunSetup& setup, const dynamics
                                            std::size_t excavation,
                                            const std::optional<std::pair<double, double>>& arc = {});
 
-/// The loads on walls of a run, or nothing where there are none.
+/// The loads on walls of a run, or nothing where there are none. Throws InputError where a pressure has nothing to act on.
 std::shared_ptr<const dynamics::Coupling> wall_loads(const RunSetup& setup, const dynamics::Model& model);
 
 }  // namespace keyblock::simulation

@@ -6,6 +6,7 @@
 
 #include "../fresh_folder.h"
 #include "../scene.h"
+#include "core/error.h"
 #include "simulation/runner.h"
 #include "simulation/wall_faces.h"
 
@@ -183,6 +184,14 @@ TEST(SupportPressure, FollowsATable) {
       loading::TimeTable({{0.0, weight}, {0.1, weight}, {0.1001, 0.0}});
   const RunRecord record = run_of(scene.setup);
   EXPECT_NEAR(record.stages[1].damage.displacement_max, 0.5 * g * 0.01, 0.05 * 0.5 * g * 0.01);
+}
+
+TEST(SupportPressure, NeedsRockToActOn) {
+  Scene scene = hanging_block(0.0);
+  scene.setup.excavations[0].pressure.constant = 1e3;
+  EXPECT_NO_THROW(build_model(scene.setup));
+  scene.setup.excavations[0].pressure.arc = std::pair(200.0, 340.0);  // all there is fixed
+  EXPECT_THROW(build_model(scene.setup), InputError);
 }
 
 double length_of(const std::vector<dynamics::WallFace>& faces, const dynamics::Model& model) {
