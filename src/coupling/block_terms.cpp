@@ -12,6 +12,7 @@
 #include "coupling/coupling.h"
 #include "linalg/dense_block.h"
 #include "model/turn.h"
+#include "model/vertex_field.h"
 #include "model/worth_threads.h"
 
 namespace keyblock::dynamics {
@@ -33,7 +34,7 @@ void BlockTerms::build(const Model& model, const State& state, const Drive& driv
   team_ = &team;
   if (model_ != &model) begin(model);
   build_blocks(state, drive);
-  add_loads(drive);
+  add_loads(state, drive);
   for (std::size_t k = 0; k < model.couplings.size(); ++k)
     model.couplings[k]->add_terms(model, state, drive, state.couplings[k], *this);
 }
@@ -164,7 +165,7 @@ void BlockTerms::build_blocks(const State& state, const Drive& drive) {
 }
 
 /// Loads, and what residuals are measured by.
-void BlockTerms::add_loads(const Drive& drive) {
+void BlockTerms::add_loads(const State& state, const Drive& drive) {
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
   for (std::size_t i = 0; i < model_->blocks.size(); ++i)
     weight_[i] = std::max(body_force_[i] * g, stress_[i]);
@@ -178,6 +179,9 @@ void BlockTerms::add_loads(const Drive& drive) {
       largest = std::max(largest, std::abs(load.force[k]));
     }
     weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
+  }
+  if (model_->gravity == Vec2{}) {
+    for (const auto& coupling : model_->couplings) coupling->add_weights(*model_, state, drive, weight_);
   }
   // Without gravity, blocks that only other blocks load are measured by the largest load.
   const double most = weight_.empty() ? 0.0 : *std::max_element(weight_.begin(), weight_.end());
@@ -194,6 +198,11 @@ void BlockTerms::add_spring(std::size_t b, int axis, std::span<const double> phi
     for (int k = 0; k < block.size; ++k)
       h[(2 * l + axis) * stride + 2 * k + axis] += stiffness * phi[at(k)] * phi[at(l)];
   }
+}
+
+void BlockTerms::add_force(std::size_t b, const double* phi, Vec2 force) {
+  const Block& block = model_->blocks[b];
+  add_at(phi, block.size, force, &b_[block.first]);
 }
 
 void BlockTerms::multiply(std::size_t i, std::span<const double> x, std::span<double> y) const {

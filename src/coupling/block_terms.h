@@ -28,6 +28,9 @@ class BlockTerms {
   /// at D = 0, N per thickness. phi: the N basis functions at the point.
   void add_spring(std::size_t block, int axis, std::span<const double> phi, double stiffness, double force);
 
+  /// Adds a force at a point of a block, N per thickness. phi: the N basis functions at the point.
+  void add_force(std::size_t block, const double* phi, Vec2 force);
+
   /// y = H x, of one block.
   void multiply(std::size_t block, std::span<const double> x, std::span<double> y) const;
   /// Calls of_rows(first, count, rows) with the rows of H x of one block of N basis functions, as many at once as there are lanes: in
@@ -90,7 +93,7 @@ class BlockTerms {
   void finish_block(Size size, std::size_t i, const double* geometric);
   void finish_blocks(PressedBlocks& pressed);
   void build_blocks(const State& state, const Drive& drive);
-  void add_loads(const Drive& drive);
+  void add_loads(const State& state, const Drive& drive);
   template <typename Size>
   [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
                                        double spin, double* turn) const;

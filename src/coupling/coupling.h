@@ -89,6 +89,9 @@ class Coupling {
   /// Adds its terms to those of the blocks.
   virtual void add_terms(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
                          std::span<const double> /*memory*/, BlockTerms& /*terms*/) const {}
+  /// Raises what residuals of blocks are measured by, N over √A, to forces of its own: in a model without gravity.
+  virtual void add_weights(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
+                           std::span<double> /*weight*/) const {}
   /// Number of its rows in the step at hand.
   [[nodiscard]] virtual std::size_t rows() const { return 0; }
   /// Of a row, among its own rows; the first number is not negative.

@@ -86,12 +86,16 @@ void ForceBalance::find_rounding(const Model& model, const StepProblem& problem)
   }
 }
 
-void ForceBalance::measure(const Model& model, StepProblem& problem) {
+void ForceBalance::take_bounds(StepProblem& problem) {
   SpringArray& springs = problem.springs();
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
     springs.bound[c] = springs.strength(c, springs.force(c).normal);
   }
+}
+
+void ForceBalance::measure(const Model& model, const StepProblem& problem) {
+  const SpringArray& springs = problem.springs();
   zero_.assign(model.coefficients, 0.0);
   gradient_.resize(model.coefficients);
   problem.gradient(

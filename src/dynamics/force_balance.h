@@ -44,8 +44,10 @@ class ForceBalance {
 
   /// Before the position changes: what the inertia of the step leaves. problem: of the step; d: its increment.
   void predict(const Model& model, const StepProblem& problem, std::span<const double> d);
-  /// problem: of a static step from the position, at D = 0. Sets the bounds of its springs to those of the forces there.
-  void measure(const Model& model, StepProblem& problem);
+  /// Sets the bounds of the springs of a problem to those of the normal forces at D = 0.
+  static void take_bounds(StepProblem& problem);
+  /// problem: of a static step from the position, at D = 0, with these bounds.
+  void measure(const Model& model, const StepProblem& problem);
 
  private:
   void find_scales(const Model& model, const StepProblem& problem);

@@ -124,6 +124,8 @@ class Stepper {
   StepReport advance(State& state, double dt, const GroundAcceleration* ground);
   /// One static step: velocities are zero before and after. A trial may not be taken (StepReport::taken). Afterwards balance() is known.
   StepReport relax(State& state, const StaticStep& static_step);
+  /// Finds the contacts of the state. The problem has the forces there, at D = 0, shear forces within the Coulomb bounds of the normal ones.
+  const StepProblem& find_forces(State& state);
   /// m, per block: how far its vertices went in the last static step, or would go in one that was not taken.
   [[nodiscard]] std::span<const double> travel() const { return travel_; }
   /// Forces that nothing balances, at the position that the last static step reached.
@@ -147,7 +149,6 @@ class Stepper {
   void accept(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
-  void measure_balance(State& state);
 
   Model& model_;
   ThreadTeam& team_;

@@ -65,12 +65,13 @@ StepReport Stepper::relax(State& state, const StaticStep& static_step) {
   balance_.predict(model_, problem_, increment_);
   accept(state, drive, report);
   ++state.step;
-  measure_balance(state);
+  find_forces(state);
+  balance_.measure(model_, problem_);
   return report;
 }
 
 /// Contacts are those that the next static step would begin with.
-void Stepper::measure_balance(State& state) {
+const StepProblem& Stepper::find_forces(State& state) {
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;
@@ -80,7 +81,8 @@ void Stepper::measure_balance(State& state) {
   predict(state, drive);
   find(state, drive);
   build(state, drive, false);
-  balance_.measure(model_, problem_);
+  ForceBalance::take_bounds(problem_);
+  return problem_;
 }
 
 }  // namespace keyblock::dynamics

@@ -17,6 +17,21 @@ struct EnergyLedger {
   double radiated = 0.0;   ///< carried away by waves through the boundary
 };
 
+/// What rock that is excavated did to a vertex of the wall that it leaves.
+struct WallForce {
+  Vec2 force;          ///< N per thickness
+  int vertex = 0;      ///< of the surface
+  int excavation = 0;  ///< that the rock was in
+};
+
+/// What acts on the walls of openings (WallLoads); all empty where nothing can.
+struct WallState {
+  std::vector<WallForce> forces;
+  std::vector<double> released;    ///< per excavation: share of its forces that acts no more
+  std::vector<double> pressure;    ///< Pa, per excavation: support pressure of the stage
+  std::vector<std::uint8_t> left;  ///< per block: it has left the wall, and nothing acts on it any more
+};
+
 /// Everything that changes from step to step, and all that a restart needs.
 struct State {
   double time = 0.0;  ///< s; static steps count none
@@ -34,6 +49,7 @@ struct State {
   std::vector<std::pair<int, int>> pattern;  ///< pairs of blocks that the matrix has room for
   EnergyLedger ledger;
   std::vector<std::vector<double>> couplings;  ///< what each of Model::couplings remembers
+  WallState walls;
   /// J per thickness, stored in the springs of contacts and of other couplings, as the last step summed it.
   double contact_energy = 0.0, support_energy = 0.0;
 };

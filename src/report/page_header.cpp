@@ -31,6 +31,7 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"worst_residual_ratio", record.worst_residual_ratio},
           {"way_m", record.way},
           {"moving", results::movements_json(record)},
+          {"release", results::release_json(record.release, {})},
           {"damage", results::damage_json(record.damage)},
           {"fallen", results::fallen_json(record.fallen)},
           {"standing", results::standing_json(record.standing)},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -89,6 +90,28 @@ std::string step_table(const RunData& data) {
   return text;
 }
 
+/// Empty where no excavation was opened in parts.
+std::string release_table(const RunData& data) {
+  std::string rows;
+  auto out = std::back_inserter(rows);
+  for (std::size_t k = 0; k < data.run.stages.size(); ++k) {
+    for (const simulation::ReleasePoint& p : data.run.stages[k].release) {
+      const auto e = static_cast<std::size_t>(p.excavation);
+      const std::string name = e < data.model.excavation_names.size() ? data.model.excavation_names[e] : "";
+      fmt::format_to(out, "{},{},{},{}", k, p.step, csv_field(name), p.released);
+      for (const double moved : {p.crown, p.springline, p.mean}) {
+        if (std::isnan(moved)) {
+          rows += ',';
+        } else {
+          fmt::format_to(out, ",{}", moved);
+        }
+      }
+      rows += '\n';
+    }
+  }
+  return rows.empty() ? rows : "stage,step,excavation,released,crown,springline,mean\n" + rows;
+}
+
 ordered_json closed_ring(const Ring& ring) {
   ordered_json out = ordered_json::array();
   for (std::size_t k = 0; k <= ring.size(); ++k)
@@ -153,6 +176,8 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
                                            out.write("steps.csv", step_table(data))};
   if (!data.model.history_names.empty())
     files.push_back(out.write("histories.csv", histories_csv(data.model.history_names, data.histories)));
+  if (const std::string releases = release_table(data); !releases.empty())
+    files.push_back(out.write("release.csv", releases));
   return files;
 }
 

@@ -115,11 +115,36 @@ std::vector<simulation::MovingBlock> read_moving(const ordered_json& json) {
   return moving;
 }
 
+ordered_json release_json(const std::vector<simulation::ReleasePoint>& points,
+                          const std::vector<std::string>& excavations) {
+  ordered_json list = ordered_json::array();
+  for (const simulation::ReleasePoint& p : points) {
+    const auto e = static_cast<std::size_t>(p.excavation);
+    const ordered_json excavation =
+        e < excavations.size() ? ordered_json(excavations[e]) : ordered_json(p.excavation);
+    list.push_back({{"excavation", excavation},
+                    {"step", p.step},
+                    {"released", p.released},
+                    {"crown_m", p.crown},
+                    {"springline_m", p.springline},
+                    {"mean_m", p.mean}});
+  }
+  return list;
+}
+
 ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics) {
   return {{"mean_iterations", statistics.mean_iterations},
           {"max_iterations", statistics.max_iterations},
           {"retried_steps", statistics.retried_steps},
           {"unconverged_steps", statistics.unconverged_steps}};
+}
+
+std::vector<simulation::ReleasePoint> read_release(const ordered_json& json) {
+  std::vector<simulation::ReleasePoint> points;
+  for (const auto& p : json)
+    points.push_back({p.at("step").get<long>(), number(p.at("released")), number(p.at("crown_m")),
+                      number(p.at("springline_m")), number(p.at("mean_m")), p.at("excavation").get<int>()});
+  return points;
 }
 
 simulation::OpenCloseStatistics read_open_close(const ordered_json& json) {

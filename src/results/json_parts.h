@@ -19,6 +19,9 @@ nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
 /// With what each block does (simulation/verdict.h).
 nlohmann::ordered_json movements_json(const simulation::StageRecord& stage);
+/// With the names of excavations; where none are given, with their numbers.
+nlohmann::ordered_json release_json(const std::vector<simulation::ReleasePoint>& points,
+                                    const std::vector<std::string>& excavations);
 nlohmann::ordered_json open_close_json(const simulation::OpenCloseStatistics& statistics);
 /// Names and values of ModelRecord::ground.
 nlohmann::ordered_json ground_json(const std::vector<std::pair<std::string, std::string>>& ground);
@@ -31,6 +34,8 @@ std::vector<simulation::FallenBlock> read_fallen(const nlohmann::ordered_json& j
 std::optional<simulation::Standing> read_standing(const nlohmann::ordered_json& json);
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
 std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
+/// Of excavations by number.
+std::vector<simulation::ReleasePoint> read_release(const nlohmann::ordered_json& json);
 simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);
 /// Into an overlap, except for its depth; the origin of its coordinates stays in them.
 void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapRecord& overlap);

@@ -155,6 +155,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"way_share", r.way_share},
                           {"moving", moving_json(r.moving)},
                           {"blocks_by_order", r.blocks_by_order},
+                          {"release", release_json(r.release, {})},
                           {"damage", damage_json(r.damage)},
                           {"fallen", fallen_json(r.fallen)},
                           {"standing", standing_json(r.standing)},
@@ -196,6 +197,7 @@ StageLine read_stage_json(const std::string& text) {
     if (json.contains("way_share")) r.way_share = number(json.at("way_share"));
     r.moving = read_moving(json.at("moving"));
     json.at("blocks_by_order").get_to(r.blocks_by_order);
+    if (json.contains("release")) r.release = read_release(json.at("release"));
     r.damage = read_damage(json.at("damage"));
     if (json.contains("fallen")) {  // not in files of version 0.1
       r.fallen = read_fallen(json.at("fallen"));

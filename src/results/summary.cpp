@@ -70,7 +70,7 @@ ordered_json blocks_by_order(const simulation::StageRecord& r) {
   return json;
 }
 
-ordered_json stage(const simulation::StageRecord& r) {
+ordered_json stage(const simulation::StageRecord& r, const simulation::ModelRecord& model) {
   return {{"name", r.stage.name},
           {"kind", stage_kind_name(r.stage.kind)},
           {"steps", r.steps},
@@ -87,6 +87,7 @@ ordered_json stage(const simulation::StageRecord& r) {
           {"standing", standing_json(r.standing)},
           {"largest_speed_m_s", r.largest_speed},
           {"blocks_by_order", blocks_by_order(r)},
+          {"release", release_json(r.release, model.excavation_names)},
           {"damage", damage_json(r.damage)},
           {"fallen", fallen_json(r.fallen)}};
 }
@@ -119,7 +120,7 @@ Areas areas(const simulation::ModelRecord& model, const simulation::RunRecord& r
 
 std::string summary_json(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
   ordered_json stages = ordered_json::array();
-  for (const auto& record : run.stages) stages.push_back(stage(record));
+  for (const auto& record : run.stages) stages.push_back(stage(record, model));
   const auto [blocks, vertices] = count(model);
   const Areas area = areas(model, run);
   const ordered_json json{

@@ -12,6 +12,7 @@
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "scenario/polygon_checks.h"
+#include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
 #include "scenario/stage_steps.h"
 #include "simulation/feasibility.h"
@@ -219,7 +220,8 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   for (std::size_t k = 0; k < scenario.excavations.size(); ++k) {
     Ring outline = blocks.outlines[k];
     for (Vec2& p : outline) p -= origin;
-    setup.excavations.push_back({scenario.excavations[k].name, std::move(outline)});
+    const ExcavationSpec& spec = scenario.excavations[k];
+    setup.excavations.push_back({spec.name, std::move(outline), pressure_of(scenario, spec)});
   }
 
   setup.boundary = boundary_of(scenario, setup.joints, origin.y);

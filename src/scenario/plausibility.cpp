@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "rockmass/distribution.h"
@@ -42,6 +43,7 @@ class Plausibility {
     check_in_situ();
     check_plane_state();
     check_stages();
+    check_release();
     check_velocities();
     check_base();
     return std::move(warnings_);
@@ -232,6 +234,26 @@ class Plausibility {
                                     [&](const Stage& stage) { return stage.motion == index; });
       if (!used) warn("{}: no stage uses it", motion.path);
     }
+  }
+
+  // What is not released still holds the wall, as if rock were there that is not.
+  void check_release() {
+    std::map<int, double> released;
+    bool is_told = false;
+    const auto check = [&](const std::string& path, const char* when) {
+      for (const auto& [e, share] : released) {
+        if (share == 1.0 || is_told) continue;
+        warn("{}: {}, {} of the forces of the rock of '{}' are not released and still hold its wall", path,
+             when, 1.0 - share, scenario_.excavations[static_cast<std::size_t>(e)].name);
+        is_told = true;
+      }
+    };
+    for (const Stage& stage : scenario_.stages) {
+      for (const auto& [e, share] : stage.release) released[e] = share;
+      if (stage.kind != StageKind::settle) check(join_path("stage", stage.name), "in a dynamic stage");
+    }
+    if (!scenario_.stages.empty())
+      check(join_path("stage", scenario_.stages.back().name), "at the end of the run");
   }
 
   [[nodiscard]] bool has_opening() const {

@@ -63,6 +63,7 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.references("excavate", stage.excavate, "excavation",
                {.meaning = "Excavations taken out at the start of the stage."});
   check_excavated_once(t, stage, scenario);
+  read_release(t, stage, settle, scenario);
   std::string motion;
   if (t.reference("motion", motion, "motion",
                   only(shake, "kind = \"shake\"",

@@ -25,6 +25,7 @@ class Consistency {
     check_motion_places();
     check_weights();
     check_excavations();
+    check_pressures(root_, scenario_);
   }
 
  private:
@@ -105,6 +106,10 @@ class Consistency {
   [[nodiscard]] bool has_weights() const {
     const auto& in_situ = scenario_.in_situ;
     if (in_situ && (in_situ->sxx != 0.0 || in_situ->syy != 0.0 || in_situ->sxy != 0.0)) return true;
+    const auto is_held = [](const ExcavationSpec& spec) {
+      return !spec.pressure.empty() || !spec.pressure_by_stage.empty();
+    };
+    if (std::any_of(scenario_.excavations.begin(), scenario_.excavations.end(), is_held)) return true;
     return scenario_.gravity != Vec2{} ||
            std::any_of(scenario_.loads.begin(), scenario_.loads.end(), [&](const loading::Load& load) {
              const auto is_none = [&](double s) { return load.traction(s) == Vec2{}; };

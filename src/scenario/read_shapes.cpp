@@ -75,6 +75,7 @@ void read_excavation(TableReader& t, ExcavationSpec& spec) {
              .at_most = most_chords,
              .applies = round,
              .condition = "shape = \"circle\" or \"horseshoe\""});
+  read_pressure(t, spec);
 }
 
 loading::TimeTable read_prescribed(TableReader& t, std::string_view key) {

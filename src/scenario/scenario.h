@@ -84,6 +84,8 @@ struct ExcavationSpec {
   double wall_height = 0.0;  ///< horseshoe: of the vertical walls
   std::optional<double>
       arch_height;  ///< horseshoe: rise of the circular arch over the walls; default width / 2
+  simulation::SupportPressure pressure;                           ///< but what it is by stage
+  std::vector<std::pair<std::string, double>> pressure_by_stage;  ///< Pa, from a stage on
   std::string path;
 };
 

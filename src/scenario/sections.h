@@ -27,6 +27,15 @@ void read_run(TableReader& root, Scenario& scenario);
 /// [study], after all that its keys name.
 void read_study(TableReader& root, Scenario& scenario);
 
+/// `release` and `release_steps` of a stage whose `excavate` is known. settles: they are of its kind.
+void read_release(TableReader& t, simulation::Stage& stage, bool settles, const Scenario& scenario);
+/// `pressure` and `arc` of an excavation.
+void read_pressure(TableReader& t, ExcavationSpec& spec);
+/// After all stages: whether pressures are of these.
+void check_pressures(TableReader& root, const Scenario& scenario);
+/// Of an excavation, by index of the stages.
+simulation::SupportPressure pressure_of(const Scenario& scenario, const ExcavationSpec& spec);
+
 /// Keys of [rock]; with `required`, those without a default must be there.
 void read_rock_keys(TableReader& t, RockKeys& rock, bool required);
 /// `outer` and, with `holes`, `holes`: turned the right way round and checked.

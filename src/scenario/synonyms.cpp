@@ -75,6 +75,8 @@ constexpr Synonym all_synonyms[] = {
     {"tol accuracy", "tolerance"},
     {"maxcycles ncycles steps nsteps", "max_steps"},
     {"remove excavated excavation excavations", "excavate"},
+    {"relax relaxation loadsplit corereplacement", "release", true},
+    {"internalpressure supportpressure", "pressure", true},
     {"dt timestep tstep deltat stepsize", "step", true},
     // The rest
     {"pressure", "traction"},

@@ -16,6 +16,7 @@
 #include "simulation/outline.h"
 #include "simulation/refuse.h"
 #include "simulation/spring_blocks.h"
+#include "simulation/wall_faces.h"
 
 namespace keyblock::simulation {
 
@@ -172,6 +173,7 @@ void add_couplings(const RunSetup& setup, Model& model) {
   add_supports(setup, model);
   add_springs(setup, model);
   if (setup.boundary) model.couplings.push_back(build_boundary(setup, model));
+  if (auto walls = wall_loads(setup, model)) model.couplings.push_back(std::move(walls));
 }
 
 void add_prescribed_motions(const RunSetup& setup, Model& model) {

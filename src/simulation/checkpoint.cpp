@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'000f;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0010;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -53,6 +53,7 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.way);
   archive(s.way_share);
   archive(s.moving);
+  archive(s.release);
   archive(s.blocks_by_order);
   archive(s.damage);
   archive(s.fallen);
@@ -81,12 +82,20 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.mechanics.contacts.memory);
   archive(s.mechanics.pattern);
   archive(s.mechanics.couplings);
+  archive(s.mechanics.walls.forces);
+  archive(s.mechanics.walls.released);
+  archive(s.mechanics.walls.pressure);
+  archive(s.mechanics.walls.left);
   archive(s.mechanics.ledger);
   archive(s.mechanics.contact_energy);
   archive(s.mechanics.support_energy);
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
+  archive(s.opening.part);
+  archive(s.opening.before);
+  archive(s.opening.start);
+  archive(s.opening.points);
   archive(s.damage.reference.open);
   archive(s.damage.reference.start);
   archive(s.damage.reference.turn);

@@ -8,6 +8,7 @@
 #include "simulation/record.h"
 #include "simulation/settle.h"
 #include "simulation/setup.h"
+#include "simulation/staged_opening.h"
 #include "simulation/stillness.h"
 
 namespace keyblock::simulation {
@@ -18,6 +19,7 @@ struct RunState {
   std::vector<std::uint8_t> present;  ///< per block
   DamageGauge::Memory damage;
   OrderControl::Memory orders;
+  StagedOpening::Memory opening;
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   Stillness::Memory still;  ///< of the stage at hand, if it ends when all is still
   int stage = 0;

@@ -10,6 +10,7 @@
 
 #include "core/index.h"
 #include "coupling/coupling.h"
+#include "simulation/wall_faces.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -96,6 +97,42 @@ bool are_couplings(const State& s, const Model& model) {
                     });
 }
 
+bool are_walls(const State& s, const RunSetup& setup, const Model& model) {
+  const dynamics::WallState& walls = s.walls;
+  const std::size_t excavations = setup.excavations.size(), vertices = at(model.surface.vertices());
+  if (walls.left.empty()) return walls.forces.empty() && !wall_loads(setup, model);
+  return walls.left.size() == model.blocks.size() && are_flags(walls.left) &&
+         walls.released.size() == excavations && walls.pressure.size() == excavations &&
+         all_finite(walls.released) && all_finite(walls.pressure) &&
+         std::all_of(walls.forces.begin(), walls.forces.end(), [&](const dynamics::WallForce& force) {
+           return is_place(force.vertex, vertices) && is_place(force.excavation, excavations) &&
+                  std::isfinite(force.force.x) && std::isfinite(force.force.y);
+         });
+}
+
+bool are_points(std::span<const ReleasePoint> points, const RunSetup& setup) {
+  return std::all_of(points.begin(), points.end(), [&](const ReleasePoint& p) {
+    return is_place(p.excavation, setup.excavations.size()) && std::isfinite(p.released) &&
+           are_counts({p.step});
+  });
+}
+
+bool is_opening(const RunState& state, const RunSetup& setup, const Model& model) {
+  const StagedOpening::Memory& memory = state.opening;
+  const State& s = state.mechanics;
+  if (memory.part < 0 || !are_points(memory.points, setup)) return false;
+  const bool is_within_stage = state.stage_step > 0 && !s.walls.left.empty();
+  if (memory.before.empty()) return memory.start.empty() && memory.points.empty() && !is_within_stage;
+  if (s.walls.left.empty() || memory.before.size() != setup.excavations.size() ||
+      memory.start.size() != memory.before.size() || !all_finite(memory.before))
+    return false;
+  for (std::size_t e = 0; e < memory.start.size(); ++e) {
+    const std::size_t ends = memory.start[e].size();
+    if (ends != 0 && ends != 2 * wall_faces(setup, model, e).size()) return false;
+  }
+  return true;
+}
+
 bool has_sizes(const State& s, const Model& model) {
   const std::size_t blocks = model.blocks.size();
   const bool keeps_accelerations = model.solver.integrator != dynamics::TimeIntegration::shi;
@@ -148,7 +185,7 @@ bool is_settler(const Settler::Memory& s, std::size_t blocks) {
          std::all_of(s.inertia_scale.begin(), s.inertia_scale.end(), [](double x) { return x >= 1.0; });
 }
 
-bool is_record(const StageRecord& record, const Stage& stage, std::size_t blocks) {
+bool is_record(const StageRecord& record, const Stage& stage, const RunSetup& setup, std::size_t blocks) {
   const auto is_block = [&](const auto& entry) { return is_place(entry.block, blocks); };
   const Stage& s = record.stage;
   return s.name == stage.name && s.kind == stage.kind && s.excavate == stage.excavate &&
@@ -156,7 +193,7 @@ bool is_record(const StageRecord& record, const Stage& stage, std::size_t blocks
          std::all_of(record.moving.begin(), record.moving.end(), is_block) &&
          std::all_of(record.fallen.begin(), record.fallen.end(),
                      [&](const FallenBlock& f) { return is_block(f) && f.part <= WallPart::invert; }) &&
-         (!record.standing || *record.standing <= Standing::unsettled) &&
+         (!record.standing || *record.standing <= Standing::unsettled) && are_points(record.release, setup) &&
          record.motion_time.size() == record.motion.size();
 }
 
@@ -204,12 +241,15 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!has_numbers(state.mechanics)) return "positions or velocities that are no finite numbers";
   if (!are_contacts(state.mechanics.contacts, model.surface) || !is_pattern(state.mechanics.pattern, model))
     return "contacts that cannot be";
+  if (!are_walls(state.mechanics, setup, model) || !is_opening(state, setup, model))
+    return "loads on walls that cannot be";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";
   if (!is_still(state.still, model)) return "places of other vertices";
   for (std::size_t k = 0; k < state.record.stages.size(); ++k)
-    if (!is_record(state.record.stages[k], setup.stages[k], blocks)) return "stages that are not of this run";
+    if (!is_record(state.record.stages[k], setup.stages[k], setup, blocks))
+      return "stages that are not of this run";
   const OverlapRecord& overlap = state.record.max_overlap;
   const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
   return is_known(overlap.block_a) && is_known(overlap.block_b) ? "" : "an overlap of unknown blocks";

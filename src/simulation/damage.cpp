@@ -126,6 +126,11 @@ Vec2 DamageGauge::displacement(std::size_t block, const dynamics::State& state) 
   return centroid_now(model_.blocks[block], state) - reference_.start[block] - base;
 }
 
+bool DamageGauge::is_beyond_fall(std::size_t block, const dynamics::State& state) const {
+  const double fall = fall_distance(model_.blocks[block]);
+  return fall > 0.0 && norm(displacement(block, state)) > fall;
+}
+
 std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const {
   std::vector<BlockStatus> status(model_.blocks.size(), BlockStatus::in_place);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {

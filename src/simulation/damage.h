@@ -47,6 +47,8 @@ class DamageGauge {
   void describe(const dynamics::State& state, StageRecord& record);
   [[nodiscard]] const JointGauge& joints() const { return joints_; }
   [[nodiscard]] std::optional<double> opening_width() const;
+  /// Whether a block has moved by more than the distance of a fall, wherever to.
+  [[nodiscard]] bool is_beyond_fall(std::size_t block, const dynamics::State& state) const;
 
   struct Reference {
     std::vector<std::uint8_t> open;  ///< per excavation

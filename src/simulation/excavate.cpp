@@ -7,8 +7,9 @@
 namespace keyblock::simulation {
 
 void excavate(const RunSetup& setup, const Stage& stage, dynamics::Model& model, dynamics::State& state,
-              dynamics::Stepper& stepper, DamageGauge& gauge) {
+              dynamics::Stepper& stepper, DamageGauge& gauge, const StagedOpening& opening) {
   if (stage.excavate.empty()) return;
+  opening.keep_forces(stage, state, stepper);
   const double before = stored_energy(model, state);
   gauge.open(stage.excavate, state);
   const auto is_opened = [&](int excavation) {

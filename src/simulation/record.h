@@ -179,6 +179,16 @@ enum class Standing : std::uint8_t {
   unsettled = 3,  ///< static steps ended before it was known
 };
 
+/// How far the wall of an opening has come into it, at a share of release.
+struct ReleasePoint {
+  long step = 0;          ///< of the run
+  double released = 0.0;  ///< 0 … 1
+  /// m, inwards since it was opened: at the top, in the mean of the two sides, in the mean along the wall. NaN where rock of later
+  /// excavations was.
+  double crown = 0.0, springline = 0.0, mean = 0.0;
+  int excavation = 0;
+};
+
 struct StageRecord {
   Stage stage;
   long steps = 0;
@@ -193,7 +203,8 @@ struct StageRecord {
   /// settle only: the largest way of a block that is not moving, while it was out of balance; m, and as a share of the block size
   double way = 0.0, way_share = 0.0;
   std::vector<MovingBlock> moving;
-  std::vector<int> blocks_by_order;  ///< [n]: blocks of order n that are there at the end and not fixed
+  std::vector<ReleasePoint> release;  ///< of excavations that were opened in parts, in the order of steps
+  std::vector<int> blocks_by_order;   ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;
   std::vector<FallenBlock> fallen;   ///< at its end, ascending
   double largest_speed = 0.0;        ///< m/s, of a centroid against the base, at its end

@@ -60,6 +60,7 @@ Runner::Runner(const RunSetup& setup, RunOptions options, RunObserver& observer)
       reporter_(setup, model_, gauge_, observer, profile_, team_.size()),
       progress_(setup, options_.progress_interval, observer),
       orders_(setup),
+      opening_(setup, model_),
       stepper_(std::in_place, model_, team_, profile_, options_.stop) {
   options_.resume ? resume() : begin();
   observer_.begin(reporter_.recorder().model());
@@ -68,6 +69,7 @@ Runner::Runner(const RunSetup& setup, RunOptions options, RunObserver& observer)
 
 void Runner::begin() {
   now_.mechanics = initial_state(setup_, model_);
+  opening_.start(now_.mechanics);
   stepper_->start(now_.mechanics);
   now_.present = model_.surface.present;
   // All potentials count from the start, as gravity does.
@@ -87,6 +89,7 @@ void Runner::resume() {
   model_.surface.present = now_.present;
   orders_changed();
   gauge_.restore(std::move(now_.damage));
+  opening_.memory() = now_.opening;
   wall_before_ = now_.wall_time;
 }
 
@@ -183,7 +186,10 @@ void Runner::begin_stage() {
   record.start_time = now_.stage_start;
   record.steps = now_.stage_step;
   plan_motion(setup_, record);
-  if (is_new) excavate(setup_, record.stage, model_, now_.mechanics, *stepper_, gauge_);
+  if (is_new) {
+    excavate(setup_, record.stage, model_, now_.mechanics, *stepper_, gauge_, opening_);
+    opening_.begin_stage(now_.stage, now_.mechanics);
+  }
   now_.present = model_.surface.present;
   observer_.stage_begin(now_.stage, record);
   if (is_new) reporter_.frame(now_);
@@ -250,6 +256,10 @@ StageOutlook Runner::static_step(dynamics::StepReport& report) {
     settler.begin_again();
     balances = false;
   }
+  if (balances && opening_.go_on(stage_->record.stage, now_.mechanics, *stepper_)) {
+    settler.begin_again();
+    balances = false;
+  }
   stage_->is_in_equilibrium = balances;
   return {balances ? 0 : stage_->most_steps - now_.stage_step - 1, settler.progress(), settler.worst_ratio()};
 }
@@ -267,6 +277,7 @@ void Runner::after_step(const dynamics::StepReport& report, const StageOutlook& 
   const Profile::Scope scope(profile_, Phase::output);
   const bool ends_stage = outlook.steps_left == 0;
   count(now_, report);
+  opening_.drop_moved(gauge_, now_.mechanics);
   check_converging(setup_, now_);
   check_state(setup_, now_);
   reporter_.after_step(now_, *stepper_, report, ends_stage);
@@ -299,6 +310,7 @@ void Runner::end_stage() {
   reporter_.frame(now_);
   if (!is_within_step_) reporter_.contacts(now_, *stepper_);
   gauge_.describe(now_.mechanics, record);
+  record.release = opening_.end_stage(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);
   observer_.stage_end(now_.stage, record);
   // An interrupted stage is in the record of this run alone; the checkpoint, written before, has it as unfinished.
@@ -328,6 +340,7 @@ void Runner::checkpoint() {
   if (stage_ && stage_->stillness) now_.still = stage_->stillness->memory();
   now_.damage = gauge_.memory();
   now_.orders = orders_.memory();
+  now_.opening = opening_.memory();
   now_.wall_time = elapsed;
   now_.reported.stages = now_.stage;
   now_.reported.within_stage = within_stage;

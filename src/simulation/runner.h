@@ -15,6 +15,7 @@
 #include "simulation/setup.h"
 #include "simulation/stage_at_hand.h"
 #include "simulation/stage_outlook.h"
+#include "simulation/staged_opening.h"
 
 namespace keyblock::simulation {
 
@@ -90,6 +91,7 @@ class Runner {
   Reporter reporter_;
   ProgressMeter progress_;
   OrderControl orders_;
+  StagedOpening opening_;
   std::optional<dynamics::Stepper> stepper_;
   RunState now_;
   std::optional<StageAtHand> stage_;

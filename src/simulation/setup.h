@@ -37,9 +37,22 @@ struct JointTable {
   JointProperties frame;  ///< between the rock and the frame; frictionless unless given
 };
 
+/// A pressure that holds the wall of an opening.
+struct SupportPressure {
+  double constant = 0.0;         ///< Pa, in every stage
+  loading::TimeTable over_time;  ///< Pa; empty: none
+  /// Pa, from a stage on, by index, ascending; nothing before the first. Empty: constant, or over time.
+  std::vector<std::pair<int, double>> over_stages;
+  std::optional<std::pair<double, double>>
+      arc;  ///< degrees about the centroid of the outline, from +x; none: all of the wall
+
+  [[nodiscard]] bool empty() const { return constant == 0.0 && over_time.empty() && over_stages.empty(); }
+};
+
 struct Excavation {
   std::string name;
   Ring outline;  ///< counter-clockwise, local coordinates
+  SupportPressure pressure = {};
 };
 
 struct History {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace keyblock::simulation {
@@ -18,8 +19,11 @@ struct Stage {
   std::string name;
   StageKind kind = StageKind::settle;
   std::vector<int> excavate;  ///< excavations opened at the start, by index
-  int motion = -1;            ///< shake: index of the ground motion
-  double scale = 1.0;         ///< shake: factor on the accelerations
+  /// settle: excavations opened in parts, with the share of the forces of their rock that acts no more at the end of the stage.
+  std::vector<std::pair<int, double>> release;
+  int release_steps = 10;  ///< parts in which it is released
+  int motion = -1;         ///< shake: index of the ground motion
+  double scale = 1.0;      ///< shake: factor on the accelerations
   std::optional<double>
       duration;              ///< s; shake: default the motion's; the longest, where it ends when all is still
   bool until_still = false;  ///< shake, rest: it ends once nothing moves any more (Stillness)

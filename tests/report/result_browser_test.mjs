@@ -47,6 +47,24 @@ const tests = {
     await close(other);
   },
 
+  async "an opening in parts has its ground reaction curve"() {
+    const page = await open("marginal");
+    const release = page.locator("#release");
+    assert.equal(await release.count(), 1);
+    const words = await text(page, "#release");
+    assert.match(words, /^Ground reaction/);
+    assert.match(words, /Closure\s*mm\s*crown\s*springline\s*mean of the wall/);
+    assert.equal(await release.locator(".plot").count(), 1);
+    await release.scrollIntoViewIfNeeded();
+    await release.locator("canvas").waitFor();
+    assert.equal(await sidewaysOverflow(page), 0);
+    await shoot(page, "release-1400");
+    await close(page);
+    const other = await open("tunnel");
+    assert.equal(await other.locator("#release").count(), 0);
+    await close(other);
+  },
+
   async "a marginal case says so and lists its moving blocks"() {
     const page = await open("marginal");
     assert.match(

@@ -58,6 +58,11 @@ int main(int argc, char** argv) {
     marginal.run.stages[k].damage.fallen_blocks += 2;
     marginal.run.stages[k].damage.fallen_area += 0.75;
   }
+  // Opened in parts, and two equilibria of later stages.
+  for (const double released : {0.0, 0.25, 0.5, 0.75, 1.0})
+    marginal.run.stages[1].release.push_back({900 + std::lround(1000.0 * released), released, 8e-3 * released,
+                                              3e-3 * released, 5e-3 * released, 0});
+  marginal.run.stages[2].release = {{5000, 1.0, 9e-3, 4e-3, 6e-3, 0}};
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "marginal");
   keyblock::report::write_report(marginal, std::filesystem::path(argv[1]) / "marginal");
   write("interrupted", {.interrupted = true});

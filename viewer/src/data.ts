@@ -64,6 +64,15 @@ export interface Stage {
     depth_m: number | null;
     wall: "crown" | "left" | "right" | "invert" | null;
   }[];
+  /** Of excavations opened in parts, by number: how far the wall has come inwards, at each equilibrium. */
+  release: {
+    excavation: number;
+    step: number;
+    released: number;
+    crown_m: number | null;
+    springline_m: number | null;
+    mean_m: number | null;
+  }[];
   /** Of a run without excavations; null: with them, or not known. */
   standing: "stands" | "moves" | "collapsed" | "unsettled" | null;
   /** Of a block at its end. */

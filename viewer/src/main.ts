@@ -10,6 +10,7 @@ import { count, integer } from "./format";
 import { Pictures } from "./pictures";
 import type { Plot } from "./plots";
 import { whenPrinting } from "./printing";
+import { releasePlots } from "./release_plots";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { resultSection } from "./result";
 import { Run } from "./run";
@@ -91,6 +92,20 @@ function build(run: Run, main: HTMLElement): void {
   if (run.stages.length > 0) parts.push(section("stages", "Stages", stageTable(run)));
   const damage = damageTables(run);
   if (damage.length > 0) parts.push(section("damage", "Damage by stage", ...damage));
+  const release = track(releasePlots(run, clock));
+  if (release.length > 0)
+    parts.push(
+      section(
+        "release",
+        "Ground reaction",
+        h(
+          "p",
+          { class: "hint" },
+          "How far the wall has come into the opening since it was opened, over the share of the forces of the excavated rock that acts no more. Each dot is an equilibrium.",
+        ),
+        h("div", { class: "plots" }, ...release),
+      ),
+    );
   if (pictures) parts.push(section("states", "The blocks before and after each stage", pictures.element));
   const motion = track(motionPlots(run, clock));
   if (animation) {

@@ -11,6 +11,8 @@ export interface Series {
   /** Drawn as steps or points where a line between rows would say too much. */
   style?: "line" | "steps";
   width?: number;
+  /** Rows are few, and each is marked. */
+  dots?: boolean;
 }
 
 export interface PlotOptions {
@@ -24,6 +26,8 @@ export interface PlotOptions {
   /** Takes two columns of the grid of plots. */
   wide?: boolean;
   range?: [number, number];
+  /** Of the abscissa, where all of it is shown: wider than the rows, as of several at its end only the first would be drawn. */
+  xRange?: [number, number];
   /** A second axis at the right: values of the left one divided by `divisor`. */
   right?: { divisor: number };
   /** Leaves the room of a right axis free, so that plots above each other are as wide. */
@@ -154,13 +158,22 @@ export class Plot {
     // Nothing but zeros would be drawn on an axis to 100.
     const isZero = options.series.every((s) => Array.from(s.values).every((v) => !v));
     const range = options.range ?? (isZero && !options.logarithmic ? [0, 1] : undefined);
+    const { xRange } = options;
     const plot = new uPlot(
       {
         width,
         height: options.height ?? 190,
         padding: [8, options.right ? 0 : options.rightSpace ? rightAxis : 12, 0, 0],
         scales: {
-          x: { time: false },
+          x: {
+            time: false,
+            ...(xRange
+              ? {
+                  range: (_: uPlot, min: number, max: number): uPlot.Range.MinMax =>
+                    min <= options.x[0] && max >= options.x[options.x.length - 1] ? xRange : [min, max],
+                }
+              : {}),
+          },
           y: {
             distr: options.logarithmic ? 3 : 1,
             ...(range ? { range: () => range } : {}),
@@ -184,7 +197,7 @@ export class Plot {
             label: s.name,
             stroke: colorOf(s),
             width: s.width ?? 1.2,
-            points: { show: false },
+            points: s.dots ? { show: true, size: 5, fill: colorOf(s) } : { show: false },
             pxAlign: 0,
             spanGaps: false,
             value: (_: uPlot, v: number | null) => significant(v, 4),

@@ -98,8 +98,9 @@ TEST(Export, Csv) {
   const auto folder = fresh / "made";
   const RunData data = small_motions();
   const auto files = export_run(data, folder, ExportFormat::csv);
-  EXPECT_THAT(files, testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv",
-                                          folder / "steps.csv", folder / "histories.csv"));
+  EXPECT_THAT(files,
+              testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv", folder / "steps.csv",
+                                   folder / "histories.csv", folder / "release.csv"));
   const auto blocks = lines(folder / "blocks.csv");
   EXPECT_EQ(blocks[0], "frame,time,stage,step,block,name,status,x,y,ux,uy,sxx,syy,sxy");
   EXPECT_EQ(blocks.size(), 1U + 2 * 3 + 4 * 2);  // without the excavated block in the last four of six frames
@@ -111,6 +112,9 @@ TEST(Export, Csv) {
   EXPECT_THAT(contacts[1], testing::EndsWith("joint set,J1"));
   EXPECT_EQ(lines(folder / "steps.csv").size(), 31U);
   EXPECT_EQ(lines(folder / "histories.csv").size(), 31U);
+  EXPECT_THAT(lines(folder / "release.csv"),
+              testing::ElementsAre("stage,step,excavation,released,crown,springline,mean",
+                                   "0,3,tunnel,0,0,0,0", "0,9,tunnel,0.4,0.002,,0.001"));
 }
 
 TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {

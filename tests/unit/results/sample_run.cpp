@@ -164,6 +164,14 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
     EXPECT_TRUE(same(a.moving[k].carried, b.moving[k].carried));
     EXPECT_EQ(a.moving[k].group, b.moving[k].group);
   }
+  ASSERT_EQ(a.release.size(), b.release.size());
+  for (std::size_t k = 0; k < a.release.size(); ++k) {
+    const simulation::ReleasePoint &p = a.release[k], &q = b.release[k];
+    EXPECT_EQ(p.step, q.step);
+    EXPECT_EQ(p.excavation, q.excavation);
+    EXPECT_TRUE(same(p.released, q.released) && same(p.crown, q.crown));
+    EXPECT_TRUE(same(p.springline, q.springline) && same(p.mean, q.mean));
+  }
   EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
   for (const auto& [name, member] : simulation::damage_fields)
     EXPECT_TRUE(same(a.damage.*member, b.damage.*member)) << name;
@@ -312,6 +320,7 @@ simulation::StageRecord SampleRun::stage(int index) {
   record.equilibrium_reached = index == 0;
   record.worst_residual_ratio = index == 0 ? 0.1 / 3.0 : std::nan("");
   if (index == 0) record.moving = {{2, 0.7, 1}};
+  if (index == 0) record.release = {{3, 0.0, 0.0, 0.0, 0.0, 0}, {9, 0.4, 2e-3, std::nan(""), 1e-3, 0}};
   if (index == 0) record.way = 0.25, record.way_share = 0.1 / 3.0;
   record.damage.fallen_blocks = index;
   record.damage.hinges = 7 * index;

@@ -84,6 +84,12 @@ TEST(Summary, NumbersComeBackToTheLastBit) {
   EXPECT_EQ(summary["stages"][0]["damage"]["closure_horizontal_m"].get<double>(), 1e-17);
   EXPECT_EQ(summary["ms_per_step"].get<double>(), 1e3 * run.wall_time / 30.0);
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving_blocks"], 1);
+  const auto& release = summary["stages"][0]["release"][1];
+  EXPECT_EQ(release["excavation"], sample.model.excavation_names[0]);
+  EXPECT_EQ(release["released"], 0.4);
+  EXPECT_EQ(release["crown_m"], 2e-3);
+  EXPECT_TRUE(release["springline_m"].is_null());
+  EXPECT_EQ(release["step"], 9);
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["block"], 2);
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["carried"], 0.7);
   EXPECT_EQ(summary["stages"][0]["equilibrium"]["moving"][0]["movement"], "partly held");

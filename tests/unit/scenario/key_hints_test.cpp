@@ -47,6 +47,8 @@ TEST(KeyHints, OfWordsOfOtherPrograms) {
                 {"earthquake=1", "did you mean 'motion'?"},
                 {"excavation.tunnel.height=1", "did you mean 'wall_height'?"},
                 {"excavation.tunnel.radius=1", "did you mean 'diameter'?"},
+                {"excavation.tunnel.internal_pressure=1", "did you mean 'pressure'?"},
+                {"stage.settled.relax=0.5", "did you mean 'release'?"},
                 {"stage.settled.kind=static", "did you mean 'settle'?"},
                 {"stage.settled.kind=earthquake", "did you mean 'shake'?"},
                 {"excavation.tunnel.shape=arch", "did you mean 'horseshoe'?"}});

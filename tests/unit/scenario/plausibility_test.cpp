@@ -354,5 +354,37 @@ TEST(Warnings, OfRealizationsThatAreAllTheSame) {
   EXPECT_THAT(study_warnings(parse(two_blocks)), IsEmpty());
 }
 
+TEST(Warnings, OfForcesThatAreNotReleased) {
+  const std::string opened = jointed_domain + R"(
+[in_situ]
+depth = 50.0
+k0 = 1.0
+
+[[excavation]]
+name = "tunnel"
+shape = "circle"
+center = [2.0, 1.5]
+diameter = 1.0
+
+[time]
+step = 0.002
+
+[[stage]]
+name = "open"
+kind = "settle"
+excavate = ["tunnel"]
+release = 0.4
+)";
+  const auto told =
+      HasSubstr("0.6 of the forces of the rock of 'tunnel' are not released and still hold its wall");
+  EXPECT_THAT(warnings_of(opened),
+              UnorderedElementsAre(testing::AllOf(HasSubstr("stage.open: at the end of the run"), told)));
+  const std::string rest = "[[stage]]\nname = \"rest\"\nkind = \"rest\"\nduration = 1.0\n";
+  EXPECT_THAT(warnings_of(opened + rest),
+              UnorderedElementsAre(testing::AllOf(HasSubstr("stage.rest: in a dynamic stage"), told)));
+  EXPECT_THAT(warnings_of(opened + "[[stage]]\nname = \"all\"\nkind = \"settle\"\nrelease = 1.0\n" + rest),
+              IsEmpty());
+}
+
 }  // namespace
 }  // namespace keyblock::scenario

@@ -115,6 +115,18 @@ TEST_F(MutatedCheckpoint, WithinAStageThatSettles) {
   mutate(setup, checkpoint_of(setup, 2100), 300);
 }
 
+TEST_F(MutatedCheckpoint, OfAnExcavationOpenedInParts) {
+  RunSetup setup = mutated_scene();
+  setup.system.blocks[2].excavations = {0};
+  setup.excavations[0].outline = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.5}, {0.0, 0.5}};
+  setup.excavations[0].pressure.constant = 1e3;
+  setup.stages = {stage("in situ", StageKind::settle), stage("open", StageKind::settle),
+                  stage("after", StageKind::rest, 1.0)};
+  setup.stages[1].excavate = {0};
+  setup.stages[1].release = {{0, 0.5}};
+  mutate(setup, checkpoint_of(setup, 200), 300);
+}
+
 // More than the file could hold, so that no memory is asked for.
 TEST_F(MutatedCheckpoint, CountsBeyondTheFileAreRefused) {
   RunSetup setup = mutated_scene();

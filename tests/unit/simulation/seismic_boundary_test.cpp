@@ -50,17 +50,17 @@ RunSetup ground(Sides sides = Sides::free_field) {
   return setup;
 }
 
-RunRecord run_of(const RunSetup& setup, RunOptions options = {}) {
+RunRecord ground_run(const RunSetup& setup, RunOptions options = {}) {
   RunObserver nobody;
   return run(setup, std::move(options), nobody);
 }
 
 TEST(SeismicBoundary, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
   const RunSetup setup = ground();
-  const RunRecord whole = run_of(setup);
+  const RunRecord whole = ground_run(setup);
   RunOptions two;
   two.threads = 2;
-  EXPECT_EQ(run_of(setup, two).state_hash, whole.state_hash);
+  EXPECT_EQ(ground_run(setup, two).state_hash, whole.state_hash);
   const FreshFolder folder;
   Stopper stopper(whole.stages[0].steps + 250);
   RunOptions options;
@@ -69,7 +69,7 @@ TEST(SeismicBoundary, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
   EXPECT_TRUE(run(setup, options, stopper).interrupted);
   options.stop = nullptr;
   options.resume = true;
-  const RunRecord resumed = run_of(setup, options);
+  const RunRecord resumed = ground_run(setup, options);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   EXPECT_EQ(resumed.energy.radiated, whole.energy.radiated);
 }
@@ -87,7 +87,7 @@ TEST(SeismicBoundary, CountsDamageAgainstTheGroundFarAway) {
     sway =
         std::max(sway, std::abs(runner.state().position[top.first] / std::sqrt(top.area) - top.centroid.x));
   };
-  const RunRecord record = run_of(setup, options);
+  const RunRecord record = ground_run(setup, options);
   EXPECT_GT(sway, 0.013);
   for (const StageRecord& s : record.stages) {
     EXPECT_EQ(s.damage.loosened_area, 0.0) << s.stage.name;
@@ -98,7 +98,7 @@ TEST(SeismicBoundary, CountsDamageAgainstTheGroundFarAway) {
 // Waves carry away what the shaking brings, and the books balance.
 TEST(SeismicBoundary, AccountsForWhatItTakes) {
   for (const Sides sides : {Sides::free_field, Sides::viscous, Sides::roller}) {
-    const RunRecord record = run_of(ground(sides));
+    const RunRecord record = ground_run(ground(sides));
     EXPECT_LT(record.energy.residual_ratio, 1e-4);
     EXPECT_GT(record.energy.radiated, 0.0);
     EXPECT_FALSE(record.interrupted);
@@ -116,7 +116,7 @@ TEST(SeismicBoundary, ComesBackToRest) {
     for (const double v : runner.state().velocity) fastest = std::max(fastest, std::abs(v));
   };
   setup.stages.pop_back();
-  run_of(setup, options);
+  ground_run(setup, options);
   EXPECT_LT(fastest, 1e-5);
 }
 

@@ -1,0 +1,81 @@
+#include "coupling/wall_loads.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "coupling/attempt.h"
+#include "coupling/block_terms.h"
+#include "model/vertex_field.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+const double* phi_at(const contact::Surface& surface, std::size_t vertex) {
+  return &surface.phi[surface.phi_begin[vertex]];
+}
+
+/// Share that the start of its edge has of a pressure on a face. Of a whole piece of a divided edge it is that of Gauss and Lobatto's rule.
+double start_share(const contact::Surface& surface, const WallFace& face) {
+  const bool is_whole = face.from == 0.0 && face.to == 1.0;
+  if (is_whole && !surface.start_share.empty()) return surface.start_share[at(face.vertex)];
+  return 1.0 - 0.5 * (face.from + face.to);
+}
+
+}  // namespace
+
+template <typename OfForce>
+void WallLoads::for_forces(const Model& model, const State& state, double time,
+                           const OfForce& of_force) const {
+  const contact::Surface& surface = model.surface;
+  const WallState& walls = state.walls;
+  const auto feels = [&](std::size_t b) { return model.moves(b) && walls.left[b] == 0; };
+  for (const WallForce& wall : walls.forces) {
+    const std::size_t v = at(wall.vertex), b = at(surface.block[v]);
+    const double kept = 1.0 - walls.released[at(wall.excavation)];
+    if (kept > 0.0 && feels(b)) of_force(b, v, kept * wall.force);
+  }
+  for (const WallPressure& wall : pressures_) {
+    const double pressure =
+        walls.pressure[at(wall.excavation)] * (wall.factor.empty() ? 1.0 : wall.factor(time));
+    if (pressure == 0.0) continue;
+    for (const WallFace& face : wall.faces) {
+      const std::size_t v = at(face.vertex), next = at(surface.next[v]), b = at(surface.block[v]);
+      if (!feels(b)) continue;
+      const Vec2 along = (face.to - face.from) * (surface.position[next] - surface.position[v]);
+      const Vec2 force = pressure * perpendicular(along);  // the block is on the left of its edge
+      const double share = start_share(surface, face);
+      of_force(b, v, share * force);
+      of_force(b, next, (1.0 - share) * force);
+    }
+  }
+}
+
+void WallLoads::add_terms(const Model& model, const State& state, const Drive& drive,
+                          std::span<const double> /*memory*/, BlockTerms& terms) const {
+  for_forces(model, state, drive.end_time, [&](std::size_t b, std::size_t v, Vec2 force) {
+    terms.add_force(b, phi_at(model.surface, v), force);
+  });
+}
+
+void WallLoads::add_weights(const Model& model, const State& state, const Drive& drive,
+                            std::span<double> weight) const {
+  for_forces(model, state, drive.end_time, [&](std::size_t b, std::size_t /*v*/, Vec2 force) {
+    weight[b] = std::max(weight[b], norm(force) / std::sqrt(model.blocks[b].area));
+  });
+}
+
+CouplingTotals WallLoads::account(const Attempt& attempt, std::span<const double> /*spin*/,
+                                  std::size_t /*first*/, std::span<double> /*memory*/, State& state) const {
+  const Model& model = attempt.model;
+  double work = 0.0;
+  for_forces(model, state, attempt.drive.end_time, [&](std::size_t b, std::size_t v, Vec2 force) {
+    const Block& block = model.blocks[b];
+    work += dot(force, field_at(phi_at(model.surface, v), block.size, &attempt.increment[block.first]));
+  });
+  state.ledger.input += work;
+  return {};
+}
+
+}  // namespace keyblock::dynamics

@@ -1,0 +1,120 @@
+#include "simulation/wall_faces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "contact/tolerances.h"
+#include "core/index.h"
+#include "simulation/refuse.h"
+
+namespace keyblock::simulation {
+
+namespace {
+
+/// Shares of an edge.
+using Stretch = std::pair<double, double>;
+
+/// Of an edge from a to b with rock on its left, where it lies on the outline, the rock being outside.
+std::vector<Stretch> on_outline(Vec2 a, Vec2 b, const Ring& outline, const contact::Tolerances& tolerances) {
+  const double length = norm(b - a);
+  const Vec2 along = (b - a) / length;
+  std::vector<Stretch> stretches;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 begin = outline[(k + 1) % outline.size()] - a, end = outline[k] - a;
+    const double from = dot(along, begin), to = dot(along, end), step = to - from;
+    const double first = std::max(from, 0.0), last = std::min(to, length);
+    if (last - first <= tolerances.end_zone && last - first < 0.5 * length) continue;
+    const auto is_on = [&](double x) {
+      return std::abs(std::lerp(cross(along, begin), cross(along, end), (x - from) / step)) <=
+             tolerances.activation;
+    };
+    if (is_on(first) && is_on(last)) stretches.emplace_back(first / length, last / length);
+  }
+  std::ranges::sort(stretches);
+  std::vector<Stretch> apart;
+  constexpr double nearly =
+      1e-6;  // a stretch that begins or ends so near an end of the edge begins or ends there
+  for (auto [from, to] : stretches) {
+    if (from < nearly) from = 0.0;
+    if (to > 1.0 - nearly) to = 1.0;
+    if (!apart.empty() && from <= apart.back().second + nearly) {
+      apart.back().second = std::max(apart.back().second, to);
+    } else {
+      apart.emplace_back(from, to);
+    }
+  }
+  return apart;
+}
+
+/// The parts of a stretch of an edge from a to b within an arc about a point.
+std::vector<Stretch> within(const Stretch& stretch, Vec2 a, Vec2 b, Vec2 centre, double from, double to) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  std::vector<double> ends{stretch.first, stretch.second};
+  for (const double angle : {from, to}) {
+    const Vec2 ray{std::cos(angle * degree), std::sin(angle * degree)};
+    const double of_a = cross(ray, a - centre), of_b = cross(ray, b - centre);
+    if ((of_a > 0.0) == (of_b > 0.0)) continue;
+    const double share = of_a / (of_a - of_b);
+    if (share > stretch.first && share < stretch.second) ends.push_back(share);
+  }
+  std::ranges::sort(ends);
+  std::vector<Stretch> parts;
+  for (std::size_t k = 1; k < ends.size(); ++k) {
+    const Vec2 middle = lerp(a, b, 0.5 * (ends[k - 1] + ends[k])) - centre;
+    const double angle = std::atan2(middle.y, middle.x) / degree;
+    const double turned = angle - from - 360.0 * std::floor((angle - from) / 360.0);
+    if (turned <= to - from) parts.emplace_back(ends[k - 1], ends[k]);
+  }
+  return parts;
+}
+
+bool holds(const std::vector<int>& excavations, std::size_t excavation) {
+  return std::ranges::find(excavations, static_cast<int>(excavation)) != excavations.end();
+}
+
+}  // namespace
+
+std::vector<dynamics::WallFace> wall_faces(const RunSetup& setup, const dynamics::Model& model,
+                                           std::size_t excavation,
+                                           const std::optional<std::pair<double, double>>& arc) {
+  const contact::Tolerances tolerances(model.block_size);
+  const Ring& outline = setup.excavations[excavation].outline;
+  const Vec2 centre = centroid({outline, {}});
+  std::vector<dynamics::WallFace> faces;
+  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
+    if (model.blocks[b].fixed || holds(setup.system.blocks[b].excavations, excavation)) continue;
+    for (int v = model.surface.block_begin[b]; v < model.surface.block_begin[b + 1]; ++v) {
+      const Vec2 from = model.reference[at(v)], to = model.reference[at(model.surface.next[at(v)])];
+      for (const Stretch& stretch : on_outline(from, to, outline, tolerances)) {
+        const std::vector<Stretch> parts =
+            arc ? within(stretch, from, to, centre, arc->first, arc->second) : std::vector{stretch};
+        for (const Stretch& part : parts) faces.push_back({v, part.first, part.second});
+      }
+    }
+  }
+  return faces;
+}
+
+std::shared_ptr<const dynamics::Coupling> wall_loads(const RunSetup& setup, const dynamics::Model& model) {
+  std::vector<dynamics::WallPressure> pressures;
+  for (std::size_t e = 0; e < setup.excavations.size(); ++e) {
+    const SupportPressure& pressure = setup.excavations[e].pressure;
+    if (pressure.empty()) continue;
+    std::vector<dynamics::WallFace> faces = wall_faces(setup, model, e, pressure.arc);
+    if (faces.empty())
+      refuse(fmt::format("excavation.{}.pressure", setup.excavations[e].name),
+             pressure.arc ? "no rock along this arc of the outline" : "no rock along the outline",
+             "faces of blocks that are neither fixed nor taken out with it");
+    pressures.push_back({static_cast<int>(e), std::move(faces), pressure.over_time});
+  }
+  const bool releases =
+      std::ranges::any_of(setup.stages, [](const Stage& stage) { return !stage.release.empty(); });
+  if (pressures.empty() && !releases) return nullptr;
+  return std::make_shared<dynamics::WallLoads>(std::move(pressures));
+}
+
+}  // namespace keyblock::simulation
