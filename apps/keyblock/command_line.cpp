@@ -47,6 +47,7 @@ void describe(CLI::App& app, int& exit_code) {
       "  keyblock run tunnel.toml -o out/strong --set \"stage.'first earthquake'.scale=2\"\n"
       "  keyblock motion record.smc --plot\n"
       "  keyblock study run tunnel.toml -o out/study --workers 8\n"
+      "  keyblock limit tunnel.toml --key joints.friction --from 45 --to 5 -o out/limit\n"
       "  keyblock verify\n\n"
       "Each command has its own --help.\n"
       "Exit codes: 0 done, 1 the input is wrong or a check does not hold, 2 the run failed or was "
@@ -60,6 +61,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_motion(app);
   add_verify(app, exit_code);
   add_study(app);
+  add_limit(app);
   refuse_empty_values(app);
 }
 

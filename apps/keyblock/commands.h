@@ -17,6 +17,8 @@ void add_motion(CLI::App& app);
 /// A row that does not hold sets `exit_code`, which must outlive the parsing.
 void add_verify(CLI::App& app, int& exit_code);
 
+void add_limit(CLI::App& app);
+
 /// study run, study task, study collect, study submit.
 void add_study(CLI::App& app);
 

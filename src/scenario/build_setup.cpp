@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
@@ -68,6 +69,15 @@ std::vector<BlockProperties> properties_of(const Scenario& scenario, const cutti
   return all;
 }
 
+// A factor of 1 keeps every bit.
+void reduce_strength(JointProperties& joint, double factor) {
+  if (factor == 1.0) return;
+  const double degree = std::numbers::pi / 180.0;
+  joint.friction = std::atan(std::tan(joint.friction * degree) / factor) / degree;
+  joint.cohesion /= factor;
+  joint.tension /= factor;
+}
+
 JointProperties joint_properties(const JointKeys& own, const JointKeys& standard) {
   const auto pick = [](const std::optional<double>& first, const std::optional<double>& second) {
     return first ? first : second;
@@ -91,6 +101,9 @@ simulation::JointTable joint_table(const Scenario& scenario) {
   for (const TraceMapSpec& spec : scenario.trace_maps) {
     table.trace_maps.push_back(joint_properties(spec.joints, scenario.joints));
   }
+  reduce_strength(table.standard, scenario.strength_factor);
+  for (JointProperties& set : table.joint_sets) reduce_strength(set, scenario.strength_factor);
+  for (JointProperties& map : table.trace_maps) reduce_strength(map, scenario.strength_factor);
   table.frame = table.standard;
   table.frame.friction = scenario.domain ? scenario.domain->frame_friction : 0.0;
   table.frame.cohesion = table.frame.tension = 0.0;
@@ -122,6 +135,9 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
   for (loading::Load& load : setup.loads) {
     load.from -= origin;
     load.to -= origin;
+    load.value = scenario.load_factor * load.value;
+    load.value_end = scenario.load_factor * load.value_end;
+    if (load.value_middle) load.value_middle = scenario.load_factor * *load.value_middle;
   }
   setup.supports = scenario.supports;
   for (loading::Support& support : setup.supports) {

@@ -100,6 +100,8 @@ class Facts {
     add("joints: friction φ", number(joints.friction.value_or(0.0)) + "°");
     add("joints: cohesion c", pressure(joints.cohesion.value_or(0.0)));
     if (joints.tension.value_or(0.0) > 0.0) add("joints: tensile strength", pressure(*joints.tension));
+    if (scenario_.strength_factor != 1.0)
+      add("joints: strength divided by", number(scenario_.strength_factor));
     const double normal = joints.normal_stiffness.value_or(scenario_.solver.penalty * *scenario_.rock.young);
     const double shear = joints.shear_stiffness.value_or(JointProperties{}.stiffness_ratio * normal);
     const char* standard = joints.normal_stiffness ? "" : " (default)";

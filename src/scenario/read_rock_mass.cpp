@@ -340,6 +340,12 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
        .required = has_contacts},
       [&](TableReader& t) {
         read_joint_keys(t, scenario.joints, joint_defaults);
+        t.number(
+            "strength_factor", scenario.strength_factor,
+            {.meaning = "tan(friction), cohesion and tension of all joints, of sets and trace maps too, are "
+                        "divided by it: the value at which rock just falls is a factor of safety. The "
+                        "frame keeps its friction.",
+             .above = 0.0});
         check_stiffness(t, scenario.joints, {});
       });
   root.tables(

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "rockmass/trace_generator.h"
 #include "scenario/excavated_blocks.h"
@@ -181,6 +183,23 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
   }
 }
 
+void read_gravity(TableReader& root, Scenario& scenario) {
+  root.point("gravity", scenario.gravity, {.meaning = "Acceleration of gravity.", .unit = "m/s²"});
+  double tilt = 0.0;
+  root.number(
+      "tilt", tilt,
+      {.meaning = "The whole model tilted, as on a tilting table: its right side goes up by this angle, and "
+                  "gravity pulls to the left as well. Gravity alone is turned.",
+       .unit = "°",
+       .at_least = -180.0,
+       .at_most = 180.0});
+  if (tilt == 0.0) return;
+  const double angle = tilt * std::numbers::pi / 180.0;
+  const Vec2 g = scenario.gravity;
+  scenario.gravity = {std::cos(angle) * g.x + std::sin(angle) * g.y,
+                      std::cos(angle) * g.y - std::sin(angle) * g.x};
+}
+
 }  // namespace
 
 void read_scenario(TableReader& root, Scenario& scenario) {
@@ -192,7 +211,7 @@ void read_scenario(TableReader& root, Scenario& scenario) {
   root.integer("seed", scenario.seed,
                {.meaning = "Of the random numbers: the same seed and realization give the same joints on any "
                            "machine."});
-  root.point("gravity", scenario.gravity, {.meaning = "Acceleration of gravity.", .unit = "m/s²"});
+  read_gravity(root, scenario);
   read_rock_mass(root, scenario);
   read_shapes(root, scenario);
   read_boundary(root, scenario);

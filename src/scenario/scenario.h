@@ -166,12 +166,14 @@ struct Scenario {
   bool si_units = true;  ///< values may be compared with what is usual
   AcceptedWarnings accepted;
   std::uint64_t seed = 1;
-  Vec2 gravity{0.0, -9.81};  ///< m/s²
+  Vec2 gravity{0.0, -9.81};  ///< m/s², turned by the tilt of the model
   std::optional<double> section_azimuth;
   std::optional<Domain> domain;
   std::optional<BoundarySpec> boundary;
   RockKeys rock;  ///< all set
   JointKeys joints;
+  double strength_factor = 1.0;  ///< of all joints: tan(friction), cohesion and tension are divided by it
+  double load_factor = 1.0;      ///< of all loads
   std::vector<JointSetSpec> joint_sets;
   std::vector<TraceMapSpec> trace_maps;
   CuttingKeys cutting;

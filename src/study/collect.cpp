@@ -119,6 +119,7 @@ StudyData study_data(const Plan& plan, StudyFiles files) {
 }
 
 CollectReport collect(const fs::path& directory) {
+  check_is_no_limit(directory);
   const Plan plan = read_plan(directory);
   return gather(directory, plan, read_study_files(directory, plan));
 }

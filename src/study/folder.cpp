@@ -82,6 +82,13 @@ void check_same_study(const fs::path& directory, const Plan& there, const Plan& 
   refuse(directory.string(), text, "a study that differs in nothing but [study]", "take another folder");
 }
 
+// The runs of a limit are told apart by the values of one key.
+void check_same_key(const fs::path& directory, const Plan& there, const Plan& here) {
+  const std::string key = there.axes.empty() ? "" : there.axes.front().key_text();
+  if (key == here.axes.front().key_text()) return;
+  refuse(directory.string(), "a limit of " + key, here.axes.front().key_text(), "take another folder");
+}
+
 // In a folder without a plan: of a study whose plan was lost, or of somebody else.
 void check_holds_no_other_files(const fs::path& directory, const Plan& plan) {
   const auto refuse_foreign = [&](const char* name) {
@@ -104,6 +111,10 @@ fs::path plan_path(const fs::path& directory) {
 
 fs::path scenario_path(const fs::path& directory) {
   return directory / "study.toml";
+}
+
+fs::path limit_path(const fs::path& directory) {
+  return directory / "limit.json";
 }
 
 fs::path run_folder(const fs::path& directory, const std::string& key) {
@@ -138,6 +149,7 @@ std::unique_ptr<FileLock> lock_study(const fs::path& directory) {
 }
 
 void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
+  check_is_no_limit(directory);
   if (file_exists(plan_path(directory))) {
     const Plan there = read_plan(directory);
     check_same_study(directory, there, plan);
@@ -155,6 +167,39 @@ void enter_plan(const fs::path& directory, Plan& plan, bool resume) {
   }
   make_plain_folder(directory / "runs");
   write_file_atomically(scenario_path(directory), plan.text);
+  write_plan(directory, plan);
+}
+
+void enter_limit(const fs::path& directory, Plan& plan, bool resume, const std::string& conclusion) {
+  if (file_exists(plan_path(directory))) {
+    if (!file_exists(limit_path(directory))) refuse(directory.string(), "a study", "another folder");
+    const Plan there = read_plan(directory);
+    check_same_study(directory, there, plan);
+    check_same_raster(directory, there, plan);
+    check_same_key(directory, there, plan);
+    if (!resume)
+      refuse(directory.string(), fmt::format("a limit of {} runs", there.runs.size()),
+             "a new folder, or --resume to go on with what is there");
+    plan.runs = there.runs;
+    keep_files(there.files, plan);
+  } else if (file_exists(directory / "result.h5")) {
+    refuse(directory.string(), "the results of a run", "another folder");
+  } else if (!file_exists(limit_path(directory))) {
+    check_holds_no_other_files(directory, plan);
+  }
+  make_plain_folder(directory / "runs");
+  write_file_atomically(limit_path(directory), conclusion);
+  write_file_atomically(scenario_path(directory), plan.text);
+  write_plan(directory, plan);
+}
+
+void check_is_no_limit(const fs::path& directory) {
+  if (!file_exists(limit_path(directory))) return;
+  refuse(directory.string(), "the runs of a limit", "a study, or another folder",
+         "keyblock limit --resume goes on with it");
+}
+
+void write_plan(const fs::path& directory, const Plan& plan) {
   write_file_atomically(plan_path(directory), plan_json(plan, directory));
 }
 

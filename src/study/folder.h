@@ -9,6 +9,7 @@
 /// The folder of a study:
 ///
 ///   study.toml            the scenario, copied
+///   limit.json            the folder is that of a limit (limit.h), whose runs are planned one after the other
 ///   plan.json             what is to be run
 ///   lock                  held by the process that plans or runs the study here
 ///   runs/KEY/run.json     the measures of a run; written last: where it is, the run is done
@@ -19,6 +20,7 @@ namespace keyblock::study {
 
 std::filesystem::path plan_path(const std::filesystem::path& directory);
 std::filesystem::path scenario_path(const std::filesystem::path& directory);
+std::filesystem::path limit_path(const std::filesystem::path& directory);
 std::filesystem::path run_folder(const std::filesystem::path& directory, const std::string& key);
 
 /// Makes the folder of a run where it is missing, and returns it. Throws InputError when a link or a file is in its place: what lies
@@ -37,6 +39,17 @@ std::unique_ptr<FileLock> lock_study(const std::filesystem::path& directory);
 /// are done. Runs keep their places (keep_places), and files that earlier plans named stay known with their content. Throws
 /// InputError that names what differs; the folder is then as it was.
 void enter_plan(const std::filesystem::path& directory, Plan& plan, bool resume);
+
+/// The same for a limit, whose plan has one axis of one key: the runs that are there stay in the plan, whatever was asked of that key
+/// before. `conclusion` is what limit.json says until the limit is known.
+void enter_limit(const std::filesystem::path& directory, Plan& plan, bool resume,
+                 const std::string& conclusion);
+
+/// Throws InputError when the folder is that of a limit.
+void check_is_no_limit(const std::filesystem::path& directory);
+
+/// Writes plan.json: runs have been added, or others are wanted.
+void write_plan(const std::filesystem::path& directory, const Plan& plan);
 
 /// What a run has left.
 struct RunState {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "simulation/standing.h"
 
 namespace keyblock::study {
 namespace {
@@ -64,8 +65,8 @@ void MeasureObserver::begin(const simulation::ModelRecord& model) {
 
 void MeasureObserver::stage_end(int index, const simulation::StageRecord& stage) {
   if (stage.interrupted) return;
-  result_.stages.push_back(
-      {stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias, stage.damage});
+  result_.stages.push_back({stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias,
+                            stage.damage, simulation::standing_of(stage, still_)});
   fallen_ = stage.fallen;
   std::vector<int> fell(blocks_, -1);
   for (const simulation::FallenBlock& block : fallen_)

@@ -11,9 +11,9 @@ namespace keyblock::study {
 class MeasureObserver : public simulation::RunObserver {
  public:
   /// Fills `result` (except for key, realization, values, variant and error), which must outlive the run. The first `blocks`
-  /// blocks of the model are the rock; a frame comes after them.
-  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks)
-      : result_(result), grid_(grid), blocks_(blocks) {}
+  /// blocks of the model are the rock; a frame comes after them. What is faster than `still`, m/s, moves.
+  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks, double still)
+      : result_(result), grid_(grid), blocks_(blocks), still_(still) {}
 
   void begin(const simulation::ModelRecord& model) override;
   void frame(const simulation::Frame& frame) override { last_ = frame; }
@@ -27,6 +27,7 @@ class MeasureObserver : public simulation::RunObserver {
   RunResult& result_;
   MapGrid grid_;
   std::size_t blocks_;
+  double still_;
   simulation::ModelRecord model_;
   simulation::Frame last_;
   std::vector<int> fell_;                        ///< stage of every block; −1: has not fallen

@@ -16,15 +16,19 @@ using results::number;
 using simulation::BlockStatus;
 using simulation::StageKind;
 
-constexpr int run_format = 2;
+constexpr int run_format = 3;
 constexpr std::uint64_t largest_map = 4'000'000;  // cells
 const std::string expected_words = "the measures of a run as keyblock wrote them";
 const std::string checksum_mark = ",\"checksum\":\"";
 
 ordered_json stage_json(const StageMeasures& stage) {
-  return {{"name", stage.name},       {"kind", results::stage_kind_name(stage.kind)},
-          {"pga_m_s2", stage.pga},    {"pgv_m_s", stage.pgv},
-          {"arias_m_s", stage.arias}, {"damage", results::damage_json(stage.damage)}};
+  return {{"name", stage.name},
+          {"kind", results::stage_kind_name(stage.kind)},
+          {"pga_m_s2", stage.pga},
+          {"pgv_m_s", stage.pgv},
+          {"arias_m_s", stage.arias},
+          {"damage", results::damage_json(stage.damage)},
+          {"standing", results::standing_json(stage.standing)}};
 }
 
 StageMeasures read_stage(const ordered_json& json) {
@@ -37,6 +41,7 @@ StageMeasures read_stage(const ordered_json& json) {
   stage.pgv = number(json.at("pgv_m_s"));
   stage.arias = number(json.at("arias_m_s"));
   stage.damage = results::read_damage(json.at("damage"));
+  stage.standing = results::read_standing(json.at("standing")).value_or(simulation::Standing::unsettled);
   return stage;
 }
 

@@ -26,6 +26,7 @@ struct StageMeasures {
   double pgv = 0.0;    ///< m/s, the same of the ground velocity
   double arias = 0.0;  ///< m/s, sum of both components: π/(2g) ∫ a² dt
   simulation::Damage damage;
+  simulation::Standing standing = simulation::Standing::stands;  ///< around openings, too
 };
 
 struct FallenBlock {

@@ -61,7 +61,7 @@ class Task {
       : plan_(plan), folder_(run_folder(directory, run.key)), result_(empty_result(run)) {}
 
   TaskOutcome run(const simulation::RunSetup& setup, const TaskOptions& options) {
-    MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size());
+    MeasureObserver measures(result_, plan_.grid, setup.system.blocks.size(), setup.damage.loosened_distance);
     std::unique_ptr<results::ResultWriter> writer;
     std::unique_ptr<MemoryRecorder> memory;
     std::vector<simulation::RunObserver*> observers{&measures};

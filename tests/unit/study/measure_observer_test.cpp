@@ -67,7 +67,7 @@ simulation::StageRecord stage(const std::string& name) {
 
 TEST(MeasureObserver, TheStageInWhichABlockFell) {
   RunResult result;
-  MeasureObserver observer(result, {{100.0, 50.0}, 1.0, 5, 4}, 2);
+  MeasureObserver observer(result, {{100.0, 50.0}, 1.0, 5, 4}, 2, 0.01);
   const auto go = [&](int index, BlockStatus a, BlockStatus b, bool interrupted = false) {
     simulation::Frame frame;
     frame.status = {BlockStatus::fallen, BlockStatus::fallen, BlockStatus::in_place};  // for a moment

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "commands.h"
+#include "core/error.h"
+#include "interrupt.h"
+#include "scenario_arguments.h"
+#include "simulation/standing.h"
+#include "study/folder.h"
+#include "study/limit_search.h"
+#include "study_progress.h"
+
+namespace keyblock::app {
+namespace {
+
+using Status = study::Bisection::Status;
+
+struct LimitArguments {
+  ScenarioArguments scenario;
+  study::LimitRequest request;
+  std::string until = "fallen";
+  std::optional<double> above;
+  std::string folder;
+  int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  bool resume = false;
+};
+
+void tell_trial(const study::LimitRequest& request, const study::RealizationLimit& limit,
+                const study::LimitTrial& trial) {
+  const std::string which =
+      request.realizations > 1 ? fmt::format("realization {}, ", limit.realization) : "";
+  const std::string measured = request.criterion.collapse
+                                   ? std::string(simulation::standing_name(trial.standing))
+                                   : fmt::format("{} {:.5g}", request.criterion.measure, trial.measure);
+  std::cout << fmt::format("{}{} = {:.8g}: {}, {}\n", which, request.key, trial.value, measured,
+                           trial.met ? "met" : "not met")
+            << std::flush;
+}
+
+// What a search of one realization, whose ends tell nothing of a limit, should have been.
+void refuse_ends(const study::LimitResult& result) {
+  const auto& limit = result.realizations.front();
+  const auto& request = result.request;
+  const auto end = [&](const char* option, double value, const char* found, const char* expected,
+                       const std::string& hint) {
+    Diagnostic diagnostic;
+    diagnostic.where.file = fmt::format("{} {:.8g}", option, value);
+    diagnostic.key = request.key;
+    diagnostic.found = fmt::format("{} ({})", found, request.criterion.text());
+    diagnostic.expected = expected;
+    diagnostic.hint = hint;
+    throw InputError(std::move(diagnostic));
+  };
+  constexpr const char* without = "a value at which the criterion does not hold";
+  constexpr const char* with = "a value at which the criterion holds";
+  switch (limit.state.status) {
+    case Status::ends_swapped:
+      return end("--from", request.from, "that the criterion holds, and that it does not at --to", without,
+                 "exchange --from and --to");
+    case Status::met_at_both:
+      return end("--from", request.from, "that the criterion holds at both ends", without,
+                 "move --from away from --to, or raise --above");
+    case Status::met_at_none:
+      return end("--to", request.to, "that the criterion holds at neither end", with,
+                 limit.trials.front().state_hash == limit.trials.back().state_hash
+                     ? "both runs are the same to the last bit: the key has no effect on this model"
+                     : "move --to farther, lower --above, or let the last stage last longer");
+    case Status::found:
+    case Status::open:
+      return;
+  }
+}
+
+void tell_result(const study::LimitResult& result, const std::string& folder) {
+  std::cout << "\n" << study::limit_text(result);
+  for (const auto& limit : result.realizations) {
+    const study::LimitTrial* beyond = limit.found() ? limit.trial_at(limit.state.met) : nullptr;
+    if (beyond == nullptr || result.realizations.size() > 1) continue;
+    const std::filesystem::path page = study::run_folder(folder, beyond->run) / "report.html";
+    if (std::filesystem::exists(page)) std::cout << "just beyond it: " << page.string() << "\n";
+  }
+  std::cout << "report: " << folder << "/report.html" << std::endl;
+}
+
+void run_limit(LimitArguments arguments) {
+  std::vector<std::string> warnings;
+  study::Plan plan =
+      study::plan_limit(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION,
+                        arguments.request, arguments.until, arguments.above, &warnings);
+  print_warnings(arguments.scenario, warnings);
+  const auto lock = study::lock_study(arguments.folder);
+  StudyDisplay display = StudyDisplay::to_standard_error();
+  study::LimitOptions options;
+  options.resume = arguments.resume;
+  options.workers.workers = arguments.workers;
+  options.workers.command = {"/proc/self/exe", "study", "task"};
+  options.workers.stop = &stop_on_interrupt();
+  options.workers.report = [&](const study::StudyProgress& progress) { display.show(progress); };
+  options.trial = [&](const study::RealizationLimit& limit, const study::LimitTrial& trial) {
+    display.end();
+    tell_trial(arguments.request, limit, trial);
+  };
+  bool interrupted = false;
+  const study::LimitResult result =
+      study::find_limit(arguments.folder, std::move(plan), arguments.request, options, interrupted);
+  display.end();
+  tell_result(result, arguments.folder);
+  if (interrupted)
+    throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
+  const auto failed = std::count_if(result.realizations.begin(), result.realizations.end(),
+                                    [](const auto& limit) { return !limit.error.empty(); });
+  if (failed > 0)
+    throw RunError(
+        fmt::format("{} of {} searches failed; --resume tries again", failed, result.realizations.size()));
+  if (result.realizations.size() == 1) refuse_ends(result);
+}
+
+}  // namespace
+
+void add_limit(CLI::App& app) {
+  auto arguments = std::make_shared<LimitArguments>();
+  study::LimitRequest& request = arguments->request;
+  CLI::App* command = app.add_subcommand(
+      "limit",
+      "Bisection over a number of the scenario for the value at which rock first falls, moves or collapses");
+  add_scenario_file(*command, arguments->scenario);
+  command->add_option("--key", request.key, "Key path of the number, as for --set")
+      ->required()
+      ->type_name("KEY");
+  command->add_option("--from", request.from, "A value at which the criterion does not hold")
+      ->required()
+      ->type_name("A");
+  command->add_option("--to", request.to, "A value at which it holds")->required()->type_name("B");
+  command
+      ->add_option(
+          "--until", arguments->until,
+          "What is to hold at the end of the last stage: fallen (area of fallen rock), moved (largest "
+          "displacement), collapsed (the blocks do not stand), or a measure of summary.json by its name")
+      ->capture_default_str()
+      ->type_name("CRITERION");
+  command
+      ->add_option(
+          "--above", arguments->above,
+          "It holds when the measure is above this; default: 0, for moved loosened_distance of [damage]")
+      ->type_name("X");
+  command
+      ->add_option("--tolerance", request.tolerance,
+                   "Where the bisection ends: width of the bracket over the larger of its ends")
+      ->capture_default_str()
+      ->type_name("T");
+  command
+      ->add_option("--realizations", request.realizations,
+                   "A limit for each of realizations 0 … N-1, and their median")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_option("-o,--output", arguments->folder, "Folder of the limit: limit.json, report.html, runs/")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--workers", arguments->workers,
+                   "Runs at a time, each a process of one thread; any number gives the same limit")
+      ->check(CLI::Range(1, 4096).description(""))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_flag("--resume", arguments->resume,
+                    "Go on with the runs in DIR; --from, --to, --until, --above, --tolerance and "
+                    "--realizations may change");
+  command->footer(
+      "Each trial is a run of its own, kept in DIR/runs.\n\n"
+      "Examples:\n"
+      "  keyblock limit tunnel.toml --key joints.friction --from 45 --to 5 -o out/friction\n"
+      "  keyblock limit tunnel.toml --key joints.strength_factor --from 0.5 --to 5 -o out/safety\n"
+      "  keyblock limit tunnel.toml --key excavation.tunnel.pressure --from 2e5 --to 0 --until fallen "
+      "--above 0.1 "
+      "-o out/pressure\n"
+      "  keyblock limit arch.toml --key tilt --from 0 --to 45 --until collapsed -o out/tilt");
+  command->callback([arguments] { run_limit(*arguments); });
+}
+
+}  // namespace keyblock::app

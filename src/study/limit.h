@@ -1,0 +1,83 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "statistics/interval.h"
+#include "study/bisection.h"
+#include "study/run_result.h"
+
+/// A limit: the value of a key of the scenario at which a criterion first holds.
+namespace keyblock::study {
+
+/// When a run is beyond the limit, told by how it is at the end of its last stage.
+struct LimitCriterion {
+  std::string name;     ///< as asked for: "fallen", "moved", "collapsed", or a measure
+  std::string measure;  ///< by its name in summary.json; of "collapsed", what is told beside the verdict
+  double above = 0.0;   ///< it holds when the measure is larger; in the unit of the measure
+  bool collapse =
+      false;  ///< it holds when the blocks do not stand (simulation/standing.h); `above` is then of no use
+
+  /// `fallen area of more than 0.1 m²`.
+  [[nodiscard]] std::string text() const;
+};
+
+/// `fallen`, `moved`, `collapsed` or the name of a measure. Without `above`: the `loosened` distance of the scenario, m, for
+/// "moved", 0 for all others. Throws InputError.
+LimitCriterion limit_criterion(const std::string& name, std::optional<double> above, double loosened);
+
+struct LimitRequest {
+  std::string key;  ///< key path of a number
+  double from = 0.0, to = 0.0;
+  LimitCriterion criterion;
+  double tolerance = 0.02;  ///< width of the bracket over its larger end
+  int realizations = 1;
+};
+
+/// A run at one value.
+struct LimitTrial {
+  double value = 0.0;
+  std::string run;  ///< key of the run
+  double measure = 0.0;
+  simulation::Standing standing = simulation::Standing::stands;
+  bool met = false;
+  std::string state_hash;
+};
+
+/// What was found for one realization.
+struct RealizationLimit {
+  int realization = 0;
+  Bisection::State state;
+  std::vector<LimitTrial> trials;  ///< in the order of the bisection
+  std::string error;               ///< why a trial failed; empty: none has
+
+  [[nodiscard]] const LimitTrial* trial_at(double value) const;
+  [[nodiscard]] bool found() const { return error.empty() && state.status == Bisection::Status::found; }
+  /// The middle of the bracket.
+  [[nodiscard]] double limit() const { return 0.5 * (state.not_met + state.met); }
+};
+
+struct LimitResult {
+  std::string title, scenario, version;
+  std::uint64_t seed = 0;
+  std::vector<std::string> overrides;
+  LimitRequest request;
+  double confidence = 0.95;
+  bool complete = false;  ///< every bisection has ended
+  std::vector<RealizationLimit> realizations;
+
+  /// The median limit over realizations, with its bootstrap interval from five on. A limit that lies beyond an end of the
+  /// interval that was searched counts as that end. Not a number where none is known.
+  [[nodiscard]] statistics::Estimate median() const;
+};
+
+/// The trial of a run that is done.
+LimitTrial limit_trial(const LimitCriterion& criterion, double value, const RunResult& run);
+
+/// limit.json, documented in docs/studies.md. It depends on the scenario and the request alone, not on workers or time.
+std::string limit_json(const LimitResult& result);
+
+/// What was found, for people: a line for each realization, the median, and what to try where there is no limit.
+std::string limit_text(const LimitResult& result);
+
+}  // namespace keyblock::study

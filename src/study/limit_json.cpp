@@ -1,0 +1,88 @@
+#include <cmath>
+
+#include "core/checked_json.h"
+#include "simulation/standing.h"
+#include "study/limit.h"
+
+namespace keyblock::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* status_word(const RealizationLimit& limit) {
+  if (!limit.error.empty()) return "failed";
+  switch (limit.state.status) {
+    case Bisection::Status::found:
+      return "found";
+    case Bisection::Status::met_at_both:
+      return "met at both ends";
+    case Bisection::Status::met_at_none:
+      return "met at no end";
+    case Bisection::Status::ends_swapped:
+      return "ends swapped";
+    case Bisection::Status::open:
+      break;
+  }
+  return "open";
+}
+
+ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+ordered_json trial_json(const LimitTrial& trial) {
+  return {{"value", trial.value},
+          {"met", trial.met},
+          {"measure", number_or_null(trial.measure)},
+          {"standing", simulation::standing_name(trial.standing)},
+          {"run", "runs/" + trial.run},
+          {"state_hash", trial.state_hash}};
+}
+
+ordered_json realization_json(const RealizationLimit& limit) {
+  ordered_json trials = ordered_json::array(), bracket, beyond, error;
+  for (const LimitTrial& trial : limit.trials) trials.push_back(trial_json(trial));
+  if (limit.found()) bracket = {{"not_met", limit.state.not_met}, {"met", limit.state.met}};
+  if (const LimitTrial* trial = limit.trial_at(limit.state.met); limit.found() && trial != nullptr)
+    beyond = "runs/" + trial->run;
+  if (!limit.error.empty()) error = limit.error;
+  return {{"realization", limit.realization},
+          {"status", status_word(limit)},
+          {"bracket", bracket},
+          {"limit", limit.found() ? number_or_null(limit.limit()) : ordered_json()},
+          {"just_beyond", beyond},
+          {"error", error},
+          {"trials", trials}};
+}
+
+}  // namespace
+
+std::string limit_json(const LimitResult& result) {
+  const LimitRequest& request = result.request;
+  ordered_json above = request.criterion.collapse ? ordered_json() : ordered_json(request.criterion.above);
+  ordered_json realizations = ordered_json::array();
+  for (const RealizationLimit& limit : result.realizations) realizations.push_back(realization_json(limit));
+  const statistics::Estimate median = result.median();
+  ordered_json interval;
+  if (std::isfinite(median.low)) interval = {median.low, median.high};
+  const ordered_json json{
+      {"title", result.title},
+      {"scenario", result.scenario},
+      {"version", result.version},
+      {"seed", result.seed},
+      {"overrides", result.overrides},
+      {"key", request.key},
+      {"from", request.from},
+      {"to", request.to},
+      {"until", request.criterion.name},
+      {"measure", request.criterion.measure},
+      {"above", above},
+      {"tolerance", request.tolerance},
+      {"complete", result.complete},
+      {"median",
+       {{"value", number_or_null(median.value)}, {"confidence", result.confidence}, {"interval", interval}}},
+      {"realizations", realizations}};
+  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace keyblock::study

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/folder.h"
+#include "core/read_file.h"
+#include "simulation/standing.h"
+#include "study/limit_search.h"
+#include "study/measures.h"
+
+namespace keyblock::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t largest_drawing = 10'000'000;  // bytes
+constexpr std::size_t most_drawings = 100;
+constexpr double width = 720.0, height = 320.0, left = 80.0, right = 20.0, top = 15.0, bottom = 45.0;
+
+constexpr std::string_view page_style = R"(<style>
+:root{color-scheme:light dark;--page:#f6f5f2;--paper:#fff;--ink:#1c2126;--muted:#5c656e;--line:#d9d8d3;--accent:#1f5fa8;--bad:#b3261e}
+@media (prefers-color-scheme:dark){:root{--page:#16181b;--paper:#1e2125;--ink:#e6e8ea;--muted:#a2abb3;--line:#373c42;--accent:#6fb1f5;--bad:#ff8a80}}
+body{font:16px/1.5 system-ui,"Segoe UI","Noto Sans","DejaVu Sans",sans-serif;background:var(--page);color:var(--ink);margin:0 auto;max-width:1000px;padding:16px}
+section{background:var(--paper);border:1px solid var(--line);border-radius:8px;padding:12px 16px;margin:16px 0;overflow-x:auto}
+a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}
+table{border-collapse:collapse}td,th{padding:3px 12px 3px 0;text-align:right;border-bottom:1px solid var(--line)}th{color:var(--muted);font-weight:normal}
+.plot{width:100%;max-width:720px}.plot text{font-size:13px;fill:var(--muted)}.axis{stroke:var(--muted)}.threshold{stroke:var(--muted);stroke-dasharray:5 4}
+.bracket{fill:var(--accent);fill-opacity:.18}.no{fill:none;stroke:var(--accent);stroke-width:2}.yes{fill:var(--bad)}
+.drawings{display:flex;flex-wrap:wrap;gap:16px}figure{margin:0;width:300px}figure svg{width:100%;height:auto}figcaption{font-size:.9em}
+</style>)";
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string paragraphs(const std::string& text) {
+  std::string out = "<p class=\"answer\">";
+  for (const char c : escaped(text)) out += c == '\n' ? std::string("<br>") : std::string(1, c);
+  return out + "</p>";
+}
+
+/// Places of numbers along an axis.
+struct Axis1 {
+  double low, high, begin, end;
+  [[nodiscard]] double at(double value) const { return begin + (value - low) / (high - low) * (end - begin); }
+};
+
+class Plot {
+ public:
+  explicit Plot(const LimitResult& result)
+      : result_(result),
+        request_(result.request),
+        x_{std::min(request_.from, request_.to), std::max(request_.from, request_.to), left, width - right},
+        y_{0.0, highest(), height - bottom, top} {}
+
+  [[nodiscard]] std::string draw() const {
+    const Measure& m = measures()[find_measure(request_.criterion.measure).value()];
+    std::string svg = fmt::format(
+        "<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{} of every trial over "
+        "{}\">",
+        width, height, escaped(m.title), escaped(request_.key));
+    for (const RealizationLimit& limit : result_.realizations) svg += bracket(limit);
+    svg += axes(escaped(m.title + (m.unit.empty() ? "" : ", " + m.unit)));
+    for (const RealizationLimit& limit : result_.realizations)
+      for (const LimitTrial& trial : limit.trials) svg += point(limit, trial);
+    return svg + "</svg>";
+  }
+
+ private:
+  [[nodiscard]] double highest() const {
+    double high = request_.criterion.collapse ? 0.0 : request_.criterion.above;
+    for (const RealizationLimit& limit : result_.realizations)
+      for (const LimitTrial& trial : limit.trials)
+        if (std::isfinite(trial.measure)) high = std::max(high, trial.measure);
+    return high > 0.0 ? 1.05 * high : 1.0;
+  }
+
+  [[nodiscard]] std::string bracket(const RealizationLimit& limit) const {
+    if (!limit.found()) return {};
+    const double a = x_.at(limit.state.not_met), b = x_.at(limit.state.met);
+    return fmt::format(
+        "<rect class=\"bracket\" x=\"{:.2f}\" y=\"{:.0f}\" width=\"{:.2f}\" height=\"{:.0f}\"/>",
+        std::min(a, b), y_.end, std::max(std::abs(a - b), 1.5), y_.begin - y_.end);
+  }
+
+  [[nodiscard]] std::string axes(const std::string& title) const {
+    std::string svg = fmt::format(
+        "<path class=\"axis\" fill=\"none\" d=\"M{0:.0f} {1:.0f}V{2:.0f}H{3:.0f}\"/>"
+        "<text x=\"{0:.0f}\" y=\"{4:.0f}\">{5:.5g}</text><text x=\"{3:.0f}\" y=\"{4:.0f}\" "
+        "text-anchor=\"end\">{6:.5g}</text>"
+        "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
+        x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
+        height - 8.0, escaped(request_.key));
+    svg += fmt::format(
+        "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">0</text><text x=\"{0:.0f}\" y=\"{2:.0f}\" "
+        "text-anchor=\"end\">{3:.3g}</text><text transform=\"translate(16 {4:.0f}) rotate(-90)\" "
+        "text-anchor=\"middle\">{5}</text>",
+        x_.begin - 6.0, y_.begin, y_.end + 5.0, y_.high, 0.5 * (y_.begin + y_.end), title);
+    if (!request_.criterion.collapse)
+      svg += fmt::format("<path class=\"threshold\" d=\"M{:.0f} {:.2f}H{:.0f}\"/>", x_.begin,
+                         y_.at(std::max(request_.criterion.above, 0.0)), x_.end);
+    return svg;
+  }
+
+  [[nodiscard]] std::string point(const RealizationLimit& limit, const LimitTrial& trial) const {
+    if (!std::isfinite(trial.measure)) return {};
+    return fmt::format(
+        "<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"><title>realization {}: {:.6g}: "
+        "{:.4g}</title></circle>",
+        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(std::max(trial.measure, 0.0)), limit.realization,
+        trial.value, trial.measure);
+  }
+
+  const LimitResult& result_;
+  const LimitRequest& request_;
+  Axis1 x_, y_;
+};
+
+// Link to the report of a run, where it was kept.
+std::string link_to(const fs::path& directory, const LimitTrial& trial, const std::string& text) {
+  std::error_code none;
+  const std::string page = "runs/" + trial.run + "/report.html";
+  if (!fs::exists(directory / page, none)) return escaped(text);
+  return fmt::format("<a href=\"{}\">{}</a>", page, escaped(text));
+}
+
+std::string drawing_of(const fs::path& directory, const LimitTrial& trial) {
+  const fs::path file = directory / "runs" / trial.run / "thumbnail.svg";
+  try {
+    return file_exists(file) ? read_own_file(file, largest_drawing) : std::string();
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+std::string drawings(const fs::path& directory, const LimitResult& result) {
+  std::string figures;
+  std::size_t count = 0;
+  for (const RealizationLimit& limit : result.realizations) {
+    const LimitTrial* beyond = limit.found() ? limit.trial_at(limit.state.met) : nullptr;
+    if (beyond == nullptr || count++ >= most_drawings) continue;
+    const std::string name =
+        fmt::format("realization {}, {} = {:.6g}", limit.realization, result.request.key, beyond->value);
+    figures += "<figure>" + drawing_of(directory, *beyond) + "<figcaption>" +
+               link_to(directory, *beyond, name) + "</figcaption></figure>";
+  }
+  if (figures.empty()) return {};
+  return "<section><h2>Just beyond the limit</h2><div class=\"drawings\">" + figures + "</div></section>";
+}
+
+std::string trial_table(const fs::path& directory, const LimitResult& result) {
+  std::string rows;
+  for (const RealizationLimit& limit : result.realizations) {
+    for (const LimitTrial& trial : limit.trials) {
+      rows += fmt::format(
+          "<tr><td>{}</td><td>{:.8g}</td><td>{:.5g}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+          limit.realization, trial.value, trial.measure, simulation::standing_name(trial.standing),
+          trial.met ? "yes" : "no", link_to(directory, trial, trial.run));
+    }
+  }
+  return fmt::format(
+      "<section><h2>Trials, in the order of the "
+      "bisection</h2><table><tr><th>realization</th><th>{}</th><th>{}</th>"
+      "<th>at the end it</th><th>criterion met</th><th>run</th></tr>{}</table></section>",
+      escaped(result.request.key), escaped(result.request.criterion.measure), rows);
+}
+
+}  // namespace
+
+std::string limit_page(const fs::path& directory, const LimitResult& result) {
+  return fmt::format(
+      "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>Limit: "
+      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{4}"
+      "</section>{5}{6}<p>keyblock {7}, {8}, seed {9}; <a "
+      "href=\"limit.json\">limit.json</a></p></body></html>\n",
+      escaped(result.title.empty() ? result.scenario : result.title), page_style, escaped(result.request.key),
+      paragraphs(limit_text(result)), Plot(result).draw(), drawings(directory, result),
+      trial_table(directory, result), escaped(result.version), escaped(result.scenario), result.seed);
+}
+
+}  // namespace keyblock::study

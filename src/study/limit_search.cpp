@@ -1,0 +1,230 @@
+#include "study/limit_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "scenario/inputs.h"
+#include "scenario/parse.h"
+#include "study/folder.h"
+#include "study/refusal.h"
+
+namespace keyblock::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double largest_tolerance = 0.5;
+
+// As TOML, with a point or an exponent: what must be an integer is no key for a bisection.
+std::string value_text(double value) {
+  std::string text = fmt::format("{}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+// Mistakes in the key are found at either end.
+void check_ends(const Plan& plan, const LimitRequest& request) {
+  for (const double end : {request.from, request.to}) {
+    std::vector<std::string> overrides = plan.overrides;
+    overrides.push_back(request.key + "=" + value_text(end));
+    static_cast<void>(scenario::check_inputs(
+        scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out)));
+  }
+}
+
+void check_request(const LimitRequest& request) {
+  for (const auto& [option, value] : {std::pair{"--from", request.from}, std::pair{"--to", request.to}}) {
+    if (!std::isfinite(value)) refuse(option, fmt::format("{}", value), "a number");
+  }
+  if (request.from == request.to)
+    refuse("--to", fmt::format("{}, as --from", request.to), "another value than --from");
+  if (!(request.tolerance > 0.0 && request.tolerance <= largest_tolerance))
+    refuse("--tolerance", fmt::format("{}", request.tolerance),
+           fmt::format("above 0, at most {}", largest_tolerance));
+}
+
+class Search {
+ public:
+  Search(const fs::path& directory, Plan plan, LimitResult& result, const LimitOptions& options)
+      : directory_(directory),
+        plan_(std::move(plan)),
+        result_(result),
+        options_(options),
+        bisection_(result.request.from, result.request.to, result.request.tolerance) {
+    for (PlannedRun& run : plan_.runs) run.wanted = false;
+    for (int k = 0; k < result.request.realizations; ++k) result_.realizations.push_back({k, {}, {}, {}});
+    told_.resize(result_.realizations.size());
+  }
+
+  /// Whether it came to its end.
+  bool run() {
+    while (true) {
+      update();
+      const std::vector<PlannedRun> round = next_round();
+      if (round.empty()) return true;
+      if (options_.workers.stop != nullptr && options_.workers.stop->load()) return false;
+      if (!run_round(round)) return false;
+    }
+  }
+
+ private:
+  static bool searching(const RealizationLimit& limit) {
+    return limit.error.empty() && limit.state.status == Bisection::Status::open;
+  }
+
+  PlannedRun planned(int realization, double value) const {
+    const std::string text = value_text(value);
+    return {run_key(realization, {result_.request.key + "=" + text}, ""), realization, {{text}}, "", true};
+  }
+
+  // What is known of a run that a trial is: read once.
+  const RunState& state_of(const PlannedRun& run) {
+    const auto known = states_.find(run.key);
+    if (known != states_.end()) return known->second;
+    return states_.emplace(run.key, read_run_state(directory_, plan_, run)).first->second;
+  }
+
+  Known known(int realization) {
+    return [this, realization](double value) -> std::optional<bool> {
+      const RunState& state = state_of(planned(realization, value));
+      if (state.kind != RunState::Kind::done) return std::nullopt;
+      return limit_trial(result_.request.criterion, value, state.result).met;
+    };
+  }
+
+  void update() {
+    for (std::size_t k = 0; k < result_.realizations.size(); ++k) {
+      RealizationLimit& limit = result_.realizations[k];
+      limit.state = bisection_.follow(known(limit.realization));
+      limit.trials.clear();
+      for (const double value : limit.state.path)
+        limit.trials.push_back(limit_trial(result_.request.criterion, value,
+                                           state_of(planned(limit.realization, value)).result));
+      for (; told_[k] < limit.trials.size(); ++told_[k]) options_.trial(limit, limit.trials[told_[k]]);
+    }
+  }
+
+  std::vector<PlannedRun> next_round() {
+    std::vector<PlannedRun> needed, ahead;
+    const auto workers = static_cast<std::size_t>(std::max(options_.workers.workers, 1));
+    for (const RealizationLimit& limit : result_.realizations) {
+      if (!searching(limit)) continue;
+      const std::size_t at_once = limit.state.path.empty() ? 2 : 1;
+      const auto values = bisection_.next(known(limit.realization), std::max(workers, at_once));
+      const std::size_t least = std::min(values.size(), needed_of(limit, values));
+      for (std::size_t n = 0; n < values.size(); ++n)
+        (n < least ? needed : ahead).push_back(planned(limit.realization, values[n]));
+    }
+    for (const PlannedRun& run : ahead) {
+      if (needed.empty() || needed.size() >= workers) break;
+      if (state_of(run).kind == RunState::Kind::failed) continue;
+      needed.push_back(run);
+    }
+    return needed;
+  }
+
+  // Both ends are run at once; of what follows, one is needed.
+  std::size_t needed_of(const RealizationLimit& limit, const std::vector<double>& values) const {
+    const auto& request = result_.request;
+    if (limit.state.path.size() >= 2) return 1;
+    return static_cast<std::size_t>(std::count_if(
+        values.begin(), values.end(), [&](double v) { return v == request.from || v == request.to; }));
+  }
+
+  // False: interrupted.
+  bool run_round(const std::vector<PlannedRun>& round) {
+    for (PlannedRun& run : plan_.runs) run.wanted = false;
+    for (const PlannedRun& run : round) {
+      const auto there = std::find_if(plan_.runs.begin(), plan_.runs.end(),
+                                      [&](const PlannedRun& known) { return known.key == run.key; });
+      if (there == plan_.runs.end()) {
+        plan_.runs.push_back(run);
+      } else {
+        *there = run;
+      }
+    }
+    write_plan(directory_, plan_);
+    StudyFiles files = read_study_files(directory_, plan_);
+    const WorkerOutcome outcome = run_workers(directory_, plan_, files, options_.workers);
+    for (std::size_t k = 0; k < plan_.runs.size(); ++k) {
+      if (plan_.runs[k].wanted) states_[plan_.runs[k].key] = std::move(files.states[k]);
+    }
+    if (!outcome.interrupted) note_failures(round);
+    return !outcome.interrupted;
+  }
+
+  // Of the trials that were needed; others are not missed.
+  void note_failures(const std::vector<PlannedRun>& round) {
+    for (const PlannedRun& run : round) {
+      const RunState& state = states_.at(run.key);
+      RealizationLimit& limit = result_.realizations[static_cast<std::size_t>(run.realization)];
+      if (state.kind == RunState::Kind::done || !limit.error.empty()) continue;
+      const auto next = bisection_.next(known(run.realization), 1);
+      if (next.empty() || planned(run.realization, next.front()).key != run.key) continue;
+      limit.error =
+          fmt::format("{} = {} ({}): {}", result_.request.key, run.values[0][0], run.key, state.problem);
+    }
+  }
+
+  const fs::path& directory_;
+  Plan plan_;
+  LimitResult& result_;
+  const LimitOptions& options_;
+  Bisection bisection_;
+  std::map<std::string, RunState> states_;
+  std::vector<std::size_t> told_;  // trials, of every realization
+};
+
+LimitResult empty_limit(const Plan& plan, const LimitRequest& request) {
+  LimitResult result;
+  result.title = plan.title;
+  result.scenario = plan.scenario.filename().string();
+  result.version = plan.version;
+  result.seed = plan.seed;
+  result.overrides = plan.overrides;
+  result.request = request;
+  result.confidence = plan.confidence;
+  return result;
+}
+
+}  // namespace
+
+Plan plan_limit(const fs::path& scenario, const std::vector<std::string>& overrides,
+                const std::string& version, LimitRequest& request, const std::string& until,
+                std::optional<double> above, std::vector<std::string>* warnings) {
+  check_request(request);
+  Plan plan = make_plan(scenario, overrides, version, warnings);
+  request.criterion = limit_criterion(
+      until, above,
+      scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides, scenario::StudyTable::leave_out)
+          .damage.loosened_distance);
+  check_ends(plan, request);
+  plan.realizations = request.realizations;
+  plan.axes = {{{request.key}, {}}};
+  plan.since.clear();
+  plan.before_shaking.clear();
+  plan.levels.clear();
+  plan.marginal.reset();
+  plan.until.reset();
+  plan.runs.clear();
+  return plan;
+}
+
+LimitResult find_limit(const fs::path& directory, Plan plan, const LimitRequest& request,
+                       const LimitOptions& options, bool& interrupted) {
+  LimitResult result = empty_limit(plan, request);
+  enter_limit(directory, plan, options.resume, limit_json(result));
+  interrupted = !Search(directory, std::move(plan), result, options).run();
+  result.complete = !interrupted;
+  write_file_atomically(limit_path(directory), limit_json(result));
+  write_file_atomically(directory / "report.html", limit_page(directory, result));
+  return result;
+}
+
+}  // namespace keyblock::study
