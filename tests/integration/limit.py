@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""keyblock limit: known answers, and the same answer for any number of workers and after it was killed."""
+
+import json
+import math
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ROOT, Scenario, wait_for
+from study_case import GALLERY
+
+CASES = ROOT / "verification/scenarios"
+INCLINE = CASES / "limit_incline.toml"
+
+# A column of one block, 1 m wide and 4 m high, tips beyond atan(1/4).
+COLUMN = """
+title = "A column on a tilting table"
+[rock]
+density = 2600.0
+young = 5.0e10
+poisson = 0.2
+[joints]
+friction = 60.0
+[time]
+step = 0.005
+[[block]]
+name = "table"
+outer = [[-5.0, -1.0], [5.0, -1.0], [5.0, 0.0], [-5.0, 0.0]]
+fixed = true
+[[block]]
+name = "column"
+outer = [[-0.5, 0.0], [0.5, 0.0], [0.5, 4.0], [-0.5, 4.0]]
+[[stage]]
+name = "settle"
+kind = "settle"
+"""
+
+# A block is pushed along a floor.
+PUSHED = COLUMN.replace("60.0", "30.0").replace("4.0]", "1.0]") + """
+[[load]]
+block = "column"
+point = [-0.5, 0.01]
+force = [1000.0, 0.0]
+"""
+
+
+class Limit(Scenario):
+    def limit(self, *arguments, out="out", expect=0):
+        return self.keyblock("limit", *arguments, "-o", out, expect=expect)
+
+    def found(self, out="out"):
+        return json.loads((self.folder / out / "limit.json").read_text())
+
+    def check_bracket(self, expected, tolerance, out="out"):
+        result = self.found(out)
+        (limit,) = result["realizations"]
+        bracket = limit["bracket"]
+        values = sorted(bracket.values())
+        self.assertEqual(limit["status"], "found")
+        self.assertLessEqual(values[1] - values[0], result["tolerance"] * max(abs(v) for v in values))
+        self.assertLess(abs(limit["limit"] / expected - 1), tolerance, limit)
+        return limit
+
+
+class KnownAnswers(Limit):
+    def test_friction_of_an_incline(self):
+        done = self.limit(INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "collapsed", "--tolerance", 0.005)
+        limit = self.check_bracket(30.0, 0.005)
+        self.assertIn("joints.friction = 45: stands, not met\n", done.stdout)
+        self.assertIn(f"just beyond it: out/{limit['just_beyond']}/report.html\n", done.stdout)
+        for trial in limit["trials"]:
+            self.assertEqual(trial["met"], trial["value"] < 29.999, trial)
+            self.assertTrue((self.folder / "out" / trial["run"] / "report.html").exists())
+
+    def test_strength_factor_of_an_incline(self):
+        """tan 45° / tan 30°."""
+        self.limit(INCLINE, "--set", "joints.friction=45", "--key", "joints.strength_factor", "--from", 1, "--to", 3,
+                   "--until", "collapsed", "--tolerance", 0.005)  # fmt: skip
+        self.check_bracket(math.sqrt(3), 0.005)
+
+    def test_tilt_of_a_column(self):
+        self.write("column.toml", COLUMN)
+        self.limit("column.toml", "--key", "tilt", "--from", 0, "--to", 45, "--until", "collapsed", "--tolerance", 0.005)
+        self.check_bracket(math.degrees(math.atan(0.25)), 0.01)
+
+    def test_load_factor_of_a_pushed_block(self):
+        self.write("pushed.toml", PUSHED)
+        self.limit("pushed.toml", "--key", "load_factor", "--from", 0, "--to", 100, "--until", "collapsed", "--tolerance", 0.005)
+        self.check_bracket(2600 * 9.81 * math.tan(math.radians(30)) / 1000, 0.005)
+
+    def test_pressure_under_a_key_block(self):
+        self.limit(CASES / "held_block.toml", "--key", "excavation.room.pressure", "--from", 5e4, "--to", 0, "--until", "moved", "--tolerance", 0.005)
+        self.check_bracket(2600 * 9.81, 0.01)
+
+
+class Reproducible(Limit):
+    FRICTION = (INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "collapsed")
+
+    def setUp(self):
+        super().setUp()
+        self.write("gallery.toml", GALLERY)
+        self.realizations = ("gallery.toml", "--key", "joints.strength_factor", "--from", 0.5, "--to", 8, "--tolerance", 0.2,
+                             "--realizations", 5)  # fmt: skip
+
+    def test_any_number_of_workers(self):
+        for workers in (1, 2, 5):
+            self.limit(*self.FRICTION, "--workers", workers, out=f"w{workers}")
+            self.assertEqual((self.folder / f"w{workers}/limit.json").read_text(), (self.folder / "w1/limit.json").read_text())
+
+    def test_realizations_have_a_median_and_an_interval(self):
+        done = self.limit(*self.realizations, "--workers", 2)
+        self.limit(*self.realizations, "--workers", 1, out="one")
+        self.assertEqual(self.found(), self.found("one"))
+        result = self.found()
+        self.assertEqual([limit["realization"] for limit in result["realizations"]], list(range(5)))
+        self.assertEqual({limit["status"] for limit in result["realizations"]} - {"found", "met at both ends", "met at no end"}, set())
+        low, high = result["median"]["interval"]
+        self.assertLessEqual(low, result["median"]["value"])
+        self.assertLessEqual(result["median"]["value"], high)
+        self.assertRegex(done.stdout, r"limits of \d of 5 realizations: median [\d.]+ \(95 % interval ")
+
+    def test_killed_and_resumed(self):
+        self.limit(*self.realizations, out="whole")
+        words = [PROGRAM, "limit", *map(str, self.realizations), "-o", "out"]
+        for stop in (signal.SIGKILL, signal.SIGINT):
+            process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            before = self.runs()
+            wait_for(lambda: len(self.runs()) >= len(before) + 3, "runs that are done")
+            process.send_signal(stop)
+            process.communicate(timeout=60)
+            self.assertEqual(process.returncode, -stop if stop == signal.SIGKILL else 2)
+            self.assertFalse(self.found()["complete"])
+            words += ["--resume"] if "--resume" not in words else []
+            time.sleep(0.3)  # the runs at hand end with it
+        before = self.runs()
+        self.limit(*self.realizations, "--resume")
+        self.assertEqual((self.folder / "out/limit.json").read_text(), (self.folder / "whole/limit.json").read_text())
+        after = self.runs()
+        self.assertEqual({run: after[run] for run in before}, before)
+
+    def runs(self):
+        return {path.parent.name: path.stat().st_mtime_ns for path in (self.folder / "out/runs").glob("*/run.json")}
+
+    def test_a_trial_is_that_of_the_run_command(self):
+        self.limit(*self.FRICTION)
+        trial = self.found()["realizations"][0]["trials"][-1]
+        self.keyblock("run", INCLINE, "-o", "alone", "--set", f"joints.friction={trial['value']}")
+        self.assertEqual(self.summary("alone")["state_hash"], trial["state_hash"])
+
+    def test_finer_from_what_is_there(self):
+        self.limit(*self.FRICTION)
+        before = self.runs()
+        self.limit(*self.FRICTION, "--tolerance", 0.001, "--resume")
+        after = self.runs()
+        self.assertEqual({run: after[run] for run in before}, before)
+        self.assertGreater(len(after), len(before))
+        self.assertLess(len(self.found()["realizations"][0]["trials"]), len(after) + 1)
+
+
+class Refusals(Limit):
+    def refused(self, *arguments):
+        return self.limit(INCLINE, "--until", "collapsed", *arguments, expect=1).stderr
+
+    def test_ends_that_tell_nothing(self):
+        key = ("--key", "joints.friction")
+        said = self.refused(*key, "--from", 5, "--to", 45)
+        self.assertIn("--from 5: joints.friction: found that the criterion holds, and that it does not at --to", said)
+        self.assertIn("exchange --from and --to", said)
+        self.assertIn("--to 50: joints.friction: found that the criterion holds at neither end", self.refused(*key, "--from", 45, "--to", 50, "--resume"))
+        said = self.refused(*key, "--from", 4, "--to", 5, "--resume")
+        self.assertIn("--from 4: joints.friction: found that the criterion holds at both ends", said)
+        self.assertEqual(self.found()["realizations"][0]["status"], "met at both ends")
+        said = self.limit(INCLINE, "--key", "damage.slip", "--from", 0.01, "--to", 0.02, out="none", expect=1).stderr
+        self.assertIn("the key has no effect on this model", said)
+
+    def test_keys_and_numbers(self):
+        for words, said in (
+            ("--key joints.frction --from 1 --to 2", "--set joints.frction=1.0: joints.frction: found an unknown key"),
+            ("--key rock.order --from 1 --to 2", "--set rock.order=1.0: rock.order: found the number 1.0; expected an integer"),
+            ("--key joints.friction --from 45 --to 95", "--set joints.friction=95.0: joints.friction: found the number 95.0"),
+            ("--key joints.friction --from 4 --to 4", "--to: found 4, as --from; expected another value"),
+            ("--key joints.friction --from 4 --to inf", "--to: found inf; expected a number"),
+            ("--key joints.friction --from 4 --to 5 --tolerance 0", "--tolerance: found 0; expected above 0"),
+            ("--key joints.friction --from 4 --to 5 --above 1", "--above: found 1"),
+        ):
+            self.assertIn(said, self.refused(*words.split()), words)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_folders_of_others(self):
+        key = ("--from", 45, "--to", 5)
+        self.limit(INCLINE, "--until", "collapsed", "--key", "joints.friction", *key)
+        self.assertIn("found a limit of ", self.refused("--key", "joints.friction", *key))
+        self.assertIn("found a limit of joints.friction", self.refused("--key", "joints.strength_factor", "--from", 1, "--to", 3, "--resume"))
+        self.assertIn("rock.young", self.refused("--key", "joints.friction", *key, "--resume", "--set", "rock.young=4e10"))
+        for words in (("study", "run", INCLINE, "-o", "out", "--resume"), ("study", "collect", "out")):
+            self.assertIn("found the runs of a limit", self.keyblock(*words, expect=1).stderr)
+        self.keyblock("study", "run", INCLINE, "-o", "study")
+        self.assertIn("found a study", self.limit(INCLINE, "--key", "joints.friction", *key, "--resume", out="study", expect=1).stderr)
+        self.keyblock("run", INCLINE, "-o", "run")
+        self.assertIn("found the results of a run", self.limit(INCLINE, "--key", "joints.friction", *key, out="run", expect=1).stderr)
+
+    def test_the_page_stands_alone(self):
+        self.limit(INCLINE, "--until", "moved", "--key", "joints.friction", "--from", 45, "--to", 5, "--set", "title=<b>&\"")
+        page = (self.folder / "out/report.html").read_text()
+        self.assertIn("<h1>&lt;b&gt;&amp;&quot;</h1>", page)
+        self.assertNotIn("http", page.replace("http://www.w3.org", ""))
+        for trial in self.found()["realizations"][0]["trials"]:
+            self.assertIn(f'href="{trial["run"]}/report.html"', page)
+
+
+if __name__ == "__main__":
+    unittest.main()
