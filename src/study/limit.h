@@ -74,7 +74,7 @@ struct LimitResult {
 /// The trial of a run that is done.
 LimitTrial limit_trial(const LimitCriterion& criterion, double value, const RunResult& run);
 
-/// limit.json, documented in docs/studies.md. It depends on the scenario and the request alone, not on workers or time.
+/// limit.json, documented in docs/user-guide.md. It depends on the scenario and the request alone, not on workers or time.
 std::string limit_json(const LimitResult& result);
 
 /// What was found, for people: a line for each realization, the median, and what to try where there is no limit.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "core/folder.h"
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t largest_drawing = 10'000'000;  // bytes
 constexpr std::size_t most_drawings = 100;
 constexpr double width = 720.0, height = 320.0, left = 80.0, right = 20.0, top = 15.0, bottom = 45.0;
+constexpr double room = 0.05;  // above the largest measure, as a share of their range
 
 constexpr std::string_view page_style = R"(<style>
 :root{color-scheme:light dark;--page:#f6f5f2;--paper:#fff;--ink:#1c2126;--muted:#5c656e;--line:#d9d8d3;--accent:#1f5fa8;--bad:#b3261e}
@@ -62,7 +64,7 @@ std::string paragraphs(const std::string& text) {
 }
 
 /// Places of numbers along an axis.
-struct Axis1 {
+struct Scale {
   double low, high, begin, end;
   [[nodiscard]] double at(double value) const { return begin + (value - low) / (high - low) * (end - begin); }
 };
@@ -73,7 +75,7 @@ class Plot {
       : result_(result),
         request_(result.request),
         x_{std::min(request_.from, request_.to), std::max(request_.from, request_.to), left, width - right},
-        y_{0.0, highest(), height - bottom, top} {}
+        y_{range().first, range().second, height - bottom, top} {}
 
   [[nodiscard]] std::string draw() const {
     const Measure& m = measures()[find_measure(request_.criterion.measure).value()];
@@ -85,16 +87,25 @@ class Plot {
     svg += axes(escaped(m.title + (m.unit.empty() ? "" : ", " + m.unit)));
     for (const RealizationLimit& limit : result_.realizations)
       for (const LimitTrial& trial : limit.trials) svg += point(limit, trial);
-    return svg + "</svg>";
+    return svg +
+           "</svg><p>A dot is a trial at which the criterion is met, a ring one at which it is not; the band "
+           "is the "
+           "bracket.</p>";
   }
 
  private:
-  [[nodiscard]] double highest() const {
-    double high = request_.criterion.collapse ? 0.0 : request_.criterion.above;
-    for (const RealizationLimit& limit : result_.realizations)
-      for (const LimitTrial& trial : limit.trials)
-        if (std::isfinite(trial.measure)) high = std::max(high, trial.measure);
-    return high > 0.0 ? 1.05 * high : 1.0;
+  /// Of all measures, the threshold and zero.
+  [[nodiscard]] std::pair<double, double> range() const {
+    const double above = request_.criterion.collapse ? 0.0 : request_.criterion.above;
+    double low = std::min(0.0, above), high = std::max(0.0, above);
+    for (const RealizationLimit& limit : result_.realizations) {
+      for (const LimitTrial& trial : limit.trials) {
+        if (!std::isfinite(trial.measure)) continue;
+        low = std::min(low, trial.measure);
+        high = std::max(high, trial.measure);
+      }
+    }
+    return {low, high > low ? high + room * (high - low) : low + 1.0};
   }
 
   [[nodiscard]] std::string bracket(const RealizationLimit& limit) const {
@@ -114,13 +125,14 @@ class Plot {
         x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
         height - 8.0, escaped(request_.key));
     svg += fmt::format(
-        "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">0</text><text x=\"{0:.0f}\" y=\"{2:.0f}\" "
+        "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">{6:.3g}</text><text x=\"{0:.0f}\" "
+        "y=\"{2:.0f}\" "
         "text-anchor=\"end\">{3:.3g}</text><text transform=\"translate(16 {4:.0f}) rotate(-90)\" "
         "text-anchor=\"middle\">{5}</text>",
-        x_.begin - 6.0, y_.begin, y_.end + 5.0, y_.high, 0.5 * (y_.begin + y_.end), title);
+        x_.begin - 6.0, y_.begin, y_.end + 5.0, y_.high, 0.5 * (y_.begin + y_.end), title, y_.low);
     if (!request_.criterion.collapse)
       svg += fmt::format("<path class=\"threshold\" d=\"M{:.0f} {:.2f}H{:.0f}\"/>", x_.begin,
-                         y_.at(std::max(request_.criterion.above, 0.0)), x_.end);
+                         y_.at(request_.criterion.above), x_.end);
     return svg;
   }
 
@@ -129,13 +141,13 @@ class Plot {
     return fmt::format(
         "<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"><title>realization {}: {:.6g}: "
         "{:.4g}</title></circle>",
-        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(std::max(trial.measure, 0.0)), limit.realization,
-        trial.value, trial.measure);
+        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(trial.measure), limit.realization, trial.value,
+        trial.measure);
   }
 
   const LimitResult& result_;
   const LimitRequest& request_;
-  Axis1 x_, y_;
+  Scale x_, y_;
 };
 
 // Link to the report of a run, where it was kept.

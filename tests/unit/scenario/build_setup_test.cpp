@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "scenario/build.h"
 #include "scenario_text.h"
 
@@ -57,6 +60,30 @@ TEST(BuildSetup, JointsTakeWhatTheirSetDoesNotSay) {
   EXPECT_EQ(setup.joints.joint_sets[0].stiffness_ratio, 0.25);
   EXPECT_EQ(setup.joints.frame.friction, 5.0);
   EXPECT_EQ(setup.joints.frame.cohesion, 0.0);
+}
+
+TEST(BuildSetup, StrengthOfAllJointsIsDividedByTheFactor) {
+  const auto setup = build_setup(
+      parse(runnable_domain, {"joints.cohesion=1e5", "joints.tension=1e4", "joint_set.bedding.friction=20",
+                              "domain.frame_friction=5", "joints.strength_factor=2"}),
+      0);
+  const double degree = std::numbers::pi / 180.0;
+  EXPECT_NEAR(std::tan(setup.joints.standard.friction * degree), 0.5 * std::tan(30.0 * degree), 1e-12);
+  EXPECT_NEAR(std::tan(setup.joints.joint_sets[0].friction * degree), 0.5 * std::tan(20.0 * degree), 1e-12);
+  EXPECT_EQ(setup.joints.joint_sets[0].cohesion, 5e4);
+  EXPECT_EQ(setup.joints.standard.tension, 5e3);
+  EXPECT_EQ(setup.joints.frame.friction, 5.0);
+}
+
+TEST(BuildSetup, TiltTurnsGravityAndLoadsHaveAFactor) {
+  const auto setup = build_setup(parse(two_blocks, {"tilt=30", "load_factor=3"}), 0);
+  EXPECT_NEAR(setup.gravity.x, -9.81 * 0.5, 1e-12);
+  EXPECT_NEAR(setup.gravity.y, -9.81 * std::sqrt(0.75), 1e-12);
+  const auto loaded = build_setup(
+      parse(std::string(two_blocks) + "[[load]]\nblock = \"top\"\npoint = [2.0, 1.5]\nforce = [1.0, -2.0]\n",
+            {"load_factor=3"}),
+      0);
+  EXPECT_EQ(loaded.loads.at(0).value, (Vec2{3.0, -6.0}));
 }
 
 TEST(BuildSetup, StiffnessIsLeftToTheModelUnlessGiven) {
