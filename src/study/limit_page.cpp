@@ -19,7 +19,10 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t largest_drawing = 10'000'000;  // bytes
 constexpr std::size_t most_drawings = 100;
-constexpr double width = 720.0, height = 320.0, left = 80.0, right = 20.0, top = 15.0, bottom = 45.0;
+/// Of the chart, in pixels.
+struct Chart {
+  static constexpr double width = 720.0, height = 320.0, left = 80.0, right = 20.0, top = 15.0, bottom = 45.0;
+};
 constexpr double room = 0.05;  // above the largest measure, as a share of their range
 
 constexpr std::string_view page_style = R"(<style>
@@ -74,15 +77,16 @@ class Plot {
   explicit Plot(const LimitResult& result)
       : result_(result),
         request_(result.request),
-        x_{std::min(request_.from, request_.to), std::max(request_.from, request_.to), left, width - right},
-        y_{range().first, range().second, height - bottom, top} {}
+        x_{std::min(request_.from, request_.to), std::max(request_.from, request_.to), Chart::left,
+           Chart::width - Chart::right},
+        y_{range().first, range().second, Chart::height - Chart::bottom, Chart::top} {}
 
   [[nodiscard]] std::string draw() const {
     const Measure& m = measures()[find_measure(request_.criterion.measure).value()];
     std::string svg = fmt::format(
         "<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{} of every trial over "
         "{}\">",
-        width, height, escaped(m.title), escaped(request_.key));
+        Chart::width, Chart::height, escaped(m.title), escaped(request_.key));
     for (const RealizationLimit& limit : result_.realizations) svg += bracket(limit);
     svg += axes(escaped(m.title + (m.unit.empty() ? "" : ", " + m.unit)));
     for (const RealizationLimit& limit : result_.realizations)
@@ -123,7 +127,7 @@ class Plot {
         "text-anchor=\"end\">{6:.5g}</text>"
         "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
         x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
-        height - 8.0, escaped(request_.key));
+        Chart::height - 8.0, escaped(request_.key));
     svg += fmt::format(
         "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">{6:.3g}</text><text x=\"{0:.0f}\" "
         "y=\"{2:.0f}\" "
