@@ -213,6 +213,19 @@ bool has_counts(const RunState& state) {
          std::isfinite(state.wall_time);
 }
 
+bool is_at_a_stage(const RunState& state, const RunSetup& setup) {
+  return state.stage >= 0 && at(state.stage) <= setup.stages.size() &&
+         state.record.stages.size() == at(state.stage) &&
+         (at(state.stage) < setup.stages.size() || state.stage_step == 0);
+}
+
+bool are_records(const RunState& state, const RunSetup& setup, std::size_t blocks) {
+  for (std::size_t k = 0; k < state.record.stages.size(); ++k) {
+    if (!is_record(state.record.stages[k], setup.stages[k], setup, blocks)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string mistake_in_orders(const OrderControl::Memory& memory, const RunSetup& setup, const Model& model) {
@@ -231,10 +244,7 @@ std::string mistake_in_orders(const OrderControl::Memory& memory, const RunSetup
 
 std::string mistake_in_state(const RunState& state, const RunSetup& setup, const Model& model) {
   const std::size_t blocks = model.blocks.size();
-  if (state.stage < 0 || at(state.stage) > setup.stages.size() ||
-      state.record.stages.size() != at(state.stage) ||
-      (at(state.stage) == setup.stages.size() && state.stage_step != 0))
-    return "another number of stages";
+  if (!is_at_a_stage(state, setup)) return "another number of stages";
   if (!has_counts(state)) return "counts of steps that cannot be";
   if (!has_sizes(state.mechanics, model) || state.present.size() != blocks || !are_flags(state.present))
     return "a state of other blocks";
@@ -247,9 +257,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";
   if (!is_still(state.still, model)) return "places of other vertices";
-  for (std::size_t k = 0; k < state.record.stages.size(); ++k)
-    if (!is_record(state.record.stages[k], setup.stages[k], setup, blocks))
-      return "stages that are not of this run";
+  if (!are_records(state, setup, blocks)) return "stages that are not of this run";
   const OverlapRecord& overlap = state.record.max_overlap;
   const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
   return is_known(overlap.block_a) && is_known(overlap.block_b) ? "" : "an overlap of unknown blocks";
