@@ -50,9 +50,9 @@ RunSetup ground(Sides sides = Sides::free_field) {
   return setup;
 }
 
-RunRecord ground_run(const RunSetup& setup, RunOptions options = {}) {
+RunRecord ground_run(const RunSetup& setup, const RunOptions& options = {}) {
   RunObserver nobody;
-  return run(setup, std::move(options), nobody);
+  return run(setup, options, nobody);
 }
 
 TEST(SeismicBoundary, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
