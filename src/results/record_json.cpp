@@ -167,22 +167,29 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+/// What the scenario says of a stage.
+static simulation::Stage read_given_stage(const ordered_json& json) {
+  simulation::Stage stage;
+  json.at("name").get_to(stage.name);
+  for (const auto& [kind, name] : kinds) {
+    if (json.at("kind") == name) stage.kind = kind;
+  }
+  json.at("excavate").get_to(stage.excavate);
+  json.at("motion_index").get_to(stage.motion);
+  stage.scale = number(json.at("scale"));
+  stage.duration = optional_number(json.at("given_duration"));
+  if (!json.at("max_steps").is_null()) stage.max_steps = json.at("max_steps").get<int>();
+  stage.tolerance = number(json.at("tolerance"));
+  return stage;
+}
+
 StageLine read_stage_json(const std::string& text) {
   return parsed(text, [](const ordered_json& json) {
     StageLine line;
     json.at("index").get_to(line.index);
     json.at("ended").get_to(line.ended);
     simulation::StageRecord& r = line.stage;
-    json.at("name").get_to(r.stage.name);
-    for (const auto& [kind, name] : kinds) {
-      if (json.at("kind") == name) r.stage.kind = kind;
-    }
-    json.at("excavate").get_to(r.stage.excavate);
-    json.at("motion_index").get_to(r.stage.motion);
-    r.stage.scale = number(json.at("scale"));
-    r.stage.duration = optional_number(json.at("given_duration"));
-    if (!json.at("max_steps").is_null()) r.stage.max_steps = json.at("max_steps").get<int>();
-    r.stage.tolerance = number(json.at("tolerance"));
+    r.stage = read_given_stage(json);
     json.at("steps").get_to(r.steps);
     r.start_time = number(json.at("start_time"));
     r.duration = number(json.at("duration"));
