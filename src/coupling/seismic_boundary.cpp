@@ -14,7 +14,8 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr std::size_t numbers_of_point = 6, motion_begin = 1;
+/// Of the memory: the kind of the last step, then its numbers of each point.
+constexpr std::size_t points_begin = 1, numbers_of_point = 6;
 
 Vec2 by_axis(Vec2 a, Vec2 b) {
   return {a.x * b.x, a.y * b.y};
@@ -44,7 +45,7 @@ std::size_t size_of(const RockColumn& column) {
 /// The memory of the far rock with this number.
 template <typename Numbers>
 Numbers memory_of(std::span<const FarRock> far, std::size_t points, Numbers memory, std::size_t k) {
-  std::size_t begin = motion_begin + numbers_of_point * points;
+  std::size_t begin = points_begin + numbers_of_point * points;
   for (std::size_t i = 0; i < k; ++i) begin += size_of(far[i].column);
   return memory.subspan(begin, size_of(far[k].column));
 }
@@ -66,11 +67,11 @@ struct SeismicBoundary::PointMemory {
   Vec2 traction;  ///< Pa, at the end of the last step
 
   static PointMemory read(std::span<const double> memory, std::size_t k) {
-    const double* m = &memory[motion_begin + numbers_of_point * k];
+    const double* m = &memory[points_begin + numbers_of_point * k];
     return {{m[0], m[1]}, {m[2], m[3]}, {m[4], m[5]}};
   }
   void write(std::span<double> memory, std::size_t k) const {
-    double* m = &memory[motion_begin + numbers_of_point * k];
+    double* m = &memory[points_begin + numbers_of_point * k];
     m[0] = anchor.x, m[1] = anchor.y;
     m[2] = offset.x, m[3] = offset.y;
     m[4] = traction.x, m[5] = traction.y;
@@ -179,7 +180,7 @@ class SeismicBoundary::Step {
 };
 
 std::size_t SeismicBoundary::memory_size() const {
-  std::size_t size = motion_begin + numbers_of_point * points_.size();
+  std::size_t size = points_begin + numbers_of_point * points_.size();
   for (const FarRock& far : far_) size += size_of(far.column);
   return size;
 }

@@ -16,6 +16,7 @@
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
 #include "scenario/stage_steps.h"
+#include "simulation/build_boundary.h"
 #include "simulation/feasibility.h"
 #include "simulation/history_block.h"
 #include "simulation/spring_blocks.h"
@@ -200,25 +201,8 @@ void check_size(const Scenario& scenario, const std::vector<BlockProperties>& pr
   }
 }
 
-double top_of(const Scenario& scenario, const cutting::BlockSystem& system) {
-  if (scenario.domain) return scenario.domain->y.second - system.origin.y;
-  Box box;
-  for (const cutting::CutBlock& block : system.blocks) box.add(bounds(block.polygon));
-  return box.max.y;
-}
-
-}  // namespace
-
-RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel& blocks,
-                     std::vector<std::string>* warnings) {
-  std::vector<std::string> notes = plausibility_warnings(scenario);
-  if (scenario.stages.empty()) fail(scenario, "stage", "nothing", "at least one [[stage]]");
-  RunSetup setup;
-  setup.title = scenario.title;
-  setup.seed = scenario.seed;
-  setup.realization = realization;
-  setup.scenario = scenario.text;
-
+/// The blocks, what they are made of, and the openings.
+void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& setup) {
   setup.system = blocks.system;
   const Vec2 origin = setup.system.origin;
   setup.properties = properties_of(scenario, setup.system);
@@ -239,10 +223,46 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
     const ExcavationSpec& spec = scenario.excavations[k];
     setup.excavations.push_back({spec.name, std::move(outline), pressure_of(scenario, spec)});
   }
+}
 
+/// What the setup as a whole shows.
+void add_setup_warnings(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
+  add_shaking_warnings(scenario, setup.motions, notes);
+  add_boundary_warnings(scenario, setup, notes);
+  if (const simulation::JointClosure soft = simulation::largest_closure(setup);
+      soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
+    notes.push_back(fmt::format(
+        "joints of normal_stiffness = {:.4g} Pa/m are soft: weight or stress of {:.3g} Pa closes "
+        "them by {:.2g} m, {:.2g} % of the block size; blocks that still sink may be called falling",
+        soft.stiffness, soft.stress, soft.closure, 100.0 * soft.share()));
+  }
+  if (const auto reason = closure_is_lower_bound(scenario, setup)) {
+    setup.closure_is_lower_bound = true;
+    if (!scenario.accepted.order_1)
+      notes.push_back(
+          fmt::format("rock.order{}: {}; the closure of the opening and the stress at its wall come out "
+                      "too small; order = \"auto\" or 2 lets blocks bend",
+                      place_text(scenario, "rock.order"), *reason));
+  }
+}
+
+}  // namespace
+
+RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel& blocks,
+                     std::vector<std::string>* warnings) {
+  std::vector<std::string> notes = plausibility_warnings(scenario);
+  if (scenario.stages.empty()) fail(scenario, "stage", "nothing", "at least one [[stage]]");
+  RunSetup setup;
+  setup.title = scenario.title;
+  setup.seed = scenario.seed;
+  setup.realization = realization;
+  setup.scenario = scenario.text;
+
+  place_rock(scenario, blocks, setup);
+  const Vec2 origin = setup.system.origin;
   setup.boundary = boundary_of(scenario, setup.joints, origin.y);
   setup.gravity = scenario.gravity;
-  setup.in_situ = in_situ_stress(scenario, top_of(scenario, setup.system));
+  setup.in_situ = in_situ_stress(scenario, simulation::boundary_box(setup).max.y);
   setup.time_step = scenario.time_step;
   setup.motions = read_motions(scenario, notes);
   take_to_outcrop(scenario, setup.motions);
@@ -263,23 +283,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.automatic_order = scenario.automatic;
   setup.solver = scenario.solver;
   add_block_warnings(scenario, blocks, notes);
-  add_shaking_warnings(scenario, setup.motions, notes);
-  add_boundary_warnings(scenario, setup, notes);
-  if (const simulation::JointClosure soft = simulation::largest_closure(setup);
-      soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
-    notes.push_back(fmt::format(
-        "joints of normal_stiffness = {:.4g} Pa/m are soft: weight or stress of {:.3g} Pa closes "
-        "them by {:.2g} m, {:.2g} % of the block size; blocks that still sink may be called falling",
-        soft.stiffness, soft.stress, soft.closure, 100.0 * soft.share()));
-  }
-  if (const auto reason = closure_is_lower_bound(scenario, setup)) {
-    setup.closure_is_lower_bound = true;
-    if (!scenario.accepted.order_1)
-      notes.push_back(
-          fmt::format("rock.order{}: {}; the closure of the opening and the stress at its wall come out "
-                      "too small; order = \"auto\" or 2 lets blocks bend",
-                      place_text(scenario, "rock.order"), *reason));
-  }
+  add_setup_warnings(scenario, setup, notes);
   if (warnings != nullptr) {
     add_overlap_warnings(scenario, setup.system, notes);
     warnings->insert(warnings->end(), notes.begin(), notes.end());

@@ -22,8 +22,8 @@ bool move_alike(std::span<const FixedMotion> fixed);
 /// m and m/s: how the ground would move at a place, before the run, if the model were not there. Zero without a seismic boundary.
 dynamics::GroundMove far_ground(const dynamics::Model& model, const dynamics::State& state, Vec2 place);
 
-/// What damage is counted against: the ground far away where there is a seismic boundary; else the fixed blocks, where all of them make one motion. Where they do not, there is no common base, and
-/// damage is counted in space. So it is without fixed blocks.
+/// What damage is counted against: the fixed blocks that are moved, where all fixed blocks make one motion; else the ground far away. Where
+/// there is neither, damage is counted in space.
 class Base {
  public:
   Base(const RunSetup& setup, const dynamics::Model& model);

@@ -66,60 +66,80 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.motion);
 }
 
+template <typename Archive, typename StateOrConst>
+void transfer_mechanics(Archive& archive, StateOrConst& s) {
+  archive(s.time);
+  archive(s.step);
+  archive(s.last_step);
+  archive(s.position);
+  archive(s.velocity);
+  archive(s.acceleration);
+  archive(s.force);
+  archive(s.acceleration_known);
+  archive(s.moved);
+  archive(s.contacts.pairs);
+  archive(s.contacts.tracked);
+  archive(s.contacts.memory);
+  archive(s.pattern);
+  archive(s.couplings);
+  archive(s.walls.forces);
+  archive(s.walls.released);
+  archive(s.walls.pressure);
+  archive(s.walls.left);
+  archive(s.ledger);
+  archive(s.contact_energy);
+  archive(s.support_energy);
+}
+
+template <typename Archive, typename MemoryOrConst>
+void transfer_opening(Archive& archive, MemoryOrConst& s) {
+  archive(s.part);
+  archive(s.before);
+  archive(s.start);
+  archive(s.points);
+}
+
+template <typename Archive, typename MemoryOrConst>
+void transfer_damage(Archive& archive, MemoryOrConst& s) {
+  archive(s.reference.open);
+  archive(s.reference.start);
+  archive(s.reference.turn);
+  archive(s.reference.base);
+  archive(s.reference.height);
+  archive(s.reference.width);
+  archive(s.pieces);
+}
+
+template <typename Archive, typename MemoryOrConst>
+void transfer_settler(Archive& archive, MemoryOrConst& s) {
+  archive(s.time_step);
+  archive(s.creep);
+  archive(s.steps);
+  archive(s.quiet_steps);
+  archive(s.first_ratio);
+  archive(s.worst_ratio);
+  archive(s.best_predicted);
+  archive(s.since_best);
+  archive(s.wait);
+  archive(s.trial_acceleration);
+  archive(s.inertia_scale);
+  archive(s.blocks.travel);
+  archive(s.blocks.nearest);
+  archive(s.blocks.carried);
+  archive(s.blocks.astray);
+  archive(s.blocks.state);
+  archive(s.blocks.candidates);
+}
+
 template <typename Archive, typename RunStateOrConst>
 void transfer(Archive& archive, RunStateOrConst& s) {
-  archive(s.mechanics.time);
-  archive(s.mechanics.step);
-  archive(s.mechanics.last_step);
-  archive(s.mechanics.position);
-  archive(s.mechanics.velocity);
-  archive(s.mechanics.acceleration);
-  archive(s.mechanics.force);
-  archive(s.mechanics.acceleration_known);
-  archive(s.mechanics.moved);
-  archive(s.mechanics.contacts.pairs);
-  archive(s.mechanics.contacts.tracked);
-  archive(s.mechanics.contacts.memory);
-  archive(s.mechanics.pattern);
-  archive(s.mechanics.couplings);
-  archive(s.mechanics.walls.forces);
-  archive(s.mechanics.walls.released);
-  archive(s.mechanics.walls.pressure);
-  archive(s.mechanics.walls.left);
-  archive(s.mechanics.ledger);
-  archive(s.mechanics.contact_energy);
-  archive(s.mechanics.support_energy);
+  transfer_mechanics(archive, s.mechanics);
   archive(s.present);
   archive(s.orders.orders);
   archive(s.orders.lowered);
-  archive(s.opening.part);
-  archive(s.opening.before);
-  archive(s.opening.start);
-  archive(s.opening.points);
-  archive(s.damage.reference.open);
-  archive(s.damage.reference.start);
-  archive(s.damage.reference.turn);
-  archive(s.damage.reference.base);
-  archive(s.damage.reference.height);
-  archive(s.damage.reference.width);
-  archive(s.damage.pieces);
-  archive(s.settler.time_step);
-  archive(s.settler.creep);
-  archive(s.settler.steps);
-  archive(s.settler.quiet_steps);
-  archive(s.settler.first_ratio);
-  archive(s.settler.worst_ratio);
-  archive(s.settler.best_predicted);
-  archive(s.settler.since_best);
-  archive(s.settler.wait);
-  archive(s.settler.trial_acceleration);
-  archive(s.settler.inertia_scale);
-  archive(s.settler.blocks.travel);
-  archive(s.settler.blocks.nearest);
-  archive(s.settler.blocks.carried);
-  archive(s.settler.blocks.astray);
-  archive(s.settler.blocks.state);
-  archive(s.settler.blocks.candidates);
+  transfer_opening(archive, s.opening);
+  transfer_damage(archive, s.damage);
+  transfer_settler(archive, s.settler);
   archive(s.still.since);
   archive(s.still.places);
   archive(s.stage);

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/folder.h"
 #include "core/read_file.h"
+#include "core/xml_text.h"
 #include "simulation/standing.h"
 #include "study/limit_search.h"
 #include "study/measures.h"
@@ -37,32 +38,9 @@ table{border-collapse:collapse}td,th{padding:3px 12px 3px 0;text-align:right;bor
 .drawings{display:flex;flex-wrap:wrap;gap:16px}figure{margin:0;width:300px}figure svg{width:100%;height:auto}figcaption{font-size:.9em}
 </style>)";
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string paragraphs(const std::string& text) {
   std::string out = "<p class=\"answer\">";
-  for (const char c : escaped(text)) out += c == '\n' ? std::string("<br>") : std::string(1, c);
+  for (const char c : xml_text(text)) out += c == '\n' ? std::string("<br>") : std::string(1, c);
   return out + "</p>";
 }
 
@@ -86,9 +64,9 @@ class Plot {
     std::string svg = fmt::format(
         "<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{} of every trial over "
         "{}\">",
-        Chart::width, Chart::height, escaped(m.title), escaped(request_.key));
+        Chart::width, Chart::height, xml_text(m.title), xml_text(request_.key));
     for (const RealizationLimit& limit : result_.realizations) svg += bracket(limit);
-    svg += axes(escaped(m.title + (m.unit.empty() ? "" : ", " + m.unit)));
+    svg += axes(xml_text(m.title + (m.unit.empty() ? "" : ", " + m.unit)));
     for (const RealizationLimit& limit : result_.realizations)
       for (const LimitTrial& trial : limit.trials) svg += point(limit, trial);
     return svg +
@@ -127,7 +105,7 @@ class Plot {
         "text-anchor=\"end\">{6:.5g}</text>"
         "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
         x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
-        Chart::height - 8.0, escaped(request_.key));
+        Chart::height - 8.0, xml_text(request_.key));
     svg += fmt::format(
         "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">{6:.3g}</text><text x=\"{0:.0f}\" "
         "y=\"{2:.0f}\" "
@@ -158,8 +136,8 @@ class Plot {
 std::string link_to(const fs::path& directory, const LimitTrial& trial, const std::string& text) {
   std::error_code none;
   const std::string page = "runs/" + trial.run + "/report.html";
-  if (!fs::exists(directory / page, none)) return escaped(text);
-  return fmt::format("<a href=\"{}\">{}</a>", page, escaped(text));
+  if (!fs::exists(directory / page, none)) return xml_text(text);
+  return fmt::format("<a href=\"{}\">{}</a>", page, xml_text(text));
 }
 
 std::string drawing_of(const fs::path& directory, const LimitTrial& trial) {
@@ -200,7 +178,7 @@ std::string trial_table(const fs::path& directory, const LimitResult& result) {
       "<section><h2>Trials, in the order of the "
       "bisection</h2><table><tr><th>realization</th><th>{}</th><th>{}</th>"
       "<th>at the end it</th><th>criterion met</th><th>run</th></tr>{}</table></section>",
-      escaped(result.request.key), escaped(result.request.criterion.measure), rows);
+      xml_text(result.request.key), xml_text(result.request.criterion.measure), rows);
 }
 
 }  // namespace
@@ -212,9 +190,10 @@ std::string limit_page(const fs::path& directory, const LimitResult& result) {
       "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{4}"
       "</section>{5}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
-      escaped(result.title.empty() ? result.scenario : result.title), page_style, escaped(result.request.key),
-      paragraphs(limit_text(result)), Plot(result).draw(), drawings(directory, result),
-      trial_table(directory, result), escaped(result.version), escaped(result.scenario), result.seed);
+      xml_text(result.title.empty() ? result.scenario : result.title), page_style,
+      xml_text(result.request.key), paragraphs(limit_text(result)), Plot(result).draw(),
+      drawings(directory, result), trial_table(directory, result), xml_text(result.version),
+      xml_text(result.scenario), result.seed);
 }
 
 }  // namespace keyblock::study

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "../fresh_folder.h"
+#include "../resumed_run.h"
 #include "../scene.h"
 #include "simulation/run.h"
 
@@ -95,15 +95,8 @@ TEST(PrescribedMotion, ResumedRunsEndInTheSameBits) {
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
 
-  const FreshFolder folder;
   Stopper stopper(2500);
-  RunOptions options;
-  options.directory = folder;
-  options.stop = &stopper.stop;
-  EXPECT_TRUE(run(setup, options, stopper).interrupted);
-  options.stop = nullptr;
-  options.resume = true;
-  EXPECT_EQ(run(setup, options, nobody).state_hash, whole.state_hash);
+  EXPECT_EQ(resumed_run(setup, stopper).state_hash, whole.state_hash);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "../fresh_folder.h"
+#include "../resumed_run.h"
 #include "../scene.h"
 #include "core/error.h"
 #include "simulation/checkpoint.h"
@@ -292,18 +293,11 @@ struct StopInRest final : RunObserver {
 
 // Of many contacts, the sum of their energies depends on its order.
 TEST(Run, AResumedRunHasTheSameEnergies) {
-  const FreshFolder folder;
   const RunSetup setup = shaken_wall();
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
   StopInRest stopper;
-  RunOptions options;
-  options.directory = folder;
-  options.stop = &stopper.stop;
-  EXPECT_TRUE(run(setup, options, stopper).interrupted);
-  options.stop = nullptr;
-  options.resume = true;
-  expect_equal_energies(run(setup, options, nobody).energy, whole.energy);
+  expect_equal_energies(resumed_run(setup, stopper).energy, whole.energy);
 }
 
 // Neither a checkpoint nor what begins from it may form them anew: sums depend on their order.

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "../fresh_folder.h"
+#include "../resumed_run.h"
 #include "../scene.h"
 #include "simulation/build_boundary.h"
+#include "simulation/runner.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -61,15 +62,8 @@ TEST(SeismicBoundary, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
   RunOptions two;
   two.threads = 2;
   EXPECT_EQ(ground_run(setup, two).state_hash, whole.state_hash);
-  const FreshFolder folder;
   Stopper stopper(whole.stages[0].steps + 250);
-  RunOptions options;
-  options.directory = folder;
-  options.stop = &stopper.stop;
-  EXPECT_TRUE(run(setup, options, stopper).interrupted);
-  options.stop = nullptr;
-  options.resume = true;
-  const RunRecord resumed = ground_run(setup, options);
+  const RunRecord resumed = resumed_run(setup, stopper);
   EXPECT_EQ(resumed.state_hash, whole.state_hash);
   EXPECT_EQ(resumed.energy.radiated, whole.energy.radiated);
 }
@@ -120,7 +114,7 @@ TEST(SeismicBoundary, ComesBackToRest) {
   EXPECT_LT(fastest, 1e-5);
 }
 
-// Blocks of the frame's kind are not boundary, nor are edges within the model; a column reaches up to the ground of its side.
+// Edges within the model are no boundary; a column of far rock reaches up to the ground of its side.
 TEST(SeismicBoundary, StandsOnTheSidesOfTheModel) {
   RunSetup setup = ground();
   setup.system.blocks.erase(setup.system.blocks.begin() + 19);  // at the upper right
