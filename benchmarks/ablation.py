@@ -21,7 +21,7 @@ import bench
 import scenes
 
 NAMES = ["kept-factor", "low-rank-update", "followed-bounds", "local-solve", "increment-history", "earlier-attempt",
-         "early-impacts", "steady-pairs", "single-precision"]
+         "steady-pairs", "single-precision"]
 
 
 def processor_seconds(keyblock, scene, arguments):

@@ -23,7 +23,6 @@ struct Accelerators {
       true;  ///< a step begins where the last increments lead to (dynamics::IncrementHistory)
   bool earlier_attempt =
       true;  ///< an attempt begins with the springs of the attempt before it (dynamics::EarlierAttempt)
-  bool early_impacts = true;  ///< impacts are looked for before the bounds of friction are found
   bool steady_pairs = true;   ///< pairs of blocks that hardly moved keep their contacts (contact::Detection)
   bool single_precision = true;  ///< factors in single precision where that is enough
 };
@@ -36,7 +35,6 @@ inline constexpr std::pair<const char*, bool Accelerators::*> accelerator_names[
     {"local-solve", &Accelerators::local_solve},
     {"increment-history", &Accelerators::increment_history},
     {"earlier-attempt", &Accelerators::earlier_attempt},
-    {"early-impacts", &Accelerators::early_impacts},
     {"steady-pairs", &Accelerators::steady_pairs},
     {"single-precision", &Accelerators::single_precision},
 };
