@@ -21,12 +21,17 @@ def velocity(t):
     return PEAK * (t - MIDDLE) * math.exp(-((math.pi * FREQUENCY * (t - MIDDLE)) ** 2))
 
 
-def surface(t, height, density, speed, below, speed_below):
+def displacement(t):
+    """Its integral in turn."""
+    return -PEAK / (2 * (math.pi * FREQUENCY) ** 2) * math.exp(-((math.pi * FREQUENCY * (t - MIDDLE)) ** 2))
+
+
+def surface(t, height, density, speed, below, speed_below, of_outcrop=velocity):
     """Velocity of the top of a layer on a half-space, whose outcrop moves with velocity(t): a wave enters the layer, is doubled at the top
     and comes back from the half-space again and again. below = inf: it rests on a rigid base that moves so."""
     ratio = 0.0 if below == math.inf else density * speed / (below * speed_below)
     enters, back = 2 / (1 + ratio), (ratio - 1) / (ratio + 1)
-    return sum(enters * back**k * velocity(t - (2 * k + 1) * height / speed) for k in range(200))
+    return sum(enters * back**k * of_outcrop(t - (2 * k + 1) * height / speed) for k in range(200))
 
 
 def motion(axis, step=0.002, last=1.3):
@@ -104,11 +109,16 @@ its sides moves as one column; with rock at rest at its sides it does not. Rock 
             half_space = f"density = {number(below)}\nvs = {number(speed_below if axis == 'x' else speed_below / 2)}\n"
             half_space += f"vp = {number(speed_below if axis == 'y' else 2 * speed_below)}"
             sides = "free-field" if axis == "x" else "roller"
-            column(scenario, axis, height, density, speed, f'sides = "{sides}"\n{half_space}', motion(axis) + SHAKE)
+            absolute = f'\n[[history]]\nname = "absolute"\nblock = "b{height - 1}"\npoint = [0.5, {number(height)}]\nframe = "absolute"\n'
+            column(scenario, axis, height, density, speed, f'sides = "{sides}"\n{half_space}', motion(axis) + absolute + SHAKE)
             text += f'\n[[run]]\nname = "{scenario}"\nscenario = "scenarios/column_{scenario.replace(" ", "_")}.toml"\n'
             for t in (0.45, 0.5, 0.6, 0.7):
                 known = surface(t, height, density, speed, below, speed_below) - velocity(t)
                 text += quantity(f"velocity of the top against the outcrop at {t} s", f"at('top.v{axis}', {t})", "m/s", expected=float(f"{known:.9g}"), absolute_tolerance=2e-3)
+            known = surface(0.6, height, density, speed, below, speed_below)
+            text += quantity("its absolute velocity at 0.6 s", f"at('absolute.v{axis}', 0.6)", "m/s", expected=float(f"{known:.9g}"), absolute_tolerance=2e-3)
+            known = surface(0.6, height, density, speed, below, speed_below, displacement)
+            text += quantity("its absolute displacement at 0.6 s", f"at('absolute.u{axis}', 0.6)", "m", expected=float(f"{known:.9g}"), absolute_tolerance=5e-5)
             text += residual
     column("rigid base", "y", 40, 2400, 800, 'base = "rigid"\nsides = "roller"', motion("y") + SHAKE)
     text += '\n[[run]]\nname = "rigid base"\nscenario = "scenarios/column_rigid_base.toml"\n'

@@ -111,7 +111,9 @@ void BlockTerms::build_block(Size size, std::size_t i, const State& state, const
   std::fill(h, h + 2 * stride, 0.0);  // translation; the rest is written below
   inertia_[i] = drive.rule[i].inertia() / (drive.step * drive.step) * block.material.density *
                 (drive.is_static ? drive.inertia_scale[i] : 1.0);
-  viscous_[i] = drive.is_static ? 0.0 : 2.0 * model_->solver.rock_damping / (frequency_[i] * drive.step);
+  viscous_[i] = drive.is_static ? 0.0
+                                : 2.0 * model_->solver.rock_damping / (frequency_[i] * drive.step) +
+                                      stiffness_damping(*model_) / drive.step;
   const int m = size - 1;
   const double floor = floor_of(drive, inertia_[i]);
   if constexpr (std::is_same_v<Size, std::integral_constant<int, 6>>) {
@@ -197,6 +199,16 @@ void BlockTerms::add_spring(std::size_t b, int axis, std::span<const double> phi
     b_[block.first + at(2 * l + axis)] += force * phi[at(l)];
     for (int k = 0; k < block.size; ++k)
       h[(2 * l + axis) * stride + 2 * k + axis] += stiffness * phi[at(k)] * phi[at(l)];
+  }
+}
+
+void BlockTerms::add_drag(std::size_t b, double stiffness, std::span<const double> force) {
+  const Block& block = model_->blocks[b];
+  const int n = 2 * block.size, stride = linalg::padded_rows(n);
+  double* h = &h_[h_first_[b]];
+  for (int k = 0; k < n; ++k) {
+    h[k * stride + k] += stiffness;
+    b_[block.first + at(k)] += force[at(k)];
   }
 }
 

@@ -28,6 +28,9 @@ class BlockTerms {
   /// at D = 0, N per thickness. phi: the N basis functions at the point.
   void add_spring(std::size_t block, int axis, std::span<const double> phi, double stiffness, double force);
 
+  /// Adds the same stiffness, N/m per thickness and unit area, to all coefficients of a block, and the force that each has at D = 0.
+  void add_drag(std::size_t block, double stiffness, std::span<const double> force);
+
   /// Adds a force at a point of a block, N per thickness. phi: the N basis functions at the point.
   void add_force(std::size_t block, const double* phi, Vec2 force);
 

@@ -69,14 +69,18 @@ void build_springs(const Model& model, const State& state, const Drive& drive,
   const auto bonded =
       contact::lanes_where(contacts, [](const contact::Contact& c) { return c.memory.bonded; });
   const auto tensile = fused | (bonded & (law.tension > 0.0));
-  const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model.solver.contact_damping / drive.step);
+  const Lanes damping = broadcast(drive.is_static ? 0.0 : 2.0 * model.solver.contact_damping / drive.step),
+              viscous = broadcast(drive.is_static ? 0.0 : stiffness_damping(model) / drive.step);
+  const auto dashpot = [&](Lanes stiffness) {
+    return damping * square_root(stiffness * mass) + viscous * stiffness;
+  };
   const Lanes normal = memory.bounding_normal(),
               constant = law.cohesion + law.friction * (drive.owed_share * memory.owed());
   const Lanes bound =
       where(fused, broadcast(HUGE_VAL), contact::shear_strength(law.friction, normal, constant));
   const contact::SpringLanes spring(contact::SpringLanes::Constants{
-      law.normal_stiffness, law.shear_stiffness, damping * square_root(law.normal_stiffness * mass),
-      damping * square_root(law.shear_stiffness * mass), law.depth, memory.shear, bound, tensile});
+      law.normal_stiffness, law.shear_stiffness, dashpot(law.normal_stiffness), dashpot(law.shear_stiffness),
+      law.depth, memory.shear, bound, tensile});
   const std::size_t count = contacts.size();
   const auto keep = [&](std::vector<double>& numbers, Lanes v) {
     if (count == lane_count) return store(&numbers[first], v);

@@ -61,6 +61,10 @@ Vec2 RockLayer::impedance() const {
   return {std::sqrt(density * shear), std::sqrt(density * upright)};
 }
 
+Vec2 RockLayer::speeds() const {
+  return {std::sqrt(shear / density), std::sqrt(upright / density)};
+}
+
 const RockLayer& layer_at(std::span<const RockLayer> layers, double height) {
   std::size_t k = 0;
   while (k + 1 < layers.size() && height <= layers[k + 1].top) ++k;
@@ -68,8 +72,8 @@ const RockLayer& layer_at(std::span<const RockLayer> layers, double height) {
 }
 
 RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double ground,
-                       std::optional<Vec2> dashpots, double fastest)
-    : layers_(layers.begin(), layers.end()), dashpots_(dashpots) {
+                       std::optional<Vec2> dashpots, double fastest, double viscosity)
+    : layers_(layers.begin(), layers.end()), dashpots_(dashpots), viscosity_(viscosity) {
   height_.push_back(base);
   for (std::size_t k = layers_.size(); k-- > 0;) {
     const RockLayer& rock = layers_[k];
@@ -88,7 +92,7 @@ RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double gr
   }
 }
 
-/// M (c (D/Δt − v)/Δt − c_a a − c_F F) = −ρ a_frame − K (u + D) − C v′(D), see Integrator.
+/// M (c (D/Δt − v)/Δt − c_a a − c_F F) = −ρ a_frame − K (u + D + β D/Δt) − C v′(D), see Integrator.
 void RockColumn::step(std::span<const double> before, double dt, const Integrator& rule, Vec2 frame,
                       std::span<double> after) const {
   const std::size_t n = height_.size();
@@ -98,7 +102,8 @@ void RockColumn::step(std::span<const double> before, double dt, const Integrato
   Tridiagonal systems[] = {Tridiagonal(n), Tridiagonal(n)};
   for (const int axis : {0, 1}) {
     Tridiagonal& system = systems[axis];
-    assemble(before, coasting, at(axis), rule.inertia() / (dt * dt), along(frame, at(axis)), system);
+    assemble(before, coasting, at(axis), rule.inertia() / (dt * dt), 1.0 + viscosity_ / dt,
+             along(frame, at(axis)), system);
     if (dashpots_) {
       const double dashpot = along(*dashpots_, at(axis));
       system.diagonal[0] += dashpot * rule.end_velocity_share() / dt;
@@ -123,7 +128,7 @@ void RockColumn::step(std::span<const double> before, double dt, const Integrato
 
 /// What elements do: inertia, stiffness, and the body force in the acceleration of the frame.
 void RockColumn::assemble(std::span<const double> before, std::span<const Motion> coasting, std::size_t axis,
-                          double inertia, double frame, Tridiagonal& system) const {
+                          double inertia, double viscous, double frame, Tridiagonal& system) const {
   const std::size_t n = height_.size();
   const auto owed = [&](std::size_t k) { return -coasting[k].force[static_cast<int>(axis)]; };
   for (std::size_t e = 0; e + 1 < n; ++e) {
@@ -133,11 +138,11 @@ void RockColumn::assemble(std::span<const double> before, std::span<const Motion
                                      before[place(displacement, n, e) + axis]);
     for (const std::size_t k : {e, e + 1}) {
       const std::size_t other = k == e ? e + 1 : e;
-      system.diagonal[k] += own_mass * mass * inertia + stiffness;
+      system.diagonal[k] += own_mass * mass * inertia + viscous * stiffness;
       system.right[k] +=
           mass * (own_mass * owed(k) + shared_mass * owed(other) - 0.5 * frame) + (k == e ? pull : -pull);
     }
-    system.beside[e] = shared_mass * mass * inertia - stiffness;
+    system.beside[e] = shared_mass * mass * inertia - viscous * stiffness;
   }
 }
 
@@ -168,11 +173,20 @@ GroundMove RockColumn::motion(std::span<const double> memory, const Place& p) co
           at_place(memory.subspan(place(velocity, n, 0), 2 * n), p)};
 }
 
+std::vector<double> RockColumn::strained(std::span<const double> before, double dt,
+                                         std::span<const double> after) const {
+  const std::span<const double> from = displacements(before), to = displacements(after);
+  std::vector<double> of_nodes(to.begin(), to.end());
+  for (std::size_t k = 0; k < of_nodes.size() && viscosity_ > 0.0; ++k)
+    of_nodes[k] += viscosity_ / dt * (to[k] - from[k]);
+  return of_nodes;
+}
+
 /// Between the places where stress is known it is linear: τ and σ_yy are the same on both sides of a layer's end.
-RockColumn::Stress RockColumn::stress(std::span<const double> memory, const Place& p) const {
+RockColumn::Stress RockColumn::stress(std::span<const double> strained, const Place& p) const {
   const auto of_element = [&](std::size_t e) {
     const Vec2 strain =
-        (vector_at(memory, 2 * (e + 1)) - vector_at(memory, 2 * e)) / (height_[e + 1] - height_[e]);
+        (vector_at(strained, 2 * (e + 1)) - vector_at(strained, 2 * e)) / (height_[e + 1] - height_[e]);
     return Vec2{modulus_[0][e] * strain.x, modulus_[1][e] * strain.y};
   };
   const bool at_ground = p.stressed + 2 == height_.size();

@@ -25,6 +25,8 @@ struct RockLayer {
 
   /// Pa s/m: what a unit of velocity of a level face costs, horizontally (x) and vertically (y), where waves go up and down.
   [[nodiscard]] Vec2 impedance() const;
+  /// m/s, of waves that go up and down, by shear (x) and by compression (y).
+  [[nodiscard]] Vec2 speeds() const;
 };
 
 /// Of layers from above, the one at a height. The first one also holds above its top.
@@ -39,9 +41,9 @@ struct RockLayer {
 class RockColumn {
  public:
   /// Layers from above; the last one goes down to the base. dashpots: Pa s/m in x and y; none: it is fixed. fastest: Hz, for which elements
-  /// are short enough.
+  /// are short enough. viscosity: s, β of its stress G (γ + β ∂γ/∂t), and likewise of that by compression.
   RockColumn(std::span<const RockLayer> layers, double base, double ground, std::optional<Vec2> dashpots,
-             double fastest);
+             double fastest, double viscosity = 0.0);
 
   /// Numbers that its motion takes: those of rest are zero.
   [[nodiscard]] std::size_t memory_size() const { return 8 * height_.size(); }
@@ -68,7 +70,12 @@ class RockColumn {
       return {xx * normal.x + xy * normal.y, xy * normal.x + yy * normal.y};
     }
   };
-  [[nodiscard]] Stress stress(std::span<const double> memory, const Place& place) const;
+  /// Of what the column is strained by (strained()).
+  [[nodiscard]] Stress stress(std::span<const double> strained, const Place& place) const;
+  /// m, x and y of each node: displacements whose strain makes the stress at the end of a step of length dt from `before` to `after`,
+  /// u + β D/Δt.
+  [[nodiscard]] std::vector<double> strained(std::span<const double> before, double dt,
+                                             std::span<const double> after) const;
   /// m, x and y of each node.
   [[nodiscard]] std::span<const double> displacements(std::span<const double> memory) const {
     return memory.first(2 * height_.size());
@@ -79,13 +86,14 @@ class RockColumn {
  private:
   struct Tridiagonal;
   void assemble(std::span<const double> before, std::span<const Motion> coasting, std::size_t axis,
-                double inertia, double frame, Tridiagonal& system) const;
+                double inertia, double viscous, double frame, Tridiagonal& system) const;
 
   std::vector<RockLayer> layers_;
   std::vector<double> height_;                  ///< m, of nodes
   std::vector<double> density_;                 ///< kg/m³, of elements
   std::array<std::vector<double>, 2> modulus_;  ///< Pa, of elements, in x and in y
   std::optional<Vec2> dashpots_;
+  double viscosity_;  ///< s
 };
 
 }  // namespace keyblock::dynamics

@@ -105,10 +105,12 @@ class SeismicBoundary::Step {
     for (std::size_t k = 0; k < of_.far_.size(); ++k) {
       const RockColumn& column = of_.far_[k].column;
       const std::span<double> after = far_after(k);
+      const std::span<const double> before = memory_of(std::span(of_.far_), of_.points_.size(), memory_, k);
       if (drive_.is_static) {
         rest(column, after);
       } else {
-        column.step(after, drive_.step, Integrator::of(model_.solver), drive_.ground_acceleration, after);
+        column.step(before, drive_.step, Integrator::of(model_.solver), drive_.ground_acceleration, after);
+        strained_.push_back(column.strained(before, drive_.step, after));
       }
     }
     after_[0] = drive_.is_static ? 0.0 : 1.0;
@@ -143,9 +145,16 @@ class SeismicBoundary::Step {
     if (p.far < 0) return law;
     const RockColumn& column = of_.far_[at(p.far)].column;
     const std::span<const double> after = far_after(at(p.far));
-    law.dead += column.stress(after, p.in_far).on(p.normal);
+    law.dead += column.stress(strained_[at(p.far)], p.in_far).on(p.normal);
     law.velocity -= column.motion(after, p.in_far).velocity;
     return law;
+  }
+  /// m/s, of the rock far away where the points of damping are.
+  [[nodiscard]] std::vector<Vec2> far_velocities() const {
+    std::vector<Vec2> velocities;
+    if (drive_.is_static) return velocities;
+    for (const FarPlace& place : of_.damped_) velocities.push_back(of_.far_ground(after_, place).velocity);
+    return velocities;
   }
   /// The memory after the step, except for what the points have.
   [[nodiscard]] std::span<double> after() { return after_; }
@@ -177,7 +186,15 @@ class SeismicBoundary::Step {
   const Drive& drive_;
   std::span<const double> memory_;
   std::vector<double> after_;
+  std::vector<std::vector<double>> strained_;  ///< RockColumn::strained of each column, in a dynamic step
 };
+
+SeismicBoundary::SeismicBoundary(std::vector<BoundaryPoint> points, std::vector<FarRock> far,
+                                 std::optional<MassDamping> damping)
+    : points_(std::move(points)), far_(std::move(far)), damping_(std::move(damping)) {
+  if (!damping_ || far_.empty()) return;
+  for (const MassPoint& point : damping_->points()) damped_.push_back(far_place(point.place));
+}
 
 std::size_t SeismicBoundary::memory_size() const {
   std::size_t size = points_begin + numbers_of_point * points_.size();
@@ -197,6 +214,7 @@ void SeismicBoundary::add_terms(const Model& model, const State& state, const Dr
     terms.add_spring(b, 0, p.point.phi, stiffness.x, force.x);
     terms.add_spring(b, 1, p.point.phi, stiffness.y, force.y);
   }
+  if (damping_) damping_->add_terms(model, state, drive, step.far_velocities(), terms);
 }
 
 CouplingTotals SeismicBoundary::account(const Attempt& attempt, std::span<const double> spin,
@@ -223,6 +241,7 @@ CouplingTotals SeismicBoundary::account(const Attempt& attempt, std::span<const 
     m.traction = law.traction(d) - p.traction;
     m.write(step.after(), k);
   }
+  if (damping_) damping_->account(attempt, spin, step.far_velocities(), state);
   std::copy(step.after().begin(), step.after().end(), memory.begin());
   return {};
 }
@@ -245,21 +264,30 @@ double SeismicBoundary::stored_energy(const Model& model, const State& state, do
   return sum;
 }
 
+FarPlace SeismicBoundary::far_place(Vec2 place) const {
+  const FarRock &left = far_.front(), &right = far_.back();
+  FarPlace p{left.column.place_of(place.y), right.column.place_of(place.y)};
+  if (far_.size() > 1) p.share = std::clamp((place.x - left.x) / (right.x - left.x), 0.0, 1.0);
+  return p;
+}
+
 GroundMove SeismicBoundary::far_ground(std::span<const double> memory, Vec2 place) const {
-  const auto move = [&](std::size_t k) -> GroundMove {
+  return far_.empty() ? GroundMove{} : far_ground(memory, far_place(place));
+}
+
+GroundMove SeismicBoundary::far_ground(std::span<const double> memory, const FarPlace& place) const {
+  const auto move = [&](std::size_t k, const RockColumn::Place& at_height) -> GroundMove {
     const RockColumn& column = far_[k].column;
     const std::span<const double> of_column = memory_of(std::span(far_), points_.size(), memory, k);
-    const RockColumn::Place at_height = column.place_of(place.y);
     const GroundMove now = column.motion(of_column, at_height);
     const Vec2 before = column.at_place(of_column.subspan(column.memory_size()), at_height);
     return {now.displacement + before, now.velocity};
   };
-  if (far_.empty()) return {};
-  const GroundMove left = move(0);
+  const GroundMove left = move(0, place.left);
   if (far_.size() == 1) return left;
-  const GroundMove right = move(far_.size() - 1);
-  const double share = std::clamp((place.x - far_.front().x) / (far_.back().x - far_.front().x), 0.0, 1.0);
-  return {lerp(left.displacement, right.displacement, share), lerp(left.velocity, right.velocity, share)};
+  const GroundMove right = move(far_.size() - 1, place.right);
+  return {lerp(left.displacement, right.displacement, place.share),
+          lerp(left.velocity, right.velocity, place.share)};
 }
 
 void SeismicBoundary::add_held_blocks(std::vector<int>& blocks) const {

@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "coupling/coupling.h"
+#include "coupling/mass_damping.h"
 #include "coupling/rock_column.h"
 
 namespace keyblock::dynamics {
@@ -27,6 +29,12 @@ struct FarRock {
   double x = 0.0;  ///< m, of the side of the model that it is beside
 };
 
+/// A place among columns of rock far away: between what the outer two do at its height.
+struct FarPlace {
+  RockColumn::Place left, right;
+  double share = 0.0;  ///< of the right one
+};
+
 /// The rock beyond the boundary of the model (docs/theory.md, section "Seismic boundaries"): a coupling of single blocks with the ground, by
 /// terms. The traction at a point, with u its displacement, v′ its velocity at the end of a step, and C its dashpots, is
 ///
@@ -35,14 +43,14 @@ struct FarRock {
 ///
 /// From one kind to the other, t_0 is the traction of the last static step, and (t_a, u_a) are the traction and the displacement of the last
 /// dynamic one: forces and positions go on as they were. σ_far and v_far are those of a column of rock far away (RockColumn), which knows
-/// nothing of the model. They are zero where the dynamic steps begin.
+/// nothing of the model. They are zero where the dynamic steps begin. Damping in proportion to mass acts against the motion of that rock.
 ///
 /// Memory: which kind the last step was; of each point u_a, t_a or t_0 (less the traction before the run), and the traction; of each column
 /// its motion, and the displacement that it had when the dynamic steps began.
 class SeismicBoundary final : public Coupling {
  public:
-  SeismicBoundary(std::vector<BoundaryPoint> points, std::vector<FarRock> far)
-      : points_(std::move(points)), far_(std::move(far)) {}
+  SeismicBoundary(std::vector<BoundaryPoint> points, std::vector<FarRock> far,
+                  std::optional<MassDamping> damping = {});
 
   [[nodiscard]] std::size_t memory_size() const override;
   void add_terms(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
@@ -66,9 +74,13 @@ class SeismicBoundary final : public Coupling {
   /// J per thickness, in the springs of a point.
   [[nodiscard]] double stored(const Model& model, const State& state, const PointMemory& memory,
                               std::size_t k) const;
+  [[nodiscard]] FarPlace far_place(Vec2 place) const;
+  [[nodiscard]] GroundMove far_ground(std::span<const double> memory, const FarPlace& place) const;
 
   std::vector<BoundaryPoint> points_;
   std::vector<FarRock> far_;  ///< from left to right
+  std::optional<MassDamping> damping_;
+  std::vector<FarPlace> damped_;  ///< where its points are; empty without rock far away
 };
 
 }  // namespace keyblock::dynamics

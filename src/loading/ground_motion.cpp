@@ -13,9 +13,11 @@ GroundMotion::GroundMotion(std::string name, std::vector<double> time, std::vect
     throw std::invalid_argument("GroundMotion: times must ascend from 0, one acceleration each");
   }
   integral_.resize(time_.size());
+  way_.resize(time_.size());
   for (std::size_t k = 1; k < time_.size(); ++k) {
     const double half_step = 0.5 * (time_[k] - time_[k - 1]);
     integral_[k] = integral_[k - 1] + half_step * (acceleration_[k - 1] + acceleration_[k]);
+    way_[k] = way_[k - 1] + way_from(k - 1, time_[k] - time_[k - 1], acceleration_[k]);
   }
 }
 
@@ -45,6 +47,23 @@ Vec2 GroundMotion::mean(double t0, double t1) const {
   const Vec2 head = 0.5 * (time_[first] - begin) * (a + acceleration_[first]);
   const Vec2 tail = 0.5 * (end - time_[last - 1]) * (acceleration_[last - 1] + b);
   return (head + (integral_[last - 1] - integral_[first]) + tail) / (t1 - t0);
+}
+
+/// m, in a time from sample k on, at whose end the acceleration is `last`.
+Vec2 GroundMotion::way_from(std::size_t k, double time, Vec2 last) const {
+  return time * (integral_[k] + time / 6.0 * (2.0 * acceleration_[k] + last));
+}
+
+Vec2 GroundMotion::velocity(double time) const {
+  return time > 0.0 ? time * mean(0.0, time) : Vec2{};
+}
+
+Vec2 GroundMotion::displacement(double time) const {
+  if (time_.empty() || time <= 0.0) return {};
+  if (time >= time_.back()) return way_.back() + (time - time_.back()) * integral_.back();
+  const auto k =
+      static_cast<std::size_t>(std::upper_bound(time_.begin(), time_.end(), time) - time_.begin()) - 1;
+  return way_[k] + way_from(k, time - time_[k], at(time));
 }
 
 double GroundMotion::peak() const {

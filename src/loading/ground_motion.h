@@ -18,16 +18,22 @@ class GroundMotion {
   [[nodiscard]] Vec2 at(double time) const;
   /// Mean over [t0, t1], exact for the piecewise linear function: a step driven by it gains the exact velocity.
   [[nodiscard]] Vec2 mean(double t0, double t1) const;
+  /// m/s and m of the base that is at rest at time 0; after the end it goes on at the velocity that it has.
+  [[nodiscard]] Vec2 velocity(double time) const;
+  [[nodiscard]] Vec2 displacement(double time) const;
   /// Largest |a| over time, m/s².
   [[nodiscard]] double peak() const;
   [[nodiscard]] const std::vector<double>& times() const { return time_; }
   [[nodiscard]] const std::vector<Vec2>& accelerations() const { return acceleration_; }
 
  private:
+  [[nodiscard]] Vec2 way_from(std::size_t sample, double time, Vec2 last) const;
+
   std::string name_;
   std::vector<double> time_;
   std::vector<Vec2> acceleration_;
   std::vector<Vec2> integral_;  ///< ∫₀^{time_k} a dt
+  std::vector<Vec2> way_;       ///< its integral
 };
 
 }  // namespace keyblock::loading

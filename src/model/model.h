@@ -79,4 +79,9 @@ struct Model {
   [[nodiscard]] bool moves(std::size_t b) const { return surface.fixed[b] == 0 && surface.present[b] != 0; }
 };
 
+/// β, s: by which stiffness damps the rock and its joints, in dynamic steps.
+inline double stiffness_damping(const Model& model) {
+  return model.solver.damping ? model.solver.damping->stiffness_time() : 0.0;
+}
+
 }  // namespace keyblock::dynamics

@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
 #include <utility>
+
+#include "model/rayleigh_damping.h"
 
 namespace keyblock::dynamics {
 
@@ -52,6 +55,8 @@ struct SolverOptions {
   /// its own sliding (mode coupling) as soon as Δt resolves them, and creeps below its friction angle.
   double rock_damping = 0.1;
   double contact_damping = 0.05;
+  /// In the place of both, where the scenario gives it: the same share of critical at a frequency for all blocks and joints.
+  std::optional<RayleighDamping> damping;
   /// Largest share of the speed of approach with which two blocks part after an impact that Δt does not resolve (ωΔt > 1,
   /// ω of the contact spring with its blocks), at more than `impact_speed`: θ of the two in the steps of the impact.
   double restitution = 0.5;

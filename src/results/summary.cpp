@@ -92,6 +92,40 @@ ordered_json stage(const simulation::StageRecord& r, const simulation::ModelReco
           {"fallen", fallen_json(r.fallen)}};
 }
 
+ordered_json damping(const simulation::ModelRecord& model) {
+  ordered_json json = ordered_json::array();
+  for (const simulation::DampingRow& row : model.damping)
+    json.push_back(
+        {{"frequency_hz", row.frequency}, {"rock", row.rock}, {"rule", row.rule}, {"total", row.total()}});
+  return json;
+}
+
+/// null where there is none.
+ordered_json boundary(const simulation::ModelRecord& model) {
+  if (!model.boundary) return nullptr;
+  const simulation::Boundary& b = *model.boundary;
+  ordered_json rock = ordered_json::array(), columns = ordered_json::array(), half_space = nullptr;
+  for (const dynamics::RockLayer& layer : b.layers) {
+    rock.push_back({{"top_m", nullptr},
+                    {"density", layer.density},
+                    {"vs_m_s", layer.speeds().x},
+                    {"vp_m_s", layer.speeds().y}});
+    if (rock.size() > 1) rock.back()["top_m"] = layer.top + model.origin.y;
+  }
+  for (const simulation::ColumnRecord& c : model.columns)
+    columns.push_back({{"x", c.x + model.origin.x},
+                       {"base_m", c.base + model.origin.y},
+                       {"ground_m", c.ground + model.origin.y},
+                       {"longest_element_m", c.longest_element}});
+  if (b.compliant) half_space = {{"impedance_s", b.dashpots.x}, {"impedance_p", b.dashpots.y}};
+  return {{"base", b.compliant ? "compliant" : "rigid"},
+          {"sides", name_of(b.sides)},
+          {"top", b.overburden ? "overburden" : "free"},
+          {"half_space", half_space},
+          {"rock", rock},
+          {"columns", columns}};
+}
+
 ordered_json profile(const simulation::RunRecord& run) {
   ordered_json json = ordered_json::object();
   for (std::size_t k = 0; k < phase_count; ++k) {
@@ -149,6 +183,8 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"max_overlap_m", run.max_overlap.depth},
       {"max_overlap_at", overlap_place_json(run.max_overlap, model.origin)},
       {"max_area_change", run.max_area_change},
+      {"boundary", boundary(model)},
+      {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
       {"stages", stages}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -17,6 +17,7 @@
 #include "scenario/shaking_checks.h"
 #include "scenario/stage_steps.h"
 #include "simulation/build_boundary.h"
+#include "simulation/damping_table.h"
 #include "simulation/feasibility.h"
 #include "simulation/history_block.h"
 #include "simulation/spring_blocks.h"
@@ -225,6 +226,19 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
   }
 }
 
+/// "1.7 + 0.1, …": what swings alone loses by the rock and by the rule of time integration.
+void add_damping_fact(RunSetup& setup) {
+  const std::vector<simulation::DampingRow> rows = simulation::damping_table(setup);
+  const bool is_asked = setup.solver.damping || setup.boundary;
+  if (rows.empty() || !is_asked) return;
+  std::string name, value;
+  for (const simulation::DampingRow& row : rows) {
+    name += fmt::format("{}{:g}", name.empty() ? "" : ", ", row.frequency);
+    value += fmt::format("{}{:.2g}", value.empty() ? "" : ", ", 100.0 * row.total());
+  }
+  setup.ground.emplace_back(fmt::format("damping at {} Hz, with that of the rule", name), value + " %");
+}
+
 /// What the setup as a whole shows.
 void add_setup_warnings(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
   add_shaking_warnings(scenario, setup.motions, notes);
@@ -269,7 +283,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.files = input_files(scenario);
   for (const GroundFact& fact : ground_facts(scenario)) setup.ground.emplace_back(fact.name, fact.value);
   if (setup.boundary) {
-    for (auto& fact : boundary_facts(*setup.boundary)) setup.ground.push_back(std::move(fact));
+    for (auto& fact : boundary_facts(*setup.boundary, origin.y)) setup.ground.push_back(std::move(fact));
   }
   place_loading(scenario, origin, setup);
   setup.stages = scenario.stages;
@@ -282,6 +296,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.output = scenario.output;
   setup.automatic_order = scenario.automatic;
   setup.solver = scenario.solver;
+  add_damping_fact(setup);
   add_block_warnings(scenario, blocks, notes);
   add_setup_warnings(scenario, setup, notes);
   if (warnings != nullptr) {

@@ -51,10 +51,6 @@ dynamics::RockLayer layer_of(double top, double density, double vs, double vp) {
   return {top, density, shear, upright, upright - 2.0 * shear};
 }
 
-double speed(double modulus, double density) {
-  return std::sqrt(modulus / density);
-}
-
 /// m/s, of the base at the end of a motion.
 Vec2 last_velocity(const loading::GroundMotion& motion) {
   const double duration = motion.duration();
@@ -74,7 +70,7 @@ void warn_of_motion(const Scenario& scenario, const simulation::RunSetup& setup,
   const loading::GroundMotion& motion = setup.motions[static_cast<std::size_t>(stage.motion)];
   const std::string& path = scenario.motions[static_cast<std::size_t>(stage.motion)].path;
   const dynamics::RockLayer& rock = boundary.layers.front();
-  const double vs = speed(rock.shear, rock.density), height = simulation::boundary_box(setup).size().y;
+  const double vs = rock.speeds().x, height = simulation::boundary_box(setup).size().y;
   if (const double drift = stage.scale * norm(last_velocity(motion)) * height / vs; drift > most_drift)
     warnings.push_back(fmt::format(
         "{}: the velocity does not come back to zero; the rock stays sheared by {:.2g} m over its height; "
@@ -135,8 +131,8 @@ std::optional<simulation::Boundary> boundary_of(const Scenario& scenario,
   if (boundary.layers.empty()) boundary.layers.push_back(effective_rock(scenario, joints));
   const dynamics::RockLayer& lowest = boundary.layers.back();
   const double density = spec.density.value_or(lowest.density);
-  boundary.dashpots = {density * spec.vs.value_or(speed(lowest.shear, lowest.density)),
-                       density * spec.vp.value_or(speed(lowest.upright, lowest.density))};
+  boundary.dashpots = {density * spec.vs.value_or(lowest.speeds().x),
+                       density * spec.vp.value_or(lowest.speeds().y)};
   boundary.fastest = spec.frequency;
   return boundary;
 }
@@ -150,7 +146,8 @@ void take_to_outcrop(const Scenario& scenario, std::vector<loading::GroundMotion
   }
 }
 
-std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::Boundary& boundary) {
+std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::Boundary& boundary,
+                                                                double origin) {
   std::vector<std::pair<std::string, std::string>> facts;
   const char* sides = boundary.sides == Sides::free_field ? "free field"
                       : boundary.sides == Sides::viscous  ? "viscous"
@@ -162,11 +159,11 @@ std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation
     facts.emplace_back("impedance of the half-space", fmt::format("ρ v_s {:.4g}, ρ v_p {:.4g} Pa s/m",
                                                                   boundary.dashpots.x, boundary.dashpots.y));
   for (const dynamics::RockLayer& layer : boundary.layers) {
-    const std::string from = boundary.layers.size() > 1 ? fmt::format(" below {:.4g} m", layer.top) : "";
-    facts.emplace_back(
-        "rock beside the model" + from,
-        fmt::format("v_s {:.4g} m/s, v_p {:.4g} m/s, {:.4g} kg/m³", speed(layer.shear, layer.density),
-                    speed(layer.upright, layer.density), layer.density));
+    const std::string from =
+        boundary.layers.size() > 1 ? fmt::format(" below {:.4g} m", layer.top + origin) : "";
+    facts.emplace_back("rock beside the model" + from,
+                       fmt::format("v_s {:.4g} m/s, v_p {:.4g} m/s, {:.4g} kg/m³", layer.speeds().x,
+                                   layer.speeds().y, layer.density));
   }
   return facts;
 }

@@ -25,8 +25,9 @@ std::optional<simulation::Boundary> boundary_of(const Scenario& scenario,
 /// The motions as a compliant base takes them, those of an outcrop: twice the wave that goes up.
 void take_to_outcrop(const Scenario& scenario, std::vector<loading::GroundMotion>& motions);
 
-/// What is said of the rock around the model in reports.
-std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::Boundary& boundary);
+/// What is said of the rock around the model in reports. origin: m, that heights are local to.
+std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::Boundary& boundary,
+                                                                double origin);
 
 /// What seems wrong with [boundary] and what acts on it.
 void add_boundary_warnings(const Scenario& scenario, const simulation::RunSetup& setup,

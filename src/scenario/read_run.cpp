@@ -22,6 +22,8 @@ constexpr Word<dynamics::TimeIntegration> integrators[] = {
 constexpr Word<dynamics::ContactMethod> contact_methods[] = {
     {"penalty", dynamics::ContactMethod::penalty},
     {"augmented-lagrangian", dynamics::ContactMethod::augmented_lagrangian}};
+// Whether a history is of absolute motion.
+constexpr Word<bool> history_frames[] = {{"relative", false}, {"absolute", true}};
 // Whether a stage ends when all is still.
 constexpr Word<bool> stage_ends[] = {{"duration", false}, {"still", true}};
 constexpr Word<LinearSolver> linear_solvers[] = {{"automatic", LinearSolver::automatic},
@@ -146,6 +148,9 @@ void read_history(TableReader& t, simulation::History& history, const Scenario& 
               {.meaning = "Material point, by its place before the run.", .unit = "m", .required = true})) {
     check_history(t, history, scenario);
   }
+  t.word("frame", history.absolute, history_frames,
+         {.meaning = "`relative`: displacement and velocity against the base, or against the outcrop over a "
+                     "compliant base. `absolute`: with the motion of these, the integrals of the record."});
 }
 
 void read_damage(TableReader& t, simulation::DamageLimits& damage) {
@@ -222,7 +227,7 @@ void read_contact_method(TableReader& t, dynamics::SolverOptions& solver) {
                  {.meaning = "How often multipliers are updated in a step at most.", .at_least = 1.0}));
 }
 
-void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
+void read_solver(TableReader& t, dynamics::SolverOptions& solver, bool without_ground) {
   t.word("integrator", solver.integrator, integrators,
          {.meaning = "Rule of time integration. With [boundary] the default is \"generalized-alpha\"."});
   const auto rule_is = [&](dynamics::TimeIntegration rule) {
@@ -252,6 +257,7 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver) {
   t.number("contact_damping", solver.contact_damping,
            {.meaning = "Damping of every contact spring with its two blocks, as a share of critical.",
             .at_least = 0.0});
+  read_damping(t, solver, without_ground);
   t.number(
       "restitution", solver.restitution,
       {.meaning = "Largest share of the speed of approach with which blocks part after an impact that the "
@@ -314,8 +320,9 @@ void read_run(TableReader& root, Scenario& scenario) {
              [&](TableReader& t) { read_automatic_order(t, scenario.automatic); });
   // Waves keep their height by this rule, and stiff joints do not ring.
   if (scenario.boundary) scenario.solver.integrator = dynamics::TimeIntegration::generalized_alpha;
+  const bool without_ground = !scenario.boundary || scenario.boundary->sides == simulation::Sides::frame;
   root.table("solver", {.meaning = "How steps are solved. The defaults suit rock at engineering scale."},
-             [&](TableReader& t) { read_solver(t, scenario.solver); });
+             [&](TableReader& t) { read_solver(t, scenario.solver, without_ground); });
 }
 
 }  // namespace keyblock::scenario

@@ -24,6 +24,9 @@ void read_loading(TableReader& root, Scenario& scenario);
 void read_motion(TableReader& t, MotionSpec& motion);
 /// [time], [[stage]], [[history]], [damage], [output], [solver].
 void read_run(TableReader& root, Scenario& scenario);
+/// `damping` of [solver], after rock_damping and contact_damping. without_ground: there is no ground far away for damping in proportion to
+/// mass to be relative to.
+void read_damping(TableReader& solver_keys, dynamics::SolverOptions& solver, bool without_ground);
 /// [study], after all that its keys name.
 void read_study(TableReader& root, Scenario& scenario);
 

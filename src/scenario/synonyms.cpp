@@ -84,7 +84,7 @@ constexpr Synonym all_synonyms[] = {
     {"springs", "spring"},
     {"loads", "load"},
     {"hist monitor", "history", true},
-    {"damp damping", "rock_damping"},
+    {"damp rayleigh rayleighdamping dampingratio", "damping"},
     {"realisations runs samples", "realizations"},
     {"montecarlo", "study"},
     {"unit unitsystem", "units"},

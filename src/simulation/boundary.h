@@ -15,6 +15,21 @@ enum class Sides {
   frame,       ///< fixed blocks, RunSetup::frame
 };
 
+/// As a scenario has it.
+constexpr const char* name_of(Sides sides) {
+  switch (sides) {
+    case Sides::free_field:
+      return "free-field";
+    case Sides::viscous:
+      return "viscous";
+    case Sides::roller:
+      return "roller";
+    case Sides::frame:
+      break;
+  }
+  return "frame";
+}
+
 /// The rock around the model; see the user guide. Heights are local.
 struct Boundary {
   bool compliant = true;  ///< waves go down through the base; else it is rigid

@@ -29,7 +29,8 @@ class Builder {
     for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
       if (!model_.blocks[b].fixed) add_block(b);
     }
-    return std::make_shared<dynamics::SeismicBoundary>(std::move(points_), std::move(far_));
+    return std::make_shared<dynamics::SeismicBoundary>(std::move(points_), std::move(far_),
+                                                       mass_damping(model_));
   }
 
  private:
@@ -76,7 +77,9 @@ class Builder {
     const std::optional<Vec2> dashpots =
         boundary_.compliant ? std::optional<Vec2>(boundary_.dashpots) : std::nullopt;
     const auto add = [&](double height, double x) {
-      far_.push_back({RockColumn(boundary_.layers, box_.min.y, height, dashpots, boundary_.fastest), x});
+      far_.push_back({RockColumn(boundary_.layers, box_.min.y, height, dashpots, boundary_.fastest,
+                                 dynamics::stiffness_damping(model_)),
+                      x});
     };
     const double left = ground(Side::left), right = ground(Side::right);
     add(left, box_.min.x);
@@ -154,6 +157,22 @@ Box boundary_box(const RunSetup& setup) {
   Box box;
   for (const cutting::CutBlock& block : setup.system.blocks) box.add(bounds(block.polygon));
   return box;
+}
+
+std::optional<dynamics::MassDamping> mass_damping(const dynamics::Model& model) {
+  const std::optional<dynamics::RayleighDamping>& damping = model.solver.damping;
+  if (!damping || damping->mass_rate() == 0.0) return std::nullopt;
+  std::vector<dynamics::MassPoint> points;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const dynamics::Block& block = model.blocks[b];
+    if (block.fixed) continue;
+    // The ground moves about linearly over a block.
+    for (const WeightedPoint& p : polygon_rule(block.reference, block.basis.order() + 1)) {
+      points.push_back({{static_cast<int>(b), std::vector<double>(at(block.size))}, p.point, p.weight});
+      block.basis.evaluate(p.point, points.back().point.phi.data());
+    }
+  }
+  return dynamics::MassDamping(damping->mass_rate(), std::move(points));
 }
 
 std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup,

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "coupling/seismic_boundary.h"
 #include "model/model.h"
@@ -9,6 +10,9 @@ namespace keyblock::simulation {
 
 /// The rectangle whose sides are the boundary: the domain, or without one what just holds all blocks. Local coordinates.
 Box boundary_box(const RunSetup& setup);
+
+/// Damping of all blocks that move in proportion to their mass; none where the scenario has none.
+std::optional<dynamics::MassDamping> mass_damping(const dynamics::Model& model);
 
 /// The rock around the model: on all edges of moving blocks that lie on a side of the rectangle. setup.boundary must be there.
 std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup, const dynamics::Model& model);

@@ -172,7 +172,11 @@ void add_springs(const RunSetup& setup, Model& model) {
 void add_couplings(const RunSetup& setup, Model& model) {
   add_supports(setup, model);
   add_springs(setup, model);
-  if (setup.boundary) model.couplings.push_back(build_boundary(setup, model));
+  if (setup.boundary) {
+    model.couplings.push_back(build_boundary(setup, model));
+  } else if (auto damping = mass_damping(model)) {
+    model.couplings.push_back(std::make_shared<dynamics::FrameDamping>(std::move(*damping)));
+  }
   if (auto walls = wall_loads(setup, model)) model.couplings.push_back(std::move(walls));
 }
 

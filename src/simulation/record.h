@@ -9,10 +9,25 @@
 #include "core/profile.h"
 #include "cutting/block_system.h"
 #include "geometry/vec2.h"
+#include "simulation/boundary.h"
 #include "simulation/stage.h"
 
 /// What a run tells the outside: plain data, written to the result file and drawn in the report.
 namespace keyblock::simulation {
+
+/// What swings alone at a frequency loses, as shares of critical.
+struct DampingRow {
+  double frequency = 0.0;  ///< Hz
+  double rock = 0.0;       ///< by [solver] damping, or rock_damping
+  double rule = 0.0;       ///< by the rule of time integration
+  [[nodiscard]] double total() const { return rock + rule; }
+};
+
+/// Rock far away beside the model, as far up as the ground there.
+struct ColumnRecord {
+  double x = 0.0, base = 0.0, ground = 0.0;  ///< m, local
+  double longest_element = 0.0;              ///< m
+};
 
 /// The block system in reference position. Outlines are given by *display vertices*: every vertex of the block, and
 /// for a block of order > 1 further points along its edges, which may curve.
@@ -52,6 +67,9 @@ struct ModelRecord {
   std::optional<double> opening_width;              ///< m
   std::optional<double> slip_limit, opening_limit;  ///< m, beyond which a joint counts as slipped, opened
   cutting::CutStatistics cutting;
+  std::vector<DampingRow> damping;   ///< at 1, 3, 10 and 30 Hz; empty without dynamic stages
+  std::optional<Boundary> boundary;  ///< the rock around the model
+  std::vector<ColumnRecord> columns;
   std::vector<std::pair<std::string, std::string>> ground;  ///< names and values: RunSetup::ground
 };
 

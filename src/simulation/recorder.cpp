@@ -8,8 +8,10 @@
 
 #include "core/error.h"
 #include "core/index.h"
+#include "coupling/seismic_boundary.h"
 #include "overlap/overlap.h"
 #include "simulation/build_model.h"
+#include "simulation/damping_table.h"
 #include "simulation/history_block.h"
 
 namespace keyblock::simulation {
@@ -18,6 +20,26 @@ namespace keyblock::simulation {
 static_assert(static_cast<int>(ContactState::open) == static_cast<int>(contact::State::open));
 static_assert(static_cast<int>(ContactState::sliding) == static_cast<int>(contact::State::sliding));
 static_assert(static_cast<int>(ContactState::locked) == static_cast<int>(contact::State::locked));
+
+namespace {
+
+std::vector<ColumnRecord> columns_of(const dynamics::Model& model) {
+  std::vector<ColumnRecord> columns;
+  for (const auto& coupling : model.couplings) {
+    const auto* boundary = dynamic_cast<const dynamics::SeismicBoundary*>(coupling.get());
+    if (boundary == nullptr) continue;
+    for (const dynamics::FarRock& far : boundary->far_rock()) {
+      const std::span<const double> heights = far.column.heights();
+      ColumnRecord column{far.x, heights.front(), heights.back()};
+      for (std::size_t k = 1; k < heights.size(); ++k)
+        column.longest_element = std::max(column.longest_element, heights[k] - heights[k - 1]);
+      columns.push_back(column);
+    }
+  }
+  return columns;
+}
+
+}  // namespace
 
 Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
     : setup_(setup), model_(model), gauge_(gauge), threads_(threads) {
@@ -39,7 +61,7 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
       diagnostic.expected = "a point in a block";
       throw InputError(std::move(diagnostic));
     }
-    points_.push_back({*block, history.point, {}});
+    points_.push_back({*block, history.point, {}, history.absolute});
   }
   orders_changed();
 }
@@ -98,6 +120,9 @@ ModelRecord Recorder::model() const {
   record.opening_limit = setup_.damage.opening;
   record.cutting = setup_.system.statistics;
   record.ground = setup_.ground;
+  record.damping = damping_table(setup_);
+  record.boundary = setup_.boundary;
+  record.columns = columns_of(model_);
   return record;
 }
 
@@ -154,7 +179,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   return frame;
 }
 
-HistoryRow Recorder::history(const dynamics::State& state) const {
+HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame) const {
   HistoryRow row;
   row.time = state.time;
   row.step = state.step;
@@ -170,7 +195,11 @@ HistoryRow Recorder::history(const dynamics::State& state) const {
       x += point.phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
       v += point.phi[k] * Vec2{state.velocity[block.first + 2 * k], state.velocity[block.first + 2 * k + 1]};
     }
-    const Vec2 u = x - point.reference;
+    Vec2 u = x - point.reference;
+    if (point.absolute) {
+      u += frame.displacement;
+      v += frame.velocity;
+    }
     const block::Stress s =
         block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
     row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy});

@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "coupling/rock_column.h"
 #include "dynamics/step.h"
 #include "simulation/damage.h"
 #include "simulation/record.h"
@@ -19,7 +20,8 @@ class Recorder {
   [[nodiscard]] Frame frame(const dynamics::State& state, int stage) const;
   [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
                                       int stage) const;
-  [[nodiscard]] HistoryRow history(const dynamics::State& state) const;
+  /// frame: how what displacements are relative to has moved (frame_motion()).
+  [[nodiscard]] HistoryRow history(const dynamics::State& state, const dynamics::GroundMove& frame) const;
   /// Largest true overlap of any two blocks, if it is deeper than `least_depth`, m.
   [[nodiscard]] std::optional<OverlapRecord> overlap(const dynamics::State& state, int stage,
                                                      double least_depth) const;
@@ -34,6 +36,7 @@ class Recorder {
     std::size_t block;
     Vec2 reference;
     std::vector<double> phi;
+    bool absolute = false;
   };
 
   const RunSetup& setup_;

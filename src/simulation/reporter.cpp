@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "simulation/energy_audit.h"
+#include "simulation/frame_motion.h"
 #include "simulation/run_checks.h"
 #include "simulation/step_count.h"
 
@@ -63,7 +64,7 @@ void Reporter::due_pictures(RunState& now, const dynamics::Stepper& stepper) {
 void Reporter::due_history(RunState& now) {
   if (setup_.histories.empty()) return;
   if (!is_static(now) && !is_due(now, setup_.output.history_interval)) return;
-  observer_.history(recorder_.history(now.mechanics));
+  observer_.history(recorder_.history(now.mechanics, frame_motion(setup_, now)));
   ++now.reported.histories;
 }
 

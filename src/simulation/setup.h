@@ -59,6 +59,8 @@ struct History {
   std::string name;
   std::string block;  ///< empty: the block that holds the point, see history_block.h
   Vec2 point;         ///< reference position
+  bool absolute =
+      false;  ///< motion against a place that does not move; else against the base, or the outcrop
 };
 
 /// Limits of the damage measures; see the user guide.

@@ -26,7 +26,8 @@ TEST(Summary, HasEveryFieldOfTheContract) {
                           "steps",       "step_size",     "wall_time_s",
                           "ms_per_step", "threads",       "state_hash",
                           "open_close",  "max_overlap_m", "max_area_change",
-                          "energy",      "stages"}) {
+                          "energy",      "stages",        "boundary",
+                          "damping"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
   for (const char* key : {"blocks", "excavated", "domain"}) EXPECT_TRUE(summary["area"].contains(key)) << key;

@@ -121,5 +121,29 @@ TEST(Recorder, HistoriesFollowTheRockThatStaysLongestAndEndWithTheirBlock) {
   }
 }
 
+// A block that nothing holds stays where it is while its frame moves, through stages of all kinds.
+TEST(Recorder, AbsoluteHistoriesHaveTheMotionOfTheFrame) {
+  Scene scene(3e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0);
+  RunSetup& setup = scene.setup;
+  setup.gravity = {};
+  setup.histories = {{"relative", "", {0.5, 0.5}}, {"absolute", "", {0.5, 0.5}, true}};
+  setup.motions = {loading::GroundMotion("m", {0.0, 0.3, 0.5}, {{0.0, 1.0}, {2.0, 0.0}, {1.0, -1.0}})};
+  setup.time_step = 0.001;
+  for (const StageKind kind : {StageKind::shake, StageKind::rest, StageKind::shake}) {
+    setup.stages.push_back(stage("s", kind, 0.7));
+    setup.stages.back().scale = kind == StageKind::shake ? 2.0 : 1.0;
+  }
+  AllHistories observer;
+  run(setup, {}, observer);
+  for (const HistoryRow& row : observer.rows) {
+    EXPECT_NEAR(row.points[1].ux, 0.0, 2e-6) << row.time;
+    EXPECT_NEAR(row.points[1].uy, 0.0, 2e-6) << row.time;
+    EXPECT_NEAR(row.points[1].vx, 0.0, 1e-12) << row.time;
+    EXPECT_NEAR(row.points[1].vy, 0.0, 1e-12) << row.time;
+  }
+  EXPECT_LT(observer.rows.back().points[0].ux, -1.0);
+}
+
 }  // namespace
 }  // namespace keyblock::simulation

@@ -114,6 +114,57 @@ TEST(SeismicBoundary, ComesBackToRest) {
   EXPECT_LT(fastest, 1e-5);
 }
 
+// So they do with damping; runs have the same bits for any threads and after an interruption.
+TEST(SeismicBoundary, TakesDampingAgainstTheGroundFarAway) {
+  RunSetup setup = ground();
+  setup.solver.rock_damping = setup.solver.contact_damping = 0.0;
+  setup.solver.damping = {0.05, 3.0, dynamics::DampingKind::rayleigh};
+  const RunRecord whole = ground_run(setup);
+  EXPECT_LT(whole.energy.residual_ratio, 1e-4);
+  EXPECT_GT(whole.energy.damping, 0.0);
+  RunOptions two;
+  two.threads = 2;
+  EXPECT_EQ(ground_run(setup, two).state_hash, whole.state_hash);
+  Stopper stopper(whole.stages[0].steps + 250);
+  const RunRecord resumed = resumed_run(setup, stopper);
+  EXPECT_EQ(resumed.state_hash, whole.state_hash);
+  EXPECT_EQ(resumed.energy.damping, whole.energy.damping);
+}
+
+// In ground that moves as one, damping in proportion to mass finds nothing to slow, however much there is.
+TEST(SeismicBoundary, LeavesTheGroundItsMotion) {
+  const auto largest_damping = [](const std::optional<dynamics::RayleighDamping>& damping) {
+    RunSetup setup = ground();
+    setup.motions = {wavelet({1.0, 0.0}, 3.0)};
+    setup.gravity = {};
+    setup.solver.rock_damping = setup.solver.contact_damping = 0.0;
+    setup.solver.damping = damping;
+    setup.stages = {stage("shake", StageKind::shake)};
+    const RunRecord record = ground_run(setup);
+    return record.energy.damping / record.energy.radiated;
+  };
+  EXPECT_LT(largest_damping(dynamics::RayleighDamping{0.5, 3.0, dynamics::DampingKind::mass}), 1e-4);
+  EXPECT_GT(largest_damping(dynamics::RayleighDamping{0.05, 3.0, dynamics::DampingKind::stiffness}), 1e-2);
+}
+
+// Without a seismic boundary it is against the base: what falls comes to g/α.
+TEST(SeismicBoundary, DampingAgainstTheBaseSlowsFalls) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0, 20.0);
+  RunSetup setup = std::move(scene.setup);
+  setup.time_step = 0.01;
+  setup.solver.damping = {0.2, 3.0, dynamics::DampingKind::mass};
+  setup.stages = {stage("fall", StageKind::rest, 3.0)};
+  double speed = 0.0;
+  RunOptions options;
+  options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
+    speed = -runner.state().velocity[1];
+  };
+  const RunRecord record = ground_run(setup, options);
+  EXPECT_NEAR(speed, 9.81 / setup.solver.damping->mass_rate(), 1e-6);
+  EXPECT_LT(record.energy.residual_ratio, 1e-9);
+}
+
 // Edges within the model are no boundary; a column of far rock reaches up to the ground of its side.
 TEST(SeismicBoundary, StandsOnTheSidesOfTheModel) {
   RunSetup setup = ground();
