@@ -12,7 +12,8 @@ using Names = std::vector<std::string>;
 
 struct Meaning {
   const char* dataset;
-  const char* unit;  ///< "1": a number without a unit; "": text
+  std::string
+      unit;  ///< "1": a number without a unit; "": text; of columns that differ, one for each, after commas
   const char* description;
   Names columns{};  ///< of the last dimension
   Names values{};   ///< by number
@@ -29,6 +30,15 @@ Names energy_names() {
   Names names;
   for (const auto& [name, member] : energy_fields) names.emplace_back(name);
   return names;
+}
+
+std::string energy_units() {
+  std::string units;
+  for (const auto& [name, member] : energy_fields) {
+    if (!units.empty()) units += ", ";
+    units += member == &simulation::Energy::residual_ratio ? "1" : "J/m";
+  }
+  return units;
 }
 
 std::vector<Meaning> of_the_model() {
@@ -54,6 +64,8 @@ std::vector<Meaning> of_the_model() {
           {"model/block_centroid", "m", "reference position of the centroid", {"x", "y"}},
           {"model/block_stress_ratio_zz", "1",
            "stress zz over xx + yy: 0 in plane stress, Poisson's ratio in plane strain"},
+          {"model/block_young", "Pa", "Young's modulus"},
+          {"model/block_poisson", "1", "Poisson's ratio"},
           {"model/block_excavations", "1",
            "entries [block_excavations[b], block_excavations[b + 1]) of excavation belong to block b"},
           {"model/excavation", "1", "numbers of excavations"}};
@@ -103,27 +115,27 @@ std::vector<Meaning> of_contacts() {
 }
 
 std::vector<Meaning> of_rows() {
-  return {{"histories/names", "", "names of the chosen points"},
-          {"histories/time", "s", "simulated time"},
-          {"histories/step", "1", "step of the run"},
-          {"histories/values",
-           "m, m, m/s, m/s, Pa, Pa, Pa",
-           "of every chosen point",
-           {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"}},
-          {"steps/time", "s", "simulated time"},
-          {"steps/stage", "1", "stage, from 0"},
-          {"steps/step", "1", "step of the run"},
-          {"steps/iterations", "1", "open-close iterations"},
-          {"steps/closed_contacts", "1", "contacts closed in the end"},
-          {"steps/step_size", "s", "smallest part of the step; static: pseudo time step"},
-          {"steps/penetration", "m", "largest depth that the contact code sees"},
-          {"steps/max_displacement", "m", "largest of the step"},
-          {"steps/energy", "J/m",
-           "terms of the energy balance per metre of thickness; residual_ratio has no unit", energy_names()},
-          {"steps/energy_names", "", "names of the columns of energy"},
-          {"stages", "", "a JSON object per line, bytes"},
-          {"run", "", "a line of JSON at the end of the run, bytes"},
-          {"summary", "", "the text of summary.json, bytes"}};
+  return {
+      {"histories/names", "", "names of the chosen points"},
+      {"histories/time", "s", "simulated time"},
+      {"histories/step", "1", "step of the run"},
+      {"histories/values",
+       "m, m, m/s, m/s, Pa, Pa, Pa",
+       "of every chosen point",
+       {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"}},
+      {"steps/time", "s", "simulated time"},
+      {"steps/stage", "1", "stage, from 0"},
+      {"steps/step", "1", "step of the run"},
+      {"steps/iterations", "1", "open-close iterations"},
+      {"steps/closed_contacts", "1", "contacts closed in the end"},
+      {"steps/step_size", "s", "smallest part of the step; static: pseudo time step"},
+      {"steps/penetration", "m", "largest depth that the contact code sees"},
+      {"steps/max_displacement", "m", "largest of the step"},
+      {"steps/energy", energy_units(), "terms of the energy balance per metre of thickness", energy_names()},
+      {"steps/energy_names", "", "names of the columns of energy"},
+      {"stages", "", "a JSON object per line, bytes"},
+      {"run", "", "a line of JSON at the end of the run, bytes"},
+      {"summary", "", "the text of summary.json, bytes"}};
 }
 
 }  // namespace
@@ -132,7 +144,7 @@ void describe_datasets(hid_t file) {
   for (const auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows()}) {
     for (const Meaning& meaning : meanings) {
       const hdf5::Handle dataset = hdf5::open_dataset(file, meaning.dataset);
-      hdf5::write_attribute(dataset, "unit", std::string(meaning.unit));
+      hdf5::write_attribute(dataset, "unit", meaning.unit);
       hdf5::write_attribute(dataset, "description", std::string(meaning.description));
       if (!meaning.columns.empty()) hdf5::write_attribute(dataset, "columns", meaning.columns);
       if (!meaning.values.empty()) hdf5::write_attribute(dataset, "values", meaning.values);

@@ -32,6 +32,12 @@ std::vector<Vec2> read_points(hid_t group, const std::string& name) {
   return points;
 }
 
+// A column that files of version 0.1 may not have: there, every row is `otherwise`.
+hdf5::Array<double> read_newer_column(hid_t group, const char* name, std::size_t count, double otherwise) {
+  if (H5Lexists(group, name, H5P_DEFAULT) > 0) return read_column<double>(group, name);
+  return {{count}, std::vector<double>(count, otherwise)};
+}
+
 // Lists of different lengths, one after the other; list k is values[start[k] … start[k + 1]).
 struct Lists {
   std::vector<std::int32_t> start{0}, values;
@@ -93,7 +99,7 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   std::vector<std::int32_t> order;
   std::vector<std::uint8_t> fixed, edge_kind;
   std::vector<std::int16_t> edge_index;
-  std::vector<double> area, density, ratio_zz;
+  std::vector<double> area, density, ratio_zz, young, poisson;
   std::vector<Vec2> centroid;
   Lists rings, excavations;
   for (const auto& block : model.blocks) {
@@ -103,6 +109,8 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
     area.push_back(block.area);
     density.push_back(block.density);
     ratio_zz.push_back(block.stress_ratio_zz);
+    young.push_back(block.young);
+    poisson.push_back(block.poisson);
     centroid.push_back(block.centroid);
     rings.add(block.ring_start);
     excavations.add(block.excavations);
@@ -117,6 +125,8 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   write_column(group, "block_area", area);
   write_column(group, "block_density", density);
   write_column(group, "block_stress_ratio_zz", ratio_zz);
+  write_column(group, "block_young", young);
+  write_column(group, "block_poisson", poisson);
   write_points(group, "block_centroid", centroid);
   write_column(group, "block_rings", rings.start);
   write_column(group, "ring_start", rings.values);
@@ -139,21 +149,23 @@ simulation::ModelRecord read_model(hid_t file) {
   const auto fixed = read_column<std::uint8_t>(group, "block_fixed");
   const auto area = read_column<double>(group, "block_area"),
              density = read_column<double>(group, "block_density");
-  // Files of version 0.1 may have none.
-  const auto ratio_zz = H5Lexists(group, "block_stress_ratio_zz", H5P_DEFAULT) > 0
-                            ? read_column<double>(group, "block_stress_ratio_zz")
-                            : hdf5::Array<double>{{name.size()}, std::vector<double>(name.size())};
-  const auto centroid = read_points(group, "block_centroid");
   const std::size_t count = name.size();
+  const auto ratio_zz = read_newer_column(group, "block_stress_ratio_zz", count, 0.0);
+  const double unknown = std::nan("");
+  const auto young = read_newer_column(group, "block_young", count, unknown),
+             poisson = read_newer_column(group, "block_poisson", count, unknown);
+  const auto centroid = read_points(group, "block_centroid");
   if (order.rows() != count || fixed.rows() != count || area.rows() != count || density.rows() != count ||
-      ratio_zz.rows() != count || centroid.size() != count) {
+      ratio_zz.rows() != count || young.rows() != count || poisson.rows() != count ||
+      centroid.size() != count) {
     throw RunError("the columns of model/block_… differ in length");
   }
   const Lists rings = read_lists(group, "block_rings", "ring_start", count);
   const Lists excavations = read_lists(group, "block_excavations", "excavation", count);
   for (std::size_t b = 0; b < count; ++b) {
     model.blocks.push_back({name[b], order.values[b], fixed.values[b] != 0, area.values[b], density.values[b],
-                            excavations.list(b), centroid[b], rings.list(b), ratio_zz.values[b]});
+                            excavations.list(b), centroid[b], rings.list(b), ratio_zz.values[b],
+                            young.values[b], poisson.values[b]});
   }
   model.vertices = read_points(group, "vertices");
   const auto edge_kind = read_column<std::uint8_t>(group, "edge_kind");

@@ -55,6 +55,8 @@ struct ModelRecord {
     std::vector<int> ring_start;
     /// Stress normal to the section over the sum of those in it: 0 in plane stress, Poisson's ratio in plane strain.
     double stress_ratio_zz = 0.0;
+    double young = 0.0;    ///< Pa; NaN where it is not known
+    double poisson = 0.0;  ///< NaN where it is not known
   };
   std::vector<Block> blocks;
   std::vector<Vec2> vertices;  ///< reference positions of all display vertices, m

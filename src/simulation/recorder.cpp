@@ -94,6 +94,8 @@ ModelRecord Recorder::model() const {
     row.fixed = block.fixed;
     row.area = block.area;
     row.density = block.material.density;
+    row.young = block.material.young;
+    row.poisson = block.material.poisson;
     if (!block.fixed && block.material.state == PlaneState::plane_strain)
       row.stress_ratio_zz = block.material.poisson;
     if (!is_frame) row.excavations = setup_.system.blocks[b].excavations;

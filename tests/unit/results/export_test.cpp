@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -379,10 +380,13 @@ def look(name, item):
     number = item.dtype.kind != "S" and not name in ("stages", "run", "summary")
     if "description" not in a or "unit" not in a or (len(a["unit"]) > 0) != number: print("missing at", name)
     if "columns" in a and len(a["columns"]) != item.shape[-1]: print("columns of", name)
+    units = len(a["unit"].split(b", ")) if number else 1
+    if units > 1 and units != item.shape[-1]: print("units of", name)
 f.visititems(look)
 for name in ("frames/status", "contacts/state", "model/edge_kind", "contacts/edge_kind", "model/block_fixed"):
     print(name, ", ".join(f[name].attrs["values"].astype("U")))
-for name in ("frames/stress", "frames/velocity", "contacts/shear_force", "histories/values"):
+for name in ("frames/stress", "frames/velocity", "contacts/shear_force", "histories/values", "model/block_young",
+             "steps/energy"):
     print(name, f[name].attrs["unit"].decode())
 print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["steps/energy_names"][:]).decode())
 )",
@@ -398,6 +402,8 @@ print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["s
             "frames/velocity m/s\n"
             "contacts/shear_force N/m\n"
             "histories/values m, m, m/s, m/s, Pa, Pa, Pa\n"
+            "model/block_young Pa\n"
+            "steps/energy J/m, J/m, J/m, J/m, J/m, J/m, J/m, J/m, 1, J/m\n"
             "True\n");
 }
 
@@ -410,6 +416,7 @@ TEST(ResultFileDocs, FilesWithoutTheNewerDatasetsAreReadAndExported) {
 import sys, h5py
 with h5py.File(sys.argv[1] + "/result.h5", "r+") as f:
     del f["frames/velocity"], f["model/block_stress_ratio_zz"]
+    del f["model/block_young"], f["model/block_poisson"]
 )",
                                      folder.string());
   ASSERT_EQ(result.status, 0) << result.output;
@@ -418,6 +425,8 @@ with h5py.File(sys.argv[1] + "/result.h5", "r+") as f:
   EXPECT_TRUE(data.frames.front().velocity.empty());
   EXPECT_EQ(data.frames.front().stress, SampleRun().expected().frames.front().stress);
   EXPECT_EQ(data.model.blocks.back().stress_ratio_zz, 0.0);
+  EXPECT_TRUE(std::isnan(data.model.blocks.back().young));
+  EXPECT_TRUE(std::isnan(data.model.blocks.back().poisson));
   export_run(data, folder / "vtk", ExportFormat::vtk);
   EXPECT_THAT(read_file(folder / "vtk/centres_00000.vtp"), testing::Not(HasSubstr("velocity")));
 }

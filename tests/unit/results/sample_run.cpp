@@ -51,6 +51,8 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
     EXPECT_TRUE(same(a.blocks[k].centroid, b.blocks[k].centroid));
     EXPECT_EQ(a.blocks[k].ring_start, b.blocks[k].ring_start);
     EXPECT_TRUE(same(a.blocks[k].stress_ratio_zz, b.blocks[k].stress_ratio_zz));
+    EXPECT_TRUE(same(a.blocks[k].young, b.blocks[k].young));
+    EXPECT_TRUE(same(a.blocks[k].poisson, b.blocks[k].poisson));
   }
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.edge_label, b.edge_label);
@@ -213,6 +215,10 @@ SampleRun::SampleRun() {
                   {"", 2, false, 15.0, 2600.5, {0, 1}, {5.0, 5.0}, {3, 7, 11}},
                   {"slider", 1, false, 0.5, 2270.0, {1}, {7.0, 0.1}, {11, 14}}};
   model.blocks.back().stress_ratio_zz = 0.1 + 0.2;
+  for (auto& block : model.blocks) {
+    block.young = block.density * 1e6 / 3.0;
+    block.poisson = 0.1 + 0.2;
+  }
   model.vertices = {{0, 0},     {1, 0},     {0, 1},     {3, 3},     {7, 3}, {7, 7}, {3, 7},
                     {4.5, 4.5}, {4.5, 5.5}, {5.5, 5.5}, {5.5, 4.5}, {7, 0}, {8, 0}, {7, 1}};
   for (std::size_t k = 0; k < model.vertices.size(); ++k) {
