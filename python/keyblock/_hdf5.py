@@ -1,0 +1,124 @@
+"""The file result.h5 as arrays, with its units and names. What is wrong with the file is said here, once for all that read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _optional
+from .errors import DamagedError, FormatError, NoResultError
+
+FORMAT = "keyblock result"
+NEWEST_VERSION = 2
+
+
+def text_of(value: Any) -> str:
+    """A text as h5py hands it out: bytes, str, or an empty array."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return value if isinstance(value, str) else ""
+
+
+class ResultFile:
+    """result.h5, open for reading, while its run goes on as well."""
+
+    def __init__(self, path: Path) -> None:
+        h5py = _optional.need("h5py", "reading result.h5")
+        self.path = path
+        if not path.is_file():
+            raise NoResultError(f"{path}: no such file")
+        try:
+            self._file = h5py.File(path, "r", swmr=True)
+        except OSError as error:
+            raise FormatError(f"{path} is no HDF5 file, or its beginning is damaged ({error})") from None
+        try:
+            self._check_format()
+        except BaseException:
+            self.close()
+            raise
+
+    def _check_format(self) -> None:
+        attributes = self._file.attrs
+        if text_of(attributes.get("format", "")) != FORMAT:
+            raise FormatError(f"{self.path} is an HDF5 file, but no result of keyblock")
+        version = int(attributes.get("format_version", 0))
+        if version > NEWEST_VERSION:
+            raise FormatError(
+                f"{self.path} has format {version}, and this package reads formats up to {NEWEST_VERSION}: take a newer keyblock"
+            )
+
+    def close(self) -> None:
+        self._file.close()
+
+    @property
+    def is_open(self) -> bool:
+        return bool(self._file)
+
+    def attribute(self, name: str) -> Any:
+        """An attribute of the file; texts as str."""
+        value = self._file.attrs.get(name)
+        return text_of(value) if isinstance(value, (bytes, str)) else value
+
+    def has(self, name: str) -> bool:
+        return name in self._file
+
+    def _dataset(self, name: str) -> Any:
+        if not self.is_open:
+            raise ValueError(f"{self.path} was closed")
+        try:
+            return self._file[name]
+        except KeyError:
+            raise DamagedError(f"{self.path} is damaged: {name} is missing or cannot be read") from None
+
+    def read(self, name: str, rows: Any = ()) -> np.ndarray:
+        """The rows of a dataset, all by default. Throws DamagedError where it is missing or its checksum is wrong."""
+        dataset = self._dataset(name)
+        try:
+            return dataset[rows]
+        except (OSError, RuntimeError) as error:
+            raise DamagedError(f"{self.path} is damaged: {name} cannot be read ({error})") from None
+
+    def texts(self, name: str) -> list[str]:
+        return [text_of(value) for value in self.read(name)]
+
+    def bytes_as_text(self, name: str) -> str:
+        """Of a dataset that holds the bytes of a text."""
+        return bytes(self.read(name)).partition(b"\0")[0].decode("utf-8", "replace")
+
+    def shape(self, name: str) -> tuple[int, ...]:
+        return tuple(self._dataset(name).shape)
+
+    def complete_times(self, group: str) -> np.ndarray:
+        """Times of the rows of a group that are complete, s. While a run goes on, a row may be in the making."""
+        time = self.read(f"{group}/time")
+        unwritten = np.flatnonzero(np.isnan(time))
+        return time[: unwritten[0]] if unwritten.size else time
+
+    def unit(self, name: str) -> str:
+        """Unit of a dataset; "" for numbers without one. Of columns that differ: one for each, after commas."""
+        unit = text_of(self._dataset(name).attrs.get("unit", ""))
+        return "" if unit == "1" else unit
+
+    def units(self, name: str) -> list[str]:
+        """Unit of each column of a dataset."""
+        units = self.unit(name).split(", ")
+        if len(units) == 1:
+            units *= self.shape(name)[-1]
+        return ["" if unit == "1" else unit for unit in units]
+
+    def description(self, name: str) -> str:
+        return text_of(self._dataset(name).attrs.get("description", ""))
+
+    def columns(self, name: str, otherwise: list[str]) -> list[str]:
+        """Names of the last dimension; `otherwise` in files of versions that did not write them."""
+        return self._names(name, "columns", otherwise)
+
+    def values(self, name: str, otherwise: list[str]) -> list[str]:
+        """The words that numbers stand for, by number."""
+        return self._names(name, "values", otherwise)
+
+    def _names(self, name: str, attribute: str, otherwise: list[str]) -> list[str]:
+        found = self._dataset(name).attrs.get(attribute)
+        return otherwise if found is None else [text_of(value) for value in found]

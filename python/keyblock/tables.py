@@ -1,0 +1,87 @@
+"""Tables over time: pandas.DataFrame where pandas is installed, dictionaries of arrays elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _optional
+from ._hdf5 import ResultFile
+
+HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]
+RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
+
+
+def table(columns: Mapping[Any, np.ndarray], time: np.ndarray, units: Mapping[Any, str]) -> Any:
+    """Columns over time, s. Where pandas is missing: the columns by their names, and "time"."""
+    if not _optional.has("pandas"):
+        return {"time": time, **columns}
+    import pandas
+
+    frame = pandas.DataFrame(dict(columns), index=pandas.Index(time, name="time"))
+    frame.attrs["units"] = dict(units)
+    return frame
+
+
+def data_frame(rows: Sequence[Mapping[str, Any]], what: str, columns: list[str] | None = None) -> Any:
+    """Rows as pandas.DataFrame. Throws MissingPackageError without pandas."""
+    return _optional.need("pandas", f"a table of {what}").DataFrame(list(rows), columns=columns)
+
+
+def histories(file: ResultFile) -> Any:
+    """Displacement, velocity and stress of the chosen points; columns (point, quantity)."""
+    time = file.complete_times("histories")
+    values = file.read("histories/values", slice(0, len(time)))
+    quantities, units = file.columns("histories/values", HISTORY_COLUMNS), file.units("histories/values")
+    points = file.texts("histories/names")
+    columns = {(p, q): values[:, i, k] for i, p in enumerate(points) for k, q in enumerate(quantities)}
+    found = table(columns, time, dict(zip(quantities, units)))
+    if not isinstance(found, dict):
+        import pandas
+
+        found.columns = pandas.MultiIndex.from_tuples(list(columns), names=["point", "quantity"]) if columns else (
+            pandas.MultiIndex.from_arrays([[], []], names=["point", "quantity"])
+        )
+    return found
+
+
+def energy(file: ResultFile) -> Any:
+    """Terms of the energy balance of the steps that were kept, J/m; `residual_ratio` has no unit."""
+    time = file.complete_times("steps")
+    values = file.read("steps/energy", slice(0, len(time)))
+    names = file.texts("steps/energy_names")
+    units = {name: "" if name == "residual_ratio" else "J/m" for name in names}
+    return table({name: values[:, k] for k, name in enumerate(names)}, time, units)
+
+
+def steps(file: ResultFile) -> Any:
+    """What each step that was kept took: iterations, contacts, step size, penetration, largest displacement."""
+    time = file.complete_times("steps")
+    names = ["step", "stage", "step_size", "iterations", "closed_contacts", "penetration", "max_displacement"]
+    columns = {name: file.read(f"steps/{name}", slice(0, len(time))) for name in names}
+    return table(columns, time, {name: file.unit(f"steps/{name}") for name in names})
+
+
+def release(stages: Sequence[Mapping[str, Any]]) -> Any:
+    """Ground reaction: a row for each equilibrium of an excavation that was opened in parts; None where there is none.
+
+    Lengths in m, NaN where a later excavation took the wall away. Without pandas: a dictionary of arrays.
+    """
+    rows = [
+        (k, p["step"], p["excavation"], p["released"], p["crown_m"], p["springline_m"], p["mean_m"])
+        for k, stage in enumerate(stages)
+        for p in stage["release"]
+    ]
+    if not rows:
+        return None
+    types = (int, int, object, float, float, float, float)
+    columns = {name: np.array(column, dtype=t) for name, column, t in zip(RELEASE_COLUMNS, zip(*rows), types)}
+    if not _optional.has("pandas"):
+        return columns
+    import pandas
+
+    frame = pandas.DataFrame(columns)
+    frame.attrs["units"] = dict.fromkeys(("crown", "springline", "mean"), "m")
+    return frame
