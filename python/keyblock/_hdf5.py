@@ -13,6 +13,10 @@ from .errors import DamagedError, FormatError, NoResultError
 FORMAT = "keyblock result"
 NEWEST_VERSION = 2
 
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# What h5py throws where a file does not hold what it says.
+_BROKEN = (KeyError, OSError, RuntimeError, ValueError, TypeError)
+
 
 def text_of(value: Any) -> str:
     """A text as h5py hands it out: bytes, str, or an empty array."""
@@ -29,10 +33,13 @@ class ResultFile:
         self.path = path
         if not path.is_file():
             raise NoResultError(f"{path}: no such file")
+        with path.open("rb") as file:
+            if file.read(len(_SIGNATURE)) != _SIGNATURE:
+                raise FormatError(f"{path} is no HDF5 file, or its beginning is damaged")
         try:
             self._file = h5py.File(path, "r", swmr=True)
-        except OSError as error:
-            raise FormatError(f"{path} is no HDF5 file, or its beginning is damaged ({error})") from None
+        except (OSError, RuntimeError, ValueError) as error:
+            raise DamagedError(f"{path} is damaged: it cannot be opened ({error})") from None
         try:
             self._check_format()
         except BaseException:
@@ -40,10 +47,13 @@ class ResultFile:
             raise
 
     def _check_format(self) -> None:
-        attributes = self._file.attrs
-        if text_of(attributes.get("format", "")) != FORMAT:
+        try:
+            format_ = text_of(self._file.attrs.get("format", ""))
+            version = int(self._file.attrs.get("format_version", 0))
+        except _BROKEN as error:
+            raise DamagedError(f"{self.path} is damaged: its attributes cannot be read ({error})") from None
+        if format_ != FORMAT:
             raise FormatError(f"{self.path} is an HDF5 file, but no result of keyblock")
-        version = int(attributes.get("format_version", 0))
         if version > NEWEST_VERSION:
             raise FormatError(
                 f"{self.path} has format {version}, and this package reads formats up to {NEWEST_VERSION}: take a newer keyblock"
@@ -68,16 +78,19 @@ class ResultFile:
         if not self.is_open:
             raise ValueError(f"{self.path} was closed")
         try:
-            return self._file[name]
-        except KeyError:
+            dataset = self._file[name]
+        except _BROKEN:
             raise DamagedError(f"{self.path} is damaged: {name} is missing or cannot be read") from None
+        if not hasattr(dataset, "shape"):
+            raise DamagedError(f"{self.path} is damaged: {name} is no dataset")
+        return dataset
 
     def read(self, name: str, rows: Any = ()) -> np.ndarray:
         """The rows of a dataset, all by default. Throws DamagedError where it is missing or its checksum is wrong."""
         dataset = self._dataset(name)
         try:
             return dataset[rows]
-        except (OSError, RuntimeError) as error:
+        except _BROKEN as error:
             raise DamagedError(f"{self.path} is damaged: {name} cannot be read ({error})") from None
 
     def texts(self, name: str) -> list[str]:
@@ -96,9 +109,16 @@ class ResultFile:
         unwritten = np.flatnonzero(np.isnan(time))
         return time[: unwritten[0]] if unwritten.size else time
 
+    def _attribute(self, name: str, attribute: str) -> Any:
+        """Of a dataset; None where it has none, or none that can be read."""
+        try:
+            return self._dataset(name).attrs.get(attribute)
+        except _BROKEN:
+            return None
+
     def unit(self, name: str) -> str:
         """Unit of a dataset; "" for numbers without one. Of columns that differ: one for each, after commas."""
-        unit = text_of(self._dataset(name).attrs.get("unit", ""))
+        unit = text_of(self._attribute(name, "unit"))
         return "" if unit == "1" else unit
 
     def units(self, name: str) -> list[str]:
@@ -109,7 +129,7 @@ class ResultFile:
         return ["" if unit == "1" else unit for unit in units]
 
     def description(self, name: str) -> str:
-        return text_of(self._dataset(name).attrs.get("description", ""))
+        return text_of(self._attribute(name, "description"))
 
     def columns(self, name: str, otherwise: list[str]) -> list[str]:
         """Names of the last dimension; `otherwise` in files of versions that did not write them."""
@@ -120,5 +140,5 @@ class ResultFile:
         return self._names(name, "values", otherwise)
 
     def _names(self, name: str, attribute: str, otherwise: list[str]) -> list[str]:
-        found = self._dataset(name).attrs.get(attribute)
+        found = self._attribute(name, attribute)
         return otherwise if found is None else [text_of(value) for value in found]

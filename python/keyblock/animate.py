@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _optional, plot
+from . import _optional, figures, plot
 from .errors import MissingPackageError
 from .frames import When
 
@@ -35,12 +35,12 @@ def animate(run: Result, path: str | Path, color: Any = "displacement", *, start
     rows = list(range(first, last + 1, every))
     import matplotlib
 
-    with matplotlib.rc_context(plot.style() | {"savefig.bbox": None}):
+    with matplotlib.rc_context(figures.style() | {"savefig.bbox": None}):
         # Scales are those of the whole film: the last frame is drawn first.
-        picture = plot.Picture(run, run.frames[rows[-1]], plot.Options.of(color, options))
-        ax = plot.new_axes(picture.window, width, picture.has_bar, shown=False)
+        picture = plot.Picture(run, run.frames[rows[-1]], plot.Options.of(color, options), film=True)
+        ax = figures.new_axes(width, shown=False)
         picture.draw(ax)
-        _fix_layout(ax.figure, dpi)
+        figures.fit(ax, width)
         with writer.saving(ax.figure, str(path), dpi):
             for done, row in enumerate(rows, start=1):
                 picture.move_to(run.frames[row])
@@ -63,10 +63,3 @@ def _writer(path: Path, fps: float) -> Any:
     # Widths and heights are even, as players want them.
     filters = ["-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-crf", "18"]
     return animation.FFMpegWriter(fps=fps, codec="libx264", extra_args=filters)
-
-
-def _fix_layout(figure: Any, dpi: float) -> None:
-    """Axes, bars and legends stay where they are in all pictures."""
-    figure.set_dpi(dpi)
-    figure.canvas.draw()
-    figure.set_layout_engine("none")

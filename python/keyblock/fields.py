@@ -187,7 +187,7 @@ def with_scale(run: Result, frame: Frame, shown: Field, color: Any, since: int) 
     if shown.classes:
         return shown
     if isinstance(color, str):
-        rows = sorted({*_typical_frames(run, since, shown.quantity), frame.index})
+        rows = sorted({*typical_frames(run, since, shown.quantity), frame.index})
         samples = [block_field(run, run.frames[k], color, since).values[_counted(run, run.frames[k])] for k in rows]
         values = np.concatenate(samples)
     else:
@@ -199,7 +199,7 @@ def with_scale(run: Result, frame: Frame, shown: Field, color: Any, since: int) 
     return replace(shown, scale=_scale_of_stress(values, signed) if shown.quantity == "stress" else _scale_between(values))
 
 
-def _typical_frames(run: Result, since: int, quantity: str) -> list[int]:
+def typical_frames(run: Result, since: int, quantity: str) -> list[int]:
     """Frames whose values set a scale. At the ends of stages nothing moves any more: velocities need frames in between."""
     ends = stage_ends(run, since)
     return ends if quantity != "velocity" else [*ends, *np.linspace(0, len(run.frames) - 1, 30).astype(int).tolist()]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import colors, fields, section
+from . import colors, fields, figures, section
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +90,6 @@ def draw_legend(ax: Axes, picture: Picture) -> None:
     """Classes of blocks and joints, and what widths and lengths stand for, below the axes."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
-    from matplotlib.transforms import ScaledTranslation
 
     entries: list[Any] = []
     options, field = picture.options, picture.field
@@ -101,39 +100,45 @@ def draw_legend(ax: Axes, picture: Picture) -> None:
         names = ["open joint", "sliding joint", "locked joint"]
         entries += [Line2D([], [], color=c, linewidth=1.4 * w, label=n) for n, (c, w) in zip(names, colors.STATE)]
     entries += [Line2D([], [], color=color, linewidth=1.4, label=name) for name, color in picture.used_sets]
-    if options.forces and "force" in picture._references:
-        reference = picture._references["force"]
-        label = f"force between blocks: {with_unit(reference, 'force')}"
-        entries.append(Line2D([], [], color=colors.FORCE, linewidth=section.FORCE_WIDTH, label=label))
+    if options.forces:
+        typical = picture.typical("force")
+        force = nice(typical)
+        label = f"force between blocks: {with_unit(force, 'force')}"
+        entries.append(Line2D([], [], color=colors.FORCE, linewidth=section.FORCE_WIDTH * force / typical, label=label))
     if options.stress:
         entries.append(Line2D([], [], color=colors.COMPRESSION, linewidth=0.8, label="compression"))
         entries.append(Line2D([], [], color=colors.TENSION, linewidth=0.8, label="tension"))
     if options.arrows:
-        entries.append(Line2D([], [], color=colors.ARROW, marker=">", markersize=3, linewidth=0.8, label=options.arrows))
+        longest = section.LONGEST_ARROW * picture.typical("arrow")
+        label = f"{options.arrows}, cut at {with_unit(float(f'{longest:.2g}'), _quantity(picture))}"
+        entries.append(Line2D([], [], color=colors.ARROW, marker=">", markersize=3, linewidth=0.8, label=label))
     if not entries:
         return
     longest = max(len(entry.get_label()) for entry in entries)
     columns = max(1, min(len(entries), 72 // (longest + 6)))
-    # Below the labels of the axis, however high the axes are.
-    below = ax.transAxes + ScaledTranslation(0.0, -(32.0 if options.axes else 18.0) / 72.0, ax.figure.dpi_scale_trans)
-    ax.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=below, ncol=columns, frameon=False,
-              borderaxespad=0.0)  # fmt: skip
+    figures.legend_below(ax, entries, columns=columns, gap=32.0 if options.axes else 18.0)
     _draw_length_key(ax, picture)
 
 
+def _quantity(picture: Picture) -> str:
+    """Of the arrows."""
+    return "velocity" if picture.options.arrows == "velocity" else "length"
+
+
 def _draw_length_key(ax: Axes, picture: Picture) -> None:
-    """A bar as long as what crosses and arrows stand for, in a corner of the section."""
+    """Bars of crosses and arrows of a round size, in a corner of the section."""
     from matplotlib.patches import Rectangle
 
     options, look = picture.options, picture.look
     keys = []
     if options.stress:
-        keys.append((look.block_size, colors.COMPRESSION, with_unit(picture.reference_stress(), "stress")))
+        keys.append((picture.typical("stress"), section.CROSS_LENGTH, colors.COMPRESSION, "stress"))
     if options.arrows:
-        quantity = "velocity" if options.arrows == "velocity" else "length"
-        keys.append((2.0 * look.block_size, colors.ARROW, with_unit(picture.reference_arrow(), quantity)))
+        keys.append((picture.typical("arrow"), section.ARROW_LENGTH, colors.ARROW, _quantity(picture)))
     left, right, bottom, top = picture.window
-    for k, (length, color, text) in enumerate(keys):
+    for k, (typical, sides, color, quantity) in enumerate(keys):
+        value = nice(typical)
+        length, text = sides * look.block_size * value / typical, with_unit(value, quantity)
         x, y = right - 0.02 * (right - left) - length, top - (0.03 + 0.05 * k) * (top - bottom)
         label = ax.text(x - 0.01 * (right - left), y, text, ha="right", va="center", color=color, zorder=10)
         label.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0})
@@ -142,6 +147,11 @@ def _draw_length_key(ax: Axes, picture: Picture) -> None:
         ax.plot([x, x + length], [y, y], color=color, linewidth=1.2, solid_capstyle="butt", zorder=10)
     ax.set_xlim(left, right)
     ax.set_ylim(bottom, top)
+
+
+def nice(typical: float) -> float:
+    """A round number for a key, between 0.6 and 1.5 times the typical size."""
+    return fields.nice_above(0.6 * typical)
 
 
 def with_unit(value: float, quantity: str) -> str:

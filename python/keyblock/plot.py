@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _optional, colors, fields, record, section
-from .frames import When
+from . import colors, fields, figures, record, section
+from .frames import FALLEN, When
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from .contacts import Contacts
     from .frames import Frame
     from .results import Result
-
-_MILLIMETRE = 1.0 / 25.4  # inch
-_FONT = 8.0  # pt
 
 ARROWS = ["velocity", "displacement"]
 
@@ -35,19 +32,11 @@ def plot(run: Result, time: When = None, color: Any = "displacement", *, ax: Axe
     ax: where to draw; a new figure by default. save: a file to write, its format by its name (pdf, svg, png).
     width: of a new figure, mm. dpi: of PNG. All other options: see `Options`.
     """
-    _optional.need("matplotlib", "a picture")
+    figures.check()
     picture = Picture(run, run.frames.at(time), Options.of(color, options))
-    if ax is None:
-        import matplotlib
-
-        with matplotlib.rc_context(style()):
-            ax = new_axes(picture.window, width, picture.has_bar, shown=save is None)
-            picture.draw(ax)
-    else:
-        picture.draw(ax)
-    if save is not None:
-        save_figure(ax.figure, save, dpi)
-    return ax
+    with figures.chart(ax, save, width=width, dpi=dpi) as axes:
+        picture.draw(axes)
+    return axes
 
 
 @dataclass
@@ -89,8 +78,9 @@ class Options:
 class Picture:
     """One section in axes, which can be taken on to another moment."""
 
-    def __init__(self, run: Result, frame: Frame, options: Options) -> None:
+    def __init__(self, run: Result, frame: Frame, options: Options, *, film: bool = False) -> None:
         self.run = run
+        self.film = film
         self.options = options
         self.since = self._since_frame(frame)
         self.frame = frame
@@ -99,7 +89,7 @@ class Picture:
         self.joint_scale = section.size_scale(run, options.joints) if options.joints in ("slip", "opening") else None
         self._ax: Any = None
         self._moving: list[Artist] = []
-        self._references: dict[str, float] = {}
+        self._typical: dict[str, float] = {}
 
     def _since_frame(self, frame: Frame) -> int:
         """Index of the frame from which displacements count; −1: the start."""
@@ -127,10 +117,6 @@ class Picture:
         if o.label is not None:
             field.title = o.label
         return field
-
-    @property
-    def has_bar(self) -> bool:
-        return self.options.legend and (self.field.scale is not None or self.joint_scale is not None)
 
     @property
     def norm(self) -> Any:
@@ -176,11 +162,11 @@ class Picture:
         drawn += section.draw_blocks(ax, look, self.field, self.norm, faint=o.joints in ("state", "slip", "opening"))
         drawn += self._draw_joints(ax, look, contacts)
         if o.forces and contacts is not None:
-            drawn += section.draw_forces(ax, look, contacts, self.reference_force(contacts))
+            drawn += section.draw_forces(ax, look, contacts, self.typical("force"))
         if o.stress:
-            drawn += section.draw_crosses(ax, look, self.reference_stress())
+            drawn += section.draw_crosses(ax, look, self.typical("stress"))
         if o.arrows:
-            drawn.append(section.draw_arrows(ax, look, self._vectors(self.frame), self.reference_arrow()))
+            drawn.append(section.draw_arrows(ax, look, self._vectors(self.frame), self.typical("arrow")))
         if o.numbers:
             drawn += section.draw_numbers(ax, look)
         ax.set_title(self.title(contacts), loc="left")
@@ -212,78 +198,29 @@ class Picture:
             title += f" (contacts of {contacts.time:.2f} s)"
         return title
 
-    # ── lengths of arrows and crosses, widths of chains: those of the whole run, so that pictures can be compared ──
+    # ── typical sizes, on which lengths of arrows and crosses and widths of chains are based ──
 
-    def _reference(self, name: str, sizes: Any) -> float:
-        """A round number near the 95th percentile of sizes at the typical moments of the run."""
-        if name not in self._references:
-            found = np.concatenate([np.zeros(0), *sizes()])
-            found = found[np.isfinite(found) & (found > 0.0)]
-            self._references[name] = fields.nice_above(0.7 * float(np.quantile(found, 0.95))) if found.size else 1.0
-        return self._references[name]
+    def typical(self, what: str) -> float:
+        """Of what is drawn ("force", "stress" or "arrow"): the 95th percentile in this frame, of a film in the frame that has the most."""
+        if what not in self._typical:
+            rows = fields.typical_frames(self.run, -1, "velocity" if what == "arrow" else "") if self.film else []
+            frames = [self.run.frames[k] for k in sorted({*rows, self.frame.index})]
+            found = (self._sizes(what, frame) for frame in frames)
+            self._typical[what] = max((float(np.quantile(s, 0.95)) for s in found if s.size), default=1.0)
+        return self._typical[what]
 
-    def _typical(self, between: bool) -> list[Frame]:
-        rows = fields._typical_frames(self.run, -1, "velocity" if between else "")
-        return [self.run.frames[k] for k in sorted({*rows, self.frame.index})]
-
-    def reference_force(self, contacts: Contacts) -> float:
-        return self._reference("force", lambda: [section.pair_forces(self.look, contacts)[1]])
-
-    def reference_stress(self) -> float:
-        moving = ~self.run.blocks.fixed
-        return self._reference("stress", lambda: [np.abs(f.principal[0][moving]).ravel() for f in self._typical(False)])
-
-    def reference_arrow(self) -> float:
-        moving = ~self.run.blocks.fixed
-        between = self.options.arrows == "velocity"
-        return self._reference("arrow", lambda: [np.hypot(*self._vectors(f)[moving].T) for f in self._typical(between)])
+    def _sizes(self, what: str, frame: Frame) -> np.ndarray:
+        blocks = ~self.run.blocks.fixed & frame.is_there
+        if what == "stress":
+            sizes = np.abs(frame.principal[0][blocks]).ravel()
+        elif what == "arrow":
+            sizes = np.hypot(*self._vectors(frame)[blocks & (frame.status != FALLEN)].T)
+        else:
+            contacts = self.run.contacts_of(frame)
+            sizes = np.zeros(0) if contacts is None else section.pair_forces(self.look, contacts)[1]
+        return sizes[np.isfinite(sizes) & (sizes > 0.0)]
 
     def _vectors(self, frame: Frame) -> np.ndarray:
         if self.options.arrows == "velocity":
             return frame.velocity
         return fields.displacement_since(self.run, frame, self.since if frame.index >= self.since else -1)
-
-
-# ── figures ──
-
-
-def new_axes(window: tuple[float, float, float, float], width: float, has_bar: bool, *, shown: bool) -> Axes:
-    """Axes in a new figure `width` mm wide that leaves no room empty; one of pyplot where it is to be shown."""
-    from matplotlib.figure import Figure
-
-    left, right, bottom, top = window
-    beside = 32.0 if has_bar else 14.0  # mm, of labels and colour bar
-    inner = max(width - beside, 20.0)
-    height = min(max(inner * (top - bottom) / (right - left), 0.25 * width), 1.6 * width) + 18.0
-    size = (width * _MILLIMETRE, height * _MILLIMETRE)
-    if shown:
-        import matplotlib.pyplot as pyplot
-
-        return pyplot.subplots(figsize=size, layout="constrained")[1]
-    return Figure(figsize=size, layout="constrained").subplots()
-
-
-def style() -> dict[str, Any]:
-    """Settings of matplotlib for new figures."""
-    return {
-        "font.size": _FONT,
-        "axes.titlesize": _FONT,
-        "axes.linewidth": 0.6,
-        "xtick.major.width": 0.6,
-        "ytick.major.width": 0.6,
-        "hatch.linewidth": 0.5,
-        "pdf.fonttype": 42,
-        "ps.fonttype": 42,
-    }
-
-
-def save_figure(figure: Any, path: str | Path, dpi: float = 300.0) -> None:
-    """Writes a figure; fonts stay text in PDF. Throws ValueError for a format that matplotlib cannot write."""
-    import matplotlib
-
-    path = Path(path)
-    known = figure.canvas.get_supported_filetypes()
-    if path.suffix[1:].lower() not in known:
-        raise ValueError(f"{path}: found the ending {path.suffix!r}; expected pdf, svg, png, or another of {', '.join(sorted(known))}")
-    with matplotlib.rc_context(style()):
-        figure.savefig(path, dpi=dpi, bbox_inches="tight", pad_inches=0.03, metadata={"Creator": "keyblock"} if path.suffix == ".pdf" else None)

@@ -251,23 +251,29 @@ def pair_forces(look: Look, contacts: Contacts) -> tuple[np.ndarray, np.ndarray]
     return np.stack([ends[:, 0], middle, ends[:, 1]], axis=1), total
 
 
-#: Width of the line of a force as large as the reference, pt.
+#: Width of the line of a typical force, pt.
 FORCE_WIDTH = 2.0
 
 
-def draw_forces(ax: Axes, look: Look, contacts: Contacts, reference: float) -> list[Artist]:
-    """Force chains: lines as wide as the force, `reference` (N/m) being FORCE_WIDTH."""
+def draw_forces(ax: Axes, look: Look, contacts: Contacts, typical: float) -> list[Artist]:
+    """Force chains: lines as wide as the force; those of the size `typical` (N/m) have the width FORCE_WIDTH."""
     from matplotlib.collections import LineCollection
 
     chains, total = pair_forces(look, contacts)
-    kept = total > 0.01 * reference
-    widths = np.minimum(FORCE_WIDTH * total[kept] / reference, 2.0 * FORCE_WIDTH)
+    kept = total > 0.01 * typical
+    widths = np.minimum(FORCE_WIDTH * total[kept] / typical, 2.0 * FORCE_WIDTH)
     lines = LineCollection(chains[kept], colors=colors.FORCE, linewidths=widths, alpha=0.85, capstyle="round", zorder=6)
     return [ax.add_collection(lines, autolim=False)]
 
 
-def draw_crosses(ax: Axes, look: Look, reference: float) -> list[Any]:
-    """Principal stresses at the centroids; `reference` (Pa) is as long as a mean block. Returns the lines of pressure and of tension."""
+#: Length of a bar of a cross, and of an arrow, whose value is the typical one, in sides of a mean block.
+CROSS_LENGTH, ARROW_LENGTH = 1.2, 2.0
+#: Longer arrows are cut to so many typical ones.
+LONGEST_ARROW = 3.0
+
+
+def draw_crosses(ax: Axes, look: Look, typical: float) -> list[Any]:
+    """Principal stresses at the centroids; bars of the stress `typical` (Pa) have the length CROSS_LENGTH."""
     which = np.flatnonzero(look.shown)
     values, angle = look.frame.principal
     at = np.vstack([look.centroid[which]] * 2)
@@ -275,23 +281,27 @@ def draw_crosses(ax: Axes, look: Look, reference: float) -> list[Any]:
     turned = np.concatenate([angle[which], angle[which] + 0.5 * np.pi])
     lines = []
     for color, chosen in ((colors.COMPRESSION, size < 0.0), (colors.TENSION, size > 0.0)):
-        length = np.abs(size[chosen]) * look.block_size / reference
+        length = np.abs(size[chosen]) * CROSS_LENGTH * look.block_size / typical
         u, v = length * np.cos(turned[chosen]), length * np.sin(turned[chosen])
         lines.append(_lines_of(ax, at[chosen], u, v, color, head=False, zorder=7))
     return lines
 
 
-def draw_arrows(ax: Axes, look: Look, vectors: np.ndarray, reference: float) -> Any:
-    """A vector per block at its centroid; `reference` is as long as two mean blocks."""
+def draw_arrows(ax: Axes, look: Look, vectors: np.ndarray, typical: float) -> Any:
+    """A vector per block at its centroid; those of the size `typical` have the length ARROW_LENGTH."""
     which = np.flatnonzero(look.shown & np.isfinite(vectors).all(axis=1))
-    scaled = vectors[which] * 2.0 * look.block_size / reference
-    kept = np.hypot(*scaled.T) > 0.25 * look.block_size
-    return _lines_of(ax, look.centroid[which][kept], *scaled[kept].T, colors.ARROW, head=True, zorder=7)
+    scaled = vectors[which] / typical
+    size = np.hypot(*scaled.T)
+    scaled *= ARROW_LENGTH * look.block_size * (np.minimum(size, LONGEST_ARROW) / np.maximum(size, 1e-30))[:, None]
+    kept = size > 0.125
+    u, v = scaled[kept].T
+    return _lines_of(ax, look.centroid[which][kept], u, v, colors.ARROW, head=True, zorder=7)
 
 
 def _lines_of(ax: Axes, at: np.ndarray, u: np.ndarray, v: np.ndarray, color: str, *, head: bool, zorder: float) -> Any:
-    shape = {"headwidth": 4.0, "headlength": 5.0, "headaxislength": 4.5} if head else {"headwidth": 0.0, "headlength": 0.0, "headaxislength": 0.0}
-    return ax.quiver(
-        *at.T, u, v, color=color, angles="xy", scale_units="xy", scale=1.0, units="inches",
-        width=0.011, edgecolors="white", linewidths=0.25, pivot="tail" if head else "middle", minlength=0.0, zorder=zorder, **shape,
-    )
+    """Arrows, or lines without heads that have their middle in `at`; `u`, `v` in m."""
+    heads = (4.0, 5.0, 4.5) if head else (0.0, 0.0, 0.0)
+    shape = dict(zip(("headwidth", "headlength", "headaxislength"), heads))
+    shape |= {"units": "inches", "width": 0.015, "edgecolors": "white", "linewidths": 0.25, "minlength": 0.0}
+    pivot = "tail" if head else "middle"
+    return ax.quiver(*at.T, u, v, color=color, angles="xy", scale_units="xy", scale=1.0, pivot=pivot, zorder=zorder, **shape)

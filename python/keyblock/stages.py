@@ -19,7 +19,8 @@ _NAMES = {
     "largest_speed": "largest_speed_m_s",
     "wall_time": "wall_time_s",
 }
-_SAME = ("name", "kind", "steps", "start_time", "duration", "planned_duration", "scale", "standing", "interrupted", "still", "damage", "fallen")
+_SAME = ["name", "kind", "steps", "start_time", "duration", "planned_duration", "scale"]
+_SAME += ["standing", "interrupted", "still", "damage", "fallen"]
 
 
 class Stage(record.Record):
@@ -50,9 +51,9 @@ def read_stages(file: ResultFile, summary: record.Record | None, excavation_name
     """All stages that have begun, in their order."""
     lines: dict[int, record.Record] = {}
     text = file.bytes_as_text("stages")
-    for line in text.splitlines()[: text.count("\n")]:  # a line without its end is in the making
-        row = record.parse(line, f"stages of {file.path}")
-        lines[row["index"]] = row
+    for row in text.split("\n")[:-1]:  # a line without its end is in the making
+        found = record.parse(row, f"stages of {file.path}")
+        lines[found["index"]] = found
     told = summary["stages"] if summary else []
     stages = []
     for k in sorted(lines):

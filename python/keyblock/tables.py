@@ -77,7 +77,7 @@ def release(stages: Sequence[Mapping[str, Any]]) -> Any:
     if not rows:
         return None
     types = (int, int, object, float, float, float, float)
-    columns = {name: np.array(column, dtype=t) for name, column, t in zip(RELEASE_COLUMNS, zip(*rows), types)}
+    columns: dict[str, np.ndarray] = {name: np.array(column, dtype=t) for name, column, t in zip(RELEASE_COLUMNS, zip(*rows), types)}
     if not _optional.has("pandas"):
         return columns
     import pandas
