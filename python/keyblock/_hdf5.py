@@ -25,6 +25,20 @@ def text_of(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
+def _open(h5py: Any, path: Path) -> Any:
+    """A file that is complete is opened as any other. One that a run still writes, or was killed over, says that it is open for writing.
+
+    Then it is read as one that grows. A damaged file must not be: there HDF5 waits long for each checksum to come right. No lock is
+    taken, so that no run is in the way of a reader, nor a reader in that of a run.
+    """
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError as error:
+        if "write" not in str(error):
+            raise
+        return h5py.File(path, "r", swmr=True, locking=False)
+
+
 class ResultFile:
     """result.h5, open for reading, while its run goes on as well."""
 
@@ -37,7 +51,7 @@ class ResultFile:
             if file.read(len(_SIGNATURE)) != _SIGNATURE:
                 raise FormatError(f"{path} is no HDF5 file, or its beginning is damaged")
         try:
-            self._file = h5py.File(path, "r", swmr=True)
+            self._file = _open(h5py, path)
         except (OSError, RuntimeError, ValueError) as error:
             raise DamagedError(f"{path} is damaged: it cannot be opened ({error})") from None
         try:

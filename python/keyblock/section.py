@@ -301,7 +301,7 @@ def draw_arrows(ax: Axes, look: Look, vectors: np.ndarray, typical: float) -> An
 def _lines_of(ax: Axes, at: np.ndarray, u: np.ndarray, v: np.ndarray, color: str, *, head: bool, zorder: float) -> Any:
     """Arrows, or lines without heads that have their middle in `at`; `u`, `v` in m."""
     heads = (4.0, 5.0, 4.5) if head else (0.0, 0.0, 0.0)
-    shape = dict(zip(("headwidth", "headlength", "headaxislength"), heads))
+    shape: dict[str, Any] = dict(zip(("headwidth", "headlength", "headaxislength"), heads))
     shape |= {"units": "inches", "width": 0.015, "edgecolors": "white", "linewidths": 0.25, "minlength": 0.0}
     pivot = "tail" if head else "middle"
     return ax.quiver(*at.T, u, v, color=color, angles="xy", scale_units="xy", scale=1.0, pivot=pivot, zorder=zorder, **shape)
