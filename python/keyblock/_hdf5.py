@@ -34,7 +34,8 @@ def _open(h5py: Any, path: Path) -> Any:
     try:
         return h5py.File(path, "r", locking=False)
     except OSError as error:
-        if "write" not in str(error):
+        # The second: this process has opened the file as one that grows, and it was completed since.
+        if "open for write" not in str(error) and "SWMR" not in str(error):
             raise
         return h5py.File(path, "r", swmr=True, locking=False)
 
@@ -54,6 +55,7 @@ class ResultFile:
             self._file = _open(h5py, path)
         except (OSError, RuntimeError, ValueError) as error:
             raise DamagedError(f"{path} is damaged: it cannot be opened ({error})") from None
+        self._grows = bool(self._file.swmr_mode)
         try:
             self._check_format()
         except BaseException:
@@ -93,6 +95,8 @@ class ResultFile:
             raise ValueError(f"{self.path} was closed")
         try:
             dataset = self._file[name]
+            if self._grows and hasattr(dataset, "refresh"):
+                dataset.refresh()
         except _BROKEN:
             raise DamagedError(f"{self.path} is damaged: {name} is missing or cannot be read") from None
         if not hasattr(dataset, "shape"):

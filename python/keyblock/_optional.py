@@ -35,7 +35,7 @@ def need(name: str, purpose: str) -> ModuleType:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] != top:
-            raise
+            raise MissingPackageError(f"{purpose} needs {top}, which cannot be imported: {error}") from None
         debian, pip = _PACKAGES[top]
         raise MissingPackageError(
             f"{purpose} needs {top}, which is not installed: apt install {debian}, or pip install {pip}"

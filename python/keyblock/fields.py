@@ -183,11 +183,11 @@ _CLASSES: dict[str, Callable[[Result, Frame], Field]] = {
 
 
 def with_scale(run: Result, frame: Frame, shown: Field, color: Any, since: int) -> Field:
-    """The field with its scale, by the values at the ends of all stages and in this frame, so that pictures of a run can be compared."""
+    """The field with its scale, by the values at the ends of all stages, so that pictures of a run can be compared."""
     if shown.classes:
         return shown
     if isinstance(color, str):
-        rows = sorted({*typical_frames(run, since, shown.quantity), frame.index})
+        rows = typical_frames(run, since, shown.quantity) or [frame.index]
         samples = [block_field(run, run.frames[k], color, since).values[_counted(run, run.frames[k])] for k in rows]
         values = np.concatenate(samples)
     else:

@@ -39,7 +39,7 @@ def test_axes_have_numbers(study):
 
 def test_the_wide_table_is_runs_csv(study, study_folder):
     pandas = optional("pandas")
-    told = pandas.read_csv(study_folder / "runs.csv", keep_default_na=False, na_values=[""])
+    told = pandas.read_csv(study_folder / "runs.csv", keep_default_na=False, na_values=[""], float_precision="round_trip")
     found = study.table()
     assert list(found.columns) == list(told.columns)
     assert len(found) == 48

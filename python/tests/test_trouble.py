@@ -176,7 +176,7 @@ def frames_so_far(folder: Path) -> int:
 
 
 def test_a_run_is_read_while_it_goes_on_and_after_it_was_killed(tmp_path):
-    (tmp_path / "long.toml").write_text(TUNNEL.replace("duration = 0.2", "duration = 1e5"))
+    (tmp_path / "long.toml").write_text(TUNNEL.replace("duration = 0.2", "duration = 300.0"))
     command = [PROGRAM, "run", "long.toml", "-o", "out"]
     running = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     out = tmp_path / "out"
