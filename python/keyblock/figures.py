@@ -66,7 +66,6 @@ def fit(ax: Axes, width: float) -> None:
     ratio = (top - bottom) / (right - left) if ax.get_aspect() != "auto" else _RATIO
     for _ in range(2):  # a legend is wider than the axes may be: then margins change once
         ax.apply_aspect()
-        figure.canvas.draw()
         around = figure.get_tightbbox()
         box = ax.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
         margins = [box.x0 - around.x0, around.x1 - box.x1, box.y0 - around.y0, around.y1 - box.y1]
