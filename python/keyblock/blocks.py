@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from . import _optional, record
 from ._hdf5 import ResultFile
 from .errors import DamagedError
+from .rings import Rings
 
 EDGE_KINDS = ["free", "joint set", "trace map", "excavation", "domain"]
 JOINT_SET, TRACE_MAP, EXCAVATION, DOMAIN = 1, 2, 3, 4
@@ -53,8 +53,6 @@ class Blocks(Sequence[Block]):
         self.record: record.Record = record.parse(file.texts("model/record")[0], what)
         self.origin = np.asarray(self.record.origin, dtype=float)  #: (2,), m: real coordinates less local ones
         self.local = file.read("model/vertices")  #: (nv, 2), m: vertices in local coordinates
-        self.ring_start = file.read("model/ring_start").astype(np.int64)
-        self.block_rings = file.read("model/block_rings").astype(np.int64)
         self.names = file.texts("model/block_name")
         self.area = file.read("model/block_area")  #: (nb,), m²
         self.density = file.read("model/block_density")  #: (nb,), kg/m³
@@ -63,89 +61,24 @@ class Blocks(Sequence[Block]):
         self.centroid = file.read("model/block_centroid") + self.origin  #: (nb, 2), m
         self.edge_kind = file.read("model/edge_kind")  #: (nv,), number in EDGE_KINDS
         self.edge_index = file.read("model/edge_index")  #: (nv,), which of that kind
-        self._check(file.path)
+        self.outlines = self._outlines()
 
-    def _check(self, path: Path) -> None:
+    def _outlines(self) -> Rings:
+        """The rings of vertices. Throws DamagedError where what was read does not fit together."""
         n, nv = len(self.names), len(self.local)
-        rings, start = self.block_rings, self.ring_start
-        fits = (
-            all(len(column) == n for column in (self.area, self.density, self.fixed, self.order, self.centroid))
-            and len(self.edge_kind) == len(self.edge_index) == nv
-            and len(rings) == n + 1
-            and (n == 0 or (rings[0] == 0 and rings[-1] == len(start) and bool((np.diff(rings) >= 2).all())))
-            and (start.size == 0 or (start.min() >= 0 and start.max() <= nv))
-            and bool((self._ring_end - self._ring_begin >= 3).all())
-        )
-        if not fits:
-            raise DamagedError(f"{path} is damaged: the parts of model do not fit each other")
-
-    # ── rings ──
-
-    @cached_property
-    def _is_ring(self) -> np.ndarray:
-        """Of the entries of ring_start: all but the last one of each block begin a ring."""
-        is_ring = np.ones(len(self.ring_start), dtype=bool)
-        is_ring[self.block_rings[1:] - 1] = False
-        return is_ring
-
-    @cached_property
-    def _ring_begin(self) -> np.ndarray:
-        return self.ring_start[self._is_ring]
-
-    @cached_property
-    def _ring_end(self) -> np.ndarray:
-        return self.ring_start[np.flatnonzero(self._is_ring) + 1]
-
-    @cached_property
-    def ring_ranges(self) -> np.ndarray:
-        """First vertex of each ring and the one after its last, (rings, 2)."""
-        return np.column_stack([self._ring_begin, self._ring_end])
-
-    @cached_property
-    def ring_block(self) -> np.ndarray:
-        """Block of each ring, (rings,)."""
-        return np.repeat(np.arange(len(self)), np.diff(self.block_rings) - 1)
-
-    @cached_property
-    def next_vertex(self) -> np.ndarray:
-        """The vertex after each in its ring, (nv,)."""
-        following = np.arange(1, len(self.local) + 1)
-        following[self._ring_end - 1] = self._ring_begin
-        return following
-
-    @cached_property
-    def vertex_block(self) -> np.ndarray:
-        """Block of each vertex, (nv,)."""
-        owner = np.zeros(len(self.local), dtype=np.int64)
-        for (begin, end), block in zip(self.ring_ranges, self.ring_block):
-            owner[begin:end] = block
-        return owner
-
-    def rings(self, block: int, vertices: np.ndarray | None = None) -> list[np.ndarray]:
-        """Outlines of a block, each (n, 2), m: the outer ring, then holes.
-
-        `vertices` (nv, 2) are the positions of all vertices; those of the reference position by default.
-        """
-        at = self.vertices if vertices is None else vertices
-        limits = self.ring_start[self.block_rings[block] : self.block_rings[block + 1]]
-        return [at[i:j] for i, j in zip(limits[:-1], limits[1:])]
+        columns = (self.area, self.density, self.fixed, self.order, self.centroid)
+        try:
+            rings = Rings(self._file.read("model/ring_start"), self._file.read("model/block_rings"), nv)
+            if any(len(column) != n for column in columns) or rings.blocks != n or not len(self.edge_kind) == len(self.edge_index) == nv:
+                raise ValueError
+        except (ValueError, IndexError):
+            raise DamagedError(f"{self._file.path} is damaged: the parts of model do not fit each other") from None
+        return rings
 
     @cached_property
     def vertices(self) -> np.ndarray:
         """Reference positions of all vertices in real coordinates, (nv, 2), m."""
         return self.local + self.origin
-
-    def centroids(self, local: np.ndarray) -> np.ndarray:
-        """Centroids of the polygons whose vertices are `local`, (nv, 2) → (nb, 2). Local coordinates keep the digits."""
-        if len(self) == 0:
-            return np.zeros((0, 2))
-        base = local[self._ring_begin[np.searchsorted(self.ring_block, np.arange(len(self)))]]
-        p = local - base[self.vertex_block]
-        q = p[self.next_vertex]
-        twice = p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]
-        sums = [np.bincount(self.vertex_block, w, len(self)) for w in (twice, *((p + q) * twice[:, None]).T)]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return base + np.column_stack(sums[1:]) / (3.0 * sums[0][:, None])
 
     # ── names and materials ──
 
@@ -231,7 +164,7 @@ class Blocks(Sequence[Block]):
             order=int(self.order[b]),
             fixed=bool(self.fixed[b]),
             centroid=self.centroid[b],
-            rings=self.rings(b),
+            rings=self.outlines.of(b, self.vertices),
             excavations=[self.record.excavation_names[k] for k in values[start[b] : start[b + 1]]],
         )
 

@@ -11,7 +11,7 @@ import numpy as np
 from . import _optional
 from ._hdf5 import ResultFile
 from .blocks import Blocks
-from .frames import Moments
+from .frames import Frame, Moments, When
 
 STATES = ["open", "sliding", "locked"]
 OPEN, SLIDING, LOCKED = 0, 1, 2
@@ -90,21 +90,21 @@ class Contacts:
 
     def _sides(self, local: np.ndarray) -> np.ndarray:
         """Where block_a lies along each edge, seen from the vertex: 1 ahead, −1 behind, 0 on both sides."""
-        blocks, n = self._blocks, len(self)
+        rings, n = self._blocks.outlines, len(self)
         # Each contact beside every vertex of its block_a.
-        order = np.argsort(blocks.vertex_block, kind="stable")
-        first = np.searchsorted(blocks.vertex_block[order], np.arange(len(blocks) + 1))
+        order = np.argsort(rings.vertex_block, kind="stable")
+        first = np.searchsorted(rings.vertex_block[order], np.arange(rings.blocks + 1))
         count = (first[1:] - first[:-1])[self.block_a]
         contact = np.repeat(np.arange(n), count)
         within = np.arange(len(contact)) - np.repeat(np.cumsum(count) - count, count)
         vertex = order[first[self.block_a][contact] + within]
-        distance = np.hypot(*(local[vertex] - (self.position - blocks.origin)[contact]).T)
+        distance = np.hypot(*(local[vertex] - (self.position - self._blocks.origin)[contact]).T)
         nearest = np.lexsort((distance, contact))[np.cumsum(count) - count] if n else np.zeros(0, dtype=int)
         at = vertex[nearest]
-        before = np.empty_like(blocks.next_vertex)
-        before[blocks.next_vertex] = np.arange(len(before))
+        before = np.empty_like(rings.next_vertex)
+        before[rings.next_vertex] = np.arange(len(before))
         side = np.zeros(n)
-        for neighbour in (blocks.next_vertex[at], before[at]):
+        for neighbour in (rings.next_vertex[at], before[at]):
             edge = local[neighbour] - local[at]
             t = self.tangent
             lies_along = np.abs(t[:, 0] * edge[:, 1] - t[:, 1] * edge[:, 0]) < _ALONG * np.hypot(*edge.T)
@@ -149,6 +149,20 @@ class ContactSnapshots:
 
     def __len__(self) -> int:
         return len(self.moments)
+
+    @property
+    def time(self) -> np.ndarray:
+        """(snapshots,), s."""
+        return self.moments.time
+
+    def at(self, when: When = None) -> Contacts:
+        """At the snapshot nearest to a time in s; at the end of a stage, or of the run."""
+        return self.read(self.moments.index(when))
+
+    def near(self, frame: Frame) -> Contacts | None:
+        """At the snapshot nearest to a frame; None where there is none yet."""
+        row = self.moments.nearest_to(frame.time, frame.step)
+        return self.read(row) if row >= 0 else None
 
     def read(self, row: int) -> Contacts:
         begin = int(self._end[row - 1]) if row > 0 else 0

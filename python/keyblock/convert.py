@@ -55,13 +55,13 @@ def to_xarray(run: Result, rows: slice = slice(None)) -> Any:
     coordinates = {
         "time": ("time", distinct_times(frames.time)[rows], {"units": "s"}),
         "simulated_time": ("time", frames.time[rows], {"units": "s"}),
-        "stage": ("time", frames.stage[rows], {"names": run._stage_names}),
+        "stage": ("time", frames.stage[rows], {"names": run.stages.planned}),
         "step": ("time", frames.step[rows]),
         "component": ["x", "y"],
         "stress_component": ["xx", "yy", "xy"],
         "x": ("vertex", blocks.vertices[:, 0], metres),
         "y": ("vertex", blocks.vertices[:, 1], metres),
-        "vertex_block": ("vertex", blocks.vertex_block),
+        "vertex_block": ("vertex", blocks.outlines.vertex_block),
         "block": ("block", np.arange(len(blocks))),
         "block_name": ("block", np.asarray(blocks.names, dtype=str)),
         "block_x": ("block", blocks.centroid[:, 0], metres),
@@ -84,12 +84,12 @@ def to_geodataframe(run: Result, time: When = None, crs: Any = None) -> Any:
     geopandas = _optional.need("geopandas", "Result.to_geodataframe")
     shapely = _optional.need("shapely.geometry", "Result.to_geodataframe")
     blocks, frame = run.blocks, run.frames.at(time)
-    contacts = run.contacts_of(frame)
+    contacts = run.contact_snapshots.near(frame)
     which = np.flatnonzero(frame.is_there)
     vertices, principal = frame.vertices, frame.principal[0]
     shapes = []
     for b in which:
-        outer, *holes = blocks.rings(int(b), vertices)
+        outer, *holes = blocks.outlines.of(int(b), vertices)
         shapes.append(shapely.Polygon(outer, holes))
     u = frame.block_displacement
     columns = {

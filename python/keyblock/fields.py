@@ -62,6 +62,15 @@ def nice_above(x: float) -> float:
 # ── values of the blocks of a frame ──
 
 
+def reference(run: Result) -> int:
+    """Index of the frame from which damage counts: the first excavation, or the start of the run."""
+    for stage in run.stages:
+        if stage["excavate"]:
+            rows = np.flatnonzero(run.frames.stage == stage["index"])
+            return int(rows[0]) if rows.size else 0
+    return 0
+
+
 def displacement_since(run: Result, frame: Frame, since: int) -> np.ndarray:
     """Of the centroids since frame `since` (−1: the start), against the base where all fixed blocks move alike, (nb, 2), m."""
     u = frame.block_displacement
@@ -74,14 +83,14 @@ def displacement_since(run: Result, frame: Frame, since: int) -> np.ndarray:
 
 def base_motion(run: Result, frame: Frame) -> np.ndarray:
     """What all fixed blocks have moved by, (2,), m; zero where they move differently or there are none."""
-    fixed = frame.displacement[run.blocks.fixed[run.blocks.vertex_block]]
+    fixed = frame.displacement[run.blocks.fixed[run.blocks.outlines.vertex_block]]
     if len(fixed) == 0 or np.ptp(fixed, axis=0).max() > 1e-6:
         return np.zeros(2)
     return fixed[0].astype(float)
 
 
 def _slip(run: Result, frame: Frame) -> np.ndarray:
-    contacts = run.contacts_of(frame)
+    contacts = run.contact_snapshots.near(frame)
     return np.full(len(run.blocks), np.nan) if contacts is None else contacts.slip_of_blocks
 
 

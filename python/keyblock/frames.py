@@ -109,7 +109,7 @@ class Frame:
 
     def rings(self, block: int) -> list[np.ndarray]:
         """Outlines of a block as it lies: outer ring, then holes, each (n, 2), m."""
-        return self._blocks.rings(block, self.vertices)
+        return self._blocks.outlines.of(block, self.vertices)
 
     @cached_property
     def velocity(self) -> np.ndarray:
@@ -147,12 +147,12 @@ class Frame:
     @cached_property
     def centroid(self) -> np.ndarray:
         """Centroids as they lie, in real coordinates, (nb, 2), m."""
-        return self._blocks.centroids(self.local) + self._blocks.origin
+        return self._blocks.outlines.centroids(self.local) + self._blocks.origin
 
     @cached_property
     def block_displacement(self) -> np.ndarray:
         """Of the centroids since the start, (nb, 2), m."""
-        return self._blocks.centroids(self.local) - self._blocks.centroids(self._blocks.local)
+        return self._blocks.outlines.centroids(self.local) - self._blocks.outlines.centroids(self._blocks.local)
 
     @cached_property
     def principal(self) -> tuple[np.ndarray, np.ndarray]:

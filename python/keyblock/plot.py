@@ -96,7 +96,7 @@ class Picture:
         since = self.options.since
         if since == "start":
             return -1
-        index = self.run.reference if since == "reference" else since if isinstance(since, int) else self.run.frames.at(since).index
+        index = fields.reference(self.run) if since == "reference" else since if isinstance(since, int) else self.run.frames.at(since).index
         # Before the reference, what has moved since the start is shown.
         return index if frame.index >= index else -1
 
@@ -157,7 +157,7 @@ class Picture:
         ax, o = self._ax, self.options
         look = section.Look.of(self.run, self.frame, self.since, o.exaggeration, self._points_per_metre())
         self.look = look
-        contacts = self.run.contacts_of(self.frame) if o.joints in ("state", "slip", "opening") or o.forces else None
+        contacts = self.run.contact_snapshots.near(self.frame) if o.joints in ("state", "slip", "opening") or o.forces else None
         drawn = section.draw_fixed(ax, look)
         drawn += section.draw_blocks(ax, look, self.field, self.norm, faint=o.joints in ("state", "slip", "opening"))
         drawn += self._draw_joints(ax, look, contacts)
@@ -216,7 +216,7 @@ class Picture:
         elif what == "arrow":
             sizes = np.hypot(*self._vectors(frame)[blocks & (frame.status != FALLEN)].T)
         else:
-            contacts = self.run.contacts_of(frame)
+            contacts = self.run.contact_snapshots.near(frame)
             sizes = np.zeros(0) if contacts is None else section.pair_forces(self.look, contacts)[1]
         return sizes[np.isfinite(sizes) & (sizes > 0.0)]
 

@@ -20,7 +20,7 @@ from ._hdf5 import ResultFile
 from .blocks import Blocks
 from .contacts import Contacts, ContactSnapshots
 from .errors import NoResultError, UnfinishedWarning
-from .frames import Frame, Frames, When
+from .frames import Frames, When
 from .stages import Stages, read_stages
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ class Result:
     @cached_property
     def stages(self) -> Stages:
         """All stages that have begun, by number or name."""
-        return Stages(read_stages(self._file, self._summary, self.blocks.record.excavation_names))
+        return Stages(read_stages(self._file, self._summary, self.blocks.record.excavation_names), self.blocks.record.get("stage_names"))
 
     @cached_property
     def histories(self) -> Any:
@@ -125,41 +125,19 @@ class Result:
         """Outlines of a block as it lies: the outer ring, then holes, each (n, 2), m."""
         return self.frames.at(time).rings(self.blocks.index_of(block))
 
-    @property
-    def _stage_names(self) -> list[str]:
-        return self.blocks.record.get("stage_names") or [stage["name"] for stage in self.stages]
-
     @cached_property
     def frames(self) -> Frames:
         """The moments that were kept: `frames[3]`, `frames.at(12.3)`, `frames.at("first earthquake")`."""
-        return Frames(self._file, self.blocks, self._stage_names)
+        return Frames(self._file, self.blocks, self.stages.planned)
 
     @cached_property
-    def _snapshots(self) -> ContactSnapshots:
-        return ContactSnapshots(self._file, self.blocks, self._stage_names)
-
-    @property
-    def contact_times(self) -> np.ndarray:
-        """Times at which contacts were kept, (snapshots,), s."""
-        return self._snapshots.moments.time
+    def contact_snapshots(self) -> ContactSnapshots:
+        """The moments at which contacts were kept; fewer than frames."""
+        return ContactSnapshots(self._file, self.blocks, self.stages.planned)
 
     def contacts(self, time: When = None) -> Contacts:
         """Contacts at the snapshot nearest to a time in s, at the end of a stage, or of the run."""
-        return self._snapshots.read(self._snapshots.moments.index(time))
-
-    def contacts_of(self, frame: Frame) -> Contacts | None:
-        """Contacts at the snapshot nearest to a frame; None where there is none yet."""
-        row = self._snapshots.moments.nearest_to(frame.time, frame.step)
-        return self._snapshots.read(row) if row >= 0 else None
-
-    @cached_property
-    def reference(self) -> int:
-        """Index of the frame from which damage counts: the first excavation, or the start of the run."""
-        for stage in self.stages:
-            if stage["excavate"]:
-                rows = (self.frames.stage == stage["index"]).nonzero()[0]
-                return int(rows[0]) if rows.size else 0
-        return 0
+        return self.contact_snapshots.at(time)
 
     # ── pictures, other libraries ──
 

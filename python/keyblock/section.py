@@ -18,15 +18,16 @@ if TYPE_CHECKING:
     from .contacts import Contacts
     from .frames import Frame
     from .results import Result
+    from .rings import Rings
 
 JOINTS = ["state", "slip", "opening", "set"]
 
 
-def outline_paths(blocks: Blocks, at: np.ndarray, which: np.ndarray) -> list[Any]:
+def outline_paths(rings: Rings, at: np.ndarray, which: np.ndarray) -> list[Any]:
     """A matplotlib path with holes for each of the blocks `which` (indices); `at` (nv, 2) are the positions of all vertices."""
     from matplotlib.path import Path
 
-    begin, end = blocks.ring_ranges.T
+    begin, end = rings.ranges.T
     size = end - begin + 1  # of a ring with its first vertex again
     stop = np.cumsum(size)
     within = np.arange(int(stop[-1]) if len(stop) else 0) - np.repeat(stop - size, size)
@@ -37,7 +38,7 @@ def outline_paths(blocks: Blocks, at: np.ndarray, which: np.ndarray) -> list[Any
     codes[within == length] = Path.CLOSEPOLY
     corners = at[vertex]
     # Rings of a block stand one after the other.
-    first_ring = np.searchsorted(blocks.ring_block, np.arange(len(blocks) + 1))
+    first_ring = np.searchsorted(rings.ring_block, np.arange(rings.blocks + 1))
     limits = np.concatenate([[0], stop])[first_ring]
     return [Path(corners[limits[b] : limits[b + 1]], codes[limits[b] : limits[b + 1]]) for b in which]
 
@@ -61,7 +62,7 @@ class Look:
             local = before + exaggeration * (local - before)
         moving = ~blocks.fixed
         size = float(np.sqrt(blocks.area[moving].mean())) if moving.any() else 1.0
-        return Look(run, frame, local + blocks.origin, blocks.centroids(local) + blocks.origin, size, points_per_metre)
+        return Look(run, frame, local + blocks.origin, blocks.outlines.centroids(local) + blocks.origin, size, points_per_metre)
 
     @property
     def shown(self) -> np.ndarray:
@@ -86,7 +87,7 @@ def extent(run: Result) -> tuple[float, float, float, float]:
     counts = ~blocks.fixed if has_domain else np.ones(len(blocks), dtype=bool)
     if not counts.any():
         return -1.0, 1.0, -1.0, 1.0
-    rock = blocks.local[counts[blocks.vertex_block]]
+    rock = blocks.local[counts[blocks.outlines.vertex_block]]
     low, high = rock.min(axis=0), rock.max(axis=0)
     margin = 0.03 * float((high - low).max())
     low, high = low - margin, high + margin
@@ -106,8 +107,8 @@ def extent(run: Result) -> tuple[float, float, float, float]:
 def _boxes(blocks: Blocks, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of each block, (nb, 2)."""
     low, high = np.full((len(blocks), 2), np.inf), np.full((len(blocks), 2), -np.inf)
-    np.minimum.at(low, blocks.vertex_block, local)
-    np.maximum.at(high, blocks.vertex_block, local)
+    np.minimum.at(low, blocks.outlines.vertex_block, local)
+    np.maximum.at(high, blocks.outlines.vertex_block, local)
     return low, high
 
 
@@ -119,7 +120,7 @@ def draw_fixed(ax: Axes, look: Look) -> list[Artist]:
     from matplotlib.collections import PathCollection
 
     which = np.flatnonzero(look.run.blocks.fixed & look.frame.is_there)
-    paths = outline_paths(look.run.blocks, look.at, which)
+    paths = outline_paths(look.run.blocks.outlines, look.at, which)
     hatched = PathCollection(paths, facecolors=colors.FIXED, edgecolors=colors.FIXED_HATCH, hatch="////", linewidths=0.0, zorder=1)
     return [ax.add_collection(hatched, autolim=False)]
 
@@ -132,7 +133,7 @@ def draw_blocks(ax: Axes, look: Look, field: fields.Field, norm: Any, faint: boo
     which = np.flatnonzero(look.shown)
     values = field.values[which]
     edge = to_rgba(colors.JOINT, 0.35 if faint else 0.75)
-    paths = outline_paths(look.run.blocks, look.at, which)
+    paths = outline_paths(look.run.blocks.outlines, look.at, which)
     drawn = PathCollection(paths, linewidths=look.edge_width(), joinstyle="round", zorder=2)
     if field.classes:
         shades = ListedColormap([color for _, color in field.classes])
@@ -180,9 +181,9 @@ def draw_sets(ax: Axes, look: Look) -> tuple[list[Artist], list[tuple[str, str]]
     names = [*sets, *maps]
     shades = [colors.PALETTE[k % len(colors.PALETTE)] for k in range(len(names))]
     place = np.where(blocks.edge_kind == TRACE_MAP, len(sets), 0) + blocks.edge_index
-    is_joint = ((blocks.edge_kind == JOINT_SET) | (blocks.edge_kind == TRACE_MAP)) & look.shown[blocks.vertex_block]
+    is_joint = ((blocks.edge_kind == JOINT_SET) | (blocks.edge_kind == TRACE_MAP)) & look.shown[blocks.outlines.vertex_block]
     edges = np.flatnonzero(is_joint)
-    segments = np.stack([look.at[edges], look.at[blocks.next_vertex[edges]]], axis=1)
+    segments = np.stack([look.at[edges], look.at[blocks.outlines.next_vertex[edges]]], axis=1)
     lines = LineCollection(segments, colors=[shades[k] for k in place[edges]], linewidths=0.9, capstyle="round", zorder=5)
     used = [(names[k], shades[k]) for k in sorted(set(place[edges].tolist()))]
     return [ax.add_collection(lines, autolim=False)], used
@@ -225,7 +226,7 @@ def draw_sizes(ax: Axes, look: Look, contacts: Contacts, which: str, scale: fiel
 
 def size_scale(run: Result, which: str) -> fields.Scale:
     """Three decades up to the largest slip or opening that was kept, m."""
-    ends = [run.contacts_of(run.frames[k]) for k in fields.stage_ends(run)]
+    ends = [run.contact_snapshots.near(run.frames[k]) for k in fields.stage_ends(run)]
     values = [np.abs(c.slip) if which == "slip" else c.gap for c in ends if c is not None]
     largest = max((float(v.max(initial=0.0)) for v in values), default=0.0)
     high = fields.nice_above(max(largest, 1e-5))

@@ -78,8 +78,9 @@ def _as_in_summary(line: record.Record, excavation_names: list[str]) -> dict[str
 class Stages(Sequence[Stage]):
     """By number or name: ``stages["first earthquake"].damage.fallen_area_m2``."""
 
-    def __init__(self, stages: list[Stage]) -> None:
+    def __init__(self, stages: list[Stage], planned: list[str] | None = None) -> None:
         self._stages = stages
+        self.planned = planned or self.names  #: names of all stages of the plan; a run that was stopped has begun fewer
 
     @property
     def names(self) -> list[str]:

@@ -114,7 +114,7 @@ def test_words_that_are_not_known(tunnel):
 
 
 def test_joints(tunnel):
-    contacts = tunnel.contacts_of(tunnel.frames.at())
+    contacts = tunnel.contact_snapshots.near(tunnel.frames.at())
     in_rock = (contacts.edge_kind != 4) & (contacts.length > 0.0)
     lines = collections(tunnel.plot(joints="state"), "LineCollection")[1:]
     assert sum(len(found.get_segments()) for found in lines) == in_rock.sum()
@@ -129,8 +129,8 @@ def test_force_chains_carry_the_weight(tunnel):
     """Of a block that hangs nowhere, the forces that come in from above and below differ by its weight."""
     frame = tunnel.frames.at("in situ")
     look = section.Look.of(tunnel, frame, -1, 1.0, 10.0)
-    chains, total = section.pair_forces(look, tunnel.contacts_of(frame))
-    contacts = tunnel.contacts_of(frame)
+    chains, total = section.pair_forces(look, tunnel.contact_snapshots.near(frame))
+    contacts = tunnel.contact_snapshots.near(frame)
     assert total.sum() == pytest.approx(contacts.normal_force[contacts.normal_force > 0.0].sum())
     assert np.isfinite(chains).all()
     # Where blocks touch the frame, the chain ends at the contact and not at the middle of the frame.
@@ -151,10 +151,10 @@ def test_crosses_and_arrows(tunnel):
 
 
 def test_displacement_counts_from_the_excavation(tunnel):
-    excavation = tunnel.frames[tunnel.reference]
-    assert excavation.stage == "excavated" and tunnel.reference == int(np.flatnonzero(tunnel.frames.stage == 1)[0])
+    excavation = tunnel.frames[fields.reference(tunnel)]
+    assert excavation.stage == "excavated" and fields.reference(tunnel) == int(np.flatnonzero(tunnel.frames.stage == 1)[0])
     frame = tunnel.frames.at()
-    since = fields.displacement_since(tunnel, frame, tunnel.reference)
+    since = fields.displacement_since(tunnel, frame, fields.reference(tunnel))
     np.testing.assert_allclose(since, frame.block_displacement - excavation.block_displacement, atol=1e-15)
     largest = np.hypot(*since[frame.is_there & ~tunnel.blocks.fixed].T).max()
     assert largest == pytest.approx(tunnel.stages[-1].damage.displacement_max_m, rel=1e-4)

@@ -197,8 +197,8 @@ def test_moments_that_are_not_there(tunnel):
 def test_contacts_belong_to_a_moment(tunnel):
     assert tunnel.contacts("excavated").stage == "excavated"
     assert tunnel.contacts("excavated").step == tunnel.frames.at("excavated").step
-    assert tunnel.contacts_of(tunnel.frames.at("excavated")).step == tunnel.frames.at("excavated").step
-    assert tunnel.contact_times[-1] == tunnel.contacts().time
+    assert tunnel.contact_snapshots.near(tunnel.frames.at("excavated")).step == tunnel.frames.at("excavated").step
+    assert tunnel.contact_snapshots.time[-1] == tunnel.contacts().time
 
 
 # ── blocks ──
@@ -211,13 +211,13 @@ def test_outlines(tunnel):
         twice = [np.sum(r[:, 0] * np.roll(r[:, 1], -1) - np.roll(r[:, 0], -1) * r[:, 1]) for r in block.rings]
         assert twice[0] > 0.0 and all(t < 0.0 for t in twice[1:])
         assert 0.5 * sum(twice) == pytest.approx(block.area, rel=1e-9)
-    np.testing.assert_allclose(tunnel.blocks.centroids(tunnel.blocks.local), tunnel.blocks.centroid, atol=1e-9)
+    np.testing.assert_allclose(tunnel.blocks.outlines.centroids(tunnel.blocks.local), tunnel.blocks.centroid, atol=1e-9)
 
 
 def test_outlines_of_blocks_as_they_lie(tunnel):
     last = tunnel.frames.at()
     for ring, reference in zip(tunnel.rings(3), tunnel.blocks[3].rings):
-        start = int(np.flatnonzero((tunnel.blocks.vertices == reference[0]).all(axis=1) & (tunnel.blocks.vertex_block == 3))[0])
+        start = int(np.flatnonzero((tunnel.blocks.vertices == reference[0]).all(axis=1) & (tunnel.blocks.outlines.vertex_block == 3))[0])
         np.testing.assert_allclose(ring - reference, last.displacement[start : start + len(ring)], atol=1e-12)
     assert (tunnel.rings(3)[0] == last.rings(3)[0]).all()
 
