@@ -22,6 +22,14 @@ _COLUMNS = ["block_a", "block_b", "state", "position", "normal", "length", "gap"
 _ALONG = 0.3
 
 
+def _distances(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Of points (m, 2) from the nearest of the segments a to b, each (n, 2)."""
+    along, to = b - a, points[:, None, :] - a
+    length = np.maximum((along**2).sum(axis=1), 1e-300)
+    share = np.clip((to * along).sum(axis=2) / length, 0.0, 1.0)
+    return np.sqrt(((to - share[:, :, None] * along) ** 2).sum(axis=2).min(axis=1))
+
+
 @dataclass
 class Contacts:
     """All contacts at one moment, a row for each; block_a has the vertex, block_b the edge. Forces are per metre of thickness."""
@@ -55,7 +63,7 @@ class Contacts:
         """Name of the joint set, trace map or excavation of each contact."""
         return self._blocks.edge_names(self.edge_kind, self.edge_index)
 
-    @property
+    @cached_property
     def tangent(self) -> np.ndarray:
         """Unit vectors along the edges, in the direction of `slip`, (n, 2)."""
         return np.column_stack([-self.normal[:, 1], self.normal[:, 0]])
@@ -109,7 +117,18 @@ class Contacts:
             t = self.tangent
             lies_along = np.abs(t[:, 0] * edge[:, 1] - t[:, 1] * edge[:, 0]) < _ALONG * np.hypot(*edge.T)
             side += np.where(lies_along, np.sign((t * edge).sum(axis=1)), 0.0)
-        return np.clip(side, -1.0, 1.0)
+        return self._within_edges(np.clip(side, -1.0, 1.0), local)
+
+    def _within_edges(self, side: np.ndarray, local: np.ndarray) -> np.ndarray:
+        """Of stretches on both sides of their vertex: those that reach beyond the outline of block_b go to the other side alone."""
+        rings = self._blocks.outlines
+        for k in np.flatnonzero(side == 0.0):
+            own = np.flatnonzero(rings.vertex_block == self.block_b[k])
+            at = self.position[k] - self._blocks.origin
+            along = 0.5 * self.length[k] * self.tangent[k]
+            beyond = _distances(np.array([at - along, at + along]), local[own], local[rings.next_vertex[own]]) > 0.05 * self.length[k]
+            side[k] = float(beyond[0]) - float(beyond[1])
+        return side
 
     def table(self) -> Any:
         """One row per contact, as pandas.DataFrame, in SI units."""

@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import PROGRAM, TUNNEL
+from conftest import PROGRAM, TUNNEL, optional
 
 import keyblock as kb
 
@@ -145,6 +145,18 @@ def test_a_run_that_did_not_reach_its_end(copy):
         assert run.to_geodataframe() is not None
         with pytest.raises(kb.NoResultError, match="no summary before the run ends"):
             run.summary
+
+
+def test_a_run_without_contacts_yet_is_drawn(copy, tmp_path):
+    optional("matplotlib")
+    with h5py.File(copy / "result.h5", "r+") as file:
+        file["contacts/time"][:] = np.nan
+    with kb.open(copy) as run:
+        for color, joints in (("slip", "state"), ("plain", "slip"), ("plain", "opening")):
+            run.plot(color=color, joints=joints, forces=True, save=tmp_path / "a.png")
+        assert np.isnan(run.to_geodataframe().slip).all()
+        with pytest.raises(ValueError, match="there are no contacts yet"):
+            run.contacts()
 
 
 def test_a_run_that_was_interrupted_says_so(copy):
