@@ -63,12 +63,8 @@ class ResultFile:
             raise
 
     def _check_format(self) -> None:
-        try:
-            format_ = text_of(self._file.attrs.get("format", ""))
-            version = int(self._file.attrs.get("format_version", 0))
-        except _BROKEN as error:
-            raise DamagedError(f"{self.path} is damaged: its attributes cannot be read ({error})") from None
-        if format_ != FORMAT:
+        version = self.attribute("format_version")
+        if self.attribute("format") != FORMAT or version is None:
             raise FormatError(f"{self.path} is an HDF5 file, but no result of keyblock")
         if version > NEWEST_VERSION:
             raise FormatError(
@@ -84,11 +80,18 @@ class ResultFile:
 
     def attribute(self, name: str) -> Any:
         """An attribute of the file; texts as str."""
-        value = self._file.attrs.get(name)
+        try:
+            value = self._file.attrs.get(name)
+        except _BROKEN as error:
+            raise DamagedError(f"{self.path} is damaged: its attributes cannot be read ({error})") from None
         return text_of(value) if isinstance(value, (bytes, str)) else value
 
     def has(self, name: str) -> bool:
-        return name in self._file
+        """Whether there is such a dataset: results of earlier versions have fewer."""
+        try:
+            return name in self._file
+        except _BROKEN as error:
+            raise DamagedError(f"{self.path} is damaged: {name} cannot be found ({error})") from None
 
     def _dataset(self, name: str) -> Any:
         if not self.is_open:
