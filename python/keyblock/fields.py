@@ -72,7 +72,12 @@ def reference(run: Result) -> int:
 
 
 def displacement_since(run: Result, frame: Frame, since: int) -> np.ndarray:
-    """Of the centroids since frame `since` (−1: the start), against the base where all fixed blocks move alike, (nb, 2), m."""
+    """Of the centroids since frame `since` (−1: the start), against the base where all fixed blocks move alike, (nb, 2), m.
+
+    Before frame `since` it is zero.
+    """
+    if frame.index < since:
+        return np.zeros((len(run.blocks), 2))
     u = frame.block_displacement
     base = base_motion(run, frame)
     if since >= 0:

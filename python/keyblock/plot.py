@@ -149,8 +149,7 @@ class Picture:
         for artist in self._moving:
             artist.remove()
         self.frame = frame
-        fresh = fields.block_field(self.run, frame, self.options.color, self.since if frame.index >= self.since else -1)
-        self.field.values = fresh.values
+        self.field.values = fields.block_field(self.run, frame, self.options.color, self.since).values
         self._draw_moment()
 
     def _draw_moment(self) -> None:
@@ -223,4 +222,4 @@ class Picture:
     def _vectors(self, frame: Frame) -> np.ndarray:
         if self.options.arrows == "velocity":
             return frame.velocity
-        return fields.displacement_since(self.run, frame, self.since if frame.index >= self.since else -1)
+        return fields.displacement_since(self.run, frame, self.since)

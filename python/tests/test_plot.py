@@ -160,6 +160,15 @@ def test_displacement_counts_from_the_excavation(tunnel):
     assert largest == pytest.approx(tunnel.stages[-1].damage.displacement_max_m, rel=1e-4)
 
 
+def test_before_the_excavation_a_film_shows_no_displacement(tunnel):
+    picture = plot.Picture(tunnel, tunnel.frames.at(), plot.Options(), film=True)
+    picture.draw(matplotlib.pyplot.subplots()[1])
+    picture.move_to(tunnel.frames[0])
+    assert not picture.field.values.any()
+    # A picture of its own shows what has moved since the start.
+    assert plot.Picture(tunnel, tunnel.frames.at("in situ"), plot.Options()).field.values.any()
+
+
 def test_exaggeration(tunnel):
     frame = tunnel.frames.at()
     plain, large = (section.Look.of(tunnel, frame, -1, e, 10.0) for e in (1.0, 5.0))
