@@ -9,14 +9,21 @@ target_compile_options(keyblock_options INTERFACE
   # The same bits from every build: no fused multiply-add behind our back, and never -ffast-math. GCC 12's vectorizer
   # makes vfmaddsub of x·c ∓ y·s in spite of -ffp-contract=off (tests/integration/instructions.py).
   -ffp-contract=off
-  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-vectorize>)
-target_include_directories(keyblock_options INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-vectorize>
+  # The same objects make the program and the library: what is not of its headers is hidden, and calls within it are direct.
+  -fno-semantic-interposition)
+target_include_directories(keyblock_options INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/generated)
 # Eigen would pick other instructions, and other roundings, on other machines.
 target_compile_definitions(keyblock_options INTERFACE EIGEN_DONT_VECTORIZE)
 # A target may ask for an instruction set of its own (property KEYBLOCK_ARCHITECTURE).
 set(architecture $<TARGET_PROPERTY:KEYBLOCK_ARCHITECTURE>)
-target_compile_options(keyblock_options INTERFACE
-  $<IF:$<BOOL:${architecture}>,-march=${architecture},$<$<BOOL:${KEYBLOCK_NATIVE}>:-march=native>>)
+include(${CMAKE_CURRENT_LIST_DIR}/processor.cmake)
+if(KEYBLOCK_MARCH)
+  set(march -march=${KEYBLOCK_MARCH})
+elseif(KEYBLOCK_NATIVE)
+  set(march -march=native)
+endif()
+target_compile_options(keyblock_options INTERFACE $<IF:$<BOOL:${architecture}>,-march=${architecture},${march}>)
 
 # ccache where there is one, unless another launcher was asked for.
 find_program(CCACHE ccache)

@@ -3,64 +3,111 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "command_line.h"
 #include "commands.h"
+#include "core/checked_json.h"
+#include "core/error.h"
+#include "job/check.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario/inputs.h"
 #include "scenario_arguments.h"
-#include "simulation/build_model.h"
-#include "simulation/feasibility.h"
 #include "study/plan.h"
 
 namespace keyblock::app {
 namespace {
 
-void check_scenario(const ScenarioArguments& arguments) {
+using nlohmann::ordered_json;
+
+/// What a scenario that can be run comes to.
+struct Checked {
+  std::vector<std::string> warnings;
+  std::size_t blocks = 0, traces = 0, stages = 0;
+  std::optional<std::string> slivers;
+  std::optional<study::Plan> plan;
+};
+
+Checked checked(const ScenarioArguments& arguments) {
   const scenario::Scenario scenario = arguments.read();
-  std::vector<std::string> warnings = scenario::check_inputs(scenario);
+  // Mistakes of all files together, before any block is cut.
+  scenario::check_inputs(scenario);
   const scenario::BlockModel blocks = scenario::build_blocks(scenario, arguments.realization);
-  if (!scenario.stages.empty()) {  // a scenario without stages can still be cut
-    warnings.clear();
-    const simulation::RunSetup setup =
-        scenario::build_setup(scenario, arguments.realization, blocks, &warnings);
-    simulation::build_model(setup);
-    if (const auto reason = simulation::yields_without_limit(setup))
-      warnings.push_back("a run ends at once: " + *reason);
-  } else {
-    scenario::add_block_warnings(scenario, blocks, warnings);
-    scenario::add_overlap_warnings(scenario, blocks.system, warnings);
-  }
-  print_warnings(arguments, warnings);
-  print_warnings(arguments, scenario::study_warnings(scenario));
-  const auto count = [](std::size_t n, const char* what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-  };
-  std::string text =
-      fmt::format("{}: ok: {}, {}, {}", arguments.file, count(blocks.system.blocks.size(), "block"),
-                  count(static_cast<std::size_t>(blocks.system.statistics.traces), "joint trace"),
-                  count(scenario.stages.size(), "stage"));
-  if (scenario.study) {
-    // Every combination of values is looked at here.
-    const study::Plan plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
-    const auto realizations = static_cast<std::size_t>(plan.realizations);
-    text += fmt::format("; a study of {}{}: {}, {} of each", plan.until ? "at most " : "",
-                        count(plan.runs.size(), "run"), count(realizations, "realization"),
-                        plan.runs.size() / realizations);
+  Checked found{.warnings = job::check(scenario, blocks, arguments.realization),
+                .blocks = blocks.system.blocks.size(),
+                .traces = static_cast<std::size_t>(blocks.system.statistics.traces),
+                .stages = scenario.stages.size(),
+                .slivers = scenario::sliver_note(blocks.system, scenario.blocks.size()),
+                .plan = {}};
+  for (std::string& warning : scenario::study_warnings(scenario))
+    found.warnings.push_back(std::move(warning));
+  // Every combination of values is looked at here.
+  if (scenario.study) found.plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
+  return found;
+}
+
+std::string counted(std::size_t n, const char* what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+void check_scenario(const ScenarioArguments& arguments) {
+  const Checked found = checked(arguments);
+  print_warnings(arguments, found.warnings);
+  std::string text = fmt::format("{}: ok: {}, {}, {}", arguments.file, counted(found.blocks, "block"),
+                                 counted(found.traces, "joint trace"), counted(found.stages, "stage"));
+  if (found.plan) {
+    const auto realizations = static_cast<std::size_t>(found.plan->realizations);
+    text += fmt::format("; a study of {}{}: {}, {} of each", found.plan->until ? "at most " : "",
+                        counted(found.plan->runs.size(), "run"), counted(realizations, "realization"),
+                        found.plan->runs.size() / realizations);
   }
   std::cout << text << '\n';
-  if (const auto note = scenario::sliver_note(blocks.system, scenario.blocks.size()))
-    std::cout << arguments.file << ": " << *note << '\n';
+  if (found.slivers) std::cout << arguments.file << ": " << *found.slivers << '\n';
+}
+
+ordered_json to_json(const Diagnostic& mistake) {
+  return {{"file", mistake.where.file}, {"line", mistake.where.line}, {"column", mistake.where.column},
+          {"key", mistake.key},         {"found", mistake.found},     {"expected", mistake.expected},
+          {"hint", mistake.hint}};
+}
+
+/// For other programs. Mistakes are printed here, and the exit code says that there are some.
+void check_as_json(const ScenarioArguments& arguments, int& exit_code) {
+  ordered_json json{{"scenario", arguments.file}, {"ok", true}, {"mistakes", ordered_json::array()}};
+  try {
+    const Checked found = checked(arguments);
+    json["warnings"] = found.warnings;
+    json["blocks"] = found.blocks;
+    json["traces"] = found.traces;
+    json["stages"] = found.stages;
+    if (found.plan)
+      json["study"] = {{"runs", found.plan->runs.size()}, {"realizations", found.plan->realizations}};
+  } catch (const InputError& error) {
+    json["ok"] = false;
+    for (const Diagnostic& mistake : error.diagnostics()) json["mistakes"].push_back(to_json(mistake));
+    exit_code = input_wrong;
+  }
+  std::cout << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace
 
-void add_check(CLI::App& app) {
+void add_check(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ScenarioArguments>();
+  auto as_json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("check", "Every mistake of a scenario, with line and column");
   add_scenario_arguments(*command, *arguments);
+  command->add_flag("--json", *as_json,
+                    "For other programs: mistakes and warnings as JSON on standard output");
   command->footer("Exit code 1 if there is any mistake.\n\nExample:\n  keyblock check tunnel.toml");
-  command->callback([arguments] { check_scenario(*arguments); });
+  command->callback([arguments, as_json, &exit_code] {
+    if (*as_json) return check_as_json(*arguments, exit_code);
+    check_scenario(*arguments);
+  });
 }
 
 }  // namespace keyblock::app

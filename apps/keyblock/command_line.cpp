@@ -42,6 +42,7 @@ void describe(CLI::App& app, int& exit_code) {
   app.set_version_flag("--version", "keyblock " KEYBLOCK_VERSION);
   app.footer(
       "Examples:\n"
+      "  keyblock new tunnel\n"
       "  keyblock check tunnel.toml\n"
       "  keyblock run tunnel.toml -o out/tunnel\n"
       "  keyblock run tunnel.toml -o out/strong --set \"stage.'first earthquake'.scale=2\"\n"
@@ -54,7 +55,7 @@ void describe(CLI::App& app, int& exit_code) {
       "interrupted, 3 internal error.");
   app.require_subcommand(1);
   add_run(app);
-  add_check(app);
+  add_check(app, exit_code);
   add_cut(app);
   add_report(app);
   add_export(app);
@@ -62,6 +63,10 @@ void describe(CLI::App& app, int& exit_code) {
   add_verify(app, exit_code);
   add_study(app);
   add_limit(app);
+  add_new(app);
+  add_schema(app);
+  add_completion(app);
+  add_manual(app);
   refuse_empty_values(app);
 }
 

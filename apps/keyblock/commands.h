@@ -9,7 +9,8 @@ class App;
 namespace keyblock::app {
 
 void add_run(CLI::App& app);
-void add_check(CLI::App& app);
+/// Mistakes that are printed as JSON set `exit_code`, which must outlive the parsing.
+void add_check(CLI::App& app, int& exit_code);
 void add_cut(CLI::App& app);
 void add_report(CLI::App& app);
 void add_export(CLI::App& app);
@@ -18,6 +19,11 @@ void add_motion(CLI::App& app);
 void add_verify(CLI::App& app, int& exit_code);
 
 void add_limit(CLI::App& app);
+/// Around the work: new, schema, completion, manual-page.
+void add_new(CLI::App& app);
+void add_schema(CLI::App& app);
+void add_completion(CLI::App& app);
+void add_manual(CLI::App& app);
 
 /// study run, study task, study collect, study submit.
 void add_study(CLI::App& app);

@@ -12,7 +12,7 @@
 #include "core/file_set.h"
 #include "cutting/geojson.h"
 #include "cutting/picture.h"
-#include "result_folder.h"
+#include "job/result_folder.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario/inputs.h"
@@ -24,6 +24,7 @@ namespace {
 struct CutArguments {
   ScenarioArguments scenario;
   std::string folder;
+  bool as_json = false;
 };
 
 std::string picture(const scenario::Scenario& scenario, const scenario::BlockModel& model) {
@@ -38,7 +39,7 @@ void cut_scenario(const CutArguments& arguments) {
   const scenario::Scenario scenario = arguments.scenario.read();
   const int realization = arguments.scenario.realization;
   const std::filesystem::path folder = arguments.folder;
-  check_holds_no_run(folder);
+  job::check_holds_no_run(folder);
   FileSet out(folder);
   const scenario::BlockModel model = scenario::build_blocks(scenario, realization);
   std::vector<std::string> warnings = scenario::rock_mass_warnings(scenario);
@@ -54,8 +55,13 @@ void cut_scenario(const CutArguments& arguments) {
   });
   const std::filesystem::path svg = out.write("blocks.svg", picture(scenario, model));
   outlines.get();
-  out.write("summary.json", scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION));
+  const std::string summary = scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION);
+  out.write("summary.json", summary);
   out.commit();
+  if (arguments.as_json) {
+    std::cout << summary;
+    return;
+  }
   const cutting::CutStatistics& cut = model.system.statistics;
   std::cout << fmt::format(
       "{} blocks from {} of {} traces; {:.1f} m of {:.1f} m end in rock or bound no block; {} slivers "
@@ -76,6 +82,7 @@ void add_cut(CLI::App& app) {
   command->add_option("-o,--output", arguments->folder, "Folder for summary.json, blocks.geojson, blocks.svg")
       ->required()
       ->type_name("DIR");
+  command->add_flag("--json", arguments->as_json, "Print summary.json in the place of a sentence");
   command->footer("Example:\n  keyblock cut tunnel.toml -o out/cut --realization 3");
   command->callback([arguments] { cut_scenario(*arguments); });
 }

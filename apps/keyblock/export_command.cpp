@@ -8,7 +8,7 @@
 
 #include "commands.h"
 #include "core/folder.h"
-#include "result_folder.h"
+#include "job/result_folder.h"
 #include "results/export.h"
 #include "results/run_data.h"
 
@@ -26,7 +26,7 @@ void export_results(const ExportArguments& arguments) {
   const bool own_folder = arguments.output.empty();
   const std::filesystem::path output = own_folder ? std::filesystem::path(arguments.folder) / arguments.format
                                                   : std::filesystem::path(arguments.output);
-  check_holds_no_run(output);
+  job::check_holds_no_run(output);
   if (own_folder) check_is_no_link(output);
   const results::RunData data = results::read_run(arguments.folder);
   const auto files = results::export_run(data, output, results::export_format(arguments.format).value(),

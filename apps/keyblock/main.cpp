@@ -4,8 +4,10 @@
 // What jemalloc reads before main(): memory comes in pages of 2 MB where the system has them. In a step, large models touch more pages
 // of 4 kB than the processor knows the places of.
 extern "C" {
-extern const char* malloc_conf;          // NOLINT(readability-identifier-naming): jemalloc's name
-const char* malloc_conf = "thp:always";  // NOLINT(readability-identifier-naming)
+// To be seen from a library.
+[[gnu::visibility(
+    "default")]] extern const char* malloc_conf;  // NOLINT(readability-identifier-naming): jemalloc's name
+const char* malloc_conf = "thp:always";           // NOLINT(readability-identifier-naming)
 }
 #endif
 

@@ -2,8 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -11,24 +9,15 @@
 
 #include "commands.h"
 #include "core/error.h"
-#include "core/folder.h"
-#include "core/out_of_memory.h"
 #include "core/parallel.h"
 #include "interrupt.h"
+#include "job/recorded_run.h"
 #include "model/options.h"
 #include "outcome.h"
 #include "progress.h"
-#include "report/report.h"
-#include "result_folder.h"
-#include "results/csv.h"
-#include "results/result_writer.h"
-#include "results/run_data.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
-#include "scenario/inputs.h"
 #include "scenario_arguments.h"
-#include "simulation/fan_out.h"
-#include "simulation/run.h"
 
 namespace keyblock::app {
 namespace {
@@ -44,55 +33,29 @@ struct RunArguments {
   std::vector<std::string> without;  ///< names of accelerators
 };
 
-/// Everything but what the run says at its end: the page from what the result file holds.
-void write_report(const std::filesystem::path& folder) {
-  with_memory_for([] { return std::string("the report; `keyblock report` writes it later"); },
-                  [&] { report::write_report(results::read_run(folder), folder); });
-}
-
-/// What a run that has ended wrote from its results, and what is there no more, or empty.
-void restore_conclusions(const std::filesystem::path& folder) {
-  const auto is_gone = [&](const char* name) {
-    return !file_exists(folder / name) || std::filesystem::is_empty(folder / name);
-  };
-  const bool report = is_gone("report.html"), histories = is_gone("histories.csv");
-  if (!report && !histories) return;
-  const results::RunData data = results::read_run(folder);
-  if (report) report::write_report(data, folder);
-  if (histories && !data.model.history_names.empty())
-    results::write_histories_csv(folder, data.model.history_names, data.histories);
-}
-
 void say_where_report_is(const RunArguments& arguments) {
   std::cout << "report: " << arguments.folder << "/report.html" << std::endl;
 }
 
-std::vector<std::filesystem::path> inputs_of(const scenario::Scenario& scenario) {
-  std::vector<std::filesystem::path> inputs = scenario::input_paths(scenario);
-  inputs.emplace_back(scenario.file);
-  return inputs;
-}
-
-simulation::RunRecord run_and_record(const simulation::RunSetup& setup, const RunArguments& arguments,
-                                     ResultFolder& guard) {
-  const std::filesystem::path folder = arguments.folder;
+void say_beforehand(const RunArguments& arguments, const job::RecordedRun& run) {
   if (arguments.threads > processors()) {
     std::cerr << "warning: --threads " << arguments.threads << ": there are " << processors()
               << " processors, and more threads take longer\n";
   }
-  if (arguments.resume && !guard.resumes()) {
+  if (arguments.resume && !run.resumes()) {
     std::cerr << arguments.folder << ": nothing to go on from; starting at the beginning\n";
   }
-  results::ResultWriter writer(folder);
-  writer.before_publishing([&] { guard.enter(); });
-  ProgressObserver progress = ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()));
-  simulation::FanOut observers({&writer, &progress});
-  simulation::RunOptions options;
-  options.threads = arguments.threads;
-  options.directory = folder;
-  options.resume = guard.resumes();
-  options.stop = &stop_on_interrupt();
-  return simulation::run(setup, options, observers);
+}
+
+job::RecordedRun::Options options_of(const RunArguments& arguments) {
+  job::RecordedRun::Options options;
+  options.folder = arguments.folder;
+  options.use = arguments.resume  ? job::ResultFolder::Use::resume
+                : arguments.force ? job::ResultFolder::Use::replace
+                                  : job::ResultFolder::Use::fresh;
+  options.run.threads = arguments.threads;
+  options.run.stop = &stop_on_interrupt();
+  return options;
 }
 
 void run_scenario(RunArguments arguments) {
@@ -106,30 +69,20 @@ void run_scenario(RunArguments arguments) {
       setup.solver.accelerators.*member = false;
   }
   print_warnings(arguments.scenario, warnings);
-  ResultFolder guard(arguments.folder, inputs_of(scenario), setup,
-                     arguments.resume  ? ResultFolder::Use::resume
-                     : arguments.force ? ResultFolder::Use::replace
-                                       : ResultFolder::Use::fresh);
-  if (guard.has_ended()) {
+  ProgressObserver progress = ProgressObserver::to_standard_error(static_cast<int>(setup.stages.size()));
+  job::RecordedRun run(scenario, setup, options_of(arguments), progress);
+  if (run.has_ended()) {
     std::cout << arguments.folder << ": this run has ended; there is nothing to go on with\n";
-    restore_conclusions(arguments.folder);
+    job::restore_conclusions(arguments.folder);
     say_where_report_is(arguments);
     return;
   }
   if (const auto note = scenario::sliver_note(setup.system, scenario.blocks.size()))
     std::cout << *note << std::endl;
-  simulation::RunRecord record;
-  try {
-    record = run_and_record(setup, arguments, guard);
-  } catch (const RunError&) {
-    try {
-      if (guard.holds_this_run()) write_report(arguments.folder);
-    } catch (const std::exception& error) {  // the first failure is the one to be told about
-      std::cerr << "keyblock: no report: " << error.what() << "\n";
-    }
-    throw;
-  }
-  write_report(arguments.folder);
+  say_beforehand(arguments, run);
+  run.start();
+  while (!run.runner().done()) run.advance();
+  const simulation::RunRecord record = run.finish();
   std::cout << "\n" << outcome_text(record, setup.system.blocks.size());
   if (arguments.profile) std::cout << "\n" << profile_text(record) << "\n";
   say_where_report_is(arguments);

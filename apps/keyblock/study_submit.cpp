@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -88,10 +89,26 @@ void remove_scripts(const fs::path& folder) {
   for (const fs::path& path : found) fs::remove(path);
 }
 
+/// What is easily forgotten, and found out when the first hundred tasks have ended.
+void add_warnings(const study::SlurmOptions& slurm, std::vector<std::string>& warnings) {
+  if (slurm.time.empty())
+    warnings.emplace_back(
+        "no --time: tasks have the limit that the cluster gives by default, which may be minutes");
+  if (slurm.memory.empty())
+    warnings.emplace_back("no --mem: tasks have the memory that the cluster gives by default");
+  if (std::string_view(KEYBLOCK_PROCESSOR) == "native") {
+    warnings.emplace_back(
+        "this program was built for the processor of this machine; nodes with an older one refuse it "
+        "(--constraint chooses nodes, "
+        "packages are for all)");
+  }
+}
+
 void submit_study(SubmitArguments& arguments) {
   std::vector<std::string> warnings;
   study::Plan plan =
       study::make_plan(arguments.scenario.file, arguments.scenario.overrides, KEYBLOCK_VERSION, &warnings);
+  add_warnings(arguments.slurm, warnings);
   print_warnings(arguments.scenario, warnings);
   const auto limit = study::max_array_size(output_of("scontrol show config 2>/dev/null").first);
   if (limit) arguments.slurm.most_elements = *limit;
@@ -136,6 +153,18 @@ void add_study_submit(CLI::App& study) {
   command->add_option("--time", arguments->slurm.time, "Limit of a task, as for sbatch")->type_name("TIME");
   command->add_option("--mem", arguments->slurm.memory, "Memory of a task, as for sbatch")->type_name("SIZE");
   command->add_option("--partition", arguments->slurm.partition, "As for sbatch")->type_name("NAME");
+  command
+      ->add_option("--account", arguments->slurm.account,
+                   "As for sbatch; many clusters refuse jobs without one")
+      ->type_name("NAME");
+  command->add_option("--qos", arguments->slurm.qos, "As for sbatch")->type_name("NAME");
+  command->add_option("--constraint", arguments->slurm.constraint, "Features of nodes, as for sbatch")
+      ->type_name("LIST");
+  command
+      ->add_option("--sbatch", arguments->slurm.lines,
+                   "Another option for sbatch, as --sbatch=--gres=tmp:10G; once for each")
+      ->type_name("OPTION")
+      ->allow_extra_args(false);
   command->add_option("--max-running", arguments->slurm.most_running, "Tasks at a time")
       ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("N");

@@ -1,6 +1,8 @@
-"""keyblock in Python: read the results of runs, studies and limits, draw them, hand them to other libraries.
+"""keyblock in Python: make, run and steer scenarios; read the results of runs, studies and limits, draw them, hand them to other libraries.
 
     import keyblock
+    scenario = keyblock.Scenario.load("tunnel.toml")
+    scenario.run("out/tunnel")
     run = keyblock.open("out/tunnel")
 
 What is not used is not imported: h5py and numpy are needed to read results, all else for a part only.
@@ -14,15 +16,31 @@ from typing import TYPE_CHECKING, Any
 from .errors import DamagedError, FormatError, KeyblockError, MissingPackageError, NoResultError, UnfinishedWarning
 
 if TYPE_CHECKING:
+    from ._compiled import Diagnostic, InputError, RunError
     from .limit import Limit
+    from .motion import Motion
     from .opening import open, open_limit, open_study
     from .results import Result
+    from .study_runs import run_study
+    from .scenario import Scenario
+    from .simulation import Controller, Simulation, controller
     from .study import Study
+    from .traces import TraceMap
 
 __version__ = "0.1.0"
 
 # Where names are defined that are imported when they are first used.
 _LAZY = {
+    "Scenario": "scenario",
+    "Simulation": "simulation",
+    "Controller": "simulation",
+    "controller": "simulation",
+    "Motion": "motion",
+    "run_study": "study_runs",
+    "TraceMap": "traces",
+    "InputError": "_compiled",
+    "RunError": "_compiled",
+    "Diagnostic": "_compiled",
     "open": "opening",
     "open_study": "opening",
     "open_limit": "opening",
@@ -30,9 +48,19 @@ _LAZY = {
     "Study": "study",
     "Limit": "limit",
 }
-_MODULES = {"results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
+_MODULES = {"scenario", "simulation", "motion", "traces", "cut", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
 
 __all__ = [
+    "Controller",
+    "Diagnostic",
+    "InputError",
+    "Motion",
+    "RunError",
+    "Scenario",
+    "Simulation",
+    "TraceMap",
+    "controller",
+    "run_study",
     "DamagedError",
     "FormatError",
     "KeyblockError",

@@ -16,7 +16,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("KEYBLOCK", str(ROOT / "build/release/keyblock"))
 
-sys.path.insert(0, str(ROOT / "python"))
+# The package beside the program has the compiled module.
+BUILT = Path(PROGRAM).parent / "python"
+sys.path.insert(0, str(BUILT if BUILT.exists() else ROOT / "python"))
 os.environ["MPLBACKEND"] = "Agg"
 
 # A small gallery in two joint sets, shaken for half a second, with a point in the crown.

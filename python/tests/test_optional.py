@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import BUILT, ROOT
 
 HIDE = """
 import sys
@@ -105,6 +105,14 @@ def test_importing_brings_in_nothing_that_is_not_needed():
 
 
 def test_names_of_the_package():
+    # Those of scenarios and runs are in the package beside the program.
+    pytest.importorskip("keyblock._core")
     script = "print(all(hasattr(kb, name) and name in dir(kb) for name in kb.__all__))\n"
     script += "try: kb.opne\nexcept AttributeError as e: print(e)\n"
-    assert python([], "", script) == "True\nmodule 'keyblock' has no attribute 'opne'\n"
+    assert python([], "", script, PYTHONPATH=str(BUILT)) == "True\nmodule 'keyblock' has no attribute 'opne'\n"
+
+
+def test_scenarios_without_the_compiled_part():
+    script = "try: kb.Scenario\nexcept ImportError as e: print(e)\n"
+    said = python([], "", script)
+    assert "python3-keyblock" in said and "reading results needs none" in said

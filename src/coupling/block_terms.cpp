@@ -171,10 +171,11 @@ void BlockTerms::add_loads(const State& state, const Drive& drive) {
   const double g = std::max(norm(model_->gravity), norm(drive.ground_acceleration));
   for (std::size_t i = 0; i < model_->blocks.size(); ++i)
     weight_[i] = std::max(body_force_[i] * g, stress_[i]);
-  for (const GeneralizedLoad& load : model_->loads) {
+  for (std::size_t l = 0; l < model_->loads.size(); ++l) {
+    const GeneralizedLoad& load = model_->loads[l];
     if (!model_->moves(at(load.block))) continue;
     const Block& block = model_->blocks[at(load.block)];
-    const double f = load.factor.empty() ? 1.0 : load.factor(drive.end_time);
+    const double f = model_->load_factor(l, drive.end_time);
     double largest = 0.0;
     for (std::size_t k = 0; k < load.force.size(); ++k) {
       b_[block.first + k] += f * load.force[k];

@@ -21,7 +21,7 @@ Unknowns unknowns_of(const Model& model, int a, int b) {
 }
 
 std::unique_ptr<linalg::BlockSolver> make_direct_solver(const SolverOptions& options) {
-  if (options.linear == LinearSolver::direct) return linalg::make_cholmod();
+  if (options.linear == LinearSolver::direct) return linalg::make_direct();
   return linalg::make_block_cholesky(options.accelerators.single_precision ? linalg::Precision::automatic
                                                                            : linalg::Precision::full);
 }

@@ -50,9 +50,10 @@ void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const do
     ledger.numerical += work.numerical;
     ledger.input += work.input;
   }
-  for (const GeneralizedLoad& load : model.loads) {
+  for (std::size_t l = 0; l < model.loads.size(); ++l) {
+    const GeneralizedLoad& load = model.loads[l];
     if (!model.moves(at(load.block))) continue;
-    const double f = load.factor.empty() ? 1.0 : load.factor(attempt.drive.end_time);
+    const double f = model.load_factor(l, attempt.drive.end_time);
     for (std::size_t k = 0; k < load.force.size(); ++k)
       ledger.input += f * load.force[k] * attempt.increment[model.blocks[at(load.block)].first + k];
   }

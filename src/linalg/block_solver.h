@@ -148,7 +148,7 @@ std::unique_ptr<BlockSolver> make_block_cholesky(Precision precision = Precision
 /// Large systems are solved by the threads of `team`, which may be null; the bits are the same.
 std::unique_ptr<BlockSolver> make_block_conjugate_residual(ThreadTeam* team);
 
-/// CHOLMOD on the scalar matrix: slower at the sizes of a block system, kept as the oracle.
-std::unique_ptr<BlockSolver> make_cholmod();
+/// The factorization of a library (Eigen) on the scalar matrix: slower at the sizes of a block system, kept as the oracle.
+std::unique_ptr<BlockSolver> make_direct();
 
 }  // namespace keyblock::linalg

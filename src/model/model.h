@@ -57,7 +57,7 @@ struct PrescribedMotion {
   }
 };
 
-/// Everything that does not change during a run but by excavation.
+/// Everything that does not change during a run, except by excavation and by a program that steers it (simulation::Control).
 struct Model {
   std::vector<Block> blocks;
   contact::Surface surface;
@@ -65,6 +65,7 @@ struct Model {
   std::vector<int> outline_edge;  ///< of its edges: the edge of a polygon it lies on; all count, ring by ring
   std::vector<contact::JointLaw> laws;
   std::vector<GeneralizedLoad> loads;
+  std::vector<double> load_scale;  ///< factor on each load, of a program that steers the run; empty: 1
   std::vector<std::shared_ptr<const Coupling>> couplings;  ///< all except contacts
   std::vector<PrescribedMotion> motions;
   std::optional<InSituStress> in_situ;
@@ -75,6 +76,11 @@ struct Model {
   std::size_t unknowns = 0;      ///< coefficients of the blocks that are not fixed; they come first
   std::size_t coefficients = 0;  ///< of all blocks
 
+  /// On the forces of a load.
+  [[nodiscard]] double load_factor(std::size_t load, double time) const {
+    const double factor = loads[load].factor.empty() ? 1.0 : loads[load].factor(time);
+    return load_scale.empty() ? factor : factor * load_scale[load];
+  }
   /// Asked for all blocks in every step, of two short arrays.
   [[nodiscard]] bool moves(std::size_t b) const { return surface.fixed[b] == 0 && surface.present[b] != 0; }
 };

@@ -26,7 +26,7 @@ struct Accelerators {
       true;  ///< a step begins where the last increments lead to (dynamics::IncrementHistory)
   bool earlier_attempt =
       true;  ///< an attempt begins with the springs of the attempt before it (dynamics::EarlierAttempt)
-  bool steady_pairs = true;   ///< pairs of blocks that hardly moved keep their contacts (contact::Detection)
+  bool steady_pairs = true;  ///< pairs of blocks that hardly moved keep their contacts (contact::Detection)
   bool single_precision = true;  ///< factors in single precision where that is enough
 };
 

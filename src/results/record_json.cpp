@@ -97,7 +97,8 @@ std::string model_json(const simulation::ModelRecord& model) {
                           {"cutting", cutting},
                           {"warnings", model.warnings},
                           {"closure_is_lower_bound", model.closure_is_lower_bound},
-                          {"ground", ground_json(model.ground)}};
+                          {"ground", ground_json(model.ground)},
+                          {"hooks", model.hooks}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -126,6 +127,7 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     if (json.contains("closure_is_lower_bound"))
       json.at("closure_is_lower_bound").get_to(model.closure_is_lower_bound);
     if (json.contains("ground")) model.ground = read_ground(json.at("ground"));
+    if (json.contains("hooks")) json.at("hooks").get_to(model.hooks);
     return 0;
   });
 }

@@ -157,7 +157,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
   for (const auto& record : run.stages) stages.push_back(stage(record, model));
   const auto [blocks, vertices] = count(model);
   const Areas area = areas(model, run);
-  const ordered_json json{
+  ordered_json json{
       {"title", model.title},
       {"version", model.version},
       {"seed", model.seed},
@@ -187,6 +187,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
       {"stages", stages}};
+  for (const auto& [name, hash] : model.hooks) json["hooks"].push_back({{"name", name}, {"hash", hash}});
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -1,8 +1,37 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace keyblock::scenario {
+
+/// What kind of value a key holds.
+enum class KeyKind {
+  any,  ///< more than one kind, or one that only the reader knows
+  number,
+  integer,
+  boolean,
+  string,
+  word,        ///< one of KeyType::words
+  point,       ///< [x, y]
+  interval,    ///< [from, to]
+  points,      ///< [[x, y], …]
+  rings,       ///< [[[x, y], …], …]
+  rows,        ///< [[time, value], …]
+  references,  ///< names of other elements
+  table,
+  tables,  ///< list of them
+  group,   ///< a table with a section of its own, or what stands in its place
+};
+
+/// The same with what bounds it.
+struct KeyType {
+  KeyKind kind = KeyKind::any;
+  std::vector<std::string> words{};
+  std::optional<double> above{}, at_least{}, at_most{}, below{};  ///< of numbers
+  std::string group{};                                            ///< title of its section
+  bool required = false;                                          ///< whatever else is there
+};
 
 /// One key of the scenario as the reference shows it.
 struct KeyReference {
@@ -11,6 +40,7 @@ struct KeyReference {
   std::string fallback;  ///< default, or "required"
   std::string unit;
   std::string meaning;  ///< with the condition under which it is used
+  KeyType value_type;
 };
 
 /// The keys of one table.

@@ -173,14 +173,21 @@ std::optional<Diagnostic> apply_override(const Override& override_, Value& docum
   return std::nullopt;
 }
 
+const Value* find_value(const std::vector<PathSegment>& path, const Value& document) {
+  const Value* node = &document;
+  for (const PathSegment& segment : path) {
+    if (node == nullptr) break;
+    node = node->is(Value::Type::array) ? find_element(*node, segment) : node->find(segment.key);
+  }
+  return node;
+}
+
 std::vector<std::string> resolved_path(const std::vector<PathSegment>& path, const Value& document) {
   std::vector<std::string> resolved;
   const Value* node = &document;
   for (const PathSegment& segment : path) {
     const bool in_list = node != nullptr && node->is(Value::Type::array);
-    const Value* next = node == nullptr ? nullptr
-                        : in_list       ? find_element(*node, segment)
-                                        : node->find(segment.key);
+    const Value* next = node == nullptr ? nullptr : find_value({segment}, *node);
     resolved.push_back(in_list && next != nullptr
                            ? join_index("", static_cast<std::size_t>(next - node->items.data()))
                            : segment.key);

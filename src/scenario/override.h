@@ -27,6 +27,9 @@ Override make_override(const std::string& path, Value value);
 /// is seen when the document is read.
 std::optional<Diagnostic> apply_override(const Override& override_, Value& document);
 
+/// The value that a key path leads to, or null.
+const Value* find_value(const std::vector<PathSegment>& path, const Value& document);
+
 /// Where a key path leads in the document: its keys, and for elements of lists their places in brackets. Paths to the same value
 /// are equal here, however they are written.
 std::vector<std::string> resolved_path(const std::vector<PathSegment>& path, const Value& document);

@@ -16,7 +16,8 @@ void read_keys(TableReader& t, VarySpec& vary) {
   std::string key;
   const bool several = t.find("keys") != nullptr;
   Rule rule{.meaning = "Key path of the value that varies, as for `--set`: `stage.'first earthquake'.scale`.",
-            .required = !several,
+            .required = !several && !t.documenting(),
+            .fallback = "`keys`",
             .applies = !several};
   rule.condition = several ? "`keys` left out" : "";
   if (t.string("key", key, rule)) vary.keys = {key};

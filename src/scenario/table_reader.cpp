@@ -31,6 +31,18 @@ std::string range_text(const Rule& rule) {
          (upper.empty() ? "" : " " + upper);
 }
 
+KeyType numeric(const Rule& rule, bool integer) {
+  const auto bound = [](double value) {
+    return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+  };
+  KeyType type{integer ? KeyKind::integer : KeyKind::number};
+  type.above = bound(rule.above);
+  type.at_least = bound(rule.at_least);
+  type.at_most = bound(rule.at_most);
+  type.below = bound(rule.below);
+  return type;
+}
+
 std::string with_article(const std::string& type) {
   if (type.front() < 'a' || type.front() > 'z') return type;
   return (std::string_view("aeiou").find(type.front()) == std::string_view::npos ? "a " : "an ") + type;
@@ -107,21 +119,22 @@ void TableReader::finish() {
   }
 }
 
-void TableReader::describe_key(std::string_view key, const Rule& rule, const std::string& type,
-                               const std::string& fallback) {
+void TableReader::describe_key(std::string_view key, const Rule& rule, KeyType value_type,
+                               const std::string& type, const std::string& fallback) {
+  value_type.required = rule.required && rule.condition.empty();
   std::string meaning(rule.meaning);
   if (!rule.condition.empty()) meaning += fmt::format(" Only with {}.", rule.condition);
   std::string standard = rule.required ? "required" : std::string(rule.fallback);
   if (standard.empty()) standard = fallback.empty() ? no_default : fallback;
   (*context_.reference)[section_].keys.push_back(
-      {prefix_ + std::string(key), type, standard, std::string(rule.unit), meaning});
+      {prefix_ + std::string(key), type, standard, std::string(rule.unit), meaning, std::move(value_type)});
 }
 
-const Value* TableReader::take(std::string_view key, const Rule& rule, const std::string& type,
-                               const std::string& fallback) {
+const Value* TableReader::take(std::string_view key, const Rule& rule, KeyType value_type,
+                               const std::string& type, const std::string& fallback) {
   known_.emplace_back(key);
   if (documenting()) {
-    describe_key(key, rule, type, fallback);
+    describe_key(key, rule, std::move(value_type), type, fallback);
     return nullptr;
   }
   const Value* value = find(key);
@@ -141,13 +154,13 @@ const Value* TableReader::take(std::string_view key, const Rule& rule, const std
 }
 
 const Value* TableReader::any(std::string_view key, std::string_view type, const Rule& rule) {
-  return take(key, rule, std::string(type), "");
+  return take(key, rule, {}, std::string(type), "");
 }
 
 std::optional<double> TableReader::take_number(std::string_view key, const Rule& rule, bool integer,
                                                const std::string& fallback) {
   const std::string type = (integer ? "integer" : "number") + range_text(rule);
-  const Value* value = take(key, rule, type, fallback);
+  const Value* value = take(key, rule, numeric(rule, integer), type, fallback);
   if (value == nullptr) return std::nullopt;
   const bool right_type = integer ? value->is(Value::Type::integer) : value->is_number();
   if (right_type && in_range(value->number, rule)) return value->number;
@@ -196,7 +209,7 @@ bool TableReader::integer(std::string_view key, std::uint64_t& value, const Rule
 }
 
 bool TableReader::boolean(std::string_view key, bool& value, const Rule& rule) {
-  const Value* found = take(key, rule, "boolean", value ? "true" : "false");
+  const Value* found = take(key, rule, {KeyKind::boolean}, "boolean", value ? "true" : "false");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::boolean)) {
     fail(key, describe(*found), "true or false");
@@ -207,7 +220,7 @@ bool TableReader::boolean(std::string_view key, bool& value, const Rule& rule) {
 }
 
 bool TableReader::string(std::string_view key, std::string& value, const Rule& rule) {
-  const Value* found = take(key, rule, "string", value.empty() ? "empty" : value);
+  const Value* found = take(key, rule, {KeyKind::string}, "string", value.empty() ? "empty" : value);
   if (found == nullptr) return false;
   if (!found->is(Value::Type::string)) {
     fail(key, describe(*found), "a string", "strings stand in double quotes");
@@ -219,8 +232,8 @@ bool TableReader::string(std::string_view key, std::string& value, const Rule& r
 
 std::optional<std::size_t> TableReader::take_word(std::string_view key, const std::vector<std::string>& words,
                                                   std::optional<std::size_t> fallback, const Rule& rule) {
-  const Value* found =
-      take(key, rule, list_words(words), fallback ? '"' + words[*fallback] + '"' : std::string());
+  const Value* found = take(key, rule, {KeyKind::word, words}, list_words(words),
+                            fallback ? '"' + words[*fallback] + '"' : std::string());
   if (found == nullptr) return std::nullopt;
   if (found->is(Value::Type::string)) {
     const auto word = std::find(words.begin(), words.end(), found->text);
@@ -232,7 +245,7 @@ std::optional<std::size_t> TableReader::take_word(std::string_view key, const st
 }
 
 bool TableReader::file(std::string_view key, std::filesystem::path& value, const Rule& rule) {
-  const Value* found = take(key, rule, "string, a path", "");
+  const Value* found = take(key, rule, {KeyKind::string}, "string, a path", "");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::string) || found->text.empty()) {
     fail(key, describe(*found), "the path of a file");

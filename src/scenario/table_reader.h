@@ -142,9 +142,9 @@ class TableReader {
   TableReader(ReadContext& context, const Value* table, std::string path, std::size_t section,
               std::string prefix);
 
-  const Value* take(std::string_view key, const Rule& rule, const std::string& type,
+  const Value* take(std::string_view key, const Rule& rule, KeyType value_type, const std::string& type,
                     const std::string& fallback);
-  void describe_key(std::string_view key, const Rule& rule, const std::string& type,
+  void describe_key(std::string_view key, const Rule& rule, KeyType value_type, const std::string& type,
                     const std::string& fallback);
   void describe_table(std::string_view key, const Rule& rule, bool list,
                       const std::function<void(TableReader&)>& read);

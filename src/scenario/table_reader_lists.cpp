@@ -47,14 +47,14 @@ std::optional<Vec2> TableReader::to_point(const Value& value, const std::string&
 }
 
 bool TableReader::point(std::string_view key, Vec2& value, const Rule& rule) {
-  const Value* found = take(key, rule, "point [x, y]", point_default(value));
+  const Value* found = take(key, rule, {KeyKind::point}, "point [x, y]", point_default(value));
   const auto point = found == nullptr ? std::nullopt : to_point(*found, path_of(key));
   if (point) value = *point;
   return point.has_value();
 }
 
 bool TableReader::point(std::string_view key, std::optional<Vec2>& value, const Rule& rule) {
-  const Value* found = take(key, rule, "point [x, y]", value ? point_default(*value) : "");
+  const Value* found = take(key, rule, {KeyKind::point}, "point [x, y]", value ? point_default(*value) : "");
   const auto point = found == nullptr ? std::nullopt : to_point(*found, path_of(key));
   if (point) value = point;
   return point.has_value();
@@ -62,7 +62,7 @@ bool TableReader::point(std::string_view key, std::optional<Vec2>& value, const 
 
 bool TableReader::interval(std::string_view key, std::optional<std::pair<double, double>>& value,
                            const Rule& rule) {
-  const Value* found = take(key, rule, "interval [from, to]", "");
+  const Value* found = take(key, rule, {KeyKind::interval}, "interval [from, to]", "");
   if (found == nullptr) return false;
   const auto pair = to_pair(*found);
   if (!pair) {
@@ -104,7 +104,7 @@ std::optional<std::vector<Vec2>> TableReader::to_points(const Value& value, cons
 }
 
 bool TableReader::points(std::string_view key, std::vector<Vec2>& value, const Rule& rule) {
-  const Value* found = take(key, rule, "array of points [[x, y], …]", "");
+  const Value* found = take(key, rule, {KeyKind::points}, "array of points [[x, y], …]", "");
   auto points = found == nullptr ? std::nullopt : to_points(*found, path_of(key), 1);
   if (points) value = std::move(*points);
   return points.has_value();
@@ -125,14 +125,14 @@ std::optional<Ring> TableReader::to_ring(const Value& value, const std::string& 
 }
 
 bool TableReader::ring(std::string_view key, Ring& value, const Rule& rule) {
-  const Value* found = take(key, rule, "ring of points [[x, y], …]", "");
+  const Value* found = take(key, rule, {KeyKind::points}, "ring of points [[x, y], …]", "");
   auto ring = found == nullptr ? std::nullopt : to_ring(*found, path_of(key));
   if (ring) value = std::move(*ring);
   return ring.has_value();
 }
 
 bool TableReader::rings(std::string_view key, std::vector<Ring>& value, const Rule& rule) {
-  const Value* found = take(key, rule, "array of rings [[[x, y], …], …]", "");
+  const Value* found = take(key, rule, {KeyKind::rings}, "array of rings [[[x, y], …], …]", "");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::array)) {
     fail(key, describe(*found), "rings [[[x, y], …], …]");
@@ -150,7 +150,7 @@ bool TableReader::rings(std::string_view key, std::vector<Ring>& value, const Ru
 }
 
 bool TableReader::time_rows(std::string_view key, TimeRows& rows, bool jumps, const Rule& rule) {
-  const Value* found = take(key, rule, "rows [[time, value], …]", "");
+  const Value* found = take(key, rule, {KeyKind::rows}, "rows [[time, value], …]", "");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::array) || found->items.empty()) {
     fail(key, describe(*found), "rows [[time, value], …]");
@@ -226,13 +226,15 @@ bool TableReader::find_name(const Value& value, const std::string& path, std::st
 bool TableReader::reference(std::string_view key, std::string& value, std::string_view list, const Rule& rule,
                             std::string_view word) {
   const std::string or_word = word.empty() ? "" : fmt::format(" or \"{}\"", word);
-  const Value* found = take(key, rule, fmt::format("name of a [[{}]]{}", list, or_word), "");
+  const Value* found =
+      take(key, rule, {KeyKind::string}, fmt::format("name of a [[{}]]{}", list, or_word), "");
   return found != nullptr && find_name(*found, path_of(key), list, word, value);
 }
 
 bool TableReader::references(std::string_view key, std::vector<int>& value, std::string_view list,
                              const Rule& rule) {
-  const Value* found = take(key, rule, fmt::format("array of names of [[{}]]", list), "[]");
+  const Value* found =
+      take(key, rule, {KeyKind::references}, fmt::format("array of names of [[{}]]", list), "[]");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::array)) {
     fail(key, describe(*found), fmt::format("an array of names of [[{}]]", list),
@@ -273,10 +275,12 @@ void TableReader::describe_table(std::string_view key, const Rule& rule, bool li
     return describe(sections.size() - 1, "");
   }
   if (rule.group.empty()) {
-    describe_key(key, rule, list ? "list of tables" : "table", "");
+    describe_key(key, rule, {list ? KeyKind::tables : KeyKind::table}, list ? "list of tables" : "table", "");
     return describe(section_, prefix_ + name + ".");
   }
-  describe_key(key, rule, "see " + std::string(rule.group), "");
+  KeyType group{KeyKind::group};
+  group.group = rule.group;
+  describe_key(key, rule, std::move(group), "see " + std::string(rule.group), "");
   const bool known = std::any_of(sections.begin(), sections.end(),
                                  [&](const SectionReference& s) { return s.title == rule.group; });
   if (known) return;
@@ -290,7 +294,8 @@ bool TableReader::table(std::string_view key, const Rule& rule,
     describe_table(key, rule, false, read);
     return false;
   }
-  const Value* found = take(key, rule, path_.empty() ? "[" + std::string(key) + "]" : "table", "");
+  const Value* found =
+      take(key, rule, {KeyKind::table}, path_.empty() ? "[" + std::string(key) + "]" : "table", "");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::table)) {
     const bool list =
@@ -311,7 +316,7 @@ bool TableReader::each_table(std::string_view key, const Rule& rule,
     describe_table(key, rule, true, read);
     return false;
   }
-  const Value* found = take(key, rule, "list of tables", "");
+  const Value* found = take(key, rule, {KeyKind::tables}, "list of tables", "");
   if (found == nullptr) return false;
   if (!found->is(Value::Type::array)) {
     fail(key, describe(*found), "a list of tables",

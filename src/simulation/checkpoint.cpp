@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0010;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0011;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -142,6 +142,9 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   transfer_settler(archive, s.settler);
   archive(s.still.since);
   archive(s.still.places);
+  archive(s.control.strengths);
+  archive(s.control.load_scale);
+  archive(s.control.motion_scale);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);

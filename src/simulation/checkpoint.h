@@ -3,6 +3,7 @@
 #include <string>
 
 #include "model/state.h"
+#include "simulation/control.h"
 #include "simulation/damage.h"
 #include "simulation/order_control.h"
 #include "simulation/record.h"
@@ -22,6 +23,7 @@ struct RunState {
   StagedOpening::Memory opening;
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   Stillness::Memory still;  ///< of the stage at hand, if it ends when all is still
+  ControlMemory control;
   int stage = 0;
   long stage_step = 0;          ///< steps done in it
   double stage_start = 0.0;     ///< s, simulated time at which it began

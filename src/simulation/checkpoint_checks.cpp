@@ -257,6 +257,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";
   if (!is_still(state.still, model)) return "places of other vertices";
+  if (const std::string mistake = mistake_in_control(state.control, model); !mistake.empty()) return mistake;
   if (!are_records(state, setup, blocks)) return "stages that are not of this run";
   const OverlapRecord& overlap = state.record.max_overlap;
   const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };

@@ -41,6 +41,8 @@ struct ModelRecord {
   Vec2 origin;                        ///< real coordinates of the local origin
   std::string scenario;               ///< the TOML that was run, with overrides listed as comments at its end
   std::vector<std::string> warnings;  ///< of input that seems odd
+  std::vector<std::pair<std::string, std::string>>
+      hooks;                            ///< names and hashes of programs that steered the run
   bool closure_is_lower_bound = false;  ///< blocks of order 1 are too stiff for it
 
   struct Block {

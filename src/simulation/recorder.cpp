@@ -84,6 +84,7 @@ ModelRecord Recorder::model() const {
   record.origin = setup_.system.origin;
   record.scenario = setup_.scenario;
   record.warnings = setup_.warnings;
+  record.hooks = setup_.hooks;
   record.closure_is_lower_bound = setup_.closure_is_lower_bound;
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     const dynamics::Block& block = model_.blocks[b];

@@ -20,9 +20,10 @@ struct RunOptions {
   double progress_interval = 0.2;  ///< s of wall time between progress reports
   /// Set by a signal handler: the run ends within the step at hand, with everything so far reported.
   const std::atomic<bool>* stop = nullptr;
-  /// Called after every step, once its records are with the observer, and before a checkpoint. It may look at the run and set `stop`.
+  /// Called after every step, once its records are with the observer, and before a checkpoint. It may look at the run, change it
+  /// (Runner::control) and set `stop`.
   /// A RunError that it throws ends the run as one of a step does.
-  std::function<void(const Runner&, const dynamics::StepReport&)> after_step;
+  std::function<void(Runner&, const dynamics::StepReport&)> after_step;
 };
 
 }  // namespace keyblock::simulation

@@ -87,6 +87,7 @@ void Runner::resume() {
   orders_.restore(model_);
   check(mistake_in_state(now_, setup_, model_));
   model_.surface.present = now_.present;
+  restore(now_.control, model_);
   orders_changed();
   gauge_.restore(std::move(now_.damage));
   opening_.memory() = now_.opening;
@@ -201,7 +202,7 @@ void Runner::begin_stage() {
   stage_->most_steps = static_cast<long>(step_count(record.planned_duration.value_or(0.0), setup_.time_step));
   if (record.stage.kind == StageKind::shake) {
     stage_->motion.emplace(setup_.motions.at(static_cast<std::size_t>(record.stage.motion)),
-                           record.stage.scale, record.start_time);
+                           record.stage.scale, record.start_time, now_.control.motion_scale);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "core/profile.h"
 #include "dynamics/step.h"
 #include "simulation/checkpoint.h"
+#include "simulation/control.h"
 #include "simulation/damage.h"
 #include "simulation/order_control.h"
 #include "simulation/progress_meter.h"
@@ -59,6 +60,8 @@ class Runner {
   /// orders of blocks.
   [[nodiscard]] ContactFrame contacts() const;
   [[nodiscard]] Energy energy() const;
+  /// Changes the running model: between two steps, or in RunOptions::after_step.
+  [[nodiscard]] Control control() { return {setup_, model_, now_.mechanics, *stepper_, now_.control}; }
   /// Index of the stage at hand, or of the one that comes next.
   [[nodiscard]] int stage() const { return now_.stage; }
 

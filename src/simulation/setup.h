@@ -99,8 +99,10 @@ struct RunSetup {
   std::string version;
   std::uint64_t seed = 0;
   int realization = 0;
-  std::string scenario;                 ///< text of the scenario as run
-  std::vector<InputFile> files;         ///< that the scenario names
+  std::string scenario;          ///< text of the scenario as run
+  std::vector<InputFile> files;  ///< that the scenario names
+  /// Programs that steer the run (Control): their names, and hashes of their text.
+  std::vector<std::pair<std::string, std::string>> hooks;
   std::vector<std::string> warnings;    ///< of input that seems odd, for the report
   bool closure_is_lower_bound = false;  ///< blocks of order 1 are too stiff for it
   /// What the rock is and what acts on it, for reports: names and values (scenario/ground_facts.h).

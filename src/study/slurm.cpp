@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/text.h"
 #include "study/refusal.h"
@@ -24,13 +25,20 @@ std::string log_pattern(const std::filesystem::path& directory, const std::strin
 
 constexpr std::string_view script_begin = "#!/bin/bash\n#SBATCH --job-name=keyblock";
 
+/// Options of one word, with their names for sbatch.
+std::vector<std::pair<const char*, const std::string*>> word_options(const SlurmOptions& options) {
+  return {{"--time", &options.time},       {"--mem", &options.memory}, {"--partition", &options.partition},
+          {"--account", &options.account}, {"--qos", &options.qos},    {"--constraint", &options.constraint}};
+}
+
 // What both kinds of script begin with.
 std::string head(const std::string& job, const std::string& log, const SlurmOptions& options) {
   std::string text = fmt::format("{}{}\n#SBATCH --output=\"{}\"\n", script_begin, job, log);
   text += "#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n";
-  if (!options.time.empty()) text += "#SBATCH --time=" + options.time + "\n";
-  if (!options.memory.empty()) text += "#SBATCH --mem=" + options.memory + "\n";
-  if (!options.partition.empty()) text += "#SBATCH --partition=" + options.partition + "\n";
+  for (const auto& [name, value] : word_options(options)) {
+    if (!value->empty()) text += fmt::format("#SBATCH {}={}\n", name, *value);
+  }
+  for (const std::string& line : options.lines) text += "#SBATCH " + line + "\n";
   return text;
 }
 
@@ -101,6 +109,11 @@ bool has_control(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](const char& c) { return is_control({&c, 1}); });
 }
 
+void check_line(const std::string& line) {
+  if (!line.starts_with("-") || has_control(line))
+    refuse("--sbatch", '"' + line + '"', "one option of sbatch, as --gres=tmp:10G");
+}
+
 }  // namespace
 
 void check_can_submit(const std::filesystem::path& directory, const SlurmOptions& options) {
@@ -108,9 +121,8 @@ void check_can_submit(const std::filesystem::path& directory, const SlurmOptions
     refuse("", "MaxArraySize = 0 in the configuration of Slurm: it takes no job arrays",
            "a cluster that takes job arrays", "keyblock study run does all runs on one machine");
   }
-  check_option("--time", options.time);
-  check_option("--mem", options.memory);
-  check_option("--partition", options.partition);
+  for (const auto& [name, value] : word_options(options)) check_option(name, *value);
+  for (const std::string& line : options.lines) check_line(line);
   const std::string folder = directory.string();
   if (folder.find_first_of("\"\\") != std::string::npos || has_control(folder)) {
     refuse(folder, "a double quote, a backslash or a line break in the path",

@@ -9,9 +9,11 @@
 namespace keyblock::study {
 
 struct SlurmOptions {
-  std::string program;                  ///< path of keyblock
-  std::string time, memory, partition;  ///< as for sbatch; empty: the cluster's defaults
-  int most_running = 0;                 ///< tasks at a time; 0: no limit
+  std::string program;  ///< path of keyblock
+  std::string time, memory, partition, account, qos,
+      constraint;                  ///< as for sbatch; empty: the cluster's defaults
+  std::vector<std::string> lines;  ///< more options, one `#SBATCH` each: `--gres=tmp:10G`
+  int most_running = 0;            ///< tasks at a time; 0: no limit
   int runs_per_task = 1;
   std::size_t most_elements = 1001;  ///< MaxArraySize
 };
@@ -22,7 +24,7 @@ struct ArrayScript {
   std::string elements;  ///< as for --array: "3,7-20%4"
 };
 
-/// Throws InputError when Slurm takes no arrays (most_elements = 0), for options that are not one word, and for a path that
+/// Throws InputError when Slurm takes no arrays (most_elements = 0), for options that are not one word, lines that are no options, and for a path that
 /// `#SBATCH --output` cannot hold: with a double quote, a backslash or a control character.
 void check_can_submit(const std::filesystem::path& directory, const SlurmOptions& options);
 

@@ -92,6 +92,60 @@ class Check(Scenario):
         self.assertFalse((self.folder / "out").exists())
 
 
+class Support(Scenario):
+    def test_every_kind_of_new_scenario_is_right(self):
+        kinds = ("arch", "beam", "column", "slope", "study", "tunnel", "wall")
+        self.assertIn(" ".join(["|".join(kinds)]), self.keyblock("new", "--help").stdout)
+        for kind in kinds:
+            with self.subTest(kind=kind):
+                self.assertIn("keyblock check", self.keyblock("new", kind).stdout)
+                checked = self.keyblock("check", f"{kind}.toml")
+                self.assertIn("ok:", checked.stdout)
+                self.assertEqual(checked.stderr, "")
+
+    def test_a_file_that_is_there_stays(self):
+        (self.folder / "column.toml").write_text("mine")
+        self.assertIn("a file that is there", self.keyblock("new", "column", expect=1).stderr)
+        self.assertEqual((self.folder / "column.toml").read_text(), "mine")
+        self.keyblock("new", "column", "--force")
+        self.keyblock("new", "column", "-o", "other.toml")
+        self.assertEqual((self.folder / "other.toml").read_text(), self.keyblock("new", "column", "-o", "-").stdout)
+
+    def test_check_for_other_programs(self):
+        right = json.loads(self.keyblock("check", "incline.toml", "--json").stdout)
+        self.assertEqual((right["ok"], right["mistakes"], right["blocks"]), (True, [], 2))
+        wrong = json.loads(self.keyblock("check", "incline.toml", "--json", "--set", "rock.young=-1", expect=1).stdout)
+        self.assertFalse(wrong["ok"])
+        self.assertEqual(wrong["mistakes"][0]["key"], "rock.young")
+
+    def test_completion(self):
+        script = self.keyblock("completion", "bash").stdout
+        (self.folder / "complete").write_text(script)
+
+        def complete(*words):
+            line = " ".join(words)
+            code = f"source complete; COMP_WORDS=({line}); [[ '{line}' == *' ' ]] && COMP_WORDS+=(''); "
+            code += "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); compopt() { :; }; _keyblock; printf '%s\\n' \"${COMPREPLY[@]}\""
+            done = subprocess.run(["bash", "-c", code], cwd=self.folder, capture_output=True, text=True, check=True)
+            return done.stdout.split()
+
+        self.assertIn("check", complete("keyblock", "ch"))
+        self.assertIn("--realization", complete("keyblock", "run", "--re"))
+        self.assertIn("submit", complete("keyblock", "study", "su"))
+        self.assertIn("--account", complete("keyblock", "study", "submit", "--acc"))
+        self.assertIn("rock.young=", complete("keyblock", "run", "--set", "rock.y"))
+        self.assertIn("vtk", complete("keyblock", "export", "out", "--format", "v"))
+        self.assertIn("incline.toml", complete("keyblock", "check", "inc"))
+        for shell in ("fish", "zsh"):
+            self.assertIn("realization", self.keyblock("completion", shell).stdout)
+
+    def test_manual_page(self):
+        page = self.keyblock("manual-page").stdout
+        self.assertIn(".TH KEYBLOCK 1", page)
+        for command in ("run", "study submit", "limit"):
+            self.assertIn(f".SS keyblock {command}\n", page)
+
+
 class Cut(Scenario):
     def test_writes_blocks_and_a_picture(self):
         out = self.folder / "cut"

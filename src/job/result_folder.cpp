@@ -1,4 +1,4 @@
-#include "result_folder.h"
+#include "job/result_folder.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "results/run_data.h"
 #include "simulation/checkpoint.h"
 
-namespace keyblock::app {
+namespace keyblock::job {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,6 +40,7 @@ std::string input_text(const simulation::RunSetup& setup) {
   std::string text = fmt::format("{}\n# realization {}\n", setup.scenario, setup.realization);
   for (const simulation::InputFile& file : setup.files)
     text += fmt::format("# content of {}: {}\n", file.name, file.hash);
+  for (const auto& [name, hash] : setup.hooks) text += fmt::format("# steered by {}: {}\n", name, hash);
   return text;
 }
 
@@ -133,4 +134,4 @@ void ResultFolder::enter() {
   entered_ = true;
 }
 
-}  // namespace keyblock::app
+}  // namespace keyblock::job

@@ -7,7 +7,7 @@
 #include "core/folder.h"
 #include "simulation/setup.h"
 
-namespace keyblock::app {
+namespace keyblock::job {
 
 /// Throws InputError when the folder holds results of a run, whose summary would be lost.
 void check_holds_no_run(const std::filesystem::path& folder);
@@ -52,4 +52,4 @@ class ResultFolder {
   bool resumes_ = false, has_ended_ = false, entered_ = false;
 };
 
-}  // namespace keyblock::app
+}  // namespace keyblock::job

@@ -1,0 +1,30 @@
+/* Built for any x86-64, and run before all that is not: without it, a program that was copied to an older machine dies of an illegal
+   instruction. Nothing but system calls, as no function that others are compiled with may be called here. */
+#include <string.h>
+#include <unistd.h>
+
+#if defined(__x86_64__) && defined(KEYBLOCK_NEEDS_AVX2)
+static void say(const char* text) {
+  if (write(STDERR_FILENO, text, strlen(text)) < 0) _exit(1);
+}
+
+static void need(int is_there, const char* name) {
+  if (is_there) return;
+  say("keyblock: this program was built for processors with ");
+  say(name);
+  say(", which this machine does not have; take the package for all processors, or build the program here "
+      "(./dev build)\n");
+  _exit(1);
+}
+
+__attribute__((constructor(101))) static void check_processor(void) {
+  __builtin_cpu_init();
+  need(__builtin_cpu_supports("avx2"), "AVX2");
+  need(__builtin_cpu_supports("fma"), "FMA");
+  need(__builtin_cpu_supports("bmi2"), "BMI2");
+#ifdef KEYBLOCK_NEEDS_AVX512
+  need(__builtin_cpu_supports("avx512f"), "AVX-512");
+  need(__builtin_cpu_supports("avx512vl"), "AVX-512 VL");
+#endif
+}
+#endif

@@ -1,0 +1,262 @@
+#include "keyblock/simulation.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "bindings.h"
+#include "shared_array.h"
+
+namespace py = pybind11;
+
+namespace keyblock::python {
+namespace {
+
+template <typename Number>
+py::array_t<Number> array_of(const std::vector<Number>& values, std::size_t columns = 1) {
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size() / columns)};
+  if (columns > 1) shape.push_back(static_cast<py::ssize_t>(columns));
+  py::array_t<Number> array(shape);
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+/// A Simulation that Python may call from any thread at any time: what does not fit the moment is refused. Every call holds the
+/// interpreter's lock; a step gives it back meanwhile.
+class Stepped {
+ public:
+  Stepped(const Scenario& scenario, const RunOptions& options) : simulation_(begin(scenario, options)) {}
+
+  /// Steps that were taken: fewer than asked for when the run has come to its end.
+  long advance(long steps, const py::object& after_step, const py::object& progress);
+  std::string finish() {
+    const Stepping now(*this);
+    const py::gil_scoped_release free;
+    return simulation_.finish();
+  }
+  void stop() noexcept { simulation_.stop(); }
+
+  [[nodiscard]] const Simulation& at_rest() const {
+    check_access();
+    return simulation_;
+  }
+  Simulation& at_rest() {
+    check_access();
+    return simulation_;
+  }
+  py::array_t<double> velocity() {
+    check_access();
+    return velocity_.array(simulation_.velocity(), 1, true);
+  }
+  py::array_t<double> vertices() {
+    check_access();
+    return vertices_.array(simulation_.vertices(), 2, false);
+  }
+  void set_velocity(const py::array_t<double, py::array::c_style | py::array::forcecast>& values) {
+    check_access();
+    simulation_.set_velocity({values.data(), static_cast<std::size_t>(values.size())});
+    velocity_.refresh(simulation_.velocity());
+  }
+
+ private:
+  static Simulation begin(const Scenario& scenario, const RunOptions& options) {
+    const py::gil_scoped_release free;
+    return Simulation(scenario, options);
+  }
+
+  /// While it lives, this thread is in a step.
+  class Stepping {
+   public:
+    explicit Stepping(Stepped& of) : of_(of) {
+      if (of_.stepping_) throw std::runtime_error("the simulation is within a step");
+      of_.stepping_ = std::this_thread::get_id();
+    }
+    ~Stepping() { of_.stepping_.reset(); }
+    Stepping(const Stepping&) = delete;
+    Stepping& operator=(const Stepping&) = delete;
+
+   private:
+    Stepped& of_;
+  };
+
+  void check_access() const {
+    if (stepping_ && !(in_callback_ && *stepping_ == std::this_thread::get_id()))
+      throw std::runtime_error("the simulation is within a step of another thread");
+  }
+  /// Velocities that Python has written come into force.
+  void take_over() {
+    if (!velocity_.differs(simulation_.velocity())) return;
+    try {
+      simulation_.set_velocity(velocity_.values());
+    } catch (...) {
+      velocity_.forget();
+      throw;
+    }
+  }
+  void refresh() {
+    velocity_.refresh(simulation_.velocity());
+    vertices_.refresh(simulation_.vertices());
+  }
+  void call(const py::object& function) {
+    const py::gil_scoped_acquire lock;
+    refresh();
+    in_callback_ = true;
+    try {
+      function();
+      take_over();
+    } catch (...) {
+      in_callback_ = false;
+      throw;
+    }
+    in_callback_ = false;
+  }
+
+  Simulation simulation_;
+  std::optional<std::thread::id> stepping_;
+  bool in_callback_ = false;
+  SharedArray<double> velocity_, vertices_;
+};
+
+long Stepped::advance(long steps, const py::object& after_step, const py::object& progress) {
+  const Stepping now(*this);
+  take_over();
+  simulation_.after_step(after_step.is_none() ? std::function<void()>() : [&] { call(after_step); });
+  simulation_.on_progress(progress.is_none() ? std::function<void(const Progress&)>()
+                                             : [&](const Progress& at) {
+                                                 const py::gil_scoped_acquire lock;
+                                                 progress(py::cast(at));
+                                               });
+  const long first = simulation_.step();
+  try {
+    for (bool more = true; more && simulation_.step() - first < steps;) {
+      {
+        const py::gil_scoped_release free;
+        more = simulation_.advance();
+      }
+      refresh();
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+  } catch (...) {
+    refresh();
+    simulation_.after_step({});
+    simulation_.on_progress({});
+    throw;
+  }
+  simulation_.after_step({});
+  simulation_.on_progress({});
+  return simulation_.step() - first;
+}
+
+py::dict contact_table(const Stepped& stepped) {
+  const Contacts c = stepped.at_rest().contacts();
+  py::dict table;
+  table["block_a"] = array_of(c.block_a);
+  table["block_b"] = array_of(c.block_b);
+  table["state"] = array_of(c.state);
+  table["position"] = array_of(c.position, 2);
+  table["normal"] = array_of(c.normal, 2);
+  table["length"] = array_of(c.length);
+  table["gap"] = array_of(c.gap);
+  table["slip"] = array_of(c.slip);
+  table["normal_force"] = array_of(c.normal_force);
+  table["shear_force"] = array_of(c.shear_force);
+  table["joint"] = py::cast(c.joint);
+  return table;
+}
+
+void bind_values(py::module_& module) {
+  py::class_<Progress> progress(module, "Progress", py::is_final(), "How far a run is.");
+  progress.def_readonly("stage", &Progress::stage)
+      .def_readonly("stages", &Progress::stages)
+      .def_readonly("stage_name", &Progress::stage_name)
+      .def_readonly("fraction", &Progress::fraction, "Of the stage, 0 to 1; an estimate in static stages.")
+      .def_readonly("time", &Progress::time, "s, simulated in the stage.")
+      .def_readonly("step", &Progress::step)
+      .def_readonly("seconds_left", &Progress::seconds_left, "Of the stage; negative: unknown.");
+  seal(progress);
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  bind_values(module);
+  // Functions take references: a method by its address would take None for the object, and use it.
+  py::class_<Stepped> simulation(module, "Simulation", py::is_final(), "A run, step by step.");
+  simulation
+      .def_static(
+          "begin",
+          [](const Scenario& scenario, const std::filesystem::path& folder, int realization, int threads,
+             bool resume, bool replace, std::vector<std::pair<std::string, std::string>> hooks) {
+            return std::make_unique<Stepped>(
+                scenario, RunOptions{folder, realization, threads, resume, replace, std::move(hooks)});
+          },
+          py::arg("scenario"), py::kw_only(), py::arg("folder") = "", py::arg("realization") = 0,
+          py::arg("threads") = 1, py::arg("resume") = false, py::arg("replace") = false,
+          py::arg("hooks") = std::vector<std::pair<std::string, std::string>>())
+      .def(
+          "advance",
+          [](Stepped& s, long steps, const py::object& after_step, const py::object& progress) {
+            return s.advance(steps, after_step, progress);
+          },
+          py::arg("steps") = 1, py::arg("after_step") = py::none(), py::arg("progress") = py::none())
+      .def("finish", [](Stepped& s) { return s.finish(); })
+      .def("stop", [](Stepped& s) { s.stop(); })
+      .def_property_readonly("done", [](const Stepped& s) { return s.at_rest().done(); })
+      .def_property_readonly("time", [](const Stepped& s) { return s.at_rest().time(); })
+      .def_property_readonly("step", [](const Stepped& s) { return s.at_rest().step(); })
+      .def_property_readonly("stage", [](const Stepped& s) { return s.at_rest().stage(); })
+      .def_property_readonly("stages", [](const Stepped& s) { return s.at_rest().stages(); })
+      .def_property_readonly("warnings", [](const Stepped& s) { return s.at_rest().warnings(); })
+      .def_property_readonly("state_hash", [](const Stepped& s) { return s.at_rest().state_hash(); })
+      .def_property_readonly("blocks", [](const Stepped& s) { return s.at_rest().blocks(); })
+      .def_property_readonly("vertices", [](Stepped& s) { return s.vertices(); })
+      .def_property(
+          "velocity", [](Stepped& s) { return s.velocity(); },
+          [](Stepped& s, const py::array_t<double, py::array::c_style | py::array::forcecast>& values) {
+            s.set_velocity(values);
+          })
+      .def_property_readonly("first_vertex",
+                             [](const Stepped& s) {
+                               const std::span<const int> first = s.at_rest().first_vertex();
+                               return array_of(std::vector<int>(first.begin(), first.end()));
+                             })
+      .def_property_readonly("first_coefficient",
+                             [](const Stepped& s) { return array_of(s.at_rest().first_coefficient()); })
+      .def_property_readonly("present",
+                             [](const Stepped& s) {
+                               const std::span<const std::uint8_t> there = s.at_rest().present();
+                               return array_of(std::vector<std::uint8_t>(there.begin(), there.end()));
+                             })
+      .def_property_readonly("centroids",
+                             [](const Stepped& s) { return array_of(s.at_rest().centroids(), 2); })
+      .def_property_readonly("block_velocities",
+                             [](const Stepped& s) { return array_of(s.at_rest().block_velocities(), 2); })
+      .def_property_readonly("contacts", &contact_table)
+      .def_property_readonly("energy",
+                             [](const Stepped& s) {
+                               py::dict energy;
+                               for (const auto& [name, value] : s.at_rest().energy())
+                                 energy[name.c_str()] = value;
+                               return energy;
+                             })
+      .def("strength",
+           [](const Stepped& s, const std::string& joint) {
+             const JointStrength strength = s.at_rest().strength(joint);
+             return std::make_tuple(strength.friction, strength.cohesion, strength.tension);
+           })
+      .def("set_strength",
+           [](Stepped& s, const std::string& joint, double friction, double cohesion, double tension) {
+             s.at_rest().set_strength(joint, {friction, cohesion, tension});
+           })
+      .def("set_load_factor",
+           [](Stepped& s, std::size_t load, double factor) { s.at_rest().set_load_factor(load, factor); })
+      .def("set_motion_scale", [](Stepped& s, double factor) { s.at_rest().set_motion_scale(factor); });
+  seal(simulation);
+}
+
+}  // namespace keyblock::python

@@ -1,0 +1,129 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "keyblock/export.h"
+#include "keyblock/scenario.h"
+
+namespace keyblock {
+
+struct RunOptions {
+  /// Where results go: result.h5, summary.json, histories.csv, report.html, checkpoints. Empty: nothing is written.
+  std::filesystem::path folder;
+  int realization = 0;
+  int threads = 1;       ///< any number gives the same bits
+  bool resume = false;   ///< go on from the checkpoint in `folder`
+  bool replace = false;  ///< results of other input in `folder` may go
+  /// Names and hashes of programs that steer the run. summary.json has them; a run is resumed with the same ones only.
+  std::vector<std::pair<std::string, std::string>> hooks;
+};
+
+/// Strength of a joint.
+struct JointStrength {
+  double friction = 0.0;  ///< degrees
+  double cohesion = 0.0;  ///< Pa
+  double tension = 0.0;   ///< Pa
+};
+
+/// Contacts between blocks after a step, one element each in every list.
+struct Contacts {
+  std::vector<std::int32_t> block_a, block_b;     ///< the block with the vertex, and the block with the edge
+  std::vector<std::uint8_t> state;                ///< 0 open, 1 sliding, 2 locked
+  std::vector<double> position, normal;           ///< m; unit vector out of block_b; x and y in turn
+  std::vector<double> length, gap, slip;          ///< m; gap negative where the contact is pressed
+  std::vector<double> normal_force, shear_force;  ///< N per metre thickness, compression positive
+  std::vector<std::string> joint;                 ///< as in Block::edges
+};
+
+/// How far a run is.
+struct Progress {
+  int stage = 0, stages = 0;
+  std::string stage_name;
+  double fraction = 0.0;      ///< of the stage, 0 … 1; an estimate in static stages
+  double time = 0.0;          ///< s, simulated in the stage
+  long step = 0;              ///< of the stage
+  double seconds_left = 0.0;  ///< of the stage; negative: unknown
+};
+
+/// A run, step by step. Between steps it can be looked at and changed. What was changed is in checkpoints: a resumed run goes on with it.
+///
+///     keyblock::RunOptions options;
+///     options.folder = "out";
+///     keyblock::Simulation run(scenario, options);
+///     while (run.advance()) { … }
+///     std::string summary = run.finish();
+///
+/// Not for several threads at once, except stop(). Spans hold until the next call that is not const.
+class KEYBLOCK_API Simulation {
+ public:
+  /// Cuts the blocks and makes the model. Throws InputError, RunError.
+  explicit Simulation(const Scenario& scenario, const RunOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// One step of the plan; false when there is nothing left to do. Throws RunError when the run cannot go on.
+  bool advance();
+  [[nodiscard]] bool done() const;
+  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same.
+  std::string finish();
+  /// The run ends within the step at hand. May be called from another thread and from a signal handler.
+  void stop() noexcept;
+  /// Is called after each step, before a checkpoint is written: here changes belong, or a resumed run misses them. Exceptions that it throws
+  /// end the run, and advance() throws them.
+  void after_step(std::function<void()> call);
+  /// Is called now and then with how far the run is.
+  void on_progress(std::function<void(const Progress&)> call);
+
+  [[nodiscard]] double time() const;  ///< s, simulated; static steps count none
+  [[nodiscard]] long step() const;    ///< of the run
+  [[nodiscard]] int stage() const;    ///< number of the stage at hand, or of the next one
+  [[nodiscard]] std::vector<std::string> stages() const;
+  [[nodiscard]] std::vector<std::string> warnings() const;
+  [[nodiscard]] std::string state_hash() const;
+
+  [[nodiscard]] std::size_t blocks() const;
+  /// m, x and y of all vertices of all blocks where they are now; block b has vertices first_vertex()[b] … first_vertex()[b + 1].
+  [[nodiscard]] std::span<const double> vertices() const;
+  [[nodiscard]] std::span<const int> first_vertex() const;
+  /// Per block: 1 while it is there, 0 once it is excavated. The frame, if any, is the last block.
+  [[nodiscard]] std::span<const std::uint8_t> present() const;
+  /// x and y of the mass centre of each block: m; m/s.
+  [[nodiscard]] std::vector<double> centroids() const;
+  [[nodiscard]] std::vector<double> block_velocities() const;
+  /// m/s, of all coefficients of the displacement polynomials; of block b from first_coefficient()[b] on.
+  [[nodiscard]] std::span<const double> velocity() const;
+  [[nodiscard]] std::vector<std::size_t> first_coefficient() const;
+  /// None before the first step.
+  [[nodiscard]] Contacts contacts() const;
+  /// J per metre thickness, by name: kinetic, strain, gravity, contact, friction, damping, input, numerical, radiated.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> energy() const;
+
+  /// Replaces all velocities. The work that this does is Energy::input. Throws InputError for another number of them.
+  void set_velocity(std::span<const double> velocity);
+  /// Of a joint set, a trace map, "joints" (all others) or "frame". Throws InputError for an unknown name.
+  [[nodiscard]] JointStrength strength(const std::string& joint) const;
+  void set_strength(const std::string& joint, const JointStrength& strength);
+  /// Factor on the load of this number, in the order of the scenario, beside its own. Throws InputError for an unknown one.
+  void set_load_factor(std::size_t load, double factor);
+  /// Factor on ground motions, beside that of the stage. Throws InputError where a seismic boundary has waves under way.
+  void set_motion_scale(double factor);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Runs all stages, as `keyblock run` does; summary.json as text. `progress` may return false to stop the run.
+KEYBLOCK_API std::string run(const Scenario& scenario, const RunOptions& options,
+                             const std::function<bool(const Progress&)>& progress = {});
+
+}  // namespace keyblock

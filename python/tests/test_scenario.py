@@ -1,0 +1,193 @@
+"""Scenarios from Python."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, keyblock
+
+kb = pytest.importorskip("keyblock")
+core = pytest.importorskip("keyblock._core")
+
+TUNNEL = ROOT / "examples/01-tunnel.toml"
+
+
+def falling_block() -> kb.Scenario:
+    """A block that falls on another one, made from nothing."""
+    scenario = kb.Scenario({"title": "drop"})
+    scenario.rock.density = 2500
+    scenario.rock.young = 1e9
+    scenario["rock.poisson"] = 0.2
+    scenario.rock.state = "plane-strain"
+    scenario.joints.friction = 30
+    scenario.block.append(name="floor", outer=[[0, -1], [2, -1], [2, 0], [0, 0]], fixed=True)
+    scenario.block.append(name="stone", outer=np.array([[0.5, 0.1], [1.5, 0.1], [1.5, 1.1], [0.5, 1.1]]))
+    scenario.time.step = 0.001
+    scenario.stage.append(name="fall", kind="rest", duration=0.3)
+    return scenario
+
+
+def test_values_are_read_and_set() -> None:
+    scenario = kb.Scenario.load(TUNNEL)
+    assert scenario["rock.young"] == scenario.rock.young == 3e9
+    assert scenario.joint_set["J2"].dip == scenario["joint_set.J2.dip"] == scenario.joint_set[1].dip
+    scenario["rock.young"] = np.float64(4e9)
+    scenario.stage["first earthquake"].scale = 2
+    scenario.joint_set[-1].spacing.mean = 0.6
+    assert scenario.rock.young == 4e9
+    assert scenario["stage.'first earthquake'.scale"] == 2
+    assert scenario.joint_set["J3"].spacing.mean == 0.6
+    assert "rock.young" in scenario and "rock.colour" not in scenario
+    assert scenario.get("boundary.base", "none") == "none"
+    with pytest.raises(KeyError):
+        scenario["boundary.base"]
+    with pytest.raises(AttributeError):
+        scenario.rock.colour  # noqa: B018
+    with pytest.raises(KeyError):
+        scenario.joint_set["J9"]
+    assert len(scenario.joint_set) == 3
+    assert [table.name for table in scenario.joint_set] == ["J1", "J2", "J3"]
+
+
+def test_a_scenario_from_scratch_is_the_same_as_its_text(tmp_path: Path) -> None:
+    scenario = falling_block()
+    assert scenario.check() == []
+    again = kb.Scenario.parse(scenario.toml())
+    assert again.to_dict() == scenario.to_dict()
+    scenario.save(tmp_path / "drop.toml")
+    keyblock("check", "drop.toml", folder=tmp_path)
+    assert scenario.run()["state_hash"] == again.run()["state_hash"]
+    assert len(scenario.cut()) == 2
+    assert scenario.cut()[1].name == "stone"
+
+
+def test_copies_are_apart_and_pickled() -> None:
+    scenario = falling_block()
+    other = copy.deepcopy(scenario)
+    other.rock.young = 2e9
+    assert scenario.rock.young == 1e9
+    assert pickle.loads(pickle.dumps(other)).to_dict() == other.to_dict()
+    loaded = kb.Scenario.load(TUNNEL)
+    loaded["stage.'first earthquake'.scale"] = 2.5
+    assert pickle.loads(pickle.dumps(loaded)).to_dict() == loaded.to_dict()
+
+
+def test_mistakes_come_with_their_places() -> None:
+    scenario = kb.Scenario.parse("[rock]\ndensity = -5\nyoung = 'stiff'\ncolour = 3\n", "mine.toml")
+    with pytest.raises(kb.InputError) as caught:
+        scenario.check()
+    found = caught.value.diagnostics
+    assert len(found) >= 3
+    young = next(d for d in found if d.key == "rock.young")
+    assert (young.file, young.line, young.column) == ("mine.toml", 3, 9)
+    assert "stiff" in young.found and young.expected
+    assert str(young).startswith("mine.toml:3:9: rock.young")
+    assert "rock.colour" in {d.key for d in found}
+    assert isinstance(caught.value, ValueError)
+    scenario = kb.Scenario.load(TUNNEL)
+    scenario["rock.young"] = -1.0
+    with pytest.raises(kb.InputError, match="--set rock.young=-1.0"):
+        scenario.check()
+    with pytest.raises(kb.InputError):
+        scenario["a..b"] = 3
+    with pytest.raises(kb.InputError):
+        scenario["joint_set.J9.dip"] = 3
+    with pytest.raises(kb.InputError):
+        kb.Scenario.load("no/such.toml")
+    with pytest.raises(kb.InputError):
+        kb.Scenario.parse("[rock\n")
+
+
+@pytest.mark.parametrize("value", [object(), b"bytes", {1, 2} and (x for x in [object()]), lambda: 3, 1j])
+def test_values_that_are_none_are_refused(value: object) -> None:
+    scenario = kb.Scenario()
+    with pytest.raises(TypeError):
+        scenario["rock.young"] = value
+
+
+@pytest.mark.parametrize(
+    "value",
+    [0, -3, 1.5, 1e-300, 0.1, True, "", "a'b\"c\\d\n\t\x01\x7fé😀", [], [1, [2.5, "x"]], {"a b": 1, "c": {"d": [True]}}, np.arange(3), np.eye(2)],
+)
+def test_values_come_back(value: object) -> None:
+    scenario = kb.Scenario()
+    scenario["x.y"] = value
+    expected = value.tolist() if isinstance(value, np.ndarray) else value
+    assert scenario["x.y"] == expected
+    assert kb.Scenario.parse(scenario.toml())["x.y"] == expected
+
+
+def test_blocks_are_those_of_the_program(tmp_path: Path) -> None:
+    blocks = kb.Scenario.load(TUNNEL).cut(realization=2)
+    keyblock("cut", TUNNEL, "-o", "cut", "--realization", "2", folder=tmp_path)
+    import json
+
+    there = json.loads((tmp_path / "cut/blocks.geojson").read_text())["features"]
+    assert len(blocks) == len(there)
+    for block, feature in zip(blocks, there, strict=True):
+        ring = np.array(feature["geometry"]["coordinates"][0])[:-1]
+        assert np.allclose(np.sort(ring, axis=0), np.sort(block.polygon, axis=0))
+    assert blocks.areas.sum() == pytest.approx(400.0)
+    assert {"J1", "J2", "J3", "tunnel", "domain"} >= {name for block in blocks for ring in block.edges for name in ring}
+    assert "tunnel" in blocks.excavations
+
+
+def test_blocks_are_drawn(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    axes = kb.Scenario.load(TUNNEL).cut().plot()
+    assert axes.get_xlabel() == "x (m)"
+    axes.figure.savefig(tmp_path / "blocks.png")
+
+
+def trace(channel: str, data: list[float], delta: float = 0.01) -> types.SimpleNamespace:
+    return types.SimpleNamespace(data=np.array(data), stats=types.SimpleNamespace(delta=delta, channel=channel))
+
+
+def test_motions_of_traces() -> None:
+    motion = kb.Motion.from_obspy(trace("HNE", [1.0, 2.0, 3.0]), trace("HNZ", [0.0, 1.0, 0.0]), section=90.0)
+    assert np.allclose(motion.x, [1, 2, 3]) and np.allclose(motion.y, [0, 1, 0]) and motion.duration == pytest.approx(0.02)
+    turned = kb.Motion.from_obspy(trace("HNN", [1.0, 2.0]), section=60.0, factor=2.0)
+    assert np.allclose(turned.x, [1.0, 2.0])
+    scenario = falling_block()
+    motion.add_to(scenario, "pulse", at="base")
+    scenario.stage.append(name="quake", kind="shake", motion="pulse")
+    assert scenario.check() is not None
+    assert scenario.motion["pulse"].x[1] == [0.01, 2.0]
+    with pytest.raises(ValueError, match="azimuths"):
+        kb.Motion.from_obspy(trace("HN1", [1.0, 2.0]), section=0.0)
+    with pytest.raises(ValueError, match="time steps"):
+        kb.Motion.from_obspy(trace("HNE", [1.0, 2.0]), trace("HNN", [1.0, 2.0], 0.02), section=0.0)
+    with pytest.raises(ValueError, match="finite"):
+        kb.Motion(0.01, [1.0, float("nan")])
+
+
+def test_trace_maps_of_frames() -> None:
+    class Line:
+        geom_type = "LineString"
+
+        def __init__(self, coords: list[tuple[float, float]]) -> None:
+            self.coords = coords
+
+    class Several:
+        geom_type = "MultiLineString"
+        geoms = [Line([(0, 0), (1, 1)]), Line([(2, 0), (3, 1)])]
+
+    class Frame(dict):
+        geometry = [Line([(0, 0), (1, 0), (2, 1)]), Several()]
+
+        def __len__(self) -> int:
+            return 2
+
+    traces = kb.TraceMap.from_geodataframe(Frame(set=["a", "b"]), name="set")
+    assert traces.names == ["a", "b, part 1", "b, part 2"]
+    scenario = falling_block()
+    traces.add_to(scenario, friction=20)
+    assert scenario.trace_map["b, part 2"].points == [[2.0, 0.0], [3.0, 1.0]]
+    assert scenario.trace_map["a"].friction == 20
+    with pytest.raises(ValueError, match="shape"):
+        kb.TraceMap([[1, 2, 3]])

@@ -1,0 +1,128 @@
+#include "simulation/control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/index.h"
+#include "dynamics/energy.h"
+#include "simulation/setup.h"
+
+namespace keyblock::simulation {
+namespace {
+
+constexpr std::size_t no_law = static_cast<std::size_t>(-1);
+
+// Places in Model::laws, see build_model.cpp.
+constexpr std::size_t law_of_joints = 0, law_of_frame = 1, first_set = 3;
+
+[[noreturn]] void refuse(std::string key, std::string found, std::string expected) {
+  Diagnostic diagnostic;
+  diagnostic.key = std::move(key);
+  diagnostic.found = std::move(found);
+  diagnostic.expected = std::move(expected);
+  throw InputError(std::move(diagnostic));
+}
+
+void check_strength(const char* key, double value) {
+  if (!std::isfinite(value) || value < 0.0) refuse(key, std::to_string(value), "a finite number, at least 0");
+}
+
+void put(const Strength& strength, contact::JointLaw& law) {
+  law.friction_coefficient = strength.friction_coefficient;
+  law.cohesion = strength.cohesion;
+  law.tension = strength.tension;
+}
+
+void check_factor(const char* key, double value) {
+  if (!std::isfinite(value)) refuse(key, std::to_string(value), "a finite number");
+}
+
+}  // namespace
+
+std::size_t Control::law_index(std::string_view name) const {
+  const auto place = [&](const std::vector<std::string>& names) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? no_law : static_cast<std::size_t>(found - names.begin());
+  };
+  if (name == "joints") return law_of_joints;
+  if (name == "frame") return law_of_frame;
+  if (const std::size_t set = place(setup_.joint_set_names); set != no_law) return first_set + set;
+  if (const std::size_t map = place(setup_.trace_map_names); map != no_law)
+    return first_set + setup_.joint_set_names.size() + map;
+  return no_law;
+}
+
+const contact::JointLaw* Control::law(std::string_view name) const {
+  const std::size_t index = law_index(name);
+  return index == no_law ? nullptr : &model_.laws[index];
+}
+
+void Control::set_strength(std::string_view name, const Strength& strength) {
+  const std::size_t index = law_index(name);
+  if (index == no_law)
+    refuse("law", "\"" + std::string(name) + "\"",
+           "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
+  check_strength("friction", strength.friction_coefficient);
+  check_strength("cohesion", strength.cohesion);
+  check_strength("tension", strength.tension);
+  std::vector<contact::JointLaw> laws = model_.laws;
+  put(strength, laws[index]);
+  if (laws == model_.laws) return;
+  stepper_.set_laws(std::move(laws));
+  memory_.strengths.clear();
+  for (const contact::JointLaw& law : model_.laws)
+    memory_.strengths.push_back({law.friction_coefficient, law.cohesion, law.tension});
+}
+
+void Control::set_load_scale(std::size_t load, double factor) {
+  if (load >= model_.loads.size())
+    refuse("load", std::to_string(load),
+           "the number of a load, less than " + std::to_string(model_.loads.size()));
+  check_factor("load", factor);
+  memory_.load_scale.resize(model_.loads.size(), 1.0);
+  memory_.load_scale[load] = factor;
+  model_.load_scale = memory_.load_scale;
+}
+
+void Control::set_motion_scale(double factor) {
+  check_factor("motion", factor);
+  if (setup_.boundary && factor != memory_.motion_scale)
+    refuse("motion", "a seismic boundary", "a frame: waves are under way in the rock around the model");
+  memory_.motion_scale = factor;
+}
+
+void Control::set_velocity(std::span<const double> velocity) {
+  if (velocity.size() != state_.velocity.size())
+    refuse("velocity", std::to_string(velocity.size()) + " numbers",
+           std::to_string(state_.velocity.size()) + ", as many as there are coefficients");
+  if (!std::all_of(velocity.begin(), velocity.end(), [](double v) { return std::isfinite(v); }))
+    refuse("velocity", "a value that is not finite", "finite numbers");
+  const double before = dynamics::kinetic_energy(model_, state_);
+  for (const dynamics::Block& block : model_.blocks) {
+    if (block.fixed) continue;
+    const auto from = velocity.begin() + static_cast<std::ptrdiff_t>(block.first);
+    std::copy(from, from + 2 * block.size,
+              state_.velocity.begin() + static_cast<std::ptrdiff_t>(block.first));
+  }
+  state_.ledger.input += dynamics::kinetic_energy(model_, state_) - before;
+  stepper_.forget_history();
+}
+
+void restore(const ControlMemory& memory, dynamics::Model& model) {
+  for (std::size_t k = 0; k < memory.strengths.size(); ++k) put(memory.strengths[k], model.laws[k]);
+  model.load_scale = memory.load_scale;
+}
+
+std::string mistake_in_control(const ControlMemory& memory, const dynamics::Model& model) {
+  const auto fits = [](std::size_t size, std::size_t of_model) { return size == 0 || size == of_model; };
+  const auto is_strength = [](const Strength& s) {
+    return std::isfinite(s.friction_coefficient) && std::isfinite(s.cohesion) && std::isfinite(s.tension);
+  };
+  const bool known = std::all_of(memory.strengths.begin(), memory.strengths.end(), is_strength) &&
+                     fits(memory.strengths.size(), model.laws.size()) &&
+                     fits(memory.load_scale.size(), model.loads.size()) && std::isfinite(memory.motion_scale);
+  return known ? "" : "changes of another model";
+}
+
+}  // namespace keyblock::simulation
