@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/index.h"
 #include "dynamics/energy.h"
+#include "simulation/refuse.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {
@@ -15,14 +16,6 @@ constexpr std::size_t no_law = static_cast<std::size_t>(-1);
 
 // Places in Model::laws, see build_model.cpp.
 constexpr std::size_t law_of_joints = 0, law_of_frame = 1, first_set = 3;
-
-[[noreturn]] void refuse(std::string key, std::string found, std::string expected) {
-  Diagnostic diagnostic;
-  diagnostic.key = std::move(key);
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  throw InputError(std::move(diagnostic));
-}
 
 void check_strength(const char* key, double value) {
   if (!std::isfinite(value) || value < 0.0) refuse(key, std::to_string(value), "a finite number, at least 0");
