@@ -1,7 +1,8 @@
 // Lets a block slide, brakes it half-way, and reads the results.
+#include <keyblock/keyblock.h>
+
 #include <cstdio>
 #include <exception>
-#include <keyblock/keyblock.h>
 #include <vector>
 
 int main(int argc, char** argv) {
