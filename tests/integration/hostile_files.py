@@ -229,13 +229,25 @@ class FolderOfAStudy(Study):
         self.assertEqual(self.done(), before)
 
     def test_options_of_sbatch_are_one_word(self):
-        for option, value in (("--partition", "a\n#SBATCH --uid=0"), ("--time", "1:00 --uid=0"), ("--mem", "1G\rx"), ("--partition", "a#")):
+        for option, value in (("--partition", "a\n#SBATCH --uid=0"), ("--time", "1:00 --uid=0"), ("--mem", "1G\rx"), ("--partition", "a#"), ("--account", "a b")):
             error = self.study("submit", "small.toml", "-o", "new", option, value, expect=1).stderr
             self.assertIn(f"{option}: found ", error)
             self.assertIn("one word", error)
             self.assertFalse((self.folder / "new").exists())
         self.study("submit", "small.toml", "-o", "new", "--partition", "long,short", "--time", "1-12:00:00", "--mem", "1.5G")
         self.assertIn("#SBATCH --partition=long,short\n", (self.folder / "new/array.sbatch").read_text())
+
+    def test_more_options_of_sbatch(self):
+        for line in ("gres=tmp:1G", "--gres=tmp:1G\n#SBATCH --uid=0"):
+            error = self.study("submit", "small.toml", "-o", "new", f"--sbatch={line}", expect=1).stderr
+            self.assertIn("--sbatch: found ", error)
+            self.assertFalse((self.folder / "new").exists())
+        said = self.study("submit", "small.toml", "-o", "new", "--account", "rock", "--qos", "low", "--constraint", "avx2", "--sbatch=--gres=tmp:1G")
+        script = (self.folder / "new/array.sbatch").read_text()
+        for line in ("--account=rock", "--qos=low", "--constraint=avx2", "--gres=tmp:1G"):
+            self.assertIn(f"#SBATCH {line}\n", script)
+        self.assertIn("no --time", said.stderr)
+        self.assertIn("no --mem", said.stderr)
 
     def test_scripts_of_the_user_stay(self):
         for name in ("array.sbatch", "array-2.sbatch", "collect.sbatch"):
