@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     const keyblock::Results results(argv[2]);
     std::printf("frames %zu\n", results.frames());
     scenario.set("rock.young", "-1");
-    scenario.check();
+    static_cast<void>(scenario.check());
   } catch (const keyblock::InputError& error) {
     std::printf("refused %s\n", error.diagnostics().front().key.c_str());
     return 0;
