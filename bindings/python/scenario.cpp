@@ -28,6 +28,9 @@ void bind_scenario(py::module_& module) {
           "set", [](Scenario& s, const std::string& key, const std::string& toml) { s.set(key, toml); },
           py::arg("key"), py::arg("toml"))
       .def(
+          "append", [](Scenario& s, const std::string& key, const std::string& toml) { s.append(key, toml); },
+          py::arg("key"), py::arg("toml"))
+      .def(
           "json", [](const Scenario& s, const std::string& key) { return s.json(key); }, py::arg("key") = "")
       .def("toml", [](const Scenario& s) { return s.toml(); })
       .def_property_readonly("text", [](const Scenario& s) { return s.text(); })

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,10 @@
 #include "keyblock/export.h"
 
 namespace keyblock {
+
+namespace scenario {
+struct Override;
+}
 
 /// A block as it is cut, before anything moves.
 struct Block {
@@ -36,17 +41,19 @@ class KEYBLOCK_API Scenario {
   /// value as TOML has it. What is no TOML value is taken as a string. Tables on the way are made. Throws InputError for a path that is
   /// none, and for elements of lists that do not exist.
   void set(const std::string& key, const std::string& toml);
+  /// Adds an element to a list, which is made where there is none. Throws InputError where something else stands there.
+  void append(const std::string& key, const std::string& toml);
   /// The value of a key path as JSON, or the whole scenario for an empty path; empty text when the scenario does not say it. Throws
   /// InputError for a path that is none.
   [[nodiscard]] std::string json(const std::string& key = "") const;
   /// The text that was read; of a scenario that began empty, what was set, as TOML.
-  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] std::string text() const;
   /// Whether it began empty: its text is made of what was set.
   [[nodiscard]] bool is_made() const { return is_made_; }
   /// The whole scenario as TOML, with what was set in its place. Comments of the text are lost.
   [[nodiscard]] std::string toml() const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// `key=value` of each set(), in their order.
+  /// `key=value` of what was set, in its order, without what was replaced later.
   [[nodiscard]] const std::vector<std::string>& changes() const { return changes_; }
 
   /// All that `keyblock check` looks at. Returns warnings. Throws one InputError with all mistakes, and RunError where a model cannot be
@@ -56,7 +63,11 @@ class KEYBLOCK_API Scenario {
   [[nodiscard]] std::vector<Block> cut(int realization = 0) const;
 
  private:
-  std::string text_;
+  struct Document;
+  void put(const scenario::Override& override_, std::string change);
+
+  std::shared_ptr<const Document> document_;
+  std::string text_;  ///< that was read
   std::filesystem::path file_ = "scenario.toml";
   std::vector<std::string> changes_;
   bool is_made_ = true;

@@ -249,9 +249,7 @@ class Tables:
 
     def append(self, **values: Any) -> Table:
         """Another element at the end; `values` that are None are left out."""
-        added = {key: value for key, value in values.items() if value is not None}
-        # What is there is handed over as text that is right already.
-        self._scenario[self._path] = [*self._items(), added]
+        self._scenario._core.append(self._path, to_toml(values))
         return self[-1]
 
     def __repr__(self) -> str:

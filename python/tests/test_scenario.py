@@ -66,6 +66,23 @@ def test_a_scenario_from_scratch_is_the_same_as_its_text(tmp_path: Path) -> None
     assert scenario.cut()[1].name == "stone"
 
 
+def test_what_is_replaced_counts_no_more() -> None:
+    scenario = kb.Scenario.load(ROOT / "examples/04-wall.toml")
+    bricks = len(scenario.block)
+    for k in range(20):
+        scenario.block.append(name=f"more {k}", outer=[[5 + k, 0], [6 + k, 0], [6 + k, 1], [5 + k, 1]])
+        scenario.block[-1].fixed = True
+    scenario.rock.young = 1e9
+    scenario.rock.young = 2e9
+    scenario["rock"] = {**scenario.rock.to_dict(), "density": 2000.0}
+    assert len(scenario.block) == bricks + 20 and scenario.block["more 7"].fixed
+    # The last list of blocks, what was set in its last element, and the last [rock].
+    assert [change.partition("=")[0] for change in scenario._core.changes] == ["block", f"block[{bricks + 19}].fixed", "rock"]
+    assert kb.Scenario.parse(scenario.toml()).to_dict() == scenario.to_dict()
+    with pytest.raises(kb.InputError, match="a list"):
+        scenario._core.append("rock", "{ young = 1 }")
+
+
 def test_copies_are_apart_and_pickled() -> None:
     scenario = falling_block()
     other = copy.deepcopy(scenario)

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "api/edge_names.h"
 #include "api/scenario_source.h"
 #include "core/checked_json.h"
 #include "core/read_file.h"
@@ -17,12 +18,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using scenario::Value;
-
-/// Applies a change; throws where it does not fit.
-void put_in(const std::string& change, Value& document) {
-  if (const auto mistake = scenario::apply_override(scenario::parse_override(change), document))
-    throw InputError(*mistake);
-}
 
 ordered_json to_json(const Value& value) {
   switch (value.type) {
@@ -49,24 +44,15 @@ ordered_json to_json(const Value& value) {
   return nullptr;
 }
 
-std::string label_name(cutting::EdgeLabel label, const scenario::Scenario& scenario) {
-  const auto index = static_cast<std::size_t>(label.index);
-  switch (label.kind) {
-    case cutting::EdgeKind::free:
-      return {};
-    case cutting::EdgeKind::joint_set:
-      return scenario.joint_sets.at(index).set.name;
-    case cutting::EdgeKind::trace_map:
-      return scenario.trace_maps.at(index).name;
-    case cutting::EdgeKind::excavation:
-      return scenario.excavations.at(index).name;
-    case cutting::EdgeKind::domain:
-      return "domain";
-  }
-  return {};
+api::EdgeNames names_of(const scenario::Scenario& scenario) {
+  api::EdgeNames names;
+  for (const auto& spec : scenario.joint_sets) names.joint_sets.push_back(spec.set.name);
+  for (const auto& spec : scenario.trace_maps) names.trace_maps.push_back(spec.name);
+  for (const auto& spec : scenario.excavations) names.excavations.push_back(spec.name);
+  return names;
 }
 
-Block block_of(const cutting::CutBlock& cut, Vec2 origin, const scenario::Scenario& scenario) {
+Block block_of(const cutting::CutBlock& cut, Vec2 origin, const api::EdgeNames& names) {
   Block block;
   const auto add_ring = [&](const Ring& ring) {
     auto& points = block.rings.emplace_back();
@@ -75,27 +61,26 @@ Block block_of(const cutting::CutBlock& cut, Vec2 origin, const scenario::Scenar
   add_ring(cut.polygon.outer);
   for (const Ring& hole : cut.polygon.holes) add_ring(hole);
   for (const auto& ring : cut.labels) {
-    auto& names = block.edges.emplace_back();
-    for (const cutting::EdgeLabel label : ring) names.push_back(label_name(label, scenario));
+    auto& edges = block.edges.emplace_back();
+    for (const cutting::EdgeLabel label : ring) edges.push_back(names.of(label));
   }
   for (const int e : cut.excavations)
-    block.excavations.push_back(scenario.excavations.at(static_cast<std::size_t>(e)).name);
+    block.excavations.push_back(names.excavations.at(static_cast<std::size_t>(e)));
   block.area = area(cut.polygon);
   return block;
 }
 
 }  // namespace
 
-namespace api {
+using Path = std::vector<scenario::PathSegment>;
 
-Value document_of(const Scenario& scenario) {
-  Value document = scenario::parse_toml(scenario.text(), scenario.file().string());
-  // Where there was no text, it is made of what was set.
-  if (!scenario.is_made()) {
-    for (const std::string& change : scenario.changes()) put_in(change, document);
-  }
-  return document;
-}
+/// What was set, put into what the text says.
+struct Scenario::Document {
+  Value value;
+  std::vector<Path> changed;  ///< by each of Scenario::changes
+};
+
+namespace api {
 
 scenario::Scenario parsed(const Scenario& scenario) {
   const std::vector<std::string> none;
@@ -105,15 +90,15 @@ scenario::Scenario parsed(const Scenario& scenario) {
 
 }  // namespace api
 
-Scenario::Scenario() = default;
+Scenario::Scenario() : document_(std::make_shared<Document>()) {}
 
 Scenario Scenario::load(const std::filesystem::path& file) {
   return parse(read_file(file, scenario::largest_scenario), file);
 }
 
 Scenario Scenario::parse(std::string text, std::filesystem::path file) {
-  scenario::parse_toml(text, file.string());
   Scenario scenario;
+  scenario.document_ = std::make_shared<Document>(Document{scenario::parse_toml(text, file.string()), {}});
   scenario.text_ = std::move(text);
   scenario.file_ = std::move(file);
   scenario.is_made_ = false;
@@ -122,22 +107,58 @@ Scenario Scenario::parse(std::string text, std::filesystem::path file) {
 
 void Scenario::set(const std::string& key, const std::string& toml) {
   std::string change = key + "=" + toml;
-  Value document = api::document_of(*this);
-  put_in(change, document);
-  if (is_made_) text_ = scenario::toml_text(document);
-  changes_.push_back(std::move(change));
+  const scenario::Override override_ = scenario::parse_override(change);
+  put(override_, std::move(change));
+}
+
+void Scenario::append(const std::string& key, const std::string& toml) {
+  scenario::Override list = scenario::make_override(key, {});
+  list.value.type = Value::Type::array;
+  if (const Value* there = scenario::find_value(list.path, document_->value)) list.value = *there;
+  if (!list.value.is(Value::Type::array)) {
+    Diagnostic diagnostic;
+    diagnostic.key = key;
+    diagnostic.found = scenario::describe(list.value);
+    diagnostic.expected = "a list";
+    throw InputError(std::move(diagnostic));
+  }
+  list.value.items.push_back(scenario::parse_override(key + "=" + toml).value);
+  std::string change = key + "=" + scenario::to_toml(list.value);
+  put(list, std::move(change));
+}
+
+void Scenario::put(const scenario::Override& override_, std::string change) {
+  // Copies of this scenario keep what they say.
+  auto document = std::make_shared<Document>(*document_);
+  if (const auto mistake = scenario::apply_override(override_, document->value)) throw InputError(*mistake);
+  // What lies in what is replaced now counts no more.
+  std::vector<std::string> changes;
+  std::vector<Path> paths;
+  for (std::size_t k = 0; k < changes_.size(); ++k) {
+    if (scenario::begins_with(document->changed[k], override_.path)) continue;
+    changes.push_back(std::move(changes_[k]));
+    paths.push_back(std::move(document->changed[k]));
+  }
+  changes.push_back(std::move(change));
+  paths.push_back(override_.path);
+  document->changed = std::move(paths);
+  changes_ = std::move(changes);
+  document_ = std::move(document);
+}
+
+std::string Scenario::text() const {
+  return is_made_ ? scenario::toml_text(document_->value) : text_;
 }
 
 std::string Scenario::json(const std::string& key) const {
-  const Value document = api::document_of(*this);
-  if (key.empty()) return to_json(document).dump();
+  if (key.empty()) return to_json(document_->value).dump();
   const scenario::Override at = scenario::make_override(key, {});
-  const Value* value = scenario::find_value(at.path, document);
+  const Value* value = scenario::find_value(at.path, document_->value);
   return value == nullptr ? std::string() : to_json(*value).dump();
 }
 
 std::string Scenario::toml() const {
-  return scenario::toml_text(api::document_of(*this));
+  return scenario::toml_text(document_->value);
 }
 
 std::vector<std::string> Scenario::check(int realization) const {
@@ -153,9 +174,10 @@ std::vector<std::string> Scenario::check(int realization) const {
 std::vector<Block> Scenario::cut(int realization) const {
   const scenario::Scenario parsed = api::parsed(*this);
   const scenario::BlockModel model = scenario::build_blocks(parsed, realization);
+  const api::EdgeNames names = names_of(parsed);
   std::vector<Block> blocks;
   for (const cutting::CutBlock& cut : model.system.blocks)
-    blocks.push_back(block_of(cut, model.system.origin, parsed));
+    blocks.push_back(block_of(cut, model.system.origin, names));
   // Those of the scenario come last.
   const std::size_t first = blocks.size() - parsed.blocks.size();
   for (std::size_t k = 0; k < parsed.blocks.size(); ++k) blocks[first + k].name = parsed.blocks[k].name;

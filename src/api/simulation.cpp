@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "api/edge_names.h"
 #include "api/scenario_source.h"
 #include "core/error.h"
 #include "core/out_of_memory.h"
@@ -15,40 +16,18 @@
 #include "scenario/build.h"
 #include "simulation/checkpoint.h"
 #include "simulation/feasibility.h"
+#include "simulation/refuse.h"
 
 namespace keyblock {
 namespace {
 
-constexpr double degrees = 180.0 / std::numbers::pi;
+using simulation::refuse;
 
-std::string joint_name(cutting::EdgeLabel label, const simulation::RunSetup& setup) {
-  const auto index = static_cast<std::size_t>(label.index);
-  switch (label.kind) {
-    case cutting::EdgeKind::free:
-      return {};
-    case cutting::EdgeKind::joint_set:
-      return setup.joint_set_names.at(index);
-    case cutting::EdgeKind::trace_map:
-      return setup.trace_map_names.at(index);
-    case cutting::EdgeKind::excavation:
-      return setup.excavations.at(index).name;
-    case cutting::EdgeKind::domain:
-      return "domain";
-  }
-  return {};
-}
+constexpr double degrees = 180.0 / std::numbers::pi;
 
 job::ResultFolder::Use use_of(const RunOptions& options) {
   if (options.resume) return job::ResultFolder::Use::resume;
   return options.replace ? job::ResultFolder::Use::replace : job::ResultFolder::Use::fresh;
-}
-
-[[noreturn]] void refuse(const char* key, std::string found, std::string expected) {
-  Diagnostic diagnostic;
-  diagnostic.key = key;
-  diagnostic.found = std::move(found);
-  diagnostic.expected = std::move(expected);
-  throw InputError(std::move(diagnostic));
 }
 
 void check(const RunOptions& options) {
@@ -258,6 +237,8 @@ Contacts Simulation::contacts() const {
   Contacts contacts;
   if (parts_->runner().state().step == 0) return contacts;
   const simulation::ContactFrame frame = parts_->runner().contacts();
+  const simulation::ModelRecord& model = parts_->listener.model;
+  const api::EdgeNames names{model.joint_set_names, model.trace_map_names, model.excavation_names};
   for (const simulation::ContactRecord& c : frame.contacts) {
     contacts.block_a.push_back(c.block_a);
     contacts.block_b.push_back(c.block_b);
@@ -269,7 +250,7 @@ Contacts Simulation::contacts() const {
     contacts.slip.push_back(c.slip);
     contacts.normal_force.push_back(c.normal_force);
     contacts.shear_force.push_back(c.shear_force);
-    contacts.joint.push_back(joint_name(c.label, parts_->setup));
+    contacts.joint.push_back(names.of(c.label));
   }
   return contacts;
 }

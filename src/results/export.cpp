@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/checked_json.h"
+#include "cutting/edge_name.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
 #include "results/export_folder.h"
@@ -49,14 +50,7 @@ std::string block_table(const RunData& data) {
 }
 
 std::string edge_name(const simulation::ModelRecord& model, cutting::EdgeLabel label) {
-  const auto name_in = [&](const std::vector<std::string>& names) {
-    const auto k = static_cast<std::size_t>(label.index);
-    return k < names.size() ? names[k] : std::string();
-  };
-  if (label.kind == cutting::EdgeKind::joint_set) return name_in(model.joint_set_names);
-  if (label.kind == cutting::EdgeKind::trace_map) return name_in(model.trace_map_names);
-  if (label.kind == cutting::EdgeKind::excavation) return name_in(model.excavation_names);
-  return {};
+  return cutting::edge_name(label, model.joint_set_names, model.trace_map_names, model.excavation_names);
 }
 
 std::string contact_table(const RunData& data) {

@@ -173,6 +173,13 @@ std::optional<Diagnostic> apply_override(const Override& override_, Value& docum
   return std::nullopt;
 }
 
+bool begins_with(const std::vector<PathSegment>& path, const std::vector<PathSegment>& first) {
+  return path.size() >= first.size() &&
+         std::equal(first.begin(), first.end(), path.begin(), [](const PathSegment& a, const PathSegment& b) {
+           return a.key == b.key && a.index == b.index;
+         });
+}
+
 const Value* find_value(const std::vector<PathSegment>& path, const Value& document) {
   const Value* node = &document;
   for (const PathSegment& segment : path) {

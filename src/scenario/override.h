@@ -27,6 +27,9 @@ Override make_override(const std::string& path, Value value);
 /// is seen when the document is read.
 std::optional<Diagnostic> apply_override(const Override& override_, Value& document);
 
+/// Whether the first keys of a path are those of another, or all of them.
+bool begins_with(const std::vector<PathSegment>& path, const std::vector<PathSegment>& first);
+
 /// The value that a key path leads to, or null.
 const Value* find_value(const std::vector<PathSegment>& path, const Value& document);
 

@@ -80,8 +80,12 @@ void Control::set_load_scale(std::size_t load, double factor) {
 
 void Control::set_motion_scale(double factor) {
   check_factor("motion", factor);
-  if (setup_.boundary && factor != memory_.motion_scale)
+  if (factor == memory_.motion_scale) return;
+  if (setup_.boundary)
     refuse("motion", "a seismic boundary", "a frame: waves are under way in the rock around the model");
+  if (std::any_of(setup_.histories.begin(), setup_.histories.end(),
+                  [](const History& h) { return h.absolute; }))
+    refuse("motion", "a history with frame = \"absolute\"", "histories relative to the base");
   memory_.motion_scale = factor;
 }
 

@@ -41,7 +41,8 @@ class Control {
   void set_strength(std::string_view name, const Strength& strength);
   /// Factor on the load of this index, in the order of the scenario. Throws InputError for an unknown one, and for what is no number.
   void set_load_scale(std::size_t load, double factor);
-  /// Factor on ground motions. Throws InputError for what is no number, and where a seismic boundary has waves under way.
+  /// Factor on ground motions; the records of stages keep the motion as it was planned. Throws InputError for what is no number, where a
+  /// seismic boundary has waves under way, and where histories are absolute: both integrate the motion as it was planned.
   void set_motion_scale(double factor);
   /// m/s, of all coefficients, by Block::first. Velocities of fixed blocks stay as they are. Throws InputError for another number of
   /// coefficients and for what is no number.

@@ -36,6 +36,21 @@ TEST(Api, ScenariosAreReadSetAndWritten) {
   EXPECT_THROW((void)scenario.check(), InputError);
 }
 
+TEST(Api, ListsGrowAndCopiesStayAsTheyWere) {
+  Scenario scenario = Scenario::parse(falling, "drop.toml");
+  const Scenario before = scenario;
+  scenario.append("stage", "{ name = \"one\", kind = \"rest\", duration = 0.1 }");
+  scenario.append("stage", "{ name = \"two\", kind = \"rest\", duration = 0.1 }");
+  scenario.append("history", "{ name = \"top\", block = \"stone\", point = [1.0, 1.0] }");
+  EXPECT_TRUE(scenario.check().empty());
+  EXPECT_EQ(scenario.changes().size(), 2U);  // the list of stages, and that of histories
+  EXPECT_EQ(scenario.json("stage.two.duration"), "0.1");
+  EXPECT_EQ(before.json("stage.one"), "");
+  EXPECT_TRUE(before.changes().empty());
+  EXPECT_THROW(scenario.append("rock", "{ young = 1 }"), InputError);
+  EXPECT_EQ(scenario.changes().size(), 2U);
+}
+
 TEST(Api, ScenariosAreMadeFromNothing) {
   Scenario made;
   const Scenario read = Scenario::parse(falling);

@@ -146,5 +146,14 @@ TEST(Control, RefusesWhatCannotBe) {
   EXPECT_THROW(control.set_velocity(std::vector<double>(runner.state().velocity.size(), nan)), InputError);
 }
 
+TEST(Control, MotionsThatAbsoluteHistoriesIntegrateStayAsPlanned) {
+  RunSetup setup = pulled();
+  setup.histories.push_back({.name = "top", .block = "stone", .point = {0.5, 0.25}, .absolute = true});
+  RunObserver nobody;
+  Runner runner(setup, {}, nobody);
+  runner.control().set_motion_scale(1.0);
+  EXPECT_THROW(runner.control().set_motion_scale(2.0), InputError);
+}
+
 }  // namespace
 }  // namespace keyblock::simulation
