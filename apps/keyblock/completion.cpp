@@ -26,8 +26,8 @@ std::string last_word(const std::string& name) {
   return name.substr(name.rfind(' ') + 1);
 }
 
-std::string joined(const std::vector<std::string>& words, const char* between = " ") {
-  return fmt::format("{}", fmt::join(words, between));
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 std::vector<std::string> names_below(const CommandNode& node) {
@@ -70,6 +70,17 @@ std::string first_sentence(const std::string& text) {
   return text.substr(0, std::min(text.find("; "), text.find(". ")));
 }
 
+/// `run`, `study`, `study_run`, …
+std::string command_words(const CommandNode& program) {
+  std::vector<std::string> names;
+  for (const CommandNode* node : all_commands(program)) {
+    std::string name = node->name;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    names.push_back(std::move(name));
+  }
+  return joined(names);
+}
+
 std::string bash_cases(const CommandNode& program) {
   std::string cases;
   for (const CommandNode* node : all_commands(program)) {
@@ -99,7 +110,7 @@ std::string bash(const CommandNode& program) {
 _keyblock() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} command='' word words
   local commands=' {} '
-  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+  for word in "${{COMP_WORDS[@]:1:$((COMP_CWORD - 1))}}"; do
     [[ $word == -* ]] && continue
     if [[ $commands == *" ${{command:+${{command}}_}}$word "* ]]; then command=${{command:+$command }}$word; else break; fi
   done
@@ -115,20 +126,13 @@ _keyblock() {{
 {}    *) words='{}' ;;
   esac
   COMPREPLY=($(compgen -W "$words" -- "$current"))
-  [[ $current == -* ]] || {{ compopt -o filenames; COMPREPLY+=($(compgen -f -- "$current")); }}
+  [[ $current == -* ]] && return
+  compopt -o filenames
+  while IFS= read -r word; do COMPREPLY+=("$word"); done < <(compgen -f -- "$current")
 }}
 complete -F _keyblock keyblock
 )",
-      [&] {
-        std::vector<std::string> names;
-        for (const CommandNode* node : all_commands(program)) {
-          std::string name = node->name;
-          std::replace(name.begin(), name.end(), ' ', '_');
-          names.push_back(std::move(name));
-        }
-        return joined(names);
-      }(),
-      joined(keys_of_tables()), bash_values(program), bash_cases(program),
+      command_words(program), joined(keys_of_tables()), bash_values(program), bash_cases(program),
       joined(names_below(program)) + " " + joined(option_names(program)));
 }
 
@@ -169,9 +173,10 @@ std::string fish(const CommandNode& program) {
 }
 
 std::string zsh(const CommandNode& program) {
-  // The functions of bash do for zsh, too.
-  return "#compdef keyblock\n# Completion of keyblock for zsh, by that for bash.\nautoload -U +X "
-         "bashcompinit && bashcompinit\n" +
+  // The functions of bash do for zsh, too, except for compopt.
+  return "#compdef keyblock\n# Completion of keyblock for zsh, by that for bash.\n"
+         "autoload -U +X bashcompinit && bashcompinit\n"
+         "(( ${+functions[compopt]} )) || compopt() { :; }\n" +
          bash(program);
 }
 
