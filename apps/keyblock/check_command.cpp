@@ -13,9 +13,7 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "job/check.h"
-#include "scenario/build.h"
 #include "scenario/cut_summary.h"
-#include "scenario/inputs.h"
 #include "scenario_arguments.h"
 #include "study/plan.h"
 
@@ -34,17 +32,14 @@ struct Checked {
 
 Checked checked(const ScenarioArguments& arguments) {
   const scenario::Scenario scenario = arguments.read();
-  // Mistakes of all files together, before any block is cut.
-  scenario::check_inputs(scenario);
-  const scenario::BlockModel blocks = scenario::build_blocks(scenario, arguments.realization);
-  Checked found{.warnings = job::check(scenario, blocks, arguments.realization),
-                .blocks = blocks.system.blocks.size(),
-                .traces = static_cast<std::size_t>(blocks.system.statistics.traces),
+  job::Checked of_run = job::check(scenario, arguments.realization);
+  const cutting::BlockSystem& system = of_run.blocks.system;
+  Checked found{.warnings = std::move(of_run.warnings),
+                .blocks = system.blocks.size(),
+                .traces = static_cast<std::size_t>(system.statistics.traces),
                 .stages = scenario.stages.size(),
-                .slivers = scenario::sliver_note(blocks.system, scenario.blocks.size()),
+                .slivers = scenario::sliver_note(system, scenario.blocks.size()),
                 .plan = {}};
-  for (std::string& warning : scenario::study_warnings(scenario))
-    found.warnings.push_back(std::move(warning));
   // Every combination of values is looked at here.
   if (scenario.study) found.plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
   return found;

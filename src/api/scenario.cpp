@@ -8,7 +8,6 @@
 #include "core/read_file.h"
 #include "job/check.h"
 #include "scenario/build.h"
-#include "scenario/inputs.h"
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/toml_text.h"
@@ -162,13 +161,7 @@ std::string Scenario::toml() const {
 }
 
 std::vector<std::string> Scenario::check(int realization) const {
-  const scenario::Scenario parsed = api::parsed(*this);
-  // Mistakes of all files together, before any block is cut.
-  scenario::check_inputs(parsed);
-  std::vector<std::string> warnings =
-      job::check(parsed, scenario::build_blocks(parsed, realization), realization);
-  for (std::string& warning : scenario::study_warnings(parsed)) warnings.push_back(std::move(warning));
-  return warnings;
+  return job::check(api::parsed(*this), realization).warnings;
 }
 
 std::vector<Block> Scenario::cut(int realization) const {

@@ -90,9 +90,6 @@ simulation::RunOptions Simulation::Parts::run_options(const RunOptions& options)
   run.after_step = [this](simulation::Runner&, const dynamics::StepReport&) {
     if (after_step) keep_failure(after_step);
   };
-  listener.call = [this](const Progress& now) {
-    if (progress) keep_failure([&] { progress(now); });
-  };
   return run;
 }
 
@@ -101,6 +98,9 @@ Simulation::Parts::Parts(const Scenario& of, const RunOptions& options) : scenar
   setup = scenario::build_setup(scenario, options.realization, &warnings);
   setup.version = version();
   setup.hooks = options.hooks;
+  listener.call = [this](const Progress& now) {
+    if (progress) keep_failure([&] { progress(now); });
+  };
   if (options.folder.empty()) {
     with_memory_for([&] { return simulation::memory_purpose(setup); },
                     [&] { alone.emplace(setup, run_options(options), listener); });

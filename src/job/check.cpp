@@ -1,25 +1,31 @@
 #include "job/check.h"
 
+#include <utility>
+
 #include "scenario/inputs.h"
 #include "simulation/build_model.h"
 #include "simulation/feasibility.h"
 
 namespace keyblock::job {
 
-std::vector<std::string> check(const scenario::Scenario& scenario, const scenario::BlockModel& blocks,
-                               int realization) {
-  std::vector<std::string> warnings;
+Checked check(const scenario::Scenario& scenario, int realization) {
+  std::vector<std::string> of_inputs = scenario::check_inputs(scenario);
+  Checked checked{scenario::build_blocks(scenario, realization), {}};
   if (scenario.stages.empty()) {
-    warnings = scenario::check_inputs(scenario);
-    scenario::add_block_warnings(scenario, blocks, warnings);
-    scenario::add_overlap_warnings(scenario, blocks.system, warnings);
-    return warnings;
+    checked.warnings = std::move(of_inputs);
+    scenario::add_block_warnings(scenario, checked.blocks, checked.warnings);
+    scenario::add_overlap_warnings(scenario, checked.blocks.system, checked.warnings);
+  } else {
+    // Has those of the inputs as well.
+    const simulation::RunSetup setup =
+        scenario::build_setup(scenario, realization, checked.blocks, &checked.warnings);
+    simulation::build_model(setup);
+    if (const auto reason = simulation::yields_without_limit(setup))
+      checked.warnings.push_back("a run ends at once: " + *reason);
   }
-  const simulation::RunSetup setup = scenario::build_setup(scenario, realization, blocks, &warnings);
-  simulation::build_model(setup);
-  if (const auto reason = simulation::yields_without_limit(setup))
-    warnings.push_back("a run ends at once: " + *reason);
-  return warnings;
+  for (std::string& warning : scenario::study_warnings(scenario))
+    checked.warnings.push_back(std::move(warning));
+  return checked;
 }
 
 }  // namespace keyblock::job

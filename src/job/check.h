@@ -7,9 +7,14 @@
 
 namespace keyblock::job {
 
-/// What can be known of a run before it starts, from a scenario and its blocks. Returns warnings. Throws InputError with all mistakes, and
-/// RunError where the model cannot be built. A scenario without stages can still be cut.
-std::vector<std::string> check(const scenario::Scenario& scenario, const scenario::BlockModel& blocks,
-                               int realization);
+/// What can be known of a run before it starts.
+struct Checked {
+  scenario::BlockModel blocks;
+  std::vector<std::string> warnings;  ///< of the study, if there is one, too
+};
+
+/// Looks at files, blocks and model. Throws InputError with all mistakes, those of files before any block is cut, and RunError where the
+/// model cannot be built. A scenario without stages can still be cut.
+Checked check(const scenario::Scenario& scenario, int realization);
 
 }  // namespace keyblock::job

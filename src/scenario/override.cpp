@@ -180,11 +180,20 @@ bool begins_with(const std::vector<PathSegment>& path, const std::vector<PathSeg
          });
 }
 
+namespace {
+
+/// What a segment leads to in a table or a list, or null.
+const Value* child(const Value& of, const PathSegment& segment) {
+  return of.is(Value::Type::array) ? find_element(of, segment) : of.find(segment.key);
+}
+
+}  // namespace
+
 const Value* find_value(const std::vector<PathSegment>& path, const Value& document) {
   const Value* node = &document;
   for (const PathSegment& segment : path) {
     if (node == nullptr) break;
-    node = node->is(Value::Type::array) ? find_element(*node, segment) : node->find(segment.key);
+    node = child(*node, segment);
   }
   return node;
 }
@@ -194,7 +203,7 @@ std::vector<std::string> resolved_path(const std::vector<PathSegment>& path, con
   const Value* node = &document;
   for (const PathSegment& segment : path) {
     const bool in_list = node != nullptr && node->is(Value::Type::array);
-    const Value* next = node == nullptr ? nullptr : find_value({segment}, *node);
+    const Value* next = node == nullptr ? nullptr : child(*node, segment);
     resolved.push_back(in_list && next != nullptr
                            ? join_index("", static_cast<std::size_t>(next - node->items.data()))
                            : segment.key);
