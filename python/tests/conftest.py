@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import shutil
 import subprocess
@@ -56,7 +57,7 @@ def keyblock(*words: object, folder: Path) -> str:
 def optional(name: str) -> ModuleType:
     """A package that users need not have; the test is skipped without it, unless CI is set."""
     if os.environ.get("CI"):
-        return __import__(name)
+        return importlib.import_module(name)
     return pytest.importorskip(name)
 
 

@@ -38,8 +38,7 @@ def test_blocks_of_the_page(tunnel_folder, heading_folder, study_folder, limit_f
 
 def test_blocks_of_the_page_on_runs(tmp_path, monkeypatch, capsys):
     optional("matplotlib")
-    if importlib.util.find_spec("keyblock._core") is None:
-        pytest.skip("the compiled module is not built")
+    optional("keyblock._core")
     import matplotlib.pyplot as pyplot
 
     (tmp_path / "examples").symlink_to(ROOT / "examples", target_is_directory=True)

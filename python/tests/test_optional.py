@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import BUILT, ROOT
+from conftest import BUILT, ROOT, optional
 
 HIDE = """
 import sys
@@ -82,7 +82,7 @@ def test_what_is_missing_is_named(tunnel_folder, hidden, call, expected):
 
 
 def test_a_package_that_lacks_another_one(tunnel_folder):
-    pytest.importorskip("matplotlib")
+    optional("matplotlib")
     script = "try: run.animate('x.gif')\nexcept kb.MissingPackageError as error: print(error)\n"
     assert python(["PIL"], tunnel_folder, script) == "a film needs matplotlib, which cannot be imported: No module named 'PIL'\n"
 
@@ -93,7 +93,7 @@ def test_h5py_is_named_too(tunnel_folder):
 
 
 def test_a_film_without_ffmpeg(tunnel_folder, tmp_path):
-    pytest.importorskip("matplotlib")
+    optional("matplotlib")
     script = "try: run.animate('x.mp4')\nexcept kb.MissingPackageError as error: print(error)\n"
     said = python([], tunnel_folder, script, PATH=str(tmp_path))
     assert said == "a film as MP4 needs the program ffmpeg, which is not installed: apt install ffmpeg, or write a .gif\n"
@@ -106,7 +106,7 @@ def test_importing_brings_in_nothing_that_is_not_needed():
 
 def test_names_of_the_package():
     # Those of scenarios and runs are in the package beside the program.
-    pytest.importorskip("keyblock._core")
+    optional("keyblock._core")
     script = "print(all(hasattr(kb, name) and name in dir(kb) for name in kb.__all__))\n"
     script += "try: kb.opne\nexcept AttributeError as e: print(e)\n"
     assert python([], "", script, PYTHONPATH=str(BUILT)) == "True\nmodule 'keyblock' has no attribute 'opne'\n"

@@ -7,10 +7,10 @@ import json
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, keyblock
+from conftest import ROOT, keyblock, optional
 
-kb = pytest.importorskip("keyblock")
-core = pytest.importorskip("keyblock._core")
+kb = optional("keyblock")
+core = optional("keyblock._core")
 
 GALLERY = ROOT / "tests/data/study/gallery.toml"
 

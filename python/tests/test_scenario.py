@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, keyblock
+from conftest import ROOT, keyblock, optional
 
-kb = pytest.importorskip("keyblock")
-core = pytest.importorskip("keyblock._core")
+kb = optional("keyblock")
+core = optional("keyblock._core")
 
 TUNNEL = ROOT / "examples/01-tunnel.toml"
 
@@ -155,7 +155,7 @@ def test_blocks_are_those_of_the_program(tmp_path: Path) -> None:
 
 
 def test_blocks_are_drawn(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
+    optional("matplotlib")
     axes = kb.Scenario.load(TUNNEL).cut().plot()
     assert axes.get_xlabel() == "x (m)"
     axes.figure.savefig(tmp_path / "blocks.png")

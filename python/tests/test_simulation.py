@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, keyblock
+from conftest import ROOT, keyblock, optional
 from test_scenario import falling_block
 
-kb = pytest.importorskip("keyblock")
-core = pytest.importorskip("keyblock._core")
+kb = optional("keyblock")
+core = optional("keyblock._core")
 
 SHORT = {
     "examples/01-tunnel.toml": {"stage.quiet.duration": 0.1, "stage.'first earthquake'.duration": 0.1, "stage.after.duration": 0.02},
