@@ -64,7 +64,7 @@ class KEYBLOCK_API Scenario {
 
  private:
   struct Document;
-  void put(const scenario::Override& override_, std::string change);
+  KEYBLOCK_HIDDEN void put(const scenario::Override& override_, std::string change);
 
   std::shared_ptr<const Document> document_;
   std::string text_;  ///< that was read
