@@ -20,7 +20,7 @@ import tempfile
 import bench
 import scenes
 
-NAMES = ["kept-factor", "low-rank-update", "followed-bounds", "local-solve", "increment-history", "earlier-attempt",
+NAMES = ["kept-factor", "low-rank-update", "local-solve", "increment-history", "earlier-attempt",
          "steady-pairs", "single-precision"]
 
 

@@ -20,7 +20,6 @@ enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 struct Accelerators {
   bool kept_factor = true;      ///< dynamics::KeptFactor
   bool low_rank_update = true;  ///< dynamics::LowRankUpdate
-  bool followed_bounds = true;  ///< dynamics::FollowedBounds, of low-rank updates
   bool local_solve = true;      ///< dynamics::LocalSolve
   bool increment_history =
       true;  ///< a step begins where the last increments lead to (dynamics::IncrementHistory)
@@ -34,7 +33,6 @@ struct Accelerators {
 inline constexpr std::pair<const char*, bool Accelerators::*> accelerator_names[] = {
     {"kept-factor", &Accelerators::kept_factor},
     {"low-rank-update", &Accelerators::low_rank_update},
-    {"followed-bounds", &Accelerators::followed_bounds},
     {"local-solve", &Accelerators::local_solve},
     {"increment-history", &Accelerators::increment_history},
     {"earlier-attempt", &Accelerators::earlier_attempt},

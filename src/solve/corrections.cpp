@@ -83,10 +83,11 @@ bool Corrections::solve(const linalg::LowRankSolver& solver, std::span<const dou
   branch_.resize(size_);
   force_.assign(size_, 0.0);
   for (std::size_t s = 0; s < size_; ++s) stretch_[s] = stretch[s] + solver.product(half_[s], half);
-  return solve(laws);
+  return minimize(laws);
 }
 
-bool Corrections::solve(std::span<const Law> laws) {
+/// φ from the φ at hand, by Newton's method. False when it is not found.
+bool Corrections::minimize(std::span<const Law> laws) {
   constexpr int most_iterations = 60;
   constexpr double rounding = 1e-13;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {

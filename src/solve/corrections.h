@@ -47,11 +47,7 @@ class Corrections {
   /// φ, given half of −A⁻¹ g, the law of every spring and its stretch at D. False when it is not found.
   [[nodiscard]] bool solve(const linalg::LowRankSolver& solver, std::span<const double> half,
                            std::span<const Law> laws, std::span<const double> stretch);
-  /// The same with other laws of the same springs, from the φ at hand.
-  [[nodiscard]] bool solve(std::span<const Law> laws);
   [[nodiscard]] std::span<const double> forces() const { return force_; }
-  /// e.
-  [[nodiscard]] std::span<const double> stretches() const { return stretch_; }
   /// δ, given half of −A⁻¹ g.
   void finish(linalg::LowRankSolver& solver, std::span<const double> half, std::span<double> d);
 
@@ -59,6 +55,7 @@ class Corrections {
   /// Row s of C.
   [[nodiscard]] double* compliances(std::size_t s) { return &compliance_[s * room_]; }
   void make_room(std::size_t springs);
+  [[nodiscard]] bool minimize(std::span<const Law> laws);
   void find_step();
   [[nodiscard]] std::size_t find_curved();
   [[nodiscard]] bool find_direction();

@@ -118,8 +118,7 @@ bool LawUpdates::reverse_sliding(const StepSystem& system, Iterate& iterate, dou
   return true;
 }
 
-bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, double tolerance,
-                               FollowedBounds& followed) {
+bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, double tolerance) {
   SpringArray& springs = system.springs();
   const auto [errors, scales] = sum_of<Sums>(
       system.team, (springs.size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
@@ -146,35 +145,17 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
       ratio > 0.5 * bound_error_)
     bound_damping_ = std::max(0.5 * bound_damping_, step_numbers::least_damping);
   bound_error_ = ratio;
-  // Static steps change more springs than are worth correcting, and have no end of updates to fear.
-  if (system.updates_by_low_rank() && system.options.accelerators.followed_bounds &&
-      !system.problem.is_static())
-    choose_followed(system, followed);
   for (std::size_t c = 0; c < springs.size(); ++c) {
     if (springs.friction[c] < 0.0) continue;
     const double missing = bound(c) - springs.bound[c];
     KnownStep& last = bound_steps_[c];
-    // A bound that was followed since has come to where it is on a way of its own.
+    // A bound that was set otherwise since has come to where it is on a way of its own.
     const bool is_known = !first && last.bound == springs.bound[c];
     const double share = bound_damping_ * (is_known ? last.step.share(missing) : 1.0);
     iterate.change_spring(system, c, [&] { springs.bound[c] += share * missing; });
     last = {{missing, share * missing}, springs.bound[c]};
   }
   return true;
-}
-
-/// By what new bounds change the shear forces of contacts.
-void LawUpdates::choose_followed(const StepSystem& system, FollowedBounds& followed) {
-  const SpringArray& springs = system.springs();
-  changes_.clear();
-  for (std::size_t c = 0; c < springs.size(); ++c) {
-    if (springs.friction[c] < 0.0) continue;
-    const double wanted = springs.strength(c, springs.force(c).normal),
-                 change = contact::shear_spring(springs.ks[c], wanted).force(springs.w[c]) -
-                          springs.force(c).shear;
-    if (change != 0.0) changes_.push_back({c, change * change});
-  }
-  followed.choose(changes_);
 }
 
 /// Adds the shifts, times a share, to the forces that belong to no displacement.

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "solve/bound_step.h"
-#include "solve/followed_bounds.h"
 #include "solve/iterate.h"
 
 namespace keyblock::dynamics {
@@ -26,14 +25,12 @@ class LawUpdates {
   /// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when nothing
   /// penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls.
   bool augment(const StepSystem& system, Iterate& iterate, double tolerance);
-  /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2). Those that
-  /// change most are followed from then on.
-  bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance, FollowedBounds& followed);
+  /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2).
+  bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance);
 
  private:
   void sum_bounds(const StepSystem& system);
   [[nodiscard]] bool reverses(const StepSystem& system, std::size_t c) const;
-  void choose_followed(const StepSystem& system, FollowedBounds& followed);
   void shift_forces(const StepSystem& system, Iterate& iterate, double share);
 
   // Contacts that turn round.
@@ -50,8 +47,6 @@ class LawUpdates {
   int bound_updates_ = 0;       ///< in this step
   double bound_error_ = 0.0;    ///< of the last of them, over all bounds
   double bound_damping_ = 1.0;  ///< share of its way that each contact goes
-
-  std::vector<FollowedBounds::Change> changes_;  ///< scratch
 
   // Multipliers.
   std::vector<Vec2> violation_;    ///< m, per contact: penetration and drift; scratch

@@ -89,7 +89,6 @@ bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterat
 bool LowRankUpdate::begin(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
                           double enough, bool from_zero, std::span<double> direction) {
   if (!from_zero) {
-    take_followed(system, matrix);
     matrix.find_differing(system);
     find_wanted(system.springs(), matrix);
     leave_out_wanted(system, iterate, matrix);
@@ -173,7 +172,6 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
     law.line_force += force_[k];
   }
   if (!corrections_.solve(*system.solver.low_rank(), base_, laws_, stretch_)) return false;
-  if (!bounds_.contacts().empty() && !follow_bounds(system, matrix)) return false;
   for (std::size_t k = 0; k < updated_.size(); ++k) force_[k] += corrections_.forces()[k];
   return true;
 }
@@ -203,37 +201,6 @@ void LowRankUpdate::remember_places() {
 void LowRankUpdate::carry(std::span<const std::size_t> now) {
   for (Spring& spring : updated_) spring.contact = now[spring.contact];
   remember_places();
-}
-
-/// The springs of contacts whose bounds are followed are updated, whatever they do, while there is room for them.
-void LowRankUpdate::take_followed(const StepSystem& system, StepMatrix& matrix) {
-  wanted_.clear();
-  for (const std::size_t c : bounds_.contacts()) {
-    for (const bool normal : {true, false}) {
-      if (!is_updated({c, normal})) wanted_.push_back({c, normal});
-    }
-  }
-  const bool is_room = updated_.size() + wanted_.size() <= limit(system);
-  if (is_room && !wanted_.empty()) take_wanted(system, matrix);
-}
-
-/// Bounds, and the forces with them, where all springs are there that it takes. False when forces are not found.
-bool LowRankUpdate::follow_bounds(const StepSystem& system, const StepMatrix& matrix) {
-  SpringArray& springs = system.springs();
-  followed_.clear();
-  for (const std::size_t c : bounds_.contacts()) {
-    if (!is_updated({c, true}) || !is_updated({c, false})) return true;
-    followed_.push_back({place_[Spring{c, true}.number()] - 1, place_[Spring{c, false}.number()] - 1});
-  }
-  if (!bounds_.settle(system, followed_, laws_, corrections_)) return false;
-  for (std::size_t k = 0; k < followed_.size(); ++k) {
-    const std::size_t c = bounds_.contacts()[k], shear = followed_[k].shear;
-    // The line of a spring at its bound moves with that.
-    const double before = springs.force_on(c, matrix.branch(c), 0.0, 0.0).shear;
-    springs.bound[c] = laws_[shear].spring.high;
-    force_[shear] -= springs.force_on(c, matrix.branch(c), 0.0, 0.0).shear - before;
-  }
-  return true;
 }
 
 /// Those in wanted_ are updated from now on.

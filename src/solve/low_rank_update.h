@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "solve/corrections.h"
-#include "solve/followed_bounds.h"
 #include "solve/iterate.h"
 #include "solve/step_matrix.h"
 
@@ -27,8 +26,6 @@ class LowRankUpdate {
     updated_.clear();
     place_.clear();
   }
-  /// Bounds of friction that follow the normal forces on the way to the minimum; not on the way from zero.
-  [[nodiscard]] FollowedBounds& bounds() { return bounds_; }
   /// Springs that it updates, at most.
   [[nodiscard]] static std::size_t limit(const StepSystem& system);
   /// Springs that are updated.
@@ -61,8 +58,6 @@ class LowRankUpdate {
   [[nodiscard]] bool is_updated(Spring spring) const {
     return spring.number() < place_.size() && place_[spring.number()] > 0;
   }
-  void take_followed(const StepSystem& system, StepMatrix& matrix);
-  bool follow_bounds(const StepSystem& system, const StepMatrix& matrix);
   void find_wanted(const SpringArray& springs, const StepMatrix& matrix);
   void take_wanted(const StepSystem& system, StepMatrix& matrix);
   void leave_out_wanted(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix);
@@ -71,15 +66,13 @@ class LowRankUpdate {
   Corrections corrections_;  ///< of the springs in updated_
   std::vector<Spring> updated_;
   std::vector<std::size_t>
-      place_;  ///< by Spring::number(): 1 + where it is in updated_; 0, or beyond: nowhere
-  FollowedBounds bounds_;
+      place_;                   ///< by Spring::number(): 1 + where it is in updated_; 0, or beyond: nowhere
   std::vector<Spring> wanted_;  ///< act otherwise than the matrix has them, and are not updated yet
   std::vector<double> force_;   ///< N per thickness, per updated spring: what it does otherwise than its line
   std::vector<double> base_;    ///< L⁻¹ of the right hand side with which no spring is updated
   // Scratch.
   std::vector<Corrections::Law> laws_;
   std::vector<double> stretch_;
-  std::vector<FollowedBounds::Springs> followed_;
   std::vector<std::array<std::vector<double>, 2>> parts_;  ///< of the two blocks of a spring
   std::vector<linalg::LowRankSolver::PairVector> vectors_;
 };

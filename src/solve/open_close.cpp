@@ -11,7 +11,6 @@ void OpenClose::begin(const StepSystem& system, std::span<double> d) {
   iterate_.begin(system, d);
   laws_.begin();
   newton_.begin(system);
-  update_.bounds().reset();
   bond_updates_ = misses_ = 0;
   const bool is_kept = kept_.begin_step(system, matrix_, update_);
   // Without halves the matrix of an earlier step is brought to this one; with them its factor is used as it is.
@@ -163,7 +162,7 @@ OpenCloseResult OpenClose::solve(const StepSystem& system, std::span<double> d,
     const double tolerance =
         springs.bounds_updated || augmented ? options.bound_accuracy : options.bound_tolerance;
     if (result.bound_updates < options.max_bound_updates &&
-        laws_.update_bounds(system, iterate_, tolerance, update_.bounds())) {
+        laws_.update_bounds(system, iterate_, tolerance)) {
       springs.bounds_updated = true;
       result.given_up = ++result.bound_updates == 1 && gives_up && gives_up();
       if (result.given_up) break;

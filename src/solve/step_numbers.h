@@ -57,13 +57,6 @@ inline constexpr int most_tries = 4;
 inline constexpr double rough_share = 0.5;
 /// Of the way to a new bound, what a contact goes at the least.
 inline constexpr double least_bound_share = 0.25;
-/// Of what an update of bounds changes, what may be of bounds that are not followed within a low-rank update.
-inline constexpr double not_followed = 0.1;
-/// Contacts whose bounds are followed, at most: two springs each.
-inline constexpr std::size_t most_followed = 40;
-/// Of the accuracy of bounds, to which they follow, and how often they do.
-inline constexpr double followed_share = 0.1;
-inline constexpr int most_followed_rounds = 40;
 /// Updates of bounds in a static step before all contacts go a smaller share of their way …
 inline constexpr int undamped_updates = 8;
 /// … and how small it gets.

@@ -6,7 +6,7 @@ import unittest
 from program import ROOT, Scenario
 
 NAMES = (
-    "kept-factor", "low-rank-update", "followed-bounds", "local-solve", "increment-history", "earlier-attempt",
+    "kept-factor", "low-rank-update", "local-solve", "increment-history", "earlier-attempt",
     "steady-pairs", "single-precision",
 )  # fmt: skip
 # These do not change any bit of a small model that is factored.
