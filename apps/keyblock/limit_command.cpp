@@ -68,7 +68,7 @@ void refuse_ends(const study::LimitResult& result) {
                  "exchange --from and --to");
     case Status::met_at_both:
       return end("--from", request.from, "that the criterion holds at both ends", without,
-                 "move --from away from --to, or raise --above");
+                 "move --from away from --to, raise --above, or count from a later stage with --since");
     case Status::met_at_none:
       return end("--to", request.to, "that the criterion holds at neither end", with,
                  limit.trials.front().state_hash == limit.trials.back().state_hash
@@ -98,7 +98,7 @@ void run_limit(LimitArguments arguments) {
                         arguments.request, arguments.until, arguments.above, &warnings);
   print_warnings(arguments.scenario, warnings);
   const auto lock = study::lock_study(arguments.folder);
-  StudyDisplay display = StudyDisplay::to_standard_error();
+  StudyDisplay display = StudyDisplay::to_standard_error("limit");
   study::LimitOptions options;
   options.resume = arguments.resume;
   options.workers.workers = arguments.workers;
@@ -153,17 +153,24 @@ void add_limit(CLI::App& app) {
           "It holds when the measure is above this; default: 0, for moved loosened_distance of [damage]")
       ->type_name("X");
   command
+      ->add_option("--since", request.since,
+                   "Stage at whose end the measure begins: what came down before does not count; default: it "
+                   "begins at the first excavation")
+      ->type_name("STAGE");
+  command
       ->add_option("--tolerance", request.tolerance,
                    "Where the bisection ends: width of the bracket over the larger of its ends")
       ->capture_default_str()
       ->type_name("T");
   command
       ->add_option("--realizations", request.realizations,
-                   "A limit for each of realizations 0 … N-1, and their median")
+                   "A limit for each of realizations 0 … N-1, their median and other quantiles")
       ->check(CLI::Range(1, 100000).description(""))
       ->capture_default_str()
       ->type_name("N");
-  command->add_option("-o,--output", arguments->folder, "Folder of the limit: limit.json, report.html, runs/")
+  command
+      ->add_option("-o,--output", arguments->folder,
+                   "Folder of the limit: limit.json, limits.csv, report.html, runs/")
       ->required()
       ->type_name("DIR");
   command
@@ -173,7 +180,7 @@ void add_limit(CLI::App& app) {
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--resume", arguments->resume,
-                    "Go on with the runs in DIR; --from, --to, --until, --above, --tolerance and "
+                    "Go on with the runs in DIR; --from, --to, --until, --above, --since, --tolerance and "
                     "--realizations may change");
   command->footer(
       "Each trial is a run of its own, kept in DIR/runs.\n\n"

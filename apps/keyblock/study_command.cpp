@@ -73,7 +73,7 @@ void run_study(const StudyArguments& arguments) {
   for (const study::RunState& state : files.states) {
     if (state.kind == study::RunState::Kind::damaged) std::cerr << state.problem << "; it is run again\n";
   }
-  StudyDisplay display = StudyDisplay::to_standard_error();
+  StudyDisplay display = StudyDisplay::to_standard_error("study");
   study::WorkerOptions options;
   options.workers = arguments.workers;
   options.command = {"/proc/self/exe", "study", "task"};

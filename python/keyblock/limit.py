@@ -47,9 +47,15 @@ class Limit:
 
     @property
     def interval(self) -> Estimate:
-        """The limit with its bootstrap interval; its ends are NaN below five realizations."""
+        """The limit with its interval by order statistics; its ends are NaN where realizations are too few (at 95 %: below six)."""
         low, high = self.summary["median"]["interval"] or (math.nan, math.nan)
         return Estimate(self.value, low, high)
+
+    @property
+    def quantiles(self) -> dict[float, Estimate]:
+        """Limits over the realizations at 0.05, 0.25, 0.5, 0.75 and 0.95; ends of intervals that are not known are NaN."""
+        number = lambda value: math.nan if value is None else float(value)  # noqa: E731
+        return {float(q["p"]): Estimate(number(q["value"]), number(q["low"]), number(q["high"])) for q in self.summary.get("quantiles", [])}
 
     @property
     def realizations(self) -> list[record.Record]:

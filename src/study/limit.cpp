@@ -8,7 +8,8 @@
 #include "scenario/key_path.h"
 #include "simulation/damage_fields.h"
 #include "simulation/standing.h"
-#include "statistics/bootstrap.h"
+#include "statistics/order_statistics.h"
+#include "statistics/proportion.h"
 #include "statistics/sample.h"
 #include "study/measures.h"
 #include "study/refusal.h"
@@ -19,6 +20,7 @@ namespace {
 using Status = Bisection::Status;
 
 constexpr std::size_t most_lines = 20;  // of realizations, in the text
+constexpr double limit_quantiles[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
 std::string realization_text(const LimitResult& result, const RealizationLimit& limit) {
   const LimitRequest& request = result.request;
@@ -37,6 +39,30 @@ std::string realization_text(const LimitResult& result, const RealizationLimit& 
       break;
   }
   return fmt::format("between {:.6g} and {:.6g} so far", limit.state.not_met, limit.state.met);
+}
+
+/// "limits of 18 of 20 realizations: median 5.1 (95 % interval 4 … 6), …"
+std::string quantiles_text(const LimitResult& result) {
+  const auto& all = result.realizations;
+  const auto found = std::count_if(all.begin(), all.end(), [](const auto& limit) { return limit.found(); });
+  std::string text = fmt::format("limits of {} of {} realizations", found, all.size());
+  const statistics::Estimate median = result.median();
+  if (!std::isfinite(median.value)) return text + "\n";
+  text += fmt::format(": median {:.5g}", median.value);
+  if (std::isfinite(median.low) && std::isfinite(median.high))
+    text += fmt::format(" ({:.0f} % interval {:.5g} … {:.5g})", 100.0 * result.confidence, median.low,
+                        median.high);
+  text += "\nquantiles:";
+  const auto end = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.5g}", value) : std::string("?");
+  };
+  std::string before = " ";
+  for (const LimitQuantile& quantile : result.quantiles()) {
+    text += fmt::format("{}{:.0f} % {:.5g} ({} … {})", before, 100.0 * quantile.p, quantile.limit.value,
+                        end(quantile.limit.low), end(quantile.limit.high));
+    before = ", ";
+  }
+  return text + "\n";
 }
 
 }  // namespace
@@ -74,7 +100,7 @@ const LimitTrial* RealizationLimit::trial_at(double value) const {
   return found == trials.end() ? nullptr : &*found;
 }
 
-statistics::Estimate LimitResult::median() const {
+std::vector<LimitQuantile> LimitResult::quantiles() const {
   std::vector<double> limits;
   for (const RealizationLimit& limit : realizations) {
     if (limit.found()) limits.push_back(limit.limit());
@@ -82,16 +108,51 @@ statistics::Estimate LimitResult::median() const {
     if (limit.state.status == Status::met_at_both) limits.push_back(request.from);
     if (limit.state.status == Status::met_at_none) limits.push_back(request.to);
   }
-  if (limits.empty()) return {};
   std::sort(limits.begin(), limits.end());
-  const double half = 0.5;
-  return statistics::describe(limits, {&half, 1}, statistics::Resamples(limits.size()), confidence)
-      .quantiles.front();
+  std::vector<LimitQuantile> all;
+  for (const double p : limit_quantiles) {
+    const statistics::Interval interval = statistics::quantile_interval(limits, p, confidence);
+    all.push_back({p, {statistics::quantile(limits, p), interval.low, interval.high}});
+  }
+  return all;
 }
 
-LimitTrial limit_trial(const LimitCriterion& criterion, double value, const RunResult& run) {
+statistics::Estimate LimitResult::median() const {
+  for (const LimitQuantile& quantile : quantiles()) {
+    if (quantile.p == 0.5) return quantile.limit;
+  }
+  return {};
+}
+
+std::vector<LimitShare> LimitResult::met_shares() const {
+  const double sign = request.from < request.to ? 1.0 : -1.0;  // of the way to where it holds
+  std::vector<double> places;                                  // times the sign, ascending
+  std::size_t n = 0;
+  for (const RealizationLimit& limit : realizations) {
+    const bool is_beyond = limit.error.empty() && limit.state.status == Status::met_at_none;
+    const bool is_before = limit.error.empty() && limit.state.status == Status::met_at_both;
+    if (limit.found()) places.push_back(sign * limit.limit());
+    if (is_before) places.push_back(sign * request.from);
+    if (limit.found() || is_before || is_beyond) ++n;
+  }
+  if (n == 0) return {};
+  std::sort(places.begin(), places.end());
+  std::vector<LimitShare> shares;
+  const auto add = [&](double place, std::size_t met) {
+    shares.push_back({sign * place, statistics::proportion(met, n, confidence)});
+  };
+  if (places.empty() || places.front() > sign * request.from) add(sign * request.from, 0);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (k + 1 == places.size() || places[k + 1] > places[k]) add(places[k], k + 1);
+  }
+  return shares;
+}
+
+LimitTrial limit_trial(const LimitCriterion& criterion, const std::string& since, double value,
+                       const RunResult& run) {
   const StageMeasures& last = run.stages.at(run.stages.size() - 1);
-  LimitTrial trial{value,         run.key, simulation::damage_value(last.damage, criterion.measure),
+  const simulation::Damage damage = damage_between(run, since, "").value_or(last.damage);
+  LimitTrial trial{value,         run.key, simulation::damage_value(damage, criterion.measure),
                    last.standing, false,   run.state_hash};
   trial.met =
       criterion.collapse ? last.standing != simulation::Standing::stands : trial.measure > criterion.above;
@@ -100,7 +161,9 @@ LimitTrial limit_trial(const LimitCriterion& criterion, double value, const RunR
 
 std::string limit_text(const LimitResult& result) {
   const LimitRequest& request = result.request;
-  std::string text = fmt::format("{} until {}\n", request.key, request.criterion.text());
+  const std::string since =
+      request.since.empty() ? "" : fmt::format(" since the end of \"{}\"", request.since);
+  std::string text = fmt::format("{} until {}{}\n", request.key, request.criterion.text(), since);
   const auto& all = result.realizations;
   for (std::size_t k = 0; k < std::min(all.size(), most_lines); ++k) {
     const std::string which = all.size() == 1 ? "" : fmt::format("realization {}: ", all[k].realization);
@@ -108,14 +171,7 @@ std::string limit_text(const LimitResult& result) {
   }
   if (all.size() > most_lines) text += fmt::format("and {} realizations more\n", all.size() - most_lines);
   if (all.size() < 2 || !result.complete) return text;
-  const statistics::Estimate median = result.median();
-  const auto found = std::count_if(all.begin(), all.end(), [](const auto& limit) { return limit.found(); });
-  text += fmt::format("limits of {} of {} realizations", found, all.size());
-  if (std::isfinite(median.value)) text += fmt::format(": median {:.5g}", median.value);
-  if (std::isfinite(median.low))
-    text += fmt::format(" ({:.0f} % interval {:.5g} … {:.5g})", 100.0 * result.confidence, median.low,
-                        median.high);
-  return text + "\n";
+  return text + quantiles_text(result);
 }
 
 }  // namespace keyblock::study

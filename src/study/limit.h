@@ -30,6 +30,7 @@ struct LimitRequest {
   std::string key;  ///< key path of a number
   double from = 0.0, to = 0.0;
   LimitCriterion criterion;
+  std::string since;        ///< stage from whose end on the measure counts; empty: from the first excavation
   double tolerance = 0.02;  ///< width of the bracket over its larger end
   int realizations = 1;
 };
@@ -42,6 +43,18 @@ struct LimitTrial {
   simulation::Standing standing = simulation::Standing::stands;
   bool met = false;
   std::string state_hash;
+};
+
+/// A quantile of the limits of all realizations.
+struct LimitQuantile {
+  double p = 0.0;
+  statistics::Estimate limit;  ///< the ends of its interval are infinite where there are too few realizations
+};
+
+/// In which share of the realizations the criterion holds at a value of the key.
+struct LimitShare {
+  double value = 0.0;
+  statistics::Estimate share;
 };
 
 /// What was found for one realization.
@@ -66,13 +79,20 @@ struct LimitResult {
   bool complete = false;  ///< every bisection has ended
   std::vector<RealizationLimit> realizations;
 
-  /// The median limit over realizations, with its bootstrap interval from five on. A limit that lies beyond an end of the
-  /// interval that was searched counts as that end. Not a number where none is known.
+  /// Limits over realizations at 5, 25, 50, 75 and 95 %, with intervals by order statistics. A limit that lies beyond an end of the interval
+  /// that was searched counts as that end. Not a number where none is known.
+  [[nodiscard]] std::vector<LimitQuantile> quantiles() const;
   [[nodiscard]] statistics::Estimate median() const;
+  /// A staircase from `from` to `to`, with Wilson's interval at each value by itself: `share` holds from `value` on. Empty where nothing is known.
+  [[nodiscard]] std::vector<LimitShare> met_shares() const;
 };
 
-/// The trial of a run that is done.
-LimitTrial limit_trial(const LimitCriterion& criterion, double value, const RunResult& run);
+/// The trial of a run that is done. since: LimitRequest::since.
+LimitTrial limit_trial(const LimitCriterion& criterion, const std::string& since, double value,
+                       const RunResult& run);
+
+/// limits.csv: a row for each realization, documented in docs/user-guide.md.
+std::string limit_csv(const LimitResult& result);
 
 /// limit.json, documented in docs/user-guide.md. It depends on the scenario and the request alone, not on workers or time.
 std::string limit_json(const LimitResult& result);

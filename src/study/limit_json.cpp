@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/checked_json.h"
@@ -55,7 +57,34 @@ ordered_json realization_json(const RealizationLimit& limit) {
           {"trials", trials}};
 }
 
+/// Columns.
+ordered_json shares_json(const LimitResult& result) {
+  ordered_json value = ordered_json::array(), share = value, low = value, high = value;
+  for (const LimitShare& step : result.met_shares()) {
+    value.push_back(step.value);
+    share.push_back(step.share.value);
+    low.push_back(step.share.low);
+    high.push_back(step.share.high);
+  }
+  return {{"value", value}, {"share", share}, {"low", low}, {"high", high}};
+}
+
 }  // namespace
+
+std::string limit_csv(const LimitResult& result) {
+  std::string text = "realization,status,not_met,met,limit,runs,just_beyond\n";
+  for (const RealizationLimit& limit : result.realizations) {
+    text += fmt::format("{},{},", limit.realization, status_word(limit));
+    const LimitTrial* beyond = limit.found() ? limit.trial_at(limit.state.met) : nullptr;
+    if (beyond != nullptr) {
+      text += fmt::format("{},{},{},{},runs/{}\n", limit.state.not_met, limit.state.met, limit.limit(),
+                          limit.trials.size(), beyond->run);
+    } else {
+      text += fmt::format(",,,{},\n", limit.trials.size());
+    }
+  }
+  return text;
+}
 
 std::string limit_json(const LimitResult& result) {
   const LimitRequest& request = result.request;
@@ -63,8 +92,14 @@ std::string limit_json(const LimitResult& result) {
   ordered_json realizations = ordered_json::array();
   for (const RealizationLimit& limit : result.realizations) realizations.push_back(realization_json(limit));
   const statistics::Estimate median = result.median();
-  ordered_json interval;
-  if (std::isfinite(median.low)) interval = {median.low, median.high};
+  ordered_json interval, quantiles = ordered_json::array(), since;
+  if (std::isfinite(median.low) && std::isfinite(median.high)) interval = {median.low, median.high};
+  for (const LimitQuantile& quantile : result.quantiles())
+    quantiles.push_back({{"p", quantile.p},
+                         {"value", number_or_null(quantile.limit.value)},
+                         {"low", number_or_null(quantile.limit.low)},
+                         {"high", number_or_null(quantile.limit.high)}});
+  if (!request.since.empty()) since = request.since;
   const ordered_json json{
       {"title", result.title},
       {"scenario", result.scenario},
@@ -77,10 +112,13 @@ std::string limit_json(const LimitResult& result) {
       {"until", request.criterion.name},
       {"measure", request.criterion.measure},
       {"above", above},
+      {"since", since},
       {"tolerance", request.tolerance},
       {"complete", result.complete},
       {"median",
        {{"value", number_or_null(median.value)}, {"confidence", result.confidence}, {"interval", interval}}},
+      {"quantiles", quantiles},
+      {"met_share", shares_json(result)},
       {"realizations", realizations}};
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

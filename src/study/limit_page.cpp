@@ -34,7 +34,7 @@ section{background:var(--paper);border:1px solid var(--line);border-radius:8px;p
 a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}
 table{border-collapse:collapse}td,th{padding:3px 12px 3px 0;text-align:right;border-bottom:1px solid var(--line)}th{color:var(--muted);font-weight:normal}
 .plot{width:100%;max-width:720px}.plot text{font-size:13px;fill:var(--muted)}.axis{stroke:var(--muted)}.threshold{stroke:var(--muted);stroke-dasharray:5 4}
-.bracket{fill:var(--accent);fill-opacity:.18}.no{fill:none;stroke:var(--accent);stroke-width:2}.yes{fill:var(--bad)}
+.line{stroke:var(--accent);stroke-width:2}.bracket{fill:var(--accent);fill-opacity:.18}.no{fill:none;stroke:var(--accent);stroke-width:2}.yes{fill:var(--bad)}
 .drawings{display:flex;flex-wrap:wrap;gap:16px}figure{margin:0;width:300px}figure svg{width:100%;height:auto}figcaption{font-size:.9em}
 </style>)";
 
@@ -132,6 +132,80 @@ class Plot {
   Scale x_, y_;
 };
 
+/// In which share of the realizations the criterion is met, over the key: a staircase in its band.
+class SharePlot {
+ public:
+  explicit SharePlot(const LimitResult& result)
+      : result_(result),
+        x_{std::min(result.request.from, result.request.to), std::max(result.request.from, result.request.to),
+           Chart::left, Chart::width - Chart::right},
+        y_{0.0, 1.0, Chart::height - Chart::bottom, Chart::top} {}
+
+  [[nodiscard]] std::string draw() const {
+    const std::vector<LimitShare> steps = result_.met_shares();
+    if (result_.realizations.size() < 2 || steps.empty()) return {};
+    std::string line, up, down;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const double begin = x_.at(steps[k].value),
+                   end = x_.at(k + 1 < steps.size() ? steps[k + 1].value : result_.request.to);
+      const auto stretch = [&](double share) {
+        return fmt::format("{:.2f} {:.2f}L{:.2f} {:.2f}", begin, y_.at(share), end, y_.at(share));
+      };
+      line += (k == 0 ? "M" : "L") + stretch(steps[k].share.value);
+      up += (k == 0 ? "M" : "L") + stretch(steps[k].share.high);
+      down = fmt::format("L{:.2f} {:.2f}L{:.2f} {:.2f}", end, y_.at(steps[k].share.low), begin,
+                         y_.at(steps[k].share.low)) +
+             down;
+    }
+    return fmt::format(
+               "<section><h2>Realizations in which the criterion is met</h2><svg class=\"plot\" viewBox=\"0 "
+               "0 "
+               "{:.0f} {:.0f}\" role=\"img\" aria-label=\"Share of realizations over {}\">",
+               Chart::width, Chart::height, xml_text(result_.request.key)) +
+           fmt::format("<path class=\"bracket\" d=\"{}{}Z\"/><path class=\"line\" fill=\"none\" d=\"{}\"/>",
+                       up, down, line) +
+           axes() +
+           fmt::format(
+               "</svg><p>Share of {} realizations, and its {:.0f} % interval at each value by itself "
+               "(Wilson).</p>{}</section>",
+               result_.realizations.size(), 100.0 * result_.confidence, quantile_table());
+  }
+
+ private:
+  [[nodiscard]] std::string axes() const {
+    std::string svg = fmt::format(
+        "<path class=\"axis\" fill=\"none\" d=\"M{0:.0f} {1:.0f}V{2:.0f}H{3:.0f}\"/>"
+        "<text x=\"{0:.0f}\" y=\"{4:.0f}\">{5:.5g}</text><text x=\"{3:.0f}\" y=\"{4:.0f}\" "
+        "text-anchor=\"end\">{6:.5g}</text>"
+        "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
+        x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
+        Chart::height - 8.0, xml_text(result_.request.key));
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
+      svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"end\">{:.0f} %</text>",
+                         x_.begin - 6.0, y_.at(share) + 4.0, 100.0 * share);
+    return svg;
+  }
+
+  [[nodiscard]] std::string quantile_table() const {
+    std::string rows;
+    const auto cell = [](double value) {
+      return std::isfinite(value) ? fmt::format("<td>{:.5g}</td>", value) : std::string("<td>not known</td>");
+    };
+    for (const LimitQuantile& quantile : result_.quantiles())
+      rows += fmt::format("<tr><td>{:.0f} %</td>{}{}{}</tr>", 100.0 * quantile.p, cell(quantile.limit.value),
+                          cell(quantile.limit.low), cell(quantile.limit.high));
+    return fmt::format(
+        "<table><tr><th>quantile</th><th>limit of {}</th><th>{:.0f} % interval "
+        "from</th><th>to</th></tr>{}</table>"
+        "<p>Intervals are by order statistics; an end is not known where there are too few realizations. "
+        "Limits beyond an end of the search count as that end. <a href=\"limits.csv\">limits.csv</a></p>",
+        xml_text(result_.request.key), 100.0 * result_.confidence, rows);
+  }
+
+  const LimitResult& result_;
+  Scale x_, y_;
+};
+
 // Link to the report of a run, where it was kept.
 std::string link_to(const fs::path& directory, const LimitTrial& trial, const std::string& text) {
   std::error_code none;
@@ -188,12 +262,12 @@ std::string limit_page(const fs::path& directory, const LimitResult& result) {
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Limit: "
       "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{4}"
-      "</section>{5}{6}<p>keyblock {7}, {8}, seed {9}; <a "
+      "</section>{10}{5}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
       xml_text(result.title.empty() ? result.scenario : result.title), page_style,
       xml_text(result.request.key), paragraphs(limit_text(result)), Plot(result).draw(),
       drawings(directory, result), trial_table(directory, result), xml_text(result.version),
-      xml_text(result.scenario), result.seed);
+      xml_text(result.scenario), result.seed, SharePlot(result).draw());
 }
 
 }  // namespace keyblock::study

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "scenario/inputs.h"
+#include "scenario/key_path.h"
 #include "scenario/parse.h"
 #include "study/folder.h"
 #include "study/refusal.h"
@@ -47,6 +49,20 @@ void check_request(const LimitRequest& request) {
   if (!(request.tolerance > 0.0 && request.tolerance <= largest_tolerance))
     refuse("--tolerance", fmt::format("{}", request.tolerance),
            fmt::format("above 0, at most {}", largest_tolerance));
+}
+
+/// A stage before the last one.
+void check_since(const LimitRequest& request, std::span<const simulation::Stage> stages) {
+  if (request.since.empty()) return;
+  if (request.criterion.collapse)
+    refuse("--since", '"' + request.since + '"', "nothing, as collapsed is how the blocks are at the end");
+  std::vector<std::string> earlier;
+  for (std::size_t k = 0; k + 1 < stages.size(); ++k) earlier.push_back(stages[k].name);
+  if (std::ranges::find(earlier, request.since) != earlier.end()) return;
+  refuse("--since", '"' + request.since + '"',
+         earlier.empty() ? "nothing, as there is no stage before the last one"
+                         : "a stage before the last one: " + scenario::list_words(earlier),
+         scenario::suggestion(request.since, earlier));
 }
 
 class Search {
@@ -94,7 +110,7 @@ class Search {
     return [this, realization](double value) -> std::optional<bool> {
       const RunState& state = state_of(planned(realization, value));
       if (state.kind != RunState::Kind::done) return std::nullopt;
-      return limit_trial(result_.request.criterion, value, state.result).met;
+      return limit_trial(result_.request.criterion, result_.request.since, value, state.result).met;
     };
   }
 
@@ -104,7 +120,7 @@ class Search {
       limit.state = bisection_.follow(known(limit.realization));
       limit.trials.clear();
       for (const double value : limit.state.path)
-        limit.trials.push_back(limit_trial(result_.request.criterion, value,
+        limit.trials.push_back(limit_trial(result_.request.criterion, result_.request.since, value,
                                            state_of(planned(limit.realization, value)).result));
       for (; told_[k] < limit.trials.size(); ++told_[k]) options_.trial(limit, limit.trials[told_[k]]);
     }
@@ -200,10 +216,10 @@ Plan plan_limit(const fs::path& scenario, const std::vector<std::string>& overri
                 std::optional<double> above, std::vector<std::string>* warnings) {
   check_request(request);
   Plan plan = make_plan(scenario, overrides, version, warnings);
-  request.criterion = limit_criterion(
-      until, above,
-      scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides, scenario::StudyTable::leave_out)
-          .damage.loosened_distance);
+  const scenario::Scenario read = scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides,
+                                                                scenario::StudyTable::leave_out);
+  request.criterion = limit_criterion(until, above, read.damage.loosened_distance);
+  check_since(request, read.stages);
   check_ends(plan, request);
   plan.realizations = request.realizations;
   plan.axes = {{{request.key}, {}}};
@@ -223,6 +239,7 @@ LimitResult find_limit(const fs::path& directory, Plan plan, const LimitRequest&
   interrupted = !Search(directory, std::move(plan), result, options).run();
   result.complete = !interrupted;
   write_file_atomically(limit_path(directory), limit_json(result));
+  write_file_atomically(directory / "limits.csv", limit_csv(result));
   write_file_atomically(directory / "report.html", limit_page(directory, result));
   return result;
 }

@@ -11,7 +11,7 @@
 namespace keyblock::study {
 
 /// The plan of a limit, without runs yet: that of a study with the key as its one axis, and nothing else of [study] but `keep`,
-/// `confidence` and the raster. The criterion of `request` is made of `until` and `above`. Throws InputError for what is wrong with the
+/// `confidence` and the raster. The criterion of `request` is made of `until` and `above`; its `since` is checked. Throws InputError for what is wrong with the
 /// scenario, also with the key at both ends of the interval, and with the request.
 Plan plan_limit(const std::filesystem::path& scenario, const std::vector<std::string>& overrides,
                 const std::string& version, LimitRequest& request, const std::string& until,
@@ -25,7 +25,7 @@ struct LimitOptions {
                                                                              const LimitTrial&) {};
 };
 
-/// Runs the trials of all realizations until every bisection has ended, and leaves limit.json and report.html in the folder.
+/// Runs the trials of all realizations until every bisection has ended, and leaves limit.json, limits.csv and report.html in the folder.
 ///
 /// A round runs the next trial of every realization; where that is less than there are workers, also trials that may come after
 /// it. Those have no say unless the bisection comes to them: the result is the same for any number of workers, and, as

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """keyblock limit: known answers, and the same answer for any number of workers and after it was killed."""
 
+import csv
 import json
 import math
+import re
 import signal
 import subprocess
 import time
@@ -102,7 +104,7 @@ class Reproducible(Limit):
         super().setUp()
         self.write("gallery.toml", GALLERY)
         self.realizations = ("gallery.toml", "--key", "joints.strength_factor", "--from", 0.5, "--to", 8, "--tolerance", 0.2,
-                             "--realizations", 5)  # fmt: skip
+                             "--realizations", 6)  # fmt: skip
 
     def test_any_number_of_workers(self):
         for workers in (1, 2, 5):
@@ -114,12 +116,24 @@ class Reproducible(Limit):
         self.limit(*self.realizations, "--workers", 1, out="one")
         self.assertEqual(self.found(), self.found("one"))
         result = self.found()
-        self.assertEqual([limit["realization"] for limit in result["realizations"]], list(range(5)))
+        self.assertEqual([limit["realization"] for limit in result["realizations"]], list(range(6)))
         self.assertEqual({limit["status"] for limit in result["realizations"]} - {"found", "met at both ends", "met at no end"}, set())
         low, high = result["median"]["interval"]
         self.assertLessEqual(low, result["median"]["value"])
         self.assertLessEqual(result["median"]["value"], high)
-        self.assertRegex(done.stdout, r"limits of \d of 5 realizations: median [\d.]+ \(95 % interval ")
+        self.assertRegex(done.stdout, r"limits of \d of 6 realizations: median [\d.]+ \(95 % interval ")
+        self.assertRegex(done.stdout, r"\nquantiles: 5 % [\d.]+ \(\? … [\d.]+\), 25 % ")
+        self.assertEqual([quantile["p"] for quantile in result["quantiles"]], [0.05, 0.25, 0.5, 0.75, 0.95])
+        shares = result["met_share"]["share"]
+        self.assertEqual(shares, sorted(shares))
+        with open(self.folder / "out/limits.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([int(row["realization"]) for row in rows], list(range(6)))
+        for row, limit in zip(rows, result["realizations"], strict=True):
+            self.assertEqual(row["status"], limit["status"])
+            self.assertEqual(float(row["limit"]) if row["limit"] else None, limit["limit"])
+        page = (self.folder / "out/report.html").read_text()
+        self.assertIn("Realizations in which the criterion is met", page)
 
     def test_killed_and_resumed(self):
         self.limit(*self.realizations, out="whole")
@@ -157,6 +171,25 @@ class Reproducible(Limit):
         self.assertEqual({run: after[run] for run in before}, before)
         self.assertGreater(len(after), len(before))
         self.assertLess(len(self.found()["realizations"][0]["trials"]), len(after) + 1)
+
+
+class SinceAStage(Limit):
+    def test_what_gravity_brought_down_does_not_count(self):
+        """A block of the roof falls before the stage that is looked at, whatever the key is."""
+        held = (CASES / "held_block.toml").read_text()
+        stages = held + '\n[[stage]]\nname = "later"\nkind = "rest"\nduration = 0.1\n'
+        self.write("fallen.toml", stages)
+        name = re.findall(r'\[\[stage\]\]\s*name = "([^"]+)"', stages)[-2]
+        words = ("fallen.toml", "--key", "excavation.room.pressure", "--from", 10, "--to", 0, "--until", "fallen")
+        self.assertIn("count from a later stage with --since", self.limit(*words, expect=1).stderr)
+        said = self.limit(*words, "--since", name, "--resume", expect=1)
+        self.assertIn("holds at neither end", said.stderr)
+        self.assertIn(f'fallen area of more than 0 m² since the end of "{name}"', said.stdout)
+        self.assertEqual(self.found()["since"], name)
+        said = self.limit(*words, "--since", "latr", "--resume", expect=1).stderr
+        self.assertIn('--since: found "latr"; expected a stage before the last one: ', said)
+        said = self.limit(*words[:-1], "collapsed", "--since", name, "--resume", expect=1).stderr
+        self.assertIn("expected nothing, as collapsed is how the blocks are at the end", said)
 
 
 class Refusals(Limit):

@@ -22,20 +22,20 @@ study::StudyProgress sample() {
 
 TEST(StudyBar, FitsTheTerminal) {
   Terminal terminal{true, true, false, 100};
-  const std::string line = study_bar_line(sample(), terminal);
-  for (const char* part : {"study", " 42 %", "41/100 done", "1 failed", "2 running", "ETA 12:30"})
+  const std::string line = study_bar_line("limit", sample(), terminal);
+  for (const char* part : {"limit", " 42 %", "41/100 done", "1 failed", "2 running", "ETA 12:30"})
     EXPECT_THAT(line, HasSubstr(part));
   for (int width = 1; width < 120; ++width) {
     terminal.width = width;
-    EXPECT_LE(column_count(study_bar_line(sample(), terminal)), width);
+    EXPECT_LE(column_count(study_bar_line("limit", sample(), terminal)), width);
   }
 }
 
 TEST(StudyDisplay, LinesOfALogAreFarApartButFailuresAreAlwaysTold) {
   std::string text;
   double now = 0.0;
-  StudyDisplay display([&](const std::string& t) { text += t; }, [] { return Terminal{}; },
-                       [&] { return now; });
+  StudyDisplay display(
+      "limit", [&](const std::string& t) { text += t; }, [] { return Terminal{}; }, [&] { return now; });
   study::StudyProgress p = sample();
   display.show(p);
   EXPECT_EQ(text, "");  // nothing has ended

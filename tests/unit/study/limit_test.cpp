@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "core/checked_json.h"
 #include "core/error.h"
 
@@ -28,7 +32,7 @@ RunResult run_with(double fallen, double moved, Standing standing) {
 
 TEST(LimitCriterion, HoldsByTheLastStage) {
   const auto met = [](const char* name, std::optional<double> above, const RunResult& run) {
-    return limit_trial(limit_criterion(name, above, 0.01), 1.0, run).met;
+    return limit_trial(limit_criterion(name, above, 0.01), "", 1.0, run).met;
   };
   const RunResult still = run_with(0.0, 0.01, Standing::stands);
   const RunResult fallen = run_with(0.4, 0.02, Standing::collapsed);
@@ -65,6 +69,7 @@ LimitResult result_of(const std::vector<Bisection::State>& states) {
                     40.0,
                     0.0,
                     limit_criterion("fallen", 0.5, 0.01),
+                    "",
                     0.02,
                     static_cast<int>(states.size())};
   result.complete = true;
@@ -73,23 +78,77 @@ LimitResult result_of(const std::vector<Bisection::State>& states) {
   return result;
 }
 
-TEST(Limit, MedianCountsLimitsBeyondTheEndsAsThese) {
-  LimitResult result = result_of({{Status::found, 20.0, 19.0, {}},
-                                  {Status::met_at_both, 0.0, 0.0, {}},
-                                  {Status::met_at_none, 0.0, 0.0, {}},
-                                  {Status::found, 12.0, 11.0, {}},
-                                  {Status::found, 31.0, 30.0, {}}});
-  EXPECT_EQ(result.median().value, 19.5);
-  EXPECT_GE(result.median().low, 0.0);
-  EXPECT_LE(result.median().high, 40.0);
-  EXPECT_LT(result.median().low, result.median().high);
+// What gravity brought down by the end of a stage does not count from there on.
+TEST(LimitCriterion, CountsSinceAStage) {
+  RunResult run = run_with(99.4, 0.0, Standing::collapsed);
+  run.stages[0].name = "settled";
+  const LimitCriterion criterion = limit_criterion("fallen", 0.5, 0.01);
+  EXPECT_TRUE(limit_trial(criterion, "", 1.0, run).met);
+  EXPECT_FALSE(limit_trial(criterion, "settled", 1.0, run).met);
+  EXPECT_NEAR(limit_trial(criterion, "settled", 1.0, run).measure, 0.4, 1e-9);
+}
+
+/// Friction angles from 40° on downwards: one more than is searched, one less, and four that are found.
+LimitResult six_limits() {
+  return result_of({{Status::found, 20.0, 19.0, {}},
+                    {Status::met_at_both, 0.0, 0.0, {}},
+                    {Status::met_at_none, 0.0, 0.0, {}},
+                    {Status::found, 12.0, 11.0, {}},
+                    {Status::found, 31.0, 30.0, {}},
+                    {Status::found, 22.0, 21.0, {}}});
+}
+
+TEST(Limit, QuantilesCountLimitsBeyondTheEndsAsThese) {
+  LimitResult result = six_limits();
+  EXPECT_EQ(result.median().value, 20.5);
+  EXPECT_EQ(result.median().low, 0.0);
+  EXPECT_EQ(result.median().high, 40.0);
+  const auto quantiles = result.quantiles();
+  ASSERT_EQ(quantiles.size(), 5u);
+  EXPECT_EQ(quantiles[4].p, 0.95);
+  EXPECT_NEAR(quantiles[4].limit.value, 30.5 + 0.75 * 9.5, 1e-12);
+  EXPECT_EQ(quantiles[4].limit.high, HUGE_VAL);
   const std::string text = limit_text(result);
   EXPECT_THAT(text, HasSubstr("joints.friction until fallen area of more than 0.5 m²\n"));
   EXPECT_THAT(text, HasSubstr("realization 1: met at --from 40 already\n"));
   EXPECT_THAT(text, HasSubstr("realization 2: not met up to --to 0\n"));
-  EXPECT_THAT(text, HasSubstr("limits of 3 of 5 realizations: median 19.5 (95 % interval "));
+  EXPECT_THAT(text, HasSubstr("limits of 4 of 6 realizations: median 20.5 (95 % interval 0 … 40)\n"));
+  EXPECT_THAT(text, HasSubstr("95 % 37.625 ("));
+  EXPECT_THAT(text, HasSubstr(" … ?)\n"));
   result.realizations[0].error = "a crash";
-  EXPECT_EQ(result.median().value, 0.5 * (11.5 + 30.5));
+  EXPECT_EQ(result.median().value, 21.5);
+  EXPECT_EQ(result.median().low, -HUGE_VAL);  // five are too few
+}
+
+TEST(Limit, SharesGoFromOneEndToTheOther) {
+  const std::vector<LimitShare> shares = six_limits().met_shares();
+  std::vector<double> values, met;
+  for (const LimitShare& step : shares) {
+    values.push_back(step.value);
+    met.push_back(6.0 * step.share.value);
+    EXPECT_LT(step.share.low, step.share.value);
+    EXPECT_GT(step.share.high, step.share.value);
+  }
+  EXPECT_THAT(values, testing::ElementsAre(40.0, 30.5, 21.5, 19.5, 11.5));
+  EXPECT_THAT(met, testing::ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0));
+  LimitResult rising = result_of({{Status::found, 10.0, 11.0, {}}, {Status::found, 20.0, 21.0, {}}});
+  std::swap(rising.request.from, rising.request.to);
+  ASSERT_EQ(rising.met_shares().size(), 3u);
+  EXPECT_EQ(rising.met_shares()[0].value, 0.0);
+  EXPECT_EQ(rising.met_shares()[0].share.value, 0.0);
+  EXPECT_EQ(rising.met_shares()[1].value, 10.5);
+  EXPECT_EQ(rising.met_shares()[2].share.value, 1.0);
+  EXPECT_TRUE(result_of({{Status::open, 0.0, 0.0, {}}}).met_shares().empty());
+}
+
+TEST(Limit, TableHasARowForEachRealization) {
+  LimitResult result = result_of({{Status::found, 20.0, 19.0, {}}, {Status::met_at_none, 0.0, 0.0, {}}});
+  result.realizations[0].trials = {{20.0, "r0000-a", 0.1, Standing::stands, false, "1"},
+                                   {19.0, "r0000-b", 0.7, Standing::collapsed, true, "2"}};
+  EXPECT_EQ(limit_csv(result),
+            "realization,status,not_met,met,limit,runs,just_beyond\n"
+            "0,found,20,19,19.5,2,runs/r0000-b\n"
+            "1,met at no end,,,,0,\n");
 }
 
 TEST(Limit, JsonHasBracketsAndRuns) {
@@ -105,6 +164,10 @@ TEST(Limit, JsonHasBracketsAndRuns) {
   EXPECT_EQ(limit.at("just_beyond"), "runs/r0000-b");
   EXPECT_EQ(limit.at("trials").at(1).at("standing"), "collapsed");
   EXPECT_TRUE(json.at("median").at("interval").is_null());
+  EXPECT_TRUE(json.at("since").is_null());
+  EXPECT_EQ(json.at("quantiles").at(2).at("value"), 19.5);
+  EXPECT_TRUE(json.at("quantiles").at(2).at("low").is_null());
+  EXPECT_EQ(json.at("met_share").at("value"), (std::vector<double>{40.0, 19.5}));
 }
 
 }  // namespace
