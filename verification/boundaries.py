@@ -69,6 +69,7 @@ def layer():
         text += f'[joints]\n{STRONG}\n\n[[trace_map]]\nname = "grid"\nfile = "bonded_layer.csv"\n\n[time]\nstep = 0.001\n\n[boundary]\nsides = "free-field"\n\n{UNDAMPED}\n'
         for history, x in (("left", 0.5), ("middle", 20.5), ("right", 39.5)):
             text += f'[[history]]\nname = "{history}"\npoint = [{x}, 19.9]\n\n'
+        text += '[[history]]\nname = "beside"\ncolumn = "left"\ny = 19.9\n\n'
         FILES[f"scenarios/bonded_layer_{axis}.toml"] = text + motion(axis) + SHAKE
 
 
@@ -141,6 +142,8 @@ up less: a wave train and its mirror image go down in a strip between mirrors, a
         for t in (0.45, 0.5, 0.55):
             known = surface(t, 20, 2400, speed, 2400, speed) - velocity(t)
             text += quantity(f"velocity of the surface at {t} s", f"at('middle.v{axis}', {t})", "m/s", expected=float(f"{known:.9g}"), absolute_tolerance=1e-3)
+            text += quantity(f"velocity of the free field beside it at {t} s", f"at('beside.v{axis}', {t})", "m/s",
+                             expected=float(f"{known:.9g}"), absolute_tolerance=1e-4)
             text += quantity(f"difference of the velocities at its ends from the middle at {t} s",
                              f"max(abs(at('left.v{axis}', {t}) - at('middle.v{axis}', {t})), abs(at('right.v{axis}', {t}) - at('middle.v{axis}', {t})))", "m/s",
                              at_most=2e-5)

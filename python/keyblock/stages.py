@@ -71,6 +71,7 @@ def _as_in_summary(line: record.Record, excavation_names: list[str]) -> dict[str
     fields["release"] = [
         record.Record(point, excavation=excavation_names[point["excavation"]]) for point in line.get("release") or []
     ]
+    fields["install"] = line.get("install") or []
     fields["blocks_by_order"] = record.Record({str(n): count for n, count in enumerate(line.get("blocks_by_order") or []) if count})
     return fields
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -101,6 +102,10 @@ class Coupling {
                          std::span<const double> /*memory*/, CouplingRows /*out*/) const {
     return {};
   }
+
+  /// Supports come to life, without force at the positions of the state. now: as State::installed, those that do.
+  virtual void install(const Model& /*model*/, const State& /*state*/, std::span<const std::uint8_t> /*now*/,
+                       std::span<double> /*memory*/) const {}
 
   /// Before blocks are moved: where its energy went in the step, into the ledger, and what it stores at the end as the step has it, into
   /// the energy of its kind in the state; what it remembers. `first`: its first row. spin: rad, by which the step turns each block.

@@ -25,9 +25,11 @@ void PointSprings::add_pairs(BlockPairs& pairs) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) pairs.emplace_back(end(k, 0).block, end(k, 1).block);
 }
 
-/// Where one of its blocks is excavated, a spring does nothing.
-bool PointSprings::is_there(const Model& model, std::size_t k) const {
-  return model.surface.present[at(end(k, 0).block)] != 0 && model.surface.present[at(end(k, 1).block)] != 0;
+/// Before a stage installs it, and where one of its blocks is excavated, a spring does nothing.
+bool PointSprings::is_there(const Model& model, const State& state, std::size_t k) const {
+  const int staged = springs_[k].staged;
+  return (staged < 0 || state.installed[at(staged)] != 0) &&
+         model.surface.present[at(end(k, 0).block)] != 0 && model.surface.present[at(end(k, 1).block)] != 0;
 }
 
 Vec2 PointSprings::chord(const Model& model, const State& state, std::size_t k) const {
@@ -55,7 +57,7 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
     const PointSpring& spring = springs_[k];
     const double stretch = stretch_of(k, length, memory),
                  force = std::clamp(spring.stiffness * stretch, -spring.yield, spring.yield);
-    if (length > 0.0 && is_there(model, k)) {
+    if (length > 0.0 && is_there(model, state, k)) {
       out.springs.set_row(out.first + k, {.normal_stiffness = std::max(force, 0.0) / length,
                                           .shear_stiffness = spring.stiffness,
                                           .largest_shear = spring.yield,
@@ -66,6 +68,14 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
     }
   }
   return facts;
+}
+
+void PointSprings::install(const Model& model, const State& state, std::span<const std::uint8_t> now,
+                           std::span<double> memory) const {
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const int staged = springs_[k].staged;
+    if (staged >= 0 && now[at(staged)] != 0) memory[k] = norm(chord(model, state, k)) - springs_[k].length;
+  }
 }
 
 CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const double> /*spin*/,
@@ -95,7 +105,7 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
                                    std::span<const double> memory) const {
   double sum = 0.0;
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    if (!is_there(model, k)) continue;
+    if (!is_there(model, state, k)) continue;
     const double stretch = stretch_of(k, norm(chord(model, state, k)), memory);
     sum += 0.5 * springs_[k].stiffness * stretch * stretch;
   }

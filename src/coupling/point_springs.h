@@ -13,13 +13,14 @@ struct PointSpring {
   double yield =
       0.0;  ///< N per thickness, largest force in tension and compression; infinite: it never yields
   double length = 0.0;  ///< m, without force, before the run
+  int staged = -1;      ///< State::installed that says whether it is there; −1: always
 };
 
 /// Springs between points of blocks: a coupling by rows. The shear spring of a row acts along the line between its points,
 ///
 ///     T = clamp(k (length now − length without force − p), ±yield)
 ///
-/// with p the elongation that has yielded, in the memory. The normal spring acts across the line with T/L where T pulls: by that the force
+/// with p the elongation that has yielded, in the memory. A spring that a stage installs begins with the p that leaves it no force. The normal spring acts across the line with T/L where T pulls: by that the force
 /// turns with the line within the step. Lengths are those of the positions at the start of the step, so that nothing drifts.
 class PointSprings final : public Coupling {
  public:
@@ -34,6 +35,8 @@ class PointSprings final : public Coupling {
   [[nodiscard]] std::size_t rows() const override { return springs_.size(); }
   RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
                  CouplingRows out) const override;
+  void install(const Model& model, const State& state, std::span<const std::uint8_t> now,
+               std::span<double> memory) const override;
   CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
                          std::span<double> memory, State& state) const override;
   [[nodiscard]] double stored_energy(const Model& model, const State& state, double time,
@@ -44,7 +47,7 @@ class PointSprings final : public Coupling {
   [[nodiscard]] const MaterialPoint& end(std::size_t k, std::size_t which) const {
     return points_[2 * k + which];
   }
-  [[nodiscard]] bool is_there(const Model& model, std::size_t k) const;
+  [[nodiscard]] bool is_there(const Model& model, const State& state, std::size_t k) const;
   /// From the second end to the first, m.
   [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
   /// m, that has not yielded, of a spring of this length.

@@ -38,6 +38,8 @@ struct Support {
 
 /// A spring between points of two blocks.
 struct Spring {
+  std::string name;                  ///< may be empty
+  int staged = -1;                   ///< State::installed that says whether it is there; −1: always
   Vec2 from, to;                     ///< its ends, in reference position
   std::string from_block, to_block;  ///< empty: the block that holds the point
   double stiffness = 0.0;            ///< N/m per thickness

@@ -50,6 +50,7 @@ struct State {
   EnergyLedger ledger;
   std::vector<std::vector<double>> couplings;  ///< what each of Model::couplings remembers
   WallState walls;
+  std::vector<std::uint8_t> installed;  ///< per support that a stage installs: it is there
   /// J per thickness, stored in the springs of contacts and of other couplings, as the last step summed it.
   double contact_energy = 0.0, support_energy = 0.0;
 };

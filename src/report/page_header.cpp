@@ -17,6 +17,7 @@ ordered_json stage_json(const simulation::StageRecord& record) {
   return {{"name", record.stage.name},
           {"kind", results::stage_kind_name(record.stage.kind)},
           {"excavate", record.stage.excavate},
+          {"install", record.stage.install},
           {"scale", record.stage.scale},
           {"tolerance", record.stage.tolerance},
           {"steps", record.steps},

@@ -138,6 +138,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"name", r.stage.name},
                           {"kind", stage_kind_name(r.stage.kind)},
                           {"excavate", r.stage.excavate},
+                          {"install", r.stage.install},
                           {"motion_index", r.stage.motion},
                           {"scale", r.stage.scale},
                           {"given_duration", or_null(r.stage.duration)},
@@ -177,6 +178,7 @@ static simulation::Stage read_given_stage(const ordered_json& json) {
     if (json.at("kind") == name) stage.kind = kind;
   }
   json.at("excavate").get_to(stage.excavate);
+  if (json.contains("install")) json.at("install").get_to(stage.install);
   json.at("motion_index").get_to(stage.motion);
   stage.scale = number(json.at("scale"));
   stage.duration = optional_number(json.at("given_duration"));

@@ -73,6 +73,7 @@ ordered_json blocks_by_order(const simulation::StageRecord& r) {
 ordered_json stage(const simulation::StageRecord& r, const simulation::ModelRecord& model) {
   return {{"name", r.stage.name},
           {"kind", stage_kind_name(r.stage.kind)},
+          {"install", r.stage.install},
           {"steps", r.steps},
           {"start_time", r.start_time},
           {"duration", r.duration},

@@ -150,6 +150,24 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
     spring.from -= origin;
     spring.to -= origin;
   }
+  for (const simulation::Stage& stage : scenario.stages)
+    setup.staged_supports.insert(setup.staged_supports.end(), stage.install.begin(), stage.install.end());
+  for (loading::Spring& spring : setup.springs) {
+    const auto place = std::ranges::find(setup.staged_supports, spring.name);
+    if (place != setup.staged_supports.end())
+      spring.staged = static_cast<int>(place - setup.staged_supports.begin());
+  }
+}
+
+/// Rock far away goes from the base to the ground beside its side.
+void check_column(const Scenario& scenario, const RunSetup& setup, const simulation::History& history) {
+  const simulation::ColumnHeights rock = simulation::column_heights(setup, *history.column);
+  if (history.point.y >= rock.base && history.point.y <= rock.ground) return;
+  const double origin = setup.system.origin.y;
+  fail(scenario, join_path(join_path("history", history.name), "y"),
+       fmt::format("{}, outside", history.point.y + origin),
+       fmt::format("a height from the base to the ground there, {:.6g} to {:.6g}", rock.base + origin,
+                   rock.ground + origin));
 }
 
 void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
@@ -157,6 +175,11 @@ void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std:
     const std::string key = join_path(join_path("history", given.name), "point");
     simulation::History history = given;
     history.point -= setup.system.origin;
+    if (history.column) {
+      check_column(scenario, setup, history);
+      setup.histories.push_back(std::move(history));
+      continue;
+    }
     const auto block = simulation::history_block(setup, history);
     if (!block) {
       fail(
@@ -171,22 +194,44 @@ void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std:
   }
 }
 
+/// The stage that installs a support, by index; empty: none.
+std::optional<std::size_t> installing_stage(const RunSetup& setup, const std::string& name) {
+  for (std::size_t s = 0; s < setup.stages.size(); ++s) {
+    if (std::ranges::find(setup.stages[s].install, name) != setup.stages[s].install.end()) return s;
+  }
+  return std::nullopt;
+}
+
+/// A spring ends where a stage excavates a block of it. It does not begin where an earlier one has, or the same.
+void check_spring_block(const Scenario& scenario, const RunSetup& setup, const std::string& path,
+                        const loading::Spring& spring, std::size_t block, std::vector<std::string>& notes) {
+  const auto excavated = simulation::excavating_stage(setup, block);
+  if (!excavated) return;
+  const std::string& by = setup.stages[*excavated].name;
+  const auto installed = installing_stage(setup, spring.name);
+  if (installed && *excavated <= *installed) {
+    fail(scenario, join_path(join_path("stage", setup.stages[*installed].name), "install"),
+         fmt::format("\"{}\", an end of which lies in rock that the stage '{}' excavates", spring.name, by),
+         "a support between blocks that are there");
+  }
+  notes.push_back(
+      fmt::format("{}: an end lies in rock that the stage '{}' excavates; the spring ends there", path, by));
+}
+
 // Ends of springs, which only the cut blocks tell, show at their keys.
 void check_springs(const Scenario& scenario, const RunSetup& setup, std::vector<std::string>& notes) {
   for (std::size_t k = 0; k < setup.springs.size(); ++k) {
+    const loading::Spring& spring = setup.springs[k];
+    const std::string path = spring.name.empty() ? join_index("spring", k) : join_path("spring", spring.name);
+    std::optional<simulation::SpringBlocks> blocks;
     try {
-      const simulation::SpringBlocks blocks = simulation::spring_blocks(setup, k);
-      for (const std::size_t block : {blocks.from, blocks.to}) {
-        const auto stage = simulation::excavating_stage(setup, block);
-        if (stage)
-          notes.push_back(
-              fmt::format("{}: an end lies in rock that the stage '{}' excavates; the spring ends there",
-                          join_index("spring", k), setup.stages[*stage].name));
-      }
+      blocks = simulation::spring_blocks(setup, k);
     } catch (const InputError& error) {
       const Diagnostic& mistake = error.diagnostics().front();
-      fail(scenario, mistake.key, mistake.found, mistake.expected);
+      fail(scenario, path + mistake.key.substr(mistake.key.rfind('.')), mistake.found, mistake.expected);
     }
+    for (const std::size_t block : {blocks->from, blocks->to})
+      check_spring_block(scenario, setup, path, spring, block, notes);
   }
 }
 

@@ -215,6 +215,10 @@ const BlockSpec* read_end(TableReader& t, std::string_view key, Vec2& point, std
 }
 
 void read_spring(TableReader& t, Spring& spring, const Scenario& scenario) {
+  t.name("name", spring.name, "spring",
+         {.meaning = "Name, by which a stage installs it. A spring that no stage installs is there from the "
+                     "start.",
+          .fallback = "none"});
   const BlockSpec* from = read_end(t, "from", spring.from, "from_block", spring.from_block,
                                    "One end, a point of a block.", scenario);
   const BlockSpec* to = read_end(t, "to", spring.to, "to_block", spring.to_block,
@@ -261,8 +265,9 @@ void read_loading(TableReader& root, Scenario& scenario) {
               [&](TableReader& t, Support& support) { read_support(t, support, scenario); });
   root.tables(
       "spring", scenario.springs,
-      {.meaning = "A straight spring between points of two blocks, without force at the start. It turns "
-                  "with the line between its ends. It ends where a block of it is excavated."},
+      {.meaning = "A straight spring between points of two blocks, without force at the start, or as a stage "
+                  "installs it. It turns with the line between its ends. It ends where a block of it is "
+                  "excavated."},
       [&](TableReader& t, Spring& spring) { read_spring(t, spring, scenario); });
 }
 

@@ -24,6 +24,8 @@ constexpr Word<dynamics::ContactMethod> contact_methods[] = {
     {"augmented-lagrangian", dynamics::ContactMethod::augmented_lagrangian}};
 // Whether a history is of absolute motion.
 constexpr Word<bool> history_frames[] = {{"relative", false}, {"absolute", true}};
+constexpr Word<simulation::ColumnSide> column_sides[] = {{"left", simulation::ColumnSide::left},
+                                                         {"right", simulation::ColumnSide::right}};
 // Whether a stage ends when all is still.
 constexpr Word<bool> stage_ends[] = {{"duration", false}, {"still", true}};
 constexpr Word<LinearSolver> linear_solvers[] = {{"automatic", LinearSolver::automatic},
@@ -52,6 +54,23 @@ void check_excavated_once(TableReader& t, const Stage& stage, const Scenario& sc
   }
 }
 
+/// Supports of all kinds: today springs.
+void read_install(TableReader& t, Stage& stage, const Scenario& scenario) {
+  std::vector<int> springs;
+  t.references("install", springs, "spring",
+               {.meaning = "Supports that come to life at the start of the stage, after what it excavates: "
+                           "springs by their names. They have no force as the rock lies then, and carry what "
+                           "comes later. Before, they are not there."});
+  for (const int k : springs) stage.install.push_back(scenario.springs[static_cast<std::size_t>(k)].name);
+  for (const Stage& before : scenario.stages) {
+    for (const std::string& name : before.install) {
+      if (std::find(stage.install.begin(), stage.install.end(), name) == stage.install.end()) continue;
+      t.fail("install", fmt::format("\"{}\" again", name),
+             fmt::format("a support that the stage '{}' has not installed", before.name));
+    }
+  }
+}
+
 void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.name("name", stage.name, "stage", {.meaning = "Name in results and key paths.", .required = true});
   const bool known = t.word(
@@ -65,6 +84,7 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.references("excavate", stage.excavate, "excavation",
                {.meaning = "Excavations taken out at the start of the stage."});
   check_excavated_once(t, stage, scenario);
+  read_install(t, stage, scenario);
   read_release(t, stage, settle, scenario);
   std::string motion;
   if (t.reference("motion", motion, "motion",
@@ -136,16 +156,47 @@ void check_history(TableReader& t, const simulation::History& history, const Sce
       history.block.empty() ? "a point of a block" : fmt::format("a point of the block '{}'", history.block));
 }
 
+/// In the place of a point of a block: rock far away.
+void read_column(TableReader& t, simulation::History& history, const Scenario& scenario) {
+  t.word(
+      "column", history.column, column_sides,
+      {.meaning = "In the place of a point: the rock beside the model, on this side, which moves as if the "
+                  "model were not there. It has displacement and velocity, and no stress.",
+       .fallback = "none"});
+  const bool given = history.column || t.documenting();
+  t.number("y", history.point.y,
+           only(given, "column",
+                {.meaning = "Height in that rock.",
+                 .unit = "m",
+                 .required = history.column.has_value(),
+                 .fallback = "required with column"}));
+  const auto has_columns = [&] {
+    return scenario.boundary && (scenario.boundary->sides == simulation::Sides::free_field ||
+                                 scenario.boundary->sides == simulation::Sides::viscous);
+  };
+  if (!history.column || has_columns()) return;
+  t.fail(
+      "column",
+      scenario.boundary ? fmt::format("sides = \"{}\"", name_of(scenario.boundary->sides)) : "no [boundary]",
+      "a [boundary] with rock beside the model, sides = \"free-field\" or \"viscous\"");
+}
+
 void read_history(TableReader& t, simulation::History& history, const Scenario& scenario) {
   t.name("name", history.name, "history",
          {.meaning = "Name of its columns in histories.csv.", .required = true});
-  t.reference(
-      "block", history.block, "block",
-      {.meaning = "The block it belongs to.",
-       .fallback = "the block that holds the point; of several with a common border, one that no stage "
-                   "excavates or the one excavated last"});
+  read_column(t, history, scenario);
+  const bool of_block = !history.column;
+  t.reference("block", history.block, "block",
+              only(of_block, "no column",
+                   {.meaning = "The block it belongs to.",
+                    .fallback = "the block that holds the point; of several with a common border, one that "
+                                "no stage excavates or the one excavated last"}));
   if (t.point("point", history.point,
-              {.meaning = "Material point, by its place before the run.", .unit = "m", .required = true})) {
+              only(of_block, "no column",
+                   {.meaning = "Material point, by its place before the run.",
+                    .unit = "m",
+                    .required = of_block && !t.documenting(),
+                    .fallback = "required, or column and y"}))) {
     check_history(t, history, scenario);
   }
   t.word("frame", history.absolute, history_frames,

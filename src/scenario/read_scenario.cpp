@@ -152,7 +152,8 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"plane-stress", &AcceptedWarnings::plane_stress},
     {"order-1", &AcceptedWarnings::order_1},
     {"free-boundary", &AcceptedWarnings::free_boundary},
-    {"step", &AcceptedWarnings::step}};
+    {"step", &AcceptedWarnings::step},
+    {"damping", &AcceptedWarnings::damping}};
 
 void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
   std::vector<std::string> words;

@@ -159,6 +159,7 @@ struct AcceptedWarnings {
   bool order_1 = false;        ///< of blocks of order 1 that are too stiff for the closure of an opening
   bool free_boundary = false;  ///< of stress in rock that nothing holds
   bool step = false;           ///< of a time step that is long for the motion
+  bool damping = false;        ///< of damping beyond critical
 };
 
 struct Scenario {

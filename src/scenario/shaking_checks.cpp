@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "loading/motion_measures.h"
 #include "scenario/key_path.h"
@@ -15,6 +18,8 @@ namespace {
 constexpr double least_steps = 20.0;  // of the time integration in a period that it has to follow
 constexpr double chords = 0.02;  // that a period falls short by, as accelerations go straight between samples
 constexpr double rounding = 1e-6;  // of times in files
+
+constexpr double slow = 1.0, fast = 10.0;  // Hz, that shake in any earthquake
 
 using loading::GroundMotion;
 using simulation::Stage;
@@ -66,6 +71,39 @@ void warn_of_peak(const Stage& stage, const MotionSpec& spec, const GroundMotion
                                                   : "is the record in g, and was read as m/s2 or cm/s2?"));
 }
 
+/// Hz, between which damping is less than critical: the roots of ½ (α/ω + β ω) = 1.
+std::pair<double, double> swinging(const dynamics::RayleighDamping& damping) {
+  const double alpha = damping.mass_rate(), beta = damping.stiffness_time(),
+               sum = 1.0 + std::sqrt(1.0 - alpha * beta), turn = 2.0 * std::numbers::pi;
+  return {alpha / sum / turn, beta > 0.0 ? sum / beta / turn : HUGE_VAL};
+}
+
+/// Where the motions of stages, and what any earthquake has, would not swing.
+void warn_of_damping(const Scenario& scenario, const std::vector<GroundMotion>& motions,
+                     std::vector<std::string>& warnings) {
+  if (!scenario.solver.damping || scenario.accepted.damping) return;
+  double least = slow, most = fast;
+  bool is_dynamic = false;
+  for (const Stage& stage : scenario.stages) {
+    is_dynamic |= stage.kind != simulation::StageKind::settle;
+    if (stage.kind != simulation::StageKind::shake) continue;
+    const double period = loading::mean_period(motions[static_cast<std::size_t>(stage.motion)]);
+    if (period <= 0.0) continue;
+    least = std::min(least, 1.0 / period);
+    most = std::max(most, 1.0 / period);
+  }
+  const auto& damping = *scenario.solver.damping;
+  const auto [from, to] = swinging(damping);
+  const bool is_fast = to < most;
+  if (!is_dynamic || (!is_fast && from <= least)) return;
+  const double worst = is_fast ? most : least;
+  warnings.push_back(fmt::format(
+      "solver.damping{}: a ratio of {:.4g} at {:.4g} Hz is more than critical {} {:.3g} Hz, {:.3g} "
+      "times at {:.3g} Hz; what moves there creeps back and does not swing{}",
+      place_text(scenario, "solver.damping"), damping.ratio, damping.frequency, is_fast ? "above" : "below",
+      is_fast ? to : from, damping.ratio_at(worst), worst, is_fast ? ", and steps take long" : ""));
+}
+
 }  // namespace
 
 void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMotion>& motions,
@@ -79,6 +117,7 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
     seen[k] = true;
     if (scenario.si_units) warn_of_peak(stage, scenario.motions[k], motions[k], warnings);
   }
+  warn_of_damping(scenario, motions, warnings);
 }
 
 }  // namespace keyblock::scenario

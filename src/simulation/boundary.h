@@ -30,6 +30,9 @@ constexpr const char* name_of(Sides sides) {
   return "frame";
 }
 
+/// Rock far away, on one side of the model.
+enum class ColumnSide { left, right };
+
 /// The rock around the model; see the user guide. Heights are local.
 struct Boundary {
   bool compliant = true;  ///< waves go down through the base; else it is rigid

@@ -19,10 +19,60 @@ constexpr double alike = 1e-9;                 // of the size of the model: what
 
 enum class Side { none, base, left, right, top };
 
+/// Where the sides of the model are, and which edges of blocks lie on them.
+class Outside {
+ public:
+  explicit Outside(const RunSetup& setup) : setup_(setup), box_(boundary_box(setup)) {}
+
+  [[nodiscard]] const Box& box() const { return box_; }
+  [[nodiscard]] double tolerance() const { return alike * std::max(box_.size().x, box_.size().y); }
+  template <typename OfEdge>
+  void for_edges(std::size_t block, const OfEdge& of_edge) const {
+    const Ring& ring = setup_.system.blocks[block].polygon.outer;
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
+      if (const Side side = side_of(a, b); side != Side::none) of_edge(side, a, b);
+    }
+  }
+  /// The ground beside a side: the highest rock there that is never taken out.
+  [[nodiscard]] double ground(Side side) const {
+    double highest = box_.min.y;
+    for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
+      if (setup_.properties[b].fixed || is_excavated(b)) continue;
+      for_edges(b, [&](Side of_edge, Vec2 from, Vec2 to) {
+        if (of_edge == side) highest = std::max({highest, from.y, to.y});
+      });
+    }
+    return (highest > box_.min.y ? highest : box_.max.y) + setup_.boundary->depth;
+  }
+
+ private:
+  [[nodiscard]] Side side_of(Vec2 a, Vec2 b) const {
+    const auto both = [&](double Vec2::*coordinate, double at) {
+      return std::abs(a.*coordinate - at) <= tolerance() && std::abs(b.*coordinate - at) <= tolerance();
+    };
+    if (both(&Vec2::y, box_.min.y)) return Side::base;
+    if (both(&Vec2::x, box_.min.x)) return Side::left;
+    if (both(&Vec2::x, box_.max.x)) return Side::right;
+    if (both(&Vec2::y, box_.max.y)) return Side::top;
+    return Side::none;
+  }
+  [[nodiscard]] bool is_excavated(std::size_t block) const {
+    const std::vector<int>& inside = setup_.system.blocks[block].excavations;
+    return std::any_of(setup_.stages.begin(), setup_.stages.end(), [&](const Stage& stage) {
+      return std::find_first_of(inside.begin(), inside.end(), stage.excavate.begin(), stage.excavate.end()) !=
+             inside.end();
+    });
+  }
+
+  const RunSetup& setup_;
+  Box box_;
+};
+
 class Builder {
  public:
   Builder(const RunSetup& setup, const dynamics::Model& model)
-      : setup_(setup), boundary_(*setup.boundary), model_(model), box_(boundary_box(setup)) {}
+      : setup_(setup), boundary_(*setup.boundary), model_(model), outside_(setup) {}
 
   std::shared_ptr<const dynamics::Coupling> build() {
     if (boundary_.sides != Sides::roller) add_far_rock();
@@ -34,56 +84,17 @@ class Builder {
   }
 
  private:
-  [[nodiscard]] double tolerance() const { return alike * std::max(box_.size().x, box_.size().y); }
-  [[nodiscard]] Side side_of(Vec2 a, Vec2 b) const {
-    const auto both = [&](double Vec2::*coordinate, double at) {
-      return std::abs(a.*coordinate - at) <= tolerance() && std::abs(b.*coordinate - at) <= tolerance();
-    };
-    if (both(&Vec2::y, box_.min.y)) return Side::base;
-    if (both(&Vec2::x, box_.min.x)) return Side::left;
-    if (both(&Vec2::x, box_.max.x)) return Side::right;
-    if (both(&Vec2::y, box_.max.y)) return Side::top;
-    return Side::none;
-  }
-  template <typename OfEdge>
-  void for_edges(std::size_t block, const OfEdge& of_edge) const {
-    const Polygon& polygon = model_.blocks[block].reference;
-    const Ring& ring = polygon.outer;
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec2 a = ring[k], b = ring[(k + 1) % ring.size()];
-      if (const Side side = side_of(a, b); side != Side::none) of_edge(side, a, b);
-    }
-  }
-  [[nodiscard]] bool is_excavated(std::size_t block) const {
-    const std::vector<int>& inside = setup_.system.blocks[block].excavations;
-    return std::any_of(setup_.stages.begin(), setup_.stages.end(), [&](const Stage& stage) {
-      return std::find_first_of(inside.begin(), inside.end(), stage.excavate.begin(), stage.excavate.end()) !=
-             inside.end();
-    });
-  }
-
-  /// The ground beside a side: the highest rock there that is never taken out.
-  [[nodiscard]] double ground(Side side) const {
-    double highest = box_.min.y;
-    for (std::size_t b = 0; b < setup_.system.blocks.size(); ++b) {
-      if (model_.blocks[b].fixed || is_excavated(b)) continue;
-      for_edges(b, [&](Side of_edge, Vec2 from, Vec2 to) {
-        if (of_edge == side) highest = std::max({highest, from.y, to.y});
-      });
-    }
-    return highest > box_.min.y ? highest + boundary_.depth : box_.max.y + boundary_.depth;
-  }
   void add_far_rock() {
     const std::optional<Vec2> dashpots =
         boundary_.compliant ? std::optional<Vec2>(boundary_.dashpots) : std::nullopt;
     const auto add = [&](double height, double x) {
-      far_.push_back({RockColumn(boundary_.layers, box_.min.y, height, dashpots, boundary_.fastest,
+      far_.push_back({RockColumn(boundary_.layers, outside_.box().min.y, height, dashpots, boundary_.fastest,
                                  dynamics::stiffness_damping(model_)),
                       x});
     };
-    const double left = ground(Side::left), right = ground(Side::right);
-    add(left, box_.min.x);
-    if (std::abs(left - right) > tolerance()) add(right, box_.max.x);
+    const double left = outside_.ground(Side::left), right = outside_.ground(Side::right);
+    add(left, outside_.box().min.x);
+    if (std::abs(left - right) > outside_.tolerance()) add(right, outside_.box().max.x);
   }
 
   void set_far(Side side, BoundaryPoint& p) const {
@@ -124,7 +135,7 @@ class Builder {
 
   void add_block(std::size_t b) {
     const dynamics::Block& block = model_.blocks[b];
-    for_edges(b, [&](Side side, Vec2 from, Vec2 to) {
+    outside_.for_edges(b, [&](Side side, Vec2 from, Vec2 to) {
       if (side == Side::top && !boundary_.overburden) return;
       // As many for every order that the block may come to have: what they remember is theirs.
       const LineRule& rule = gauss_legendre(block.edge_order + 1);
@@ -145,7 +156,7 @@ class Builder {
   const RunSetup& setup_;
   const Boundary& boundary_;
   const dynamics::Model& model_;
-  Box box_;
+  Outside outside_;
   std::vector<FarRock> far_;
   std::vector<BoundaryPoint> points_;
 };
@@ -173,6 +184,11 @@ std::optional<dynamics::MassDamping> mass_damping(const dynamics::Model& model) 
     }
   }
   return dynamics::MassDamping(damping->mass_rate(), std::move(points));
+}
+
+ColumnHeights column_heights(const RunSetup& setup, ColumnSide side) {
+  const Outside outside(setup);
+  return {outside.box().min.y, outside.ground(side == ColumnSide::left ? Side::left : Side::right)};
 }
 
 std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup,

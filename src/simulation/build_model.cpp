@@ -161,7 +161,8 @@ void add_springs(const RunSetup& setup, Model& model) {
           static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))});
       model.blocks[block].basis.evaluate(p, point.phi.data());
     }
-    springs.push_back({spring.stiffness, spring.yield.value_or(HUGE_VAL), norm(spring.from - spring.to)});
+    springs.push_back(
+        {spring.stiffness, spring.yield.value_or(HUGE_VAL), norm(spring.from - spring.to), spring.staged});
   }
   if (!springs.empty())
     model.couplings.push_back(
@@ -317,6 +318,7 @@ dynamics::State initial_state(const RunSetup& setup, const Model& model) {
   dynamics::State state;
   state.position.assign(model.coefficients, 0.0);
   state.velocity.assign(model.coefficients, 0.0);
+  state.installed.assign(setup.staged_supports.size(), 0);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Block& block = model.blocks[b];
     const std::vector<Vec2> identity = block.basis.identity();

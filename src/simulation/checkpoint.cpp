@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0011;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0012;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -36,6 +36,7 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.stage.name);
   archive(s.stage.kind);
   archive(s.stage.excavate);
+  archive(s.stage.install);
   archive(s.stage.motion);
   archive(s.stage.scale);
   archive(s.stage.duration);
@@ -86,6 +87,7 @@ void transfer_mechanics(Archive& archive, StateOrConst& s) {
   archive(s.walls.released);
   archive(s.walls.pressure);
   archive(s.walls.left);
+  archive(s.installed);
   archive(s.ledger);
   archive(s.contact_energy);
   archive(s.support_energy);

@@ -189,7 +189,7 @@ bool is_record(const StageRecord& record, const Stage& stage, const RunSetup& se
   const auto is_block = [&](const auto& entry) { return is_place(entry.block, blocks); };
   const Stage& s = record.stage;
   return s.name == stage.name && s.kind == stage.kind && s.excavate == stage.excavate &&
-         s.motion == stage.motion && are_counts({record.steps}) &&
+         s.install == stage.install && s.motion == stage.motion && are_counts({record.steps}) &&
          std::all_of(record.moving.begin(), record.moving.end(), is_block) &&
          std::all_of(record.fallen.begin(), record.fallen.end(),
                      [&](const FallenBlock& f) { return is_block(f) && f.part <= WallPart::invert; }) &&
@@ -253,6 +253,9 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
     return "contacts that cannot be";
   if (!are_walls(state.mechanics, setup, model) || !is_opening(state, setup, model))
     return "loads on walls that cannot be";
+  if (state.mechanics.installed.size() != setup.staged_supports.size() ||
+      !are_flags(state.mechanics.installed))
+    return "supports that are not of this run";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";

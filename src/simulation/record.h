@@ -114,7 +114,8 @@ struct ContactFrame {
   long step = 0;  ///< of the run, over all stages
 };
 
-/// One row of DIR/histories.csv: displacement, velocity and Cauchy stress at the chosen points; NaN once the block is excavated.
+/// One row of DIR/histories.csv: displacement, velocity and Cauchy stress at the chosen points; NaN once the block is excavated. Rock far
+/// away has no stress.
 struct HistoryRow {
   double time = 0.0;
   struct Point {

@@ -10,6 +10,8 @@
 #include "core/index.h"
 #include "coupling/seismic_boundary.h"
 #include "overlap/overlap.h"
+#include "simulation/base.h"
+#include "simulation/build_boundary.h"
 #include "simulation/build_model.h"
 #include "simulation/damping_table.h"
 #include "simulation/history_block.h"
@@ -52,24 +54,33 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
                           ? of_outline[at(edge)]
                           : cutting::EdgeLabel{cutting::EdgeKind::domain, 0});  // of the frame
   }
-  for (const History& history : setup.histories) {
-    const std::optional<std::size_t> block = history_block(setup, history);
-    if (!block) {
-      Diagnostic diagnostic;
-      diagnostic.key = fmt::format("history '{}'", history.name);
-      diagnostic.found = fmt::format("the point ({}, {})", history.point.x, history.point.y);
-      diagnostic.expected = "a point in a block";
-      throw InputError(std::move(diagnostic));
-    }
-    points_.push_back({*block, history.point, {}, history.absolute});
-  }
+  for (const History& history : setup.histories) points_.push_back(point_of(history));
   orders_changed();
+}
+
+Recorder::Point Recorder::point_of(const History& history) const {
+  if (history.column) {
+    const Box sides = boundary_box(setup_);
+    const double x = *history.column == ColumnSide::left ? sides.min.x : sides.max.x;
+    return {std::nullopt, {x, history.point.y}, {}, history.absolute};
+  }
+  const std::optional<std::size_t> block = history_block(setup_, history);
+  if (!block) {
+    Diagnostic diagnostic;
+    diagnostic.key = fmt::format("history '{}'", history.name);
+    diagnostic.found = fmt::format("the point ({}, {})", history.point.x, history.point.y);
+    diagnostic.expected = "a point in a block";
+    throw InputError(std::move(diagnostic));
+  }
+  return {block, history.point, {}, history.absolute};
 }
 
 void Recorder::orders_changed() {
   for (Point& point : points_) {
-    point.phi.resize(at(model_.blocks[point.block].size));
-    model_.blocks[point.block].basis.evaluate(point.reference, point.phi.data());
+    if (!point.block) continue;
+    const dynamics::Block& block = model_.blocks[*point.block];
+    point.phi.resize(at(block.size));
+    block.basis.evaluate(point.reference, point.phi.data());
   }
 }
 
@@ -182,31 +193,36 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   return frame;
 }
 
-HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame) const {
-  HistoryRow row;
-  row.time = state.time;
-  row.step = state.step;
-  for (const Point& point : points_) {
-    if (!model_.surface.present[point.block]) {
-      constexpr double none = std::numeric_limits<double>::quiet_NaN();
-      row.points.push_back({none, none, none, none, none, none, none});
-      continue;
-    }
-    const dynamics::Block& block = model_.blocks[point.block];
+HistoryRow::Point Recorder::at_point(const Point& point, const dynamics::State& state,
+                                     const dynamics::GroundMove& frame) const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (point.block && !model_.surface.present[*point.block]) return {none, none, none, none, none, none, none};
+  dynamics::GroundMove move;
+  block::Stress s{none, none, none};
+  if (!point.block) {
+    move = far_ground(model_, state, point.reference);
+  } else {
+    const dynamics::Block& block = model_.blocks[*point.block];
     Vec2 x, v;
     for (std::size_t k = 0; k < point.phi.size(); ++k) {
       x += point.phi[k] * Vec2{state.position[block.first + 2 * k], state.position[block.first + 2 * k + 1]};
       v += point.phi[k] * Vec2{state.velocity[block.first + 2 * k], state.velocity[block.first + 2 * k + 1]};
     }
-    Vec2 u = x - point.reference;
-    if (point.absolute) {
-      u += frame.displacement;
-      v += frame.velocity;
-    }
-    const block::Stress s =
-        block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
-    row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy});
+    move = {x - point.reference, v};
+    s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
   }
+  if (point.absolute) {
+    move.displacement += frame.displacement;
+    move.velocity += frame.velocity;
+  }
+  return {move.displacement.x, move.displacement.y, move.velocity.x, move.velocity.y, s.xx, s.yy, s.xy};
+}
+
+HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame) const {
+  HistoryRow row;
+  row.time = state.time;
+  row.step = state.step;
+  for (const Point& point : points_) row.points.push_back(at_point(point, state, frame));
   return row;
 }
 

@@ -33,11 +33,14 @@ class Recorder {
 
  private:
   struct Point {
-    std::size_t block;
+    std::optional<std::size_t> block;  ///< none: rock far away
     Vec2 reference;
     std::vector<double> phi;
     bool absolute = false;
   };
+  [[nodiscard]] Point point_of(const History& history) const;
+  [[nodiscard]] HistoryRow::Point at_point(const Point& point, const dynamics::State& state,
+                                           const dynamics::GroundMove& frame) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;

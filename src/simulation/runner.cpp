@@ -12,6 +12,7 @@
 #include "simulation/energy_audit.h"
 #include "simulation/excavate.h"
 #include "simulation/feasibility.h"
+#include "simulation/install.h"
 #include "simulation/run_checks.h"
 #include "simulation/step_count.h"
 
@@ -189,6 +190,7 @@ void Runner::begin_stage() {
   plan_motion(setup_, record);
   if (is_new) {
     excavate(setup_, record.stage, model_, now_.mechanics, *stepper_, gauge_, opening_);
+    install(setup_, record.stage, model_, now_.mechanics);
     opening_.begin_stage(now_.stage, now_.mechanics);
   }
   now_.present = model_.surface.present;

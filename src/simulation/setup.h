@@ -61,6 +61,8 @@ struct History {
   Vec2 point;         ///< reference position
   bool absolute =
       false;  ///< motion against a place that does not move; else against the base, or the outcrop
+  std::optional<ColumnSide> column =
+      {};  ///< of rock far away, at the height of the point; no block has it then
 };
 
 /// Limits of the damage measures; see the user guide.
@@ -125,6 +127,7 @@ struct RunSetup {
   std::vector<loading::Load> loads;
   std::vector<loading::Support> supports;
   std::vector<loading::Spring> springs;
+  std::vector<std::string> staged_supports;  ///< that stages install: names, in the order of State::installed
   std::vector<Stage> stages;
   std::vector<History> histories;
   DamageLimits damage;

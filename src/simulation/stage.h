@@ -18,7 +18,8 @@ constexpr int default_settle_steps = 3000;
 struct Stage {
   std::string name;
   StageKind kind = StageKind::settle;
-  std::vector<int> excavate;  ///< excavations opened at the start, by index
+  std::vector<int> excavate;         ///< excavations opened at the start, by index
+  std::vector<std::string> install;  ///< supports that come to life at the start, after that, by name
   /// settle: excavations opened in parts, with the share of the forces of their rock that acts no more at the end of the stage.
   std::vector<std::pair<int, double>> release;
   int release_steps = 10;  ///< parts in which it is released

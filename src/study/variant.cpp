@@ -39,9 +39,13 @@ void release(std::vector<Stage>& stages) {
   const auto [first, last] = settling_after_excavation(stages);
   if (first == last) return;
   std::vector<int> all;
-  for (std::size_t k = first; k <= last; ++k)
+  std::vector<std::string> installed;
+  for (std::size_t k = first; k <= last; ++k) {
     all.insert(all.end(), stages[k].excavate.begin(), stages[k].excavate.end());
+    installed.insert(installed.end(), stages[k].install.begin(), stages[k].install.end());
+  }
   stages[last].excavate = std::move(all);
+  stages[last].install = std::move(installed);
   stages.erase(stages.begin() + static_cast<std::ptrdiff_t>(first),
                stages.begin() + static_cast<std::ptrdiff_t>(last));
 }

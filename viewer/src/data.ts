@@ -39,6 +39,8 @@ export interface Stage {
   name: string;
   kind: "settle" | "shake" | "rest";
   excavate: number[];
+  /** Names of the supports that come to life at its start; not in results of earlier versions. */
+  install?: string[];
   scale: number;
   tolerance: number;
   steps: number;

@@ -60,6 +60,7 @@ export class Pictures {
       const facts: string[] = [];
       if (stage?.excavate.length)
         facts.push(`${stage.excavate.map((e) => run.header.model.excavations[e]).join(", ")} excavated`);
+      if (stage?.install?.length) facts.push(`${stage.install.join(", ")} installed`);
       if (stage?.kind === "shake" && stage.pga_m_s2 !== null)
         facts.push(`peak ${fixed(stage.pga_m_s2 / 9.81, 2)} g`);
       if (stage && stage.kind !== "settle") facts.push(stageTime(stage));

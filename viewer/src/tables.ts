@@ -65,7 +65,12 @@ export function stageTable(run: Run): HTMLElement {
   const rows = run.stages.map((s) => [
     h("th", { scope: "row" }, s.name, s.interrupted ? h("span", { class: "sub" }, "interrupted") : null),
     h("td", { class: "text" }, kinds[s.kind]),
-    h("td", { class: "text" }, s.excavate.map((e) => run.header.model.excavations[e]).join(", ") || "–"),
+    h(
+      "td",
+      { class: "text" },
+      s.excavate.map((e) => run.header.model.excavations[e]).join(", ") || "–",
+      s.install?.length ? h("span", { class: "sub" }, `installs ${s.install.join(", ")}`) : null,
+    ),
     h("td", {}, integer(s.steps)),
     h("td", {}, s.kind === "settle" ? "–" : stageTime(s).replace(/ s$/, "")),
     h(

@@ -155,6 +155,58 @@ TEST(BuildSetup, ASpringNeedsTwoBlocks) {
   EXPECT_EQ(refusal(parse(runnable_domain + spring, {"spring.0.to=[0.9, 0.9]"})), "");
 }
 
+TEST(BuildSetup, AStageInstallsSupports) {
+  const std::string springs =
+      "[[spring]]\nname = \"first\"\nfrom = [0.1, 0.1]\nto = [0.9, 0.9]\nstiffness = 1e6\n"
+      "[[spring]]\nname = \"second\"\nfrom = [0.1, 0.2]\nto = [0.9, 0.9]\nstiffness = 1e6\n"
+      "[[spring]]\nfrom = [0.2, 0.2]\nto = [0.9, 0.9]\nstiffness = 1e6\n"
+      "[[stage]]\nname = \"supported\"\nkind = \"settle\"\ninstall = [\"second\"]\n";
+  const simulation::RunSetup setup = build_setup(parse(runnable_domain + springs), 0);
+  EXPECT_THAT(setup.staged_supports, ::testing::ElementsAre("second"));
+  EXPECT_EQ(setup.springs[0].staged, -1);
+  EXPECT_EQ(setup.springs[1].staged, 0);
+  EXPECT_EQ(setup.springs[2].staged, -1);
+  const auto refused = [&](const std::vector<std::string>& overrides) {
+    return mistakes(runnable_domain + springs, overrides);
+  };
+  EXPECT_THAT(refused({"stage.supported.install=['secnd']"}),
+              HasSubstr("stage.supported.install[0]: found the string \"secnd\"; expected the name of a "
+                        "[[spring]]: \"first\" or \"second\"; did you mean 'second'?"));
+  EXPECT_THAT(refused({"stage.supported.install=['second', 'second']"}),
+              HasSubstr("again; expected every name once"));
+  EXPECT_THAT(refused({"stage.settled.install=['second']"}),
+              HasSubstr("stage.supported.install: found \"second\" again; expected a support that the stage "
+                        "'settled' has not installed"));
+  EXPECT_THAT(refused({"stage.supported.install='second'"}), HasSubstr("write [\"second\"]"));
+  EXPECT_THAT(refused({"spring.first.name=second"}),
+              HasSubstr("expected a name that no other [[spring]] has"));
+  EXPECT_THAT(refusal(parse(runnable_domain + springs, {"spring.second.to=[5.0, 1.0]"})),
+              HasSubstr("spring.second.to: found [5, 1], outside"));
+  EXPECT_THAT(
+      refusal(parse(runnable_domain + springs, {"spring.second.to=[2.0, 1.5]"})),
+      HasSubstr("stage.supported.install: found \"second\", an end of which lies in rock that the stage "
+                "'settled' excavates; expected a support between blocks that are there"));
+}
+
+TEST(BuildSetup, AHistoryOfRockFarAwayNeedsAColumn) {
+  const std::string history = "[[history]]\nname = \"h\"\ncolumn = \"left\"\ny = 1.0\n";
+  const std::vector<std::string> around{"boundary={sides='free-field'}"};
+  EXPECT_THAT(
+      mistakes(runnable_domain + history),
+      HasSubstr("history.h.column: found no [boundary]; expected a [boundary] with rock beside the model"));
+  EXPECT_THAT(mistakes(runnable_domain + history, {"boundary={sides='roller'}"}),
+              HasSubstr("found sides = \"roller\""));
+  EXPECT_EQ(refusal(parse(runnable_domain + history, around)), "");
+  EXPECT_THAT(mistakes(runnable_domain + history, {around[0], "history.h.point=[1, 1]"}),
+              HasSubstr("history.h.point"));
+  EXPECT_THAT(mistakes(runnable_domain + history, {around[0], "history.h.column=up"}),
+              HasSubstr("\"left\" or \"right\""));
+  EXPECT_THAT(
+      refusal(parse(runnable_domain + history, {around[0], "history.h.y=7"})),
+      HasSubstr(
+          "history.h.y: found 7, outside; expected a height from the base to the ground there, 0 to 3"));
+}
+
 TEST(BuildSetup, AStageTakesAStepAtLeast) {
   const auto refused = [](const std::vector<std::string>& overrides) {
     return refusal(parse(two_blocks, overrides));

@@ -103,8 +103,26 @@ TEST(Warnings, ThatAreAcceptedAreNamed) {
       mistakes(two_blocks, {"accept_warnings=['plane-stres']"}),
       HasSubstr(
           "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
-          "\"free-boundary\" or \"step\"; did you mean 'plane-stress'?"));
+          "\"free-boundary\", \"step\" or \"damping\"; did you mean 'plane-stress'?"));
   EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
+}
+
+// 30 % at 1 Hz in proportion to stiffness is critical at 3.3 Hz.
+TEST(Warnings, OfDampingBeyondCritical) {
+  const auto warned = [](const std::string& damping, std::vector<std::string> more = {}) {
+    more.push_back("solver.damping={" + damping + "}");
+    return warnings_of(two_blocks, more);
+  };
+  EXPECT_THAT(warned("ratio=0.3, frequency=1"),
+              UnorderedElementsAre(
+                  HasSubstr("solver.damping (--set): a ratio of 0.3 at 1 Hz is more than critical above "
+                            "3.33 Hz, 3 times at 10 Hz; what moves there")));
+  EXPECT_THAT(warned("ratio=0.09, frequency=1"), IsEmpty());
+  EXPECT_THAT(warned("ratio=0.3, frequency=1", {"accept_warnings=['damping']"}), IsEmpty());
+  EXPECT_THAT(warned("ratio=0.3, frequency=1", {"stage.quiet={name='quiet', kind='settle'}"}), IsEmpty());
+  EXPECT_THAT(warned("ratio=0.9, frequency=3, kind='mass', force=true"),
+              UnorderedElementsAre(HasSubstr("more than critical below 2.7 Hz, 2.7 times at 1 Hz")));
+  EXPECT_THAT(warned("ratio=0.3, frequency=3, kind='rayleigh', force=true"), IsEmpty());
 }
 
 // Blocks of half a metre around an opening of six metres, or of one.

@@ -42,6 +42,15 @@ TEST(Variant, ReleasedAtOnce) {
   EXPECT_TRUE(s.stages[0].excavate.empty());
 }
 
+// What the stages install that are left out is installed where they would have led.
+TEST(Variant, ReleasedAtOnceKeepsSupports) {
+  scenario::Scenario s = gallery();
+  s.stages[1].install = {"bolt"};
+  s.stages[2].install = {"late"};
+  apply_variant(s, "released", {});
+  EXPECT_THAT(s.stages[1].install, ElementsAre("bolt", "late"));
+}
+
 TEST(Variant, OnlyThoseThatMeanSomething) {
   EXPECT_THAT(variants_of(gallery(), {"after"}), ElementsAre("", "friction-", "friction+", "released"));
   EXPECT_THAT(variants_of(gallery(), {"after", "excavated"}), ElementsAre("", "friction-", "friction+"));
