@@ -52,9 +52,10 @@ inline constexpr int largest_single_block = 12;
 /// Numbers of a factor, from which single precision is worth it (2 MB in double precision): a smaller factor stays in a cache as it is.
 /// Smaller: refinements that save no time.
 inline constexpr std::size_t worth_single = std::size_t{1} << 18;
-/// Pivot over what the matrix has in its place; below that the factor has double precision. A pivot that is the difference of numbers 10⁵ times
-/// as large has two digits left in single precision. Smaller: refinements that do not converge.
-inline constexpr double least_single_pivot = 1e-5;
+/// Pivot over what the matrix has in its place; below that the factor has double precision. Such a pivot has no digit left in single precision.
+/// Single pivots of few digits do little harm, as the residual tells what they got wrong. Larger: matrices without inertia, of static steps,
+/// have factors in double precision, which take twice the time. Smaller: refinements that do not converge.
+inline constexpr double least_single_pivot = 1e-7;
 /// Solutions in single precision, each of what the solutions before it left over, at most; then the factor has double precision. Larger: more of
 /// them for nothing. Smaller: more factors in double precision.
 inline constexpr int most_refinements = 5;
