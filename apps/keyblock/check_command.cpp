@@ -10,9 +10,9 @@
 
 #include "command_line.h"
 #include "commands.h"
-#include "core/checked_json.h"
 #include "core/error.h"
 #include "job/check.h"
+#include "json_output.h"
 #include "scenario/cut_summary.h"
 #include "scenario_arguments.h"
 #include "study/plan.h"
@@ -64,12 +64,6 @@ void check_scenario(const ScenarioArguments& arguments) {
   if (found.slivers) std::cout << arguments.file << ": " << *found.slivers << '\n';
 }
 
-ordered_json to_json(const Diagnostic& mistake) {
-  return {{"file", mistake.where.file}, {"line", mistake.where.line}, {"column", mistake.where.column},
-          {"key", mistake.key},         {"found", mistake.found},     {"expected", mistake.expected},
-          {"hint", mistake.hint}};
-}
-
 /// For other programs. Mistakes are printed here, and the exit code says that there are some.
 void check_as_json(const ScenarioArguments& arguments, int& exit_code) {
   ordered_json json{{"scenario", arguments.file}, {"ok", true}, {"mistakes", ordered_json::array()}};
@@ -83,10 +77,10 @@ void check_as_json(const ScenarioArguments& arguments, int& exit_code) {
       json["study"] = {{"runs", found.plan->runs.size()}, {"realizations", found.plan->realizations}};
   } catch (const InputError& error) {
     json["ok"] = false;
-    for (const Diagnostic& mistake : error.diagnostics()) json["mistakes"].push_back(to_json(mistake));
+    json["mistakes"] = mistakes_json(error.diagnostics());
     exit_code = input_wrong;
   }
-  std::cout << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  print_json(json);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_cut(app);
   add_report(app);
   add_export(app);
-  add_motion(app);
+  add_motion(app, exit_code);
   add_verify(app, exit_code);
   add_study(app);
   add_limit(app);

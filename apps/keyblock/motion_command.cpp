@@ -7,11 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "command_line.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/folder.h"
+#include "json_output.h"
 #include "loading/motion_measures.h"
+#include "motion_json.h"
 
 namespace keyblock::app {
 namespace {
@@ -21,6 +24,7 @@ struct MotionArguments {
   bool plot = false;
   std::string output = "motion.svg";
   bool force = false;
+  bool as_json = false;
   loading::MotionReading reading;
   std::vector<double> window;  // empty, or from and to
 };
@@ -55,32 +59,60 @@ void check_output(const MotionArguments& arguments) {
     refuse_output(output, "a file that is no plot of motions", "another file, or --force to replace it");
 }
 
-void show_motions(const MotionArguments& arguments) {
-  if (arguments.plot) check_output(arguments);
+struct Records {
   std::vector<loading::MotionComponent> components;
   std::vector<Diagnostic> mistakes;
+};
+
+Records read_records(const MotionArguments& arguments) {
+  Records records;
   for (const std::string& file : arguments.files) {
     try {
       for (auto& component : loading::read_motion_file(file, arguments.reading)) {
         if (!arguments.window.empty())
           component = loading::cut_out(std::move(component), arguments.window[0], arguments.window[1]);
-        components.push_back(std::move(component));
+        records.components.push_back(std::move(component));
       }
     } catch (const InputError& error) {
-      mistakes.insert(mistakes.end(), error.diagnostics().begin(), error.diagnostics().end());
+      records.mistakes.insert(records.mistakes.end(), error.diagnostics().begin(), error.diagnostics().end());
     }
   }
-  std::cout << loading::describe_motion(components);
-  if (!mistakes.empty()) throw InputError(std::move(mistakes));
-  if (arguments.plot) {
-    write_file_atomically(arguments.output, loading::plot_motion_svg(components));
-    std::cout << "plot: " << arguments.output << "\n";
+  return records;
+}
+
+void plot(const MotionArguments& arguments, const Records& records) {
+  write_file_atomically(arguments.output, loading::plot_motion_svg(records.components));
+}
+
+void show_motions(const MotionArguments& arguments) {
+  if (arguments.plot) check_output(arguments);
+  Records records = read_records(arguments);
+  std::cout << loading::describe_motion(records.components);
+  if (!records.mistakes.empty()) throw InputError(std::move(records.mistakes));
+  if (!arguments.plot) return;
+  plot(arguments, records);
+  std::cout << "plot: " << arguments.output << "\n";
+}
+
+/// For other programs. Mistakes of files are printed here, and the exit code says that there are some.
+void motions_as_json(const MotionArguments& arguments, int& exit_code) {
+  if (arguments.plot) check_output(arguments);
+  const Records records = read_records(arguments);
+  nlohmann::ordered_json json{{"ok", records.mistakes.empty()},
+                              {"mistakes", mistakes_json(records.mistakes)},
+                              {"components", components_json(records.components)}};
+  if (!records.mistakes.empty()) {
+    exit_code = input_wrong;
+  } else if (arguments.plot) {
+    plot(arguments, records);
+    json["plot"] = arguments.output;
   }
+  print_json(json);
 }
 
 }  // namespace
 
-void add_motion(CLI::App& app) {
+void add_motion(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<MotionArguments>();
   CLI::App* command =
       app.add_subcommand("motion", "What a ground motion record holds: components, dt, points, peak, unit");
@@ -110,10 +142,15 @@ void add_motion(CLI::App& app) {
       ->needs("--plot");
   command->add_flag("--force", arguments->force, "Replace the SVG file even if it is no plot of motions")
       ->needs("--plot");
+  command->add_flag("--json", arguments->as_json,
+                    "For other programs: components and mistakes as JSON on standard output");
   command->footer(
       "Examples:\n  keyblock motion motions/*.smc --plot -o record.svg\n  keyblock motion other.txt --skip 3 "
       "--dt 0.01 --unit g");
-  command->callback([arguments] { show_motions(*arguments); });
+  command->callback([arguments, &exit_code] {
+    if (arguments->as_json) return motions_as_json(*arguments, exit_code);
+    show_motions(*arguments);
+  });
 }
 
 }  // namespace keyblock::app

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#if defined(__x86_64__) && defined(KEYBLOCK_NEEDS_AVX2)
+#if defined(__x86_64__) && defined(KEYBLOCK_NEEDS_SSE42)
 static void say(const char* text) {
   if (write(STDERR_FILENO, text, strlen(text)) < 0) _exit(1);
 }
@@ -19,9 +19,13 @@ static void need(int is_there, const char* name) {
 
 __attribute__((constructor(101))) static void check_processor(void) {
   __builtin_cpu_init();
+  need(__builtin_cpu_supports("sse4.2"), "SSE4.2");
+  need(__builtin_cpu_supports("popcnt"), "POPCNT");
+#ifdef KEYBLOCK_NEEDS_AVX2
   need(__builtin_cpu_supports("avx2"), "AVX2");
   need(__builtin_cpu_supports("fma"), "FMA");
   need(__builtin_cpu_supports("bmi2"), "BMI2");
+#endif
 #ifdef KEYBLOCK_NEEDS_AVX512
   need(__builtin_cpu_supports("avx512f"), "AVX-512");
   need(__builtin_cpu_supports("avx512vl"), "AVX-512 VL");

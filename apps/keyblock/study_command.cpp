@@ -26,32 +26,14 @@
 namespace keyblock::app {
 namespace {
 
-constexpr std::size_t most_named = 20;     // runs that are named one by one
 constexpr std::size_t most_findings = 40;  // lines
-
-void list(const std::vector<std::string>& lines, const char* what) {
-  for (std::size_t k = 0; k < std::min(lines.size(), most_named); ++k)
-    std::cout << what << ": " << lines[k] << "\n";
-  if (lines.size() > most_named) std::cout << what << ": and " << lines.size() - most_named << " more\n";
-}
 
 void tell(const study::CollectReport& report, const std::string& folder) {
   for (std::size_t k = 0; k < std::min(report.findings.size(), most_findings); ++k)
     std::cout << report.findings[k] << "\n";
   if (report.findings.size() > most_findings)
     std::cout << "and " << report.findings.size() - most_findings << " lines more: see the report\n";
-  list(report.failed, "failed");
-  list(report.damaged, "damaged");
-  list(report.missing, "missing");
-  if (report.enough) std::cout << "enough: " << *report.enough << " realizations\n";
-  if (!report.lacking.empty()) std::cout << "not narrow enough: " << report.lacking << "\n";
-  std::cout << fmt::format("{} of {} runs done", report.done, report.asked);
-  const auto count = [](const std::vector<std::string>& keys, const char* what) {
-    if (!keys.empty()) std::cout << ", " << keys.size() << " " << what;
-  };
-  count(report.failed, "failed");
-  count(report.damaged, "damaged");
-  count(report.missing, "missing");
+  print_count(report.count);
   std::cout << "\nreport: " << folder << "/report.html" << std::endl;
 }
 
@@ -194,10 +176,12 @@ void add_study(CLI::App& app) {
       "Examples:\n"
       "  keyblock study run tunnel.toml -o out/study --workers 8\n"
       "  keyblock study submit tunnel.toml -o out/study --now\n"
+      "  keyblock study status out/study\n"
       "  keyblock study collect out/study");
   describe_run(*study);
   describe_task(*study);
   describe_collect(*study);
+  add_study_status(*study);
   add_study_submit(*study);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 #include <string>
 
+#include "study/collect.h"
+
 namespace CLI {
 class App;
 }
@@ -12,5 +14,11 @@ void add_study_folder(CLI::App& command, std::string& folder);
 
 /// `study submit`.
 void add_study_submit(CLI::App& study);
+
+/// `study status`.
+void add_study_status(CLI::App& study);
+
+/// Names runs that are not done, and ends with `N of M runs done, …`, without the end of the line.
+void print_count(const study::StudyCount& count);
 
 }  // namespace keyblock::app

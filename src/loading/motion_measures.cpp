@@ -218,14 +218,21 @@ std::string describe_component(const MotionComponent& c) {
                       m.significant_duration);
   if (!c.processing.empty())
     text += fmt::format("    reading              {}\n", printable(c.processing, longest_text));
-  for (const std::string& words : {unusual_peak(m.peak), jumps_text(end_jumps(c))}) {
-    if (!words.empty()) text += fmt::format("    note                 {}\n", words);
-  }
-  for (const std::string& note : c.notes) text += fmt::format("    note                 {}\n", note);
+  for (const std::string& note : motion_notes(c)) text += fmt::format("    note                 {}\n", note);
   return text;
 }
 
 }  // namespace
+
+std::vector<std::string> motion_notes(const MotionComponent& component) {
+  std::vector<std::string> notes;
+  const double peak = component.acceleration[component.peak_index()];
+  for (const std::string& words : {unusual_peak(peak), jumps_text(end_jumps(component))}) {
+    if (!words.empty()) notes.push_back(words);
+  }
+  notes.insert(notes.end(), component.notes.begin(), component.notes.end());
+  return notes;
+}
 
 std::string describe_motion(const std::vector<MotionComponent>& components) {
   std::string text;

@@ -48,6 +48,9 @@ std::string jumps_text(const EndJumps& jumps);
 /// The samples from one time to another, s of the record. Throws InputError when there are fewer than two.
 MotionComponent cut_out(MotionComponent component, double from, double to);
 
+/// What is told of a component beside its numbers: an unusual peak, jumps at its ends, what was assumed on reading.
+std::vector<std::string> motion_notes(const MotionComponent& component);
+
 /// What a file holds, for people: one paragraph per component, then the notes.
 std::string describe_motion(const std::vector<MotionComponent>& components);
 

@@ -124,29 +124,34 @@ CollectReport collect(const fs::path& directory) {
   return gather(directory, plan, read_study_files(directory, plan));
 }
 
-CollectReport gather(const fs::path& directory, const Plan& plan, StudyFiles files) {
-  CollectReport report;
-  report.enough = files.enough;
+StudyCount count_runs(const Plan& plan, const StudyFiles& files) {
+  StudyCount count;
+  count.enough = files.enough;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {
     if (!files.asked(plan.runs[k])) continue;
-    ++report.asked;
+    ++count.asked;
     const RunState& state = files.states[k];
     switch (state.kind) {
       case RunState::Kind::done:
-        ++report.done;
+        ++count.done;
         break;
       case RunState::Kind::missing:
-        report.missing.push_back(plan.runs[k].key);
+        count.missing.push_back(plan.runs[k].key);
         break;
       case RunState::Kind::failed:
-        report.failed.push_back(plan.runs[k].key + ": " + state.problem);
+        count.failed.push_back(plan.runs[k].key + ": " + state.problem);
         break;
       case RunState::Kind::damaged:
-        report.damaged.push_back(state.problem);
+        count.damaged.push_back(state.problem);
         break;
     }
   }
-  if (!files.enough) report.lacking = lacking_precision(plan, known_results(files));
+  if (!files.enough) count.lacking = lacking_precision(plan, known_results(files));
+  return count;
+}
+
+CollectReport gather(const fs::path& directory, const Plan& plan, StudyFiles files) {
+  CollectReport report{.count = count_runs(plan, files), .findings = {}};
   const StudyData study = study_data(plan, std::move(files));
   report.findings = findings(study, write_outputs(directory, study));
   return report;

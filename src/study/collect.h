@@ -33,14 +33,19 @@ void update_enough(const Plan& plan, StudyFiles& files);
 void forget_failures(const std::filesystem::path& directory, const Plan& plan, StudyFiles& files);
 
 /// How many of the runs that are asked for are there, and which are not, each with its key and what is known of it.
-struct CollectReport {
+struct StudyCount {
   std::size_t asked = 0, done = 0;
   std::vector<std::string> missing;  ///< keys
   std::vector<std::string> failed;   ///< `KEY: why`
   std::vector<std::string> damaged;  ///< the file, and what is wrong with it
   std::optional<int> enough;
-  std::string
-      lacking;  ///< of the precision that was asked for, where all runs have ended without it (until.h)
+  /// Of the precision that was asked for, where all runs have ended without it (until.h).
+  std::string lacking;
+};
+StudyCount count_runs(const Plan& plan, const StudyFiles& files);
+
+struct CollectReport {
+  StudyCount count;
   std::vector<std::string> findings;  ///< what the study found (findings.h)
 };
 

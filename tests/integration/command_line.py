@@ -118,6 +118,26 @@ class Support(Scenario):
         self.assertFalse(wrong["ok"])
         self.assertEqual(wrong["mistakes"][0]["key"], "rock.young")
 
+    def test_motion_for_other_programs(self):
+        self.write("a.csv", "time,N-S\n0,0\n0.01,1.5\n0.03,0\n")
+        self.write("b.csv", "time,N-S\n0,0\n0.01,strong\n")
+        right = json.loads(self.keyblock("motion", "a.csv", "--json", "--plot", "-o", "a.svg").stdout)
+        self.assertEqual((right["ok"], right["mistakes"], right["plot"]), (True, [], "a.svg"))
+        (component,) = right["components"]
+        self.assertEqual((component["file"], component["azimuth"], component["vertical"]), ("a.csv", 0.0, False))
+        self.assertEqual((component["samples"], component["step_s"], component["duration_s"]), (3, None, 0.03))
+        self.assertEqual((component["peak_m_s2"], component["peak_time_s"], component["unit"]), (1.5, 0.01, "m/s2"))
+        self.assertAlmostEqual(component["peak_velocity_m_s"], 0.5 * 0.03 * 1.5)
+        # ∫a² dt of a triangle is a third of its box.
+        self.assertAlmostEqual(component["arias_m_s"], 3.141592653589793 / (2 * 9.80665) * 0.03 * 1.5**2 / 3)
+        text = self.keyblock("motion", "a.csv").stdout
+        for note in component["notes"]:
+            self.assertIn(note, text)
+        wrong = json.loads(self.keyblock("motion", "a.csv", "b.csv", "--json", expect=1).stdout)
+        self.assertFalse(wrong["ok"])
+        self.assertEqual([c["file"] for c in wrong["components"]], ["a.csv"])
+        self.assertEqual((wrong["mistakes"][0]["file"], wrong["mistakes"][0]["line"]), ("b.csv", 3))
+
     def test_completion(self):
         script = self.keyblock("completion", "bash").stdout
         (self.folder / "complete").write_text(script)

@@ -72,6 +72,27 @@ class Runs(Study):
         self.run_study("linked.toml")
         self.assertEqual([self.result(key)["values"] for key in self.keys()], [["0.5, 0.1"], ["1, 0.2"]])
 
+    def test_status_tells_what_is_there_and_changes_nothing(self):
+        self.study("submit", "small.toml", "-o", "out")
+        before = self.files()
+        planned = json.loads(self.study("status", "out", "--json").stdout)
+        self.assertEqual(planned["runs"], {"asked": 6, "done": 0, "failed": 0, "damaged": 0, "missing": 6, "begun": 0})
+        self.assertEqual((planned["complete"], planned["missing"]), (False, self.keys()))
+        self.study("task", "out", "0")
+        first, second, third = self.keys()[:3]
+        self.run_file(second).parent.mkdir()
+        self.run_file(third).parent.mkdir()
+        self.run_file(third).write_text("{")
+        status = json.loads(self.study("status", "out", "--json").stdout)
+        self.assertEqual(status["runs"], {"asked": 6, "done": 1, "failed": 0, "damaged": 1, "missing": 4, "begun": 1})
+        self.assertEqual(status["begun"], [second])
+        self.assertIn(third, status["damaged"][0])
+        text = self.study("status", "out").stdout
+        self.assertIn("1 of 6 runs done, 1 damaged, 4 missing\n", text)
+        self.assertIn(f"begun: {second}\n", text)
+        self.assertEqual(before, self.files())
+        self.assertIn("plan.json", self.study("status", "nowhere", expect=1).stderr)
+
     def test_check_says_how_many_runs_it_is(self):
         self.assertIn("; a study of 6 runs: 3 realizations, 2 of each\n", self.keyblock("check", "small.toml").stdout)
         self.write("wrong.toml", GALLERY + SMALL.replace("[0.5, 1.0]", '[0.5, "strong"]'))

@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/checked_json.h"
+#include "core/error.h"
+
+/// What commands print with --json, for other programs.
+namespace keyblock::app {
+
+/// A list of objects: file, line, column, key, found, expected, hint.
+nlohmann::ordered_json mistakes_json(const std::vector<Diagnostic>& mistakes);
+
+/// To standard output, in several lines. Bytes that are no UTF-8 become U+FFFD.
+void print_json(const nlohmann::ordered_json& json);
+
+}  // namespace keyblock::app
