@@ -155,8 +155,8 @@ class Scenario:
         **options: Any,
     ) -> dict[str, Any]:
         """All stages, as `keyblock run` does. Returns what summary.json has. `controllers` are called after steps, see
-        keyblock.controller; `progress` is a function of a Progress, or True for a line that is redrawn. Ctrl-C ends the run in good order:
-        what was computed is kept, and `resume=True` goes on."""
+        keyblock.controller; `progress` is a function of a Progress; True for a bar in a notebook and a line elsewhere; "notebook" or "line"
+        for one of them. Ctrl-C ends the run in good order: what was computed is kept, and `resume=True` goes on."""
         from .simulation import Simulation
 
         simulation = Simulation(self, folder, controllers=controllers, **options)

@@ -24,6 +24,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._compiled import core as _core
+from .progress import Progress as _Shown
+from .progress import words_of_run
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -179,21 +181,19 @@ class Simulation:
             taken += self.advance()
         return taken
 
-    def run(self, progress: Callable[[Progress], Any] | bool | None = None) -> dict[str, Any]:
-        """All that is left of the run; then finish(). Ctrl-C and exceptions of controllers end it in good order and come back."""
-        show = _ProgressLine() if progress is True else progress or None
-        try:
-            self._core.advance(sys.maxsize, self._after_step if self._controllers else None, show)
-        except BaseException:
-            self.stop()
+    def run(self, progress: Callable[[Progress], Any] | bool | str | None = None) -> dict[str, Any]:
+        """All that is left of the run; then finish(). `progress`: a function of a Progress; True for a bar in a notebook and a line elsewhere;
+        "notebook" or "line" for one of them. Ctrl-C and exceptions of controllers end it in good order and come back."""
+        with _Shown(progress, words_of_run) as shown:
             try:
-                self.finish()
-            except Exception:  # the first failure is the one to be told about
-                pass
-            raise
-        finally:
-            if isinstance(show, _ProgressLine):
-                show.close()
+                self._core.advance(sys.maxsize, self._after_step if self._controllers else None, shown.call)
+            except BaseException:
+                self.stop()
+                try:
+                    self.finish()
+                except Exception:  # the first failure is the one to be told about
+                    pass
+                raise
         return self.finish()
 
     def finish(self) -> dict[str, Any]:
@@ -329,15 +329,3 @@ class Simulation:
 
     def __repr__(self) -> str:
         return f"<keyblock.Simulation, step {self.step}, {self.time:g} s, stage {self.stage!r}>"
-
-
-class _ProgressLine:
-    """One line on standard error, or in a notebook's output, that is redrawn."""
-
-    def __call__(self, now: Progress) -> None:
-        bar = "━" * round(24 * now.fraction)
-        text = f"{now.stage + 1}/{now.stages} {now.stage_name} {bar:<24} {now.fraction:4.0%} step {now.step}"
-        print(f"\r{text:<78}", end="", file=sys.stderr, flush=True)
-
-    def close(self) -> None:
-        print(file=sys.stderr)

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ._compiled import core as _core
+from .progress import Progress, words_of_study
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -37,21 +38,22 @@ def run_study(
     workers: int | None = None,
     executor: concurrent.futures.Executor | None = None,
     resume: bool = False,
-    progress: Callable[[int, int], Any] | None = None,
+    progress: Callable[[int, int], Any] | bool | str | None = None,
 ) -> Study:
     """Runs what is missing of a study, and collects it. `scenario` was loaded from a file. `workers`: processes, by default one for each
     processor. `executor`: anything with the `submit` of concurrent.futures, in the place of own processes; its workers must see the folder.
-    `progress`: called with runs that have ended, and all. What is done is never done again: `resume=True` goes on. Throws InputError, and
-    RunError with the reasons where runs have failed, after the others are collected."""
+    `progress`: called with runs that have ended, and all; or True, "notebook", "line" as for a run. What is done is never done again:
+    `resume=True` goes on. Throws InputError, and RunError with the reasons where runs have failed, after the others are collected."""
     path = os.path.abspath(os.fspath(folder))
     _core.plan_study(scenario._core, path, resume)
-    if executor is not None:
-        _run_all(path, executor, progress)
-    else:
-        count = workers or os.cpu_count() or 1
-        spawned = multiprocessing.get_context("spawn")  # threads of the parent do not come along
-        with concurrent.futures.ProcessPoolExecutor(count, mp_context=spawned) as own:
-            _run_all(path, own, progress)
+    with Progress(progress, words_of_study) as shown:
+        if executor is not None:
+            _run_all(path, executor, shown.call)
+        else:
+            count = workers or os.cpu_count() or 1
+            spawned = multiprocessing.get_context("spawn")  # threads of the parent do not come along
+            with concurrent.futures.ProcessPoolExecutor(count, mp_context=spawned) as own:
+                _run_all(path, own, shown.call)
     _core.collect_study(path)
     _, missing, failures = _core.study_state(path)
     if failures or missing:
