@@ -7,6 +7,8 @@ include(CMakePackageConfigHelpers)
 install(TARGETS keyblock RUNTIME COMPONENT program)
 install(DIRECTORY verification examples DESTINATION ${CMAKE_INSTALL_DATADIR}/keyblock COMPONENT program
   PATTERN "*.py" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY packaging/htcondor DESTINATION ${CMAKE_INSTALL_DATADIR}/keyblock COMPONENT program)
+install(FILES packaging/Snakefile DESTINATION ${CMAKE_INSTALL_DATADIR}/keyblock COMPONENT program)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 # What the program says of itself.
