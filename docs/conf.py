@@ -8,13 +8,14 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILT = ROOT / "build/release/python"
 sys.path.insert(0, str(BUILT if BUILT.exists() else ROOT / "python"))
+sys.path.insert(0, str(ROOT / "docs"))
 
 project = "keyblock"
 author = "the keyblock maintainers"
 copyright = "the keyblock maintainers"  # noqa: A001
 release = re.search(r"VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text().split("project(", 1)[1]).group(1)
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "cpp_api"]
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["site"]
 myst_heading_anchors = 5
