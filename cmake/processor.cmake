@@ -12,8 +12,13 @@ else()
   set(KEYBLOCK_PROCESSOR "any")
   set(CMAKE_REQUIRED_FLAGS ${CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}})
 endif()
+unset(KEYBLOCK_USES_SSE42 CACHE)
 unset(KEYBLOCK_USES_AVX2 CACHE)
 unset(KEYBLOCK_USES_AVX512 CACHE)
+check_cxx_source_compiles("#if !(defined(__SSE4_2__) && defined(__POPCNT__))
+#error
+#endif
+int main() {}" KEYBLOCK_USES_SSE42)
 check_cxx_source_compiles("#if !(defined(__AVX2__) && defined(__FMA__) && defined(__BMI2__))
 #error
 #endif
@@ -24,4 +29,5 @@ check_cxx_source_compiles("#ifndef __AVX512VL__
 int main() {}" KEYBLOCK_USES_AVX512)
 unset(CMAKE_REQUIRED_FLAGS)
 set(KEYBLOCK_PROCESSOR_DEFINITIONS
+  $<$<BOOL:${KEYBLOCK_USES_SSE42}>:KEYBLOCK_NEEDS_SSE42>
   $<$<BOOL:${KEYBLOCK_USES_AVX2}>:KEYBLOCK_NEEDS_AVX2> $<$<BOOL:${KEYBLOCK_USES_AVX512}>:KEYBLOCK_NEEDS_AVX512>)
