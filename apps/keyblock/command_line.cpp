@@ -7,10 +7,12 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "build_info.h"
 #include "commands.h"
 #include "core/error.h"
 #include "core/out_of_memory.h"
@@ -39,7 +41,12 @@ void describe(CLI::App& app, int& exit_code) {
       "Jointed rock as a system of deformable blocks (2D discontinuous deformation analysis): joints are cut "
       "into "
       "blocks, an opening is excavated, an earthquake shakes it.");
-  app.set_version_flag("--version", "keyblock " KEYBLOCK_VERSION);
+  // The order matters: options act in the order in which they are added.
+  const auto verbose = std::make_shared<bool>(false);
+  app.add_flag("--verbose", *verbose,
+               "With --version: for which processor the program was built, and by what");
+  app.set_version_flag("--version",
+                       [verbose] { return *verbose ? build_info() : "keyblock " KEYBLOCK_VERSION; });
   app.footer(
       "Examples:\n"
       "  keyblock new tunnel\n"

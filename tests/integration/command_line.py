@@ -21,6 +21,9 @@ class Help(Scenario):
 
     def test_version(self):
         self.assertRegex(self.keyblock("--version").stdout, r"^keyblock \d+\.\d+\.\d+\n$")
+        for words in (("--version", "--verbose"), ("--verbose", "--version")):
+            text = self.keyblock(*words).stdout
+            self.assertRegex(text, r"^keyblock \d+\.\d+\.\d+\nprocessor: .+\nregisters: [1248] numbers .*\ncompiler: +\S.*\n$")
 
 
 class WrongCommandLine(Scenario):
