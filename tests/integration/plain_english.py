@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
     "README.md",
     "docs/beams.md",
+    "docs/cpp-api.md",
     "docs/faq.md",
     "docs/gallery.md",
     "docs/index.md",
@@ -28,6 +29,7 @@ PAGES = [
     "docs/study-report.md",
     "docs/user-guide.md",
     "docs/verification.md",
+    "docs/vocabulary.md",
     "docs/tutorials/arch.md",
     "docs/tutorials/first-block.md",
     "docs/tutorials/own-tunnel.md",
