@@ -91,7 +91,7 @@ def fragility(study: Any) -> Any:
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH / 25.4 * 1.4, WIDTH / 25.4 * 0.6), layout="constrained")
     key = next(iter(study.axes))
     study.map({key: max(study.axes[key])}).plot(left)
-    left.set_title(f"Where rock falls, scale {max(study.axes[key])}")
+    left.set_title(f"Where rock falls, scale {max(study.axes[key])}", loc="left")
     for level in ("light", "moderate"):
         for curve in study.fragility(level, "pga_m_s2"):
             curve.plot(right)
@@ -105,7 +105,7 @@ PICTURES = {
     "01-tunnel": Picture("01-tunnel", section("first earthquake"), {f"{SHAKEN}.scale": 3.0, f"{SHAKEN}.duration": 8.0, "stage.after.duration": 0.1}),
     "02-tunnel-in-situ": Picture("02-tunnel-in-situ", section("excavated", "major", stress=True, window=(-7, 7, -7, 7)), {"stage.quiet.duration": 0.02, f"{SHAKEN}.duration": 0.02}),
     "03-block-on-incline": Picture("03-block-on-incline", section("slide", "displacement", arrows="displacement")),
-    "04-wall": Picture("04-wall", moments("displacement", ["stands", "shaken"], ["before", "after the shaking"])),
+    "04-wall": Picture("04-wall", moments("displacement", ["stands", "shaken"], ["before", "after the shaking"], log=False, vmin=0.0, label="Displacement")),
     "05-trace-map": Picture("05-trace-map", section("quiet", "displacement", joints="slip", window=(466002, 466014, 6691584, 6691596))),
     "08-study-fragility": Picture("08-study-fragility", fragility, study=True, values={
         "study.realizations": 32, "domain.x": "[-7.0, 7.0]", "domain.y": "[-7.0, 7.0]", f"{SHAKEN}.duration": 5.0, "stage.after.duration": 1.0,
