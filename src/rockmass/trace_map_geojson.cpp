@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int deepest = 32;  // levels of lists and objects
+constexpr int most_levels = 32;  // levels of lists and objects
 
 std::string text_of(const Json& value) {
   return shortened(value.dump());
@@ -215,9 +215,9 @@ void name_system(const Json& root, std::string_view text, MapReader& map) {
 }  // namespace
 
 void read_geojson(std::string_view text, MapReader& map) {
-  if (const std::size_t at = JsonText(text).find_deeper_than(deepest); at != std::string_view::npos) {
+  if (const std::size_t at = JsonText(text).find_deeper_than(most_levels); at != std::string_view::npos) {
     const auto [line, column] = line_and_column(text, at);
-    map.mistake(line, column, "", fmt::format("more than {} levels of lists and objects", deepest),
+    map.mistake(line, column, "", fmt::format("more than {} levels of lists and objects", most_levels),
                 "GeoJSON, which needs fewer than ten");
     return;
   }

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 11> geometries{
     "POINT",        "LINESTRING",         "POLYGON",        "MULTIPOINT",    "MULTILINESTRING",
     "MULTIPOLYGON", "GEOMETRYCOLLECTION", "CIRCULARSTRING", "COMPOUNDCURVE", "CURVEPOLYGON",
     "MULTICURVE"};
-constexpr int deepest = 32;  // collections within collections
+constexpr int most_collections = 32;  // collections within collections
 
 /// Well-known text (ISO 19125), with `SRID=…;` before a geometry as PostGIS writes it. Reads up to the first mistake.
 class WktReader {
@@ -56,7 +56,8 @@ class WktReader {
         break;
       }
     }
-    if (type == "GEOMETRYCOLLECTION" && depth < deepest) return list([&] { return geometry(depth + 1); });
+    if (type == "GEOMETRYCOLLECTION" && depth < most_collections)
+      return list([&] { return geometry(depth + 1); });
     if (type == "MULTILINESTRING") return list([&] { return line_string(); });
     if (type == "LINESTRING") return line_string();
     return fail(begin, type.empty() ? rest(begin) : '"' + shortened(type) + '"',
