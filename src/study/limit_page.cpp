@@ -50,13 +50,28 @@ struct Scale {
   [[nodiscard]] double at(double value) const { return begin + (value - low) / (high - low) * (end - begin); }
 };
 
+/// Both axes, with the ends of that of the key.
+std::string frame(const Scale& x, const Scale& y, const std::string& key) {
+  return fmt::format(
+      "<path class=\"axis\" fill=\"none\" d=\"M{0:.0f} {1:.0f}V{2:.0f}H{3:.0f}\"/>"
+      "<text x=\"{0:.0f}\" y=\"{4:.0f}\">{5:.5g}</text><text x=\"{3:.0f}\" y=\"{4:.0f}\" "
+      "text-anchor=\"end\">{6:.5g}</text>"
+      "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
+      x.begin, y.end, y.begin, x.end, y.begin + 16.0, x.low, x.high, 0.5 * (x.begin + x.end),
+      Chart::height - 8.0, xml_text(key));
+}
+
+Scale key_scale(const LimitRequest& request) {
+  return {std::min(request.from, request.to), std::max(request.from, request.to), Chart::left,
+          Chart::width - Chart::right};
+}
+
 class Plot {
  public:
   explicit Plot(const LimitResult& result)
       : result_(result),
         request_(result.request),
-        x_{std::min(request_.from, request_.to), std::max(request_.from, request_.to), Chart::left,
-           Chart::width - Chart::right},
+        x_(key_scale(request_)),
         y_{range().first, range().second, Chart::height - Chart::bottom, Chart::top} {}
 
   [[nodiscard]] std::string draw() const {
@@ -99,13 +114,7 @@ class Plot {
   }
 
   [[nodiscard]] std::string axes(const std::string& title) const {
-    std::string svg = fmt::format(
-        "<path class=\"axis\" fill=\"none\" d=\"M{0:.0f} {1:.0f}V{2:.0f}H{3:.0f}\"/>"
-        "<text x=\"{0:.0f}\" y=\"{4:.0f}\">{5:.5g}</text><text x=\"{3:.0f}\" y=\"{4:.0f}\" "
-        "text-anchor=\"end\">{6:.5g}</text>"
-        "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
-        x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
-        Chart::height - 8.0, xml_text(request_.key));
+    std::string svg = frame(x_, y_, request_.key);
     svg += fmt::format(
         "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">{6:.3g}</text><text x=\"{0:.0f}\" "
         "y=\"{2:.0f}\" "
@@ -137,8 +146,7 @@ class SharePlot {
  public:
   explicit SharePlot(const LimitResult& result)
       : result_(result),
-        x_{std::min(result.request.from, result.request.to), std::max(result.request.from, result.request.to),
-           Chart::left, Chart::width - Chart::right},
+        x_(key_scale(result.request)),
         y_{0.0, 1.0, Chart::height - Chart::bottom, Chart::top} {}
 
   [[nodiscard]] std::string draw() const {
@@ -173,13 +181,7 @@ class SharePlot {
 
  private:
   [[nodiscard]] std::string axes() const {
-    std::string svg = fmt::format(
-        "<path class=\"axis\" fill=\"none\" d=\"M{0:.0f} {1:.0f}V{2:.0f}H{3:.0f}\"/>"
-        "<text x=\"{0:.0f}\" y=\"{4:.0f}\">{5:.5g}</text><text x=\"{3:.0f}\" y=\"{4:.0f}\" "
-        "text-anchor=\"end\">{6:.5g}</text>"
-        "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
-        x_.begin, y_.end, y_.begin, x_.end, y_.begin + 16.0, x_.low, x_.high, 0.5 * (x_.begin + x_.end),
-        Chart::height - 8.0, xml_text(result_.request.key));
+    std::string svg = frame(x_, y_, result_.request.key);
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
       svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"end\">{:.0f} %</text>",
                          x_.begin - 6.0, y_.at(share) + 4.0, 100.0 * share);
