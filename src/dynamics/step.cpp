@@ -306,8 +306,10 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.owed_share = state.last_step / drive.step;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
-  const bool converged = attempt(state, drive, model_.solver, report) &&
-                         !comes_inside(solution(state, drive), rotation_, intrusions_);
+  SolverOptions options = model_.solver;
+  if (stiffness_damping(model_) > drive.step) options.max_iterations *= step_numbers::damped_patience;
+  const bool converged =
+      attempt(state, drive, options, report) && !comes_inside(solution(state, drive), rotation_, intrusions_);
   if (converged || halvings >= model_.solver.max_halvings) {
     report.converged = report.converged && converged;
     report.halvings = std::max(report.halvings, halvings);

@@ -87,6 +87,12 @@ inline constexpr int most_attempts = 4;
 /// Attempts with a new rotation correction, before the step is made shorter.
 inline constexpr int most_rotations = 4;
 
+// ── damping ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+/// So many times SolverOptions::max_iterations are given to a minimization whose dashpots are stiffer than its springs. They grow
+/// stiffer as the step is made shorter: the shorter step is the harder one. Smaller: steps end without convergence.
+inline constexpr int damped_patience = 5;
+
 // ── rotation correction ──────────────────────────────────────────────────────────────────────────────────────────────
 
 /// rad, that a block in contact turns by in a step at most. Larger: forces keep a direction that they no longer have.
