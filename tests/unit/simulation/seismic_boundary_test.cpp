@@ -7,6 +7,7 @@
 
 #include "../resumed_run.h"
 #include "../scene.h"
+#include "simulation/base.h"
 #include "simulation/build_boundary.h"
 #include "simulation/runner.h"
 
@@ -72,6 +73,36 @@ RunRecord run_with_the_same_bits(const RunSetup& setup) {
 
 TEST(SeismicBoundary, HasTheSameBitsForAnyThreadsAndAfterAnInterruption) {
   run_with_the_same_bits(ground());
+}
+
+// At its height beside each side, where the ground is not equally high.
+TEST(SeismicBoundary, HistoriesFollowTheRockOnEitherSide) {
+  RunSetup setup = ground();
+  setup.system.blocks.pop_back();  // the top one on the right
+  setup.properties.pop_back();
+  EXPECT_EQ(column_heights(setup, ColumnSide::left).ground, 20.0);
+  EXPECT_EQ(column_heights(setup, ColumnSide::right).ground, 16.0);
+  EXPECT_EQ(column_heights(setup, ColumnSide::right).base, 0.0);
+  setup.stages = {stage("shake", StageKind::shake)};
+  setup.histories = {{"left", "", {0.0, 15.0}, false, ColumnSide::left},
+                     {"right", "", {0.0, 15.0}, false, ColumnSide::right}};
+  LastHistory histories;
+  double apart = 0.0;
+  RunOptions options;
+  options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
+    ASSERT_EQ(histories.last.points.size(), 2u);
+    const HistoryRow::Point &left = histories.last.points[0], &right = histories.last.points[1];
+    const dynamics::GroundMove on_left = far_ground(runner.model(), runner.state(), {0.0, 15.0}),
+                               on_right = far_ground(runner.model(), runner.state(), {20.0, 15.0});
+    EXPECT_EQ(left.ux, on_left.displacement.x);
+    EXPECT_EQ(left.vy, on_left.velocity.y);
+    EXPECT_EQ(right.ux, on_right.displacement.x);
+    EXPECT_EQ(right.vy, on_right.velocity.y);
+    EXPECT_TRUE(std::isnan(left.sxx));
+    apart = std::max(apart, std::abs(left.vx - right.vx));
+  };
+  run(setup, options, histories);
+  EXPECT_GT(apart, 1e-3);
 }
 
 // The ground sways by a centimetre and more against the outcrop, and nothing has happened to it.
