@@ -174,9 +174,10 @@ class SharePlot {
                        up, down, line) +
            axes() +
            fmt::format(
-               "</svg><p>Share of {} realizations, and its {:.0f} % interval at each value by itself "
-               "(Wilson).</p>{}</section>",
-               result_.realizations.size(), 100.0 * result_.confidence, quantile_table());
+               "</svg><p>Share of the realizations whose search ended, and its {:.0f} % interval at each "
+               "value by "
+               "itself (Wilson).</p>{}</section>",
+               100.0 * result_.confidence, quantile_table());
   }
 
  private:
