@@ -41,7 +41,7 @@ class Limit:
 
     @property
     def value(self) -> float:
-        """The limit, the median over the realizations; NaN where it is not known."""
+        """The limit, the median over the realizations; NaN where it is not known. `summary["median"]["bound"]` says whether it is a bound."""
         found = self.summary["median"]["value"]
         return math.nan if found is None else float(found)
 
@@ -53,7 +53,9 @@ class Limit:
 
     @property
     def quantiles(self) -> dict[float, Estimate]:
-        """Limits over the realizations at 0.05, 0.25, 0.5, 0.75 and 0.95; ends of intervals that are not known are NaN."""
+        """Limits over the realizations at 0.05, 0.25, 0.5, 0.75 and 0.95; ends of intervals that are not known are NaN.
+
+        `summary["quantiles"]` says which are bounds, as limits beyond an end of the search have a part in them."""
         number = lambda value: math.nan if value is None else float(value)  # noqa: E731
         return {float(q["p"]): Estimate(number(q["value"]), number(q["low"]), number(q["high"])) for q in self.summary.get("quantiles", [])}
 

@@ -46,20 +46,17 @@ std::string quantiles_text(const LimitResult& result) {
   const auto& all = result.realizations;
   const auto found = std::count_if(all.begin(), all.end(), [](const auto& limit) { return limit.found(); });
   std::string text = fmt::format("limits of {} of {} realizations", found, all.size());
-  const statistics::Estimate median = result.median();
-  if (!std::isfinite(median.value)) return text + "\n";
-  text += fmt::format(": median {:.5g}", median.value);
-  if (std::isfinite(median.low) && std::isfinite(median.high))
-    text += fmt::format(" ({:.0f} % interval {:.5g} … {:.5g})", 100.0 * result.confidence, median.low,
-                        median.high);
+  const LimitQuantile median = result.median();
+  if (!std::isfinite(median.limit.value)) return text + "\n";
+  text += ": median " + result.number_text(median);
+  if (std::isfinite(median.limit.low) && std::isfinite(median.limit.high))
+    text += fmt::format(" ({:.0f} % interval {} … {})", 100.0 * result.confidence,
+                        result.number_text(median.limit.low), result.number_text(median.limit.high));
   text += "\nquantiles:";
-  const auto end = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.5g}", value) : std::string("?");
-  };
   std::string before = " ";
   for (const LimitQuantile& quantile : result.quantiles()) {
-    text += fmt::format("{}{:.0f} % {:.5g} ({} … {})", before, 100.0 * quantile.p, quantile.limit.value,
-                        end(quantile.limit.low), end(quantile.limit.high));
+    text += fmt::format("{}{:.0f} % {} ({} … {})", before, 100.0 * quantile.p, result.number_text(quantile),
+                        result.number_text(quantile.limit.low), result.number_text(quantile.limit.high));
     before = ", ";
   }
   return text + "\n";
@@ -109,19 +106,45 @@ std::vector<LimitQuantile> LimitResult::quantiles() const {
     if (limit.state.status == Status::met_at_none) limits.push_back(request.to);
   }
   std::sort(limits.begin(), limits.end());
+  // The same with limits beyond the ends where they are: a quantile that has a part in one of them is infinite.
+  std::vector<double> beyond = limits;
+  for (double& limit : beyond) {
+    if (limit == std::max(request.from, request.to)) limit = HUGE_VAL;
+  }
+  std::vector<double> before = limits;
+  for (double& limit : before) {
+    if (limit == std::min(request.from, request.to)) limit = -HUGE_VAL;
+  }
   std::vector<LimitQuantile> all;
   for (const double p : limit_quantiles) {
     const statistics::Interval interval = statistics::quantile_interval(limits, p, confidence);
-    all.push_back({p, {statistics::quantile(limits, p), interval.low, interval.high}});
+    all.push_back({p,
+                   {statistics::quantile(limits, p), interval.low, interval.high},
+                   !std::isfinite(statistics::quantile(beyond, p)),
+                   !std::isfinite(statistics::quantile(before, p))});
   }
   return all;
 }
 
-statistics::Estimate LimitResult::median() const {
+LimitQuantile LimitResult::median() const {
   for (const LimitQuantile& quantile : quantiles()) {
-    if (quantile.p == 0.5) return quantile.limit;
+    if (quantile.p == 0.5) return quantile;
   }
   return {};
+}
+
+std::string LimitResult::number_text(double limit) const {
+  if (!std::isfinite(limit)) return "?";
+  const char* mark = limit == std::max(request.from, request.to)   ? "≥ "
+                     : limit == std::min(request.from, request.to) ? "≤ "
+                                                                   : "";
+  return fmt::format("{}{:.5g}", mark, limit);
+}
+
+std::string LimitResult::number_text(const LimitQuantile& quantile) const {
+  if (quantile.at_least == quantile.at_most)
+    return quantile.at_least ? "?" : number_text(quantile.limit.value);
+  return fmt::format("{}{:.5g}", quantile.at_least ? "≥ " : "≤ ", quantile.limit.value);
 }
 
 std::vector<LimitShare> LimitResult::met_shares() const {

@@ -49,6 +49,8 @@ struct LimitTrial {
 struct LimitQuantile {
   double p = 0.0;
   statistics::Estimate limit;  ///< the ends of its interval are infinite where there are too few realizations
+  /// The limit is a bound, as limits beyond the larger or the smaller end of the search have a part in it.
+  bool at_least = false, at_most = false;
 };
 
 /// In which share of the realizations the criterion holds at a value of the key.
@@ -82,7 +84,10 @@ struct LimitResult {
   /// Limits over realizations at 5, 25, 50, 75 and 95 %, with intervals by order statistics. A limit that lies beyond an end of the interval
   /// that was searched counts as that end. Not a number where none is known.
   [[nodiscard]] std::vector<LimitQuantile> quantiles() const;
-  [[nodiscard]] statistics::Estimate median() const;
+  [[nodiscard]] LimitQuantile median() const;
+  /// A limit as text: "≥ 60" for the larger end of the search, "≤ 5" for the smaller one, as limits beyond it count as that end.
+  [[nodiscard]] std::string number_text(double limit) const;
+  [[nodiscard]] std::string number_text(const LimitQuantile& quantile) const;
   /// A staircase from `from` to `to`, with Wilson's interval at each value by itself: `share` holds from `value` on. Empty where nothing is known.
   [[nodiscard]] std::vector<LimitShare> met_shares() const;
 };

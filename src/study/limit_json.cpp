@@ -32,6 +32,12 @@ ordered_json number_or_null(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
+ordered_json bound_json(const LimitQuantile& quantile) {
+  if (quantile.at_least && quantile.at_most) return "not known";
+  if (quantile.at_least) return "at least";
+  return quantile.at_most ? ordered_json("at most") : ordered_json();
+}
+
 ordered_json trial_json(const LimitTrial& trial) {
   return {{"value", trial.value},
           {"met", trial.met},
@@ -91,35 +97,39 @@ std::string limit_json(const LimitResult& result) {
   ordered_json above = request.criterion.collapse ? ordered_json() : ordered_json(request.criterion.above);
   ordered_json realizations = ordered_json::array();
   for (const RealizationLimit& limit : result.realizations) realizations.push_back(realization_json(limit));
-  const statistics::Estimate median = result.median();
+  const LimitQuantile median = result.median();
   ordered_json interval, quantiles = ordered_json::array(), since;
-  if (std::isfinite(median.low) && std::isfinite(median.high)) interval = {median.low, median.high};
+  if (std::isfinite(median.limit.low) && std::isfinite(median.limit.high))
+    interval = {median.limit.low, median.limit.high};
   for (const LimitQuantile& quantile : result.quantiles())
     quantiles.push_back({{"p", quantile.p},
                          {"value", number_or_null(quantile.limit.value)},
+                         {"bound", bound_json(quantile)},
                          {"low", number_or_null(quantile.limit.low)},
                          {"high", number_or_null(quantile.limit.high)}});
   if (!request.since.empty()) since = request.since;
-  const ordered_json json{
-      {"title", result.title},
-      {"scenario", result.scenario},
-      {"version", result.version},
-      {"seed", result.seed},
-      {"overrides", result.overrides},
-      {"key", request.key},
-      {"from", request.from},
-      {"to", request.to},
-      {"until", request.criterion.name},
-      {"measure", request.criterion.measure},
-      {"above", above},
-      {"since", since},
-      {"tolerance", request.tolerance},
-      {"complete", result.complete},
-      {"median",
-       {{"value", number_or_null(median.value)}, {"confidence", result.confidence}, {"interval", interval}}},
-      {"quantiles", quantiles},
-      {"met_share", shares_json(result)},
-      {"realizations", realizations}};
+  const ordered_json json{{"title", result.title},
+                          {"scenario", result.scenario},
+                          {"version", result.version},
+                          {"seed", result.seed},
+                          {"overrides", result.overrides},
+                          {"key", request.key},
+                          {"from", request.from},
+                          {"to", request.to},
+                          {"until", request.criterion.name},
+                          {"measure", request.criterion.measure},
+                          {"above", above},
+                          {"since", since},
+                          {"tolerance", request.tolerance},
+                          {"complete", result.complete},
+                          {"median",
+                           {{"value", number_or_null(median.limit.value)},
+                            {"bound", bound_json(median)},
+                            {"confidence", result.confidence},
+                            {"interval", interval}}},
+                          {"quantiles", quantiles},
+                          {"met_share", shares_json(result)},
+                          {"realizations", realizations}};
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -191,17 +191,19 @@ class SharePlot {
 
   [[nodiscard]] std::string quantile_table() const {
     std::string rows;
-    const auto cell = [](double value) {
-      return std::isfinite(value) ? fmt::format("<td>{:.5g}</td>", value) : std::string("<td>not known</td>");
+    const auto cell = [&](const auto& number) {
+      const std::string text = result_.number_text(number);
+      return fmt::format("<td>{}</td>", text == "?" ? "not known" : text);
     };
     for (const LimitQuantile& quantile : result_.quantiles())
-      rows += fmt::format("<tr><td>{:.0f} %</td>{}{}{}</tr>", 100.0 * quantile.p, cell(quantile.limit.value),
+      rows += fmt::format("<tr><td>{:.0f} %</td>{}{}{}</tr>", 100.0 * quantile.p, cell(quantile),
                           cell(quantile.limit.low), cell(quantile.limit.high));
     return fmt::format(
         "<table><tr><th>quantile</th><th>limit of {}</th><th>{:.0f} % interval "
         "from</th><th>to</th></tr>{}</table>"
         "<p>Intervals are by order statistics; an end is not known where there are too few realizations. "
-        "Limits beyond an end of the search count as that end. <a href=\"limits.csv\">limits.csv</a></p>",
+        "Limits beyond an end of the search count as that end; ≥ and ≤ tell where such limits have a part. "
+        "<a href=\"limits.csv\">limits.csv</a></p>",
         xml_text(result_.request.key), 100.0 * result_.confidence, rows);
   }
 

@@ -121,8 +121,8 @@ class Reproducible(Limit):
         low, high = result["median"]["interval"]
         self.assertLessEqual(low, result["median"]["value"])
         self.assertLessEqual(result["median"]["value"], high)
-        self.assertRegex(done.stdout, r"limits of \d of 6 realizations: median [\d.]+ \(95 % interval ")
-        self.assertRegex(done.stdout, r"\nquantiles: 5 % [\d.]+ \(\? … [\d.]+\), 25 % ")
+        self.assertRegex(done.stdout, r"limits of \d of 6 realizations: median [≥≤ ]*[\d.]+ \(95 % interval ")
+        self.assertRegex(done.stdout, r"\nquantiles: 5 % [≥≤ ]*[\d.]+ \(\? … [≥≤ ]*[\d.]+\), 25 % ")
         self.assertEqual([quantile["p"] for quantile in result["quantiles"]], [0.05, 0.25, 0.5, 0.75, 0.95])
         shares = result["met_share"]["share"]
         self.assertEqual(shares, sorted(shares))

@@ -100,24 +100,39 @@ LimitResult six_limits() {
 
 TEST(Limit, QuantilesCountLimitsBeyondTheEndsAsThese) {
   LimitResult result = six_limits();
-  EXPECT_EQ(result.median().value, 20.5);
-  EXPECT_EQ(result.median().low, 0.0);
-  EXPECT_EQ(result.median().high, 40.0);
+  EXPECT_EQ(result.median().limit.value, 20.5);
+  EXPECT_FALSE(result.median().at_least || result.median().at_most);
+  EXPECT_EQ(result.median().limit.low, 0.0);
+  EXPECT_EQ(result.median().limit.high, 40.0);
   const auto quantiles = result.quantiles();
   ASSERT_EQ(quantiles.size(), 5u);
   EXPECT_EQ(quantiles[4].p, 0.95);
   EXPECT_NEAR(quantiles[4].limit.value, 30.5 + 0.75 * 9.5, 1e-12);
+  EXPECT_TRUE(quantiles[4].at_least);  // a limit above 40 has a part in it
+  EXPECT_FALSE(quantiles[4].at_most);
+  EXPECT_TRUE(quantiles[0].at_most);
   EXPECT_EQ(quantiles[4].limit.high, HUGE_VAL);
   const std::string text = limit_text(result);
   EXPECT_THAT(text, HasSubstr("joints.friction until fallen area of more than 0.5 m²\n"));
   EXPECT_THAT(text, HasSubstr("realization 1: met at --from 40 already\n"));
   EXPECT_THAT(text, HasSubstr("realization 2: not met up to --to 0\n"));
-  EXPECT_THAT(text, HasSubstr("limits of 4 of 6 realizations: median 20.5 (95 % interval 0 … 40)\n"));
-  EXPECT_THAT(text, HasSubstr("95 % 37.625 ("));
+  EXPECT_THAT(text, HasSubstr("limits of 4 of 6 realizations: median 20.5 (95 % interval ≤ 0 … ≥ 40)\n"));
+  EXPECT_THAT(text, HasSubstr("95 % ≥ 37.625 ("));
   EXPECT_THAT(text, HasSubstr(" … ?)\n"));
   result.realizations[0].error = "a crash";
-  EXPECT_EQ(result.median().value, 21.5);
-  EXPECT_EQ(result.median().low, -HUGE_VAL);  // five are too few
+  EXPECT_EQ(result.median().limit.value, 21.5);
+  EXPECT_EQ(result.median().limit.low, -HUGE_VAL);  // five are too few
+}
+
+TEST(Limit, AMedianOfLimitsBeyondAnEndIsABound) {
+  const LimitResult above = result_of({{Status::met_at_both, 0.0, 0.0, {}},
+                                       {Status::met_at_both, 0.0, 0.0, {}},
+                                       {Status::found, 12.0, 11.0, {}}});
+  EXPECT_THAT(limit_text(above), HasSubstr("median ≥ 40\n"));
+  EXPECT_EQ(nlohmann::json::parse(limit_json(above)).at("median").at("bound"), "at least");
+  const LimitResult both =
+      result_of({{Status::met_at_both, 0.0, 0.0, {}}, {Status::met_at_none, 0.0, 0.0, {}}});
+  EXPECT_THAT(limit_text(both), HasSubstr("median ?\n"));
 }
 
 TEST(Limit, SharesGoFromOneEndToTheOther) {
@@ -164,6 +179,7 @@ TEST(Limit, JsonHasBracketsAndRuns) {
   EXPECT_EQ(limit.at("just_beyond"), "runs/r0000-b");
   EXPECT_EQ(limit.at("trials").at(1).at("standing"), "collapsed");
   EXPECT_TRUE(json.at("median").at("interval").is_null());
+  EXPECT_TRUE(json.at("median").at("bound").is_null());
   EXPECT_TRUE(json.at("since").is_null());
   EXPECT_EQ(json.at("quantiles").at(2).at("value"), 19.5);
   EXPECT_TRUE(json.at("quantiles").at(2).at("low").is_null());
