@@ -13,7 +13,7 @@ namespace {
 /// Points of a drawn curve, evenly spaced in the logarithm of the intensity.
 constexpr std::size_t curve_points = 61;
 /// By what factor it is drawn beyond the weakest and the strongest shaking.
-constexpr double beyond = 1.6;
+constexpr double beyond_last = 1.6;
 
 struct Group {
   std::vector<std::string> values;
@@ -48,8 +48,8 @@ std::vector<double> curve_grid(const std::vector<statistics::Observation>& runs)
   }
   std::vector<double> grid;
   if (!(high > low)) return grid;
-  low /= beyond;
-  high *= beyond;
+  low /= beyond_last;
+  high *= beyond_last;
   for (std::size_t k = 0; k < curve_points; ++k)
     grid.push_back(low *
                    std::pow(high / low, static_cast<double>(k) / static_cast<double>(curve_points - 1)));
