@@ -226,6 +226,11 @@ bool are_records(const RunState& state, const RunSetup& setup, std::size_t block
   return true;
 }
 
+/// Of each support that a stage installs, whether it is there.
+bool are_supports(std::span<const std::uint8_t> installed, const RunSetup& setup) {
+  return installed.size() == setup.staged_supports.size() && are_flags(installed);
+}
+
 }  // namespace
 
 std::string mistake_in_orders(const OrderControl::Memory& memory, const RunSetup& setup, const Model& model) {
@@ -253,9 +258,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
     return "contacts that cannot be";
   if (!are_walls(state.mechanics, setup, model) || !is_opening(state, setup, model))
     return "loads on walls that cannot be";
-  if (state.mechanics.installed.size() != setup.staged_supports.size() ||
-      !are_flags(state.mechanics.installed))
-    return "supports that are not of this run";
+  if (!are_supports(state.mechanics.installed, setup)) return "supports that are not of this run";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";

@@ -161,9 +161,8 @@ class SharePlot {
       };
       line += (k == 0 ? "M" : "L") + stretch(steps[k].share.value);
       up += (k == 0 ? "M" : "L") + stretch(steps[k].share.high);
-      down = fmt::format("L{:.2f} {:.2f}L{:.2f} {:.2f}", end, y_.at(steps[k].share.low), begin,
-                         y_.at(steps[k].share.low)) +
-             down;
+      down.insert(0, fmt::format("L{:.2f} {:.2f}L{:.2f} {:.2f}", end, y_.at(steps[k].share.low), begin,
+                                 y_.at(steps[k].share.low)));
     }
     return fmt::format(
                "<section><h2>Realizations in which the criterion is met</h2><svg class=\"plot\" viewBox=\"0 "
