@@ -106,22 +106,19 @@ std::vector<LimitQuantile> LimitResult::quantiles() const {
     if (limit.state.status == Status::met_at_none) limits.push_back(request.to);
   }
   std::sort(limits.begin(), limits.end());
-  // The same with limits beyond the ends where they are: a quantile that has a part in one of them is infinite.
-  std::vector<double> beyond = limits;
-  for (double& limit : beyond) {
-    if (limit == std::max(request.from, request.to)) limit = HUGE_VAL;
-  }
-  std::vector<double> before = limits;
-  for (double& limit : before) {
-    if (limit == std::min(request.from, request.to)) limit = -HUGE_VAL;
-  }
+  // Limits beyond an end lie anywhere beyond it. A quantile that moves with them is a bound.
+  const auto [low, high] = std::minmax(request.from, request.to);
+  std::vector<double> lower = limits, higher = limits;
+  std::replace(lower.begin(), lower.end(), low, low - (high - low));
+  std::replace(higher.begin(), higher.end(), high, high + (high - low));
   std::vector<LimitQuantile> all;
   for (const double p : limit_quantiles) {
+    const double value = statistics::quantile(limits, p);
     const statistics::Interval interval = statistics::quantile_interval(limits, p, confidence);
     all.push_back({p,
-                   {statistics::quantile(limits, p), interval.low, interval.high},
-                   !std::isfinite(statistics::quantile(beyond, p)),
-                   !std::isfinite(statistics::quantile(before, p))});
+                   {value, interval.low, interval.high},
+                   statistics::quantile(higher, p) > value,
+                   statistics::quantile(lower, p) < value});
   }
   return all;
 }

@@ -130,6 +130,12 @@ TEST(Limit, AMedianOfLimitsBeyondAnEndIsABound) {
                                        {Status::found, 12.0, 11.0, {}}});
   EXPECT_THAT(limit_text(above), HasSubstr("median ≥ 40\n"));
   EXPECT_EQ(nlohmann::json::parse(limit_json(above)).at("median").at("bound"), "at least");
+  // The middle one of three has no part in the others.
+  const LimitResult middle = result_of({{Status::met_at_both, 0.0, 0.0, {}},
+                                        {Status::met_at_none, 0.0, 0.0, {}},
+                                        {Status::found, 12.0, 11.0, {}}});
+  EXPECT_THAT(limit_text(middle), HasSubstr("median 11.5\n"));
+  EXPECT_TRUE(nlohmann::json::parse(limit_json(middle)).at("median").at("bound").is_null());
   const LimitResult both =
       result_of({{Status::met_at_both, 0.0, 0.0, {}}, {Status::met_at_none, 0.0, 0.0, {}}});
   EXPECT_THAT(limit_text(both), HasSubstr("median ?\n"));
