@@ -320,7 +320,8 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver, bool without_g
       {.meaning =
            "Open-close iterations of a minimization, of which a step has several, before the "
            "step is retried with half its size; five times as many where damping is stiffer than springs.",
-       .at_least = 1.0});
+       .at_least = 1.0,
+       .at_most = 1e6});
   t.integer("max_halvings", solver.max_halvings,
             {.meaning = "How often a step is halved at most.", .at_least = 0.0});
   t.number("bound_tolerance", solver.bound_tolerance,
