@@ -72,6 +72,13 @@ Blocking find_blocking(const CornerView& view, const BlockPair& pair, const Comp
 Outcome compete_among_blocks(const CornerView& view, const BlockPair& pair,
                              std::span<Competitor* const> all) {
   Outcome outcome = compete(view, all);
+  if (outcome.each) {
+    // Beside a closed joint tips slide over the joint: only lines that nothing else is beside hold together.
+    outcome.each = std::ranges::none_of(all, [&](const Competitor* c) {
+      const Blocking found = find_blocking(view, pair, *c);
+      return found.is_beside || found.in_the_way > 0.0;
+    });
+  }
   if (outcome.parallel || outcome.winner == nullptr || holds_vertex(view, *outcome.winner)) return outcome;
   const Blocking of_winner = find_blocking(view, pair, *outcome.winner);
   if (!(of_winner.in_the_way > 0.0)) return outcome;

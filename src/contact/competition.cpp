@@ -153,6 +153,20 @@ Competitor* winner_of_turned(const CornerView& view, All all, Competitor* before
   return winner->gap <= -view.tolerances.corner_depth && holds_vertex(view, *before) ? before : winner;
 }
 
+/// Whether corners press on each other tip to tip: two lines part them in other directions, and neither is nearer to being the way out, nor
+/// passed in the step. Each direction between the normals of the lines keeps them apart then, as it does where tips are a little round.
+bool press_tip_to_tip(const CornerView& view, All all, const Competitor* before) {
+  if (before == nullptr || !(view.memory(*before).normal_force > 0.0)) return false;
+  bool turned = false;
+  for (const Competitor* c : all) {
+    if (std::abs(c->gap - before->gap) >= view.tolerances.corner_tie) return false;
+    if (predicted_gap(view, *c, view.motion.predicted) < std::min(c->gap, 0.0) - view.tolerances.corner_depth)
+      return false;
+    turned = turned || part_otherwise(view, *c, *before);
+  }
+  return turned;
+}
+
 }  // namespace
 
 double cosine_between(const CornerView& view, const Competitor& one, const Competitor& other) {
@@ -195,8 +209,9 @@ Outcome compete(const CornerView& view, All all) {
   const bool hands_over = winner != nullptr && before != nullptr && winner != before &&
                           (parallel || (view.memory(*before).normal_force > 0.0 && winner->memory < 0 &&
                                         alike(*winner, *before)));
-  if (hands_over) winner->memory = before->memory;
-  return {winner, parallel, hands_over, left_out};
+  const bool each = !parallel && press_tip_to_tip(view, competing, before);
+  if (hands_over && !each) winner->memory = before->memory;
+  return {winner, parallel, each, hands_over && !each, left_out};
 }
 
 }  // namespace keyblock::contact

@@ -16,6 +16,7 @@ namespace keyblock::contact {
 struct Outcome {
   Competitor* winner = nullptr;  ///< null: none
   bool parallel = true;          ///< all their lines
+  bool each = false;             ///< each of the lines holds: the corners press on each other tip to tip
   bool handed_over = false;      ///< the winner continues the memory of another competitor
   bool left_out =
       false;  ///< others did not compete: no edge of their vertex faces, or another block is in the way

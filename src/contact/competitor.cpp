@@ -13,6 +13,8 @@ struct Group {
   std::array<double, lane_count> reach{}, turn{};
   std::array<double, lane_count> deepest{};            ///< m, depth up to which they may be in contact
   std::array<double, lane_count> bonded{}, presses{};  ///< 1 or 0
+  std::array<double, lane_count>
+      closure{};  ///< m, that in-situ stress has closed a joint by that still presses
 };
 
 /// The candidates of a group that are contacts, unless they lose to others of the same two corners, to `passed`. Returns their number. All
@@ -50,7 +52,8 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
     const Lanes across = nx * x + ny * y;
     return (across >= 0.0) | (across * across <= sine * sine);
   };
-  const auto passes = ((load(group.bonded.data()) > 0.0) | (gap <= tolerances.activation + reach)) &
+  const auto passes = ((load(group.bonded.data()) > 0.0) |
+                       (gap <= tolerances.activation + reach + load(group.closure.data()))) &
                       (gap >= -deepest) & (along >= -before) & (along <= length + after) &
                       outside(vertex[2], vertex[3]) & outside(-vertex[4], -vertex[5]);
   // Near an end at a convex corner: there others of the same two corners may be the contact.
@@ -94,6 +97,7 @@ inline void add(Group& group, std::size_t candidate, std::size_t pair, const Pai
   group.deepest[i] = before.holds() ? limits.thickness : limits.deepest;
   group.presses[i] = before.normal_force > 0.0 ? 1.0 : 0.0;
   group.bonded[i] = before.bonded ? 1.0 : 0.0;
+  group.closure[i] = before.normal_force > 0.0 ? std::max(0.0, -before.offset) : 0.0;
   group.size += limits.away < clearance ? 0 : 1;
 }
 

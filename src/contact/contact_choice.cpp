@@ -58,7 +58,7 @@ void let_corners_compete(const CornerView& view, const BlockPair& pair, std::spa
       c->corners = 0;
       const bool is_apart =
           outcome.parallel && !outcome.left_out && inside(view, *c) > view.tolerances.end_zone;
-      if (c != outcome.winner && !is_apart) c->candidate = -1;
+      if (c != outcome.winner && !is_apart && !outcome.each) c->candidate = -1;
     }
   }
 }

@@ -102,7 +102,8 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
   const auto before = [&](const FoundContact& f) -> const Memory& {
     return f.memory < 0 ? nothing : candidates.memory[at(f.memory)];
   };
-  const ContactGeometry geometry = measure_contacts(surface, tolerances_, corners, candidates.pairs, found);
+  const ContactGeometry geometry =
+      measure_contacts(surface, tolerances_, corners, candidates.pairs, found, candidates.memory);
   std::array<SpringLaw, lane_count> laws;
   bool same = true;
   LawLanes law{};

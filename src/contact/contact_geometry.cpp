@@ -13,6 +13,7 @@ struct Vertices {
   Lanes corner[lane_count];                          ///< components of Corner
   Lanes length_before;                               ///< m, of the edge that ends there
   std::array<std::size_t, lane_count> next, before;  ///< the edges that begin and end there
+  Lanes offset;                                      ///< m, Memory::offset of their contacts
 
   /// One of their edges, where it faces the line: they run against each other, both with their block on the left.
   struct Facing {
@@ -39,6 +40,7 @@ void for_facing(const Outlines& outlines, const Vertices& vertices, const Lanes 
                 const std::array<std::size_t, lane_count>& lines, const OfEdge& of_edge) {
   const Lanes(&vertex)[lane_count] = vertices.corner;
   const Lanes tx = line[2], ty = line[3], along = tx * (vertex[0] - line[0]) + ty * (vertex[1] - line[1]);
+  const Lanes depth = tx * (vertex[1] - line[1]) - ty * (vertex[0] - line[0]) - vertices.offset;
   const auto whole_edge = [&](const std::array<std::size_t, lane_count>& of) -> Beside<Lanes> {
     if constexpr (!divided) return {broadcast(0.5), Lanes{}, Lanes{}, broadcast(1.0)};
     Lanes w[lane_count];
@@ -47,14 +49,18 @@ void for_facing(const Outlines& outlines, const Vertices& vertices, const Lanes 
     return {w[4], tx * (w[0] - line[0]) + ty * (w[1] - line[1]),
             tx * (w[2] - line[0]) + ty * (w[3] - line[1]), w[5]};
   };
-  const SharedLength<Lanes> shared{along, line[6], outlines.tolerances.end_zone,
-                                   outlines.tolerances.activation};
+  const SharedLength<Lanes> shared{along,
+                                   line[6],
+                                   outlines.tolerances.end_zone,
+                                   outlines.tolerances.activation,
+                                   outlines.tolerances.depth_limit,
+                                   Tolerances::sine_facing};
   const auto measure_edge = [&](Lanes ux, Lanes uy, Lanes length, Lanes sign, const Beside<Lanes>& edge,
                                 const Beside<Lanes>& of_line) {
-    const Lanes across = ty * ux - tx * uy, forward = ux * tx + uy * ty, long_beside = shared.stretch(across);
+    const Lanes across = ty * ux - tx * uy, forward = ux * tx + uy * ty, to = along + forward * sign * length,
+                long_beside = shared.stretch(depth, sign * across, shared.opposite(to));
     const auto faces =
         ~((forward > 0.0) | (across * across > Tolerances::sine_facing * Tolerances::sine_facing));
-    const Lanes to = along + forward * sign * length;
     const Lanes of_vertex =
         divided ? shared(to, long_beside, edge, of_line) : 0.5 * shared.common(to, long_beside);
     of_edge(Vertices::Facing{faces, where(faces, of_vertex, Lanes{}), long_beside, length, edge, of_line});
@@ -85,7 +91,7 @@ Lanes length_beyond(const Outlines& outlines, const Vertices& vertices, const La
 /// Eight at once, or fewer at the end.
 template <bool divided>
 ContactGeometry measure(const Outlines& outlines, std::span<const Candidate> candidates,
-                        std::span<const FoundContact> found) {
+                        std::span<const FoundContact> found, std::span<const Memory> memories) {
   const Surface& surface = outlines.surface;
   Vertices vertices;
   Lanes edge[lane_count];
@@ -102,6 +108,10 @@ ContactGeometry measure(const Outlines& outlines, std::span<const Candidate> can
   transpose(vertices.corner);
   vertices.length_before =
       each_lane([&](std::size_t i) { return outlines.corners[vertices.before[i]].length; });
+  vertices.offset = each_lane([&](std::size_t i) {
+    const int k = i < found.size() ? found[i].memory : -1;
+    return k >= 0 ? memories[at(k)].offset : 0.0;
+  });
   const auto at_corner = lanes_where(found, [](const FoundContact& f) { return f.at_corner; });
   const Lanes dx = vertices.corner[0] - edge[0], dy = vertices.corner[1] - edge[1], length = edge[6],
               position = (edge[2] * dx + edge[3] * dy) / length,
@@ -140,10 +150,11 @@ ContactGeometry measure(const Outlines& outlines, std::span<const Candidate> can
 }  // namespace
 
 ContactGeometry measure_contacts(const Surface& surface, const Tolerances& tolerances, const Corners& corners,
-                                 std::span<const Candidate> candidates, std::span<const FoundContact> found) {
+                                 std::span<const Candidate> candidates, std::span<const FoundContact> found,
+                                 std::span<const Memory> memories) {
   const Outlines outlines{surface, tolerances, corners.all(), corners.whole_edges()};
-  return outlines.wholes.empty() ? measure<false>(outlines, candidates, found)
-                                 : measure<true>(outlines, candidates, found);
+  return outlines.wholes.empty() ? measure<false>(outlines, candidates, found, memories)
+                                 : measure<true>(outlines, candidates, found, memories);
 }
 
 }  // namespace keyblock::contact

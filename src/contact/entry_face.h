@@ -4,8 +4,15 @@
 /// By which face a vertex has come into another block. A vertex behind one face of a sharp corner is behind the other face, too.
 namespace keyblock::contact {
 
-/// m, from a vertex to the nearest edge of the block of `edge`, except this edge and `except`. Edges beyond a reflex vertex do not count.
-double distance_to_other_edges(const CornerView& view, int vertex, int edge, int except = -1);
+/// The edge nearest to a vertex, of the block of `edge`, except this edge and `except`. Edges beyond a reflex vertex do not count.
+struct NearEdge {
+  double distance;  ///< m; HUGE_VAL: there is none
+  double gap;       ///< m, of the vertex from its line; positive: in front of it, outside the block
+};
+NearEdge nearest_other_edge(const CornerView& view, int vertex, int edge, int except = -1);
+inline double distance_to_other_edges(const CornerView& view, int vertex, int edge, int except = -1) {
+  return nearest_other_edge(view, vertex, edge, except).distance;
+}
 
 /// m, behind an edge, from which on it is asked where a vertex has come in. A tip that presses on the very end of a face is nearer to the
 /// side below.

@@ -19,16 +19,27 @@ struct SharedLength {
   Number along, length;  ///< m: of the edge, where the vertex is on it and how long it is
   double zone;           ///< m, by which edges may miss each other and still begin or end together
   double apart;          ///< m, up to which they are beside each other
+  double deep;           ///< m, that counts of what they are pressed into each other
+  double facing;         ///< sine of the angle from which on they do not face each other
 
-  /// m of the edge, over which an edge that leaves it at an angle of this sine is beside it.
-  [[nodiscard]] Number stretch(Number sine) const {
-    const Number most = Number{} + apart;
-    return most / larger(size(sine), most * (1.0 / largest_length));
-  }
-  /// m that an edge of the vertex has in common with this edge. It reaches to `to`, and is beside this edge for `long_beside`.
-  [[nodiscard]] Number common(Number to, Number long_beside) const {
+  /// m that an edge of the vertex lies opposite to this edge. It reaches to `to`.
+  [[nodiscard]] Number opposite(Number to) const {
     const Number low = smaller(along, to), high = larger(along, to), zero{};
-    return smaller(larger(zero, smaller(length, high) - larger(zero, low)), long_beside);
+    return larger(zero, smaller(length, high) - larger(zero, low));
+  }
+  /// m of the edge, over which an edge opposite to it is beside it. depth: m, of the vertex in this edge; slope: how the gap grows away from the
+  /// vertex, the sine of their angle. What is pressed in is not apart, so from the deepest point of the two the gap may grow by that depth and by
+  /// `apart`: by less, the nearer the angle comes to that of edges that do not face each other, where nothing is left of the length.
+  [[nodiscard]] Number stretch(Number depth, Number slope, Number opposite) const {
+    const Number zero{}, sine = size(slope),
+                         flat = smaller(zero + 1.0, larger(zero, 2.0 - sine * (2.0 / facing))),
+                         deepest = depth + larger(zero, -slope) * opposite,
+                         most = flat * larger(zero, smaller(deepest, zero + deep)) + apart;
+    return most / larger(sine, most * (1.0 / largest_length));
+  }
+  /// m that both have in common.
+  [[nodiscard]] Number common(Number to, Number long_beside) const {
+    return smaller(opposite(to), long_beside);
   }
   /// m that the vertex has of the common length: the half, in general. Where one edge lies within the other with all of its pieces, the vertex
   /// has what Surface::start_share of that edge gives it. Where both are divided alike, it has the mean of both; as blocks slide, that

@@ -45,9 +45,10 @@ double depth_margin(const CornerView& view, const Candidate& candidate, const Co
   const double too_deep = -competitor.gap - entry_depth(view, competitor);
   if (too_deep < 0.0) return -too_deep / gap_rate;
   // The vertex and the other edges move by no more than the blocks do.
-  const double length = view.corner(candidate.edge).length,
-               farther = distance_to_other_edges(view, candidate.vertex, candidate.edge) + competitor.gap;
+  const NearEdge nearest = nearest_other_edge(view, candidate.vertex, candidate.edge);
+  const double length = view.corner(candidate.edge).length, farther = nearest.distance + competitor.gap;
   const double margin = std::min({too_deep / gap_rate, std::abs(farther) / (1.0 + gap_rate),
+                                  std::abs(nearest.gap - view.tolerances.corner_depth) / (1.0 + gap_rate),
                                   std::abs(competitor.along - 0.5 * length) / rate(length, length)});
   return std::min(margin, facing_margin(view, candidate));
 }

@@ -349,7 +349,7 @@ TEST(Run, GoldenStateHash) {
   two.threads = 2;
   const RunRecord record = run(shaken_wall(), {}, nobody);
   EXPECT_EQ(record.open_close.unconverged_steps, 0);
-  EXPECT_EQ(record.state_hash, "0aab32718d9d31a0");
+  EXPECT_EQ(record.state_hash, "4d61b85e2a8154a6");
   EXPECT_EQ(run(shaken_wall(), two, nobody).state_hash, record.state_hash);
   EXPECT_LT(record.max_overlap.depth, 1e-3);
 }
