@@ -97,6 +97,7 @@ Outcome compete_among_blocks(const CornerView& view, const BlockPair& pair,
     if (blocking[i].is_in_front) in_front = all[i];
   }
   if (count < all.size()) outcome = compete(view, std::span<Competitor* const>(open).first(count));
+  outcome.each = false;
   if (outcome.winner == nullptr) outcome.winner = in_front;
   outcome.left_out = count < all.size();
   return outcome;

@@ -15,9 +15,10 @@ enum class State : std::uint8_t { open = 0, sliding = 1, locked = 2 };
 /// What a contact remembers from step to step.
 struct Memory {
   State state = State::open;
-  bool bonded = false;  ///< in place, with cohesion and tension not yet broken
-  double offset = 0.0;  ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
-                        ///< negative: the closure of a joint that carries in-situ stress
+  bool bonded = false;   ///< in place, with cohesion and tension not yet broken
+  bool in_face = false;  ///< it shared the pressure of a face with others (JointFaces)
+  double offset = 0.0;   ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
+                         ///< negative: the closure of a joint that carries in-situ stress
   double stiffness = 0.0;     ///< N/m per thickness, of the normal spring in the last step
   double shear = 0.0;         ///< m, elastic shear displacement
   double normal_force = 0.0;  ///< N per thickness, compression positive

@@ -153,16 +153,20 @@ Competitor* winner_of_turned(const CornerView& view, All all, Competitor* before
   return winner->gap <= -view.tolerances.corner_depth && holds_vertex(view, *before) ? before : winner;
 }
 
-/// Whether corners press on each other tip to tip: two lines part them in other directions, and neither is nearer to being the way out, nor
-/// passed in the step. Each direction between the normals of the lines keeps them apart then, as it does where tips are a little round.
-bool press_tip_to_tip(const CornerView& view, All all, const Competitor* before) {
-  if (before == nullptr || !(view.memory(*before).normal_force > 0.0)) return false;
+/// Whether corners meet tip to tip, where they pressed on each other before or, in a static step, nothing tells which side they go: two lines part
+/// them in other directions, and neither is nearer to being the way out, nor passed in the step. Each direction between the normals of the
+/// lines keeps them apart then, as it does where tips are a little round.
+bool meet_tip_to_tip(const CornerView& view, All all, const Competitor* before, const Competitor* winner) {
+  const bool pressed = before != nullptr && view.memory(*before).normal_force > 0.0;
+  const bool is_static = view.motion.predicted.empty();
+  if (!pressed && !(is_static && winner == nullptr)) return false;
+  const Competitor& one = pressed ? *before : *all[0];
   bool turned = false;
   for (const Competitor* c : all) {
-    if (std::abs(c->gap - before->gap) >= view.tolerances.corner_tie) return false;
+    if (std::abs(c->gap - one.gap) >= view.tolerances.corner_tie) return false;
     if (predicted_gap(view, *c, view.motion.predicted) < std::min(c->gap, 0.0) - view.tolerances.corner_depth)
       return false;
-    turned = turned || part_otherwise(view, *c, *before);
+    turned = turned || part_otherwise(view, *c, one);
   }
   return turned;
 }
@@ -209,7 +213,7 @@ Outcome compete(const CornerView& view, All all) {
   const bool hands_over = winner != nullptr && before != nullptr && winner != before &&
                           (parallel || (view.memory(*before).normal_force > 0.0 && winner->memory < 0 &&
                                         alike(*winner, *before)));
-  const bool each = !parallel && press_tip_to_tip(view, competing, before);
+  const bool each = !parallel && meet_tip_to_tip(view, competing, before, winner);
   if (hands_over && !each) winner->memory = before->memory;
   return {winner, parallel, each, hands_over && !each, left_out};
 }

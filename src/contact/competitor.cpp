@@ -15,6 +15,7 @@ struct Group {
   std::array<double, lane_count> bonded{}, presses{};  ///< 1 or 0
   std::array<double, lane_count>
       closure{};  ///< m, that in-situ stress has closed a joint by that still presses
+  std::array<double, lane_count> in_face{};  ///< 1: it shares the pressure of a face that presses; 0
 };
 
 /// The candidates of a group that are contacts, unless they lose to others of the same two corners, to `passed`. Returns their number. All
@@ -45,14 +46,17 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
   const Lanes pressed_zone = largest(zone, deepest), before = where(presses, pressed_zone, past_start),
               after = where(presses, pressed_zone, past_end);
   // The corner of a block that spins may pass the corner that is nearest now.
-  const Lanes straight = broadcast(Tolerances::sine_inside);
+  // The open end of a face that presses at the other lies inside by as much as the face is tilted.
+  const auto in_face = load(group.in_face.data()) > 0.0;
+  const Lanes straight =
+      where(in_face, broadcast(Tolerances::sine_facing), broadcast(Tolerances::sine_inside));
   const Lanes sine = where(gap > 0.0, least(broadcast(1.0), straight + load(group.turn.data())), straight);
   // Whether an edge of the vertex lies outside the line, up to an angle.
   const auto outside = [&](Lanes x, Lanes y) {
     const Lanes across = nx * x + ny * y;
     return (across >= 0.0) | (across * across <= sine * sine);
   };
-  const auto passes = ((load(group.bonded.data()) > 0.0) |
+  const auto passes = ((load(group.bonded.data()) > 0.0) | in_face |
                        (gap <= tolerances.activation + reach + load(group.closure.data()))) &
                       (gap >= -deepest) & (along >= -before) & (along <= length + after) &
                       outside(vertex[2], vertex[3]) & outside(-vertex[4], -vertex[5]);
@@ -98,6 +102,7 @@ inline void add(Group& group, std::size_t candidate, std::size_t pair, const Pai
   group.presses[i] = before.normal_force > 0.0 ? 1.0 : 0.0;
   group.bonded[i] = before.bonded ? 1.0 : 0.0;
   group.closure[i] = before.normal_force > 0.0 ? std::max(0.0, -before.offset) : 0.0;
+  group.in_face[i] = before.in_face && before.normal_force > 0.0 ? 1.0 : 0.0;
   group.size += limits.away < clearance ? 0 : 1;
 }
 

@@ -35,7 +35,9 @@ struct Contact {
   double friction_coefficient = 0.0;
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
   bool fused = false;
-  Memory memory;  ///< at the start of the step; no bond any more where the bond breaks in the step
+  bool at_corner = false;    ///< it stands for two corners that meet
+  bool was_in_face = false;  ///< Memory::in_face of the last step
+  Memory memory;             ///< at the start of the step; no bond any more where the bond breaks in the step
 
   [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
 };

@@ -14,17 +14,18 @@ namespace {
 
 /// The stiffness of a contact goes with the joint that belongs to it, and jumps when an edge comes to lie flat. Its elastic
 /// energy stays what it was: penetration that the new spring would turn into energy nobody spent goes to the offset, and
-/// comes back from there when the joint gets shorter again. What it has no room for is lost by a spring that gets softer.
-void keep_energy(MemoryLanes& memory, Lanes gap, Lanes stiffness) {
+/// comes back from there when the joint gets shorter again. What it has no room for is lost by a spring that gets softer. The pressure of
+/// a face knows how much of it is closed, whatever the length: there the penetration stays.
+void keep_energy(MemoryLanes& memory, Lanes gap, Lanes stiffness, LaneCondition in_face) {
   const Lanes zero{}, depth = -gap - memory.offset, ratio = memory.stiffness / stiffness;
   const auto pushes = memory.multiplier > 0.0;  // a force that belongs to no penetration stays
   const auto is_other = (stiffness < memory.stiffness) | (stiffness > memory.stiffness),
              changes = ~pushes & (memory.stiffness > 0.0) & is_other & (depth > 0.0);
   const Lanes scale = square_root(ratio), wanted = scale * depth,
               offset = largest(-gap - wanted, least(memory.offset, zero)), now = -gap - offset;
-  memory.stored = where(changes & (now < wanted),
+  memory.stored = where(changes & ~in_face & (now < wanted),
                         memory.stored - 0.5 * stiffness * (wanted * wanted - now * now), memory.stored);
-  memory.offset = where(changes, offset, memory.offset);
+  memory.offset = where(changes & ~in_face, offset, memory.offset);
   memory.multiplier = where(pushes, memory.multiplier * ratio, memory.multiplier);
   memory.shear = where(pushes, memory.shear * ratio, where(changes, memory.shear * scale, memory.shear));
   memory.stiffness = stiffness;
@@ -69,6 +70,7 @@ bool identify(const Corners& corners, const FoundContact& found, const Candidate
   contact.block_b = candidate.block_b;
   contact.vertex = candidate.vertex;
   contact.edge = candidate.edge;
+  contact.at_corner = found.at_corner;
   contact.normal = corners.all()[at(candidate.edge)].normal();
   return same;
 }
@@ -125,6 +127,7 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
     contact.memory.state = memory.state;
     contact.memory.bonded = memory.bonded;
     contact.memory.bond_length = memory.bond_length;
+    contact.memory.in_face = contact.was_in_face = memory.in_face;
     if (memory.bonded) law.length[i] = memory.bond_length;
     find_law(surface, contact, over_corner, laws[i]);
     contact.fused = laws[i].fused;
@@ -143,7 +146,8 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
   const auto is_new = lanes_where(found, [](const FoundContact& f) { return f.memory < 0; });
   const Lanes zero{}, born = largest(zero, -law.gap);
   memory.offset = where(is_new, born, where(memory.offset > 0.0, least(memory.offset, born), memory.offset));
-  keep_energy(memory, law.gap, law.normal_stiffness);
+  const auto in_face = lanes_where(found, [&](const FoundContact& f) { return before(f).in_face; });
+  keep_energy(memory, law.gap, law.normal_stiffness, in_face);
   law.depth = -law.gap - memory.offset + memory.multiplier;
   keep(law, contacts);
   keep(memory, contacts.size(), [&](std::size_t i) -> Memory& { return contacts[i].memory; });

@@ -5,6 +5,7 @@
 
 #include "contact/contact.h"
 #include "contact/contact_geometry.h"
+#include "contact/joint_faces.h"
 
 namespace keyblock::contact {
 
@@ -16,6 +17,10 @@ class ContactDescription {
   ContactDescription(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
   void set_laws(std::vector<JointLaw> laws) { laws_ = std::move(laws); }
+  /// The faces of joints that the contacts of a step share, after they have been described.
+  void find_faces(const Surface& surface, std::span<Contact> contacts, JointFaces& faces) const {
+    if (JointFaces::are_there(laws_)) faces.find(surface, tolerances_, laws_, penalty_, contacts);
+  }
 
   /// Of up to lane_count contacts. Whether all of them had the same vertices and edges before.
   bool describe(const Surface& surface, const Corners& corners, const CandidateList& candidates,

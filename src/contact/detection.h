@@ -42,6 +42,10 @@ class Detection {
   /// Which candidates are contacts. Returns their number.
   std::size_t find_which(const Surface& surface, const StepMotion& motion, CandidateList& candidates,
                          ThreadTeam& team);
+  /// Faces of joints among contacts that are described; none where no joint has a stiffness of its own.
+  void find_faces(const Surface& surface, std::span<Contact> contacts, JointFaces& faces) const {
+    description_.find_faces(surface, contacts, faces);
+  }
   /// Of contacts [first, last): what is done with them while a cache has them. Threads may do so at once.
   using OfSome = std::function<void(std::size_t first, std::size_t last)>;
   /// What find_which() found, into as many contacts. Returns whether these were contacts of the same vertices and edges before.

@@ -117,14 +117,16 @@ class BasicSpring {
   struct Balance {
     Number stored{}, friction{}, damping{}, numerical{};
   };
-  /// slipped: m, slip of the step that w does not have. Where the shear force comes to act along it, it is no friction.
-  [[nodiscard]] Balance balance(Number y, Number w, Number slipped = Number()) const {
+  /// slipped: m, slip of the step that w does not have. Where the shear force comes to act along it, it is no friction. holds: the contact is
+  /// closed by more than its own normal spring.
+  [[nodiscard]] Balance balance(Number y, Number w, Number slipped = Number(),
+                                Condition holds = Condition()) const {
     const Number x = penetration(y), normal = normal_force(y), shear = shear_force(w),
                  elastic = elastic_shear(w);
     const Number x_force = where(tensile_ | (x > zero), elastic_normal_ * x, zero);
     Balance b;
-    b.stored = 0.5 * x_force * x +
-               where(closed(y), 0.5 * elastic_shear_ * elastic * elastic, zero);  // else shear is forgotten
+    b.stored = 0.5 * x_force * x + where(closed(y) | holds, 0.5 * elastic_shear_ * elastic * elastic,
+                                         zero);  // else shear is forgotten
     b.friction = magnitude(shear) * magnitude(w - shear / shear_) +
                  where(shear * slipped > zero, shear * slipped, zero);
     b.damping = (normal - x_force) * (x - start_depth_) +

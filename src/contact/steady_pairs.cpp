@@ -189,7 +189,9 @@ double parallel_margin(const CornerView& view, std::span<Competitor* const> comp
 double outcome_margin(const CornerView& view, std::span<Competitor* const> competitors,
                       const Outcome& outcome) {
   // Which line parts two corners hangs on other blocks, too.
-  if (outcome.handed_over || outcome.left_out || (outcome.winner != nullptr && !outcome.parallel)) return 0.0;
+  const bool is_tie = !outcome.parallel && outcome.winner == nullptr && view.motion.predicted.empty();
+  if (outcome.handed_over || outcome.left_out || is_tie || (outcome.winner != nullptr && !outcome.parallel))
+    return 0.0;
   const Tolerances& tolerances = view.tolerances;
   const Meeting m = measure_meeting(view, competitors);
   if (outcome.parallel) return std::min(m.turn_margin, parallel_margin(view, competitors, outcome.winner));

@@ -69,7 +69,11 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   const std::span<const Row> rows = std::span(attempt.problem.rows()).subspan(first, count);
   const SpringArray& springs = attempt.problem.springs();
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
-  const contact::LawLanes law = contact::laws_of(contacts);
+  contact::LawLanes law = contact::laws_of(contacts);
+  for (std::size_t i = 0; i < count && !springs.faces.empty(); ++i) {
+    if (springs.faces.has(first + i))
+      law.normal_stiffness[i] = springs.kn[first + i] * springs.faces.elastic_share(first + i);
+  }
   contact::MemoryLanes memory = contact::memories_of(contacts);
   Lanes moved_normal{}, moved_shear{}, rotated_normal{}, rotated_shear{};
   if (drive.moves_contacts()) {
@@ -91,11 +95,16 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
                                contact::SpringLanes::Shifted{at_first(springs.kn), at_first(springs.ks),
                                                              at_first(springs.y0) + moved_normal,
                                                              at_first(springs.w0) - moved_shear + slipped});
-  const Lanes zero{}, normal = s.normal_force(y), shear = s.shear_force(w);
-  const auto closed = s.closed(y), locked = s.locked(w);
+  const Lanes zero{}, pressed = springs.faces.forces(first), normal = s.normal_force(y) + pressed,
+                      shear = s.shear_force(w);
+  const auto in_face = (pressed < zero) | (pressed > zero), closed = s.closed(y) | in_face,
+             locked = s.locked(w);
+  // What the pressure of a face stored in the last step is no more what its contacts have alone, nor the other way round.
+  const auto other = contact::lanes_where(
+      contacts, [](const contact::Contact& c) { return c.memory.in_face || c.was_in_face; });
   ContactAccounts accounts{
-      .balance = s.balance(y, w, slipped),
-      .stored_before = memory.stored,
+      .balance = s.balance(y, w, slipped, in_face),
+      .stored_before = where(other, s.stored_at_start(), memory.stored),
       .input = -(normal * (moved_normal - rotated_normal) - shear * (moved_shear - rotated_shear)),
       .rotation = normal * rotated_normal - shear * rotated_shear,
       .penetration = s.penetration(y),
@@ -118,6 +127,7 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
                           : locked[i] != 0 ? contact::State::locked
                                            : contact::State::sliding;
     remembered[i].bonded = contacts[i].memory.bonded;
+    remembered[i].in_face = contacts[i].memory.in_face;
     remembered[i].bond_length = contacts[i].memory.bond_length;
   }
   return accounts;
@@ -167,6 +177,46 @@ ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::s
 
 }  // namespace
 
+namespace {
+
+/// Where the energy of the pressure of faces went in the step, beside that of the springs of their contacts. Each contact keeps its share of what
+/// is stored, ½ F_i x_i, which is negative at an open end.
+void account_for_faces(const Attempt& attempt, State& state) {
+  const SpringArray& springs = attempt.problem.springs();
+  const FaceSprings& faces = springs.faces;
+  std::vector<double> start, end, force, elastic;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::span<const std::size_t> rows = faces.rows_of(f);
+    start.clear();
+    end.clear();
+    force.resize(rows.size());
+    elastic.resize(rows.size());
+    double gone = 0.0;  // J per thickness, that the pressure has taken up
+    faces.forces_at(f, springs.y, springs.y, 0.0, force);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Row& row = attempt.problem.rows()[rows[i]];
+      const double way = springs.y[rows[i]] - springs.y0[rows[i]] -
+                         (attempt.drive.moves_contacts() ? dot(row.normal, row.moved) : 0.0);
+      start.push_back(attempt.contacts[rows[i]].depth);
+      end.push_back(start.back() + way);
+      gone += force[i] * way;
+    }
+    faces.elastic_pressure(f).forces(end, elastic);
+    double stored = 0.0, damped = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double share = 0.5 * elastic[i] * end[i];
+      state.contacts.memory[rows[i]].stored += share;
+      stored += share;
+      damped += (force[i] - elastic[i]) * (end[i] - start[i]);
+    }
+    state.contact_energy += stored;
+    state.ledger.damping += damped;
+    state.ledger.numerical += gone - stored - damped;
+  }
+}
+
+}  // namespace
+
 CouplingTotals ContactCoupling::account(const Attempt& attempt, std::span<const double> /*spin*/,
                                         std::size_t /*first*/, std::span<double> /*memory*/,
                                         State& state) const {
@@ -186,6 +236,7 @@ CouplingTotals ContactCoupling::account(const Attempt& attempt, std::span<const 
   for (const ContactAccounts& accounts : pieces) total.add(accounts);
   total.enter(state.ledger);
   state.contact_energy = sum(total.balance.stored);
+  account_for_faces(attempt, state);
   CouplingTotals totals;
   for (std::size_t i = 0; i < lane_count; ++i)
     totals.penetration = std::max(totals.penetration, total.penetration[i]);

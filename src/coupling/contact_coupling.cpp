@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "contact/contact_lanes.h"
+#include "contact/joint_faces.h"
 #include "core/index.h"
 #include "coupling/points.h"
 #include "coupling/row_owners.h"
@@ -144,7 +145,55 @@ RowFacts ContactCoupling::build(const Model& model, const State& state, const Dr
   } else {
     out.team.for_range(contacts_.size(), contacts_worth_threads, of_some);
   }
+  if (find_faces_) build_faces(model, drive, out);
   return {may_break, lacks_room, has_distant};
+}
+
+/// Normal springs of contacts that share the pressure of faces have what is left of their stiffness. Spring and dashpot of a face are one spring
+/// about a shifted origin, as those of a contact. All contacts of two blocks have the same dashpot for their stiffness then. Where a face is
+/// closed is a matter of all its contacts: those that are open are shifted with those that press.
+void ContactCoupling::build_faces(const Model& model, const Drive& drive, const CouplingRows& out) const {
+  const contact::JointFaces& faces = find_faces_();
+  if (faces.empty()) return;
+  SpringArray& springs = out.springs;
+  springs.faces.begin(springs.size());
+  const double damping = drive.is_static ? 0.0 : 2.0 * model.solver.contact_damping / drive.step,
+               viscous = drive.is_static ? 0.0 : stiffness_damping(model) / drive.step;
+  std::vector<double> more(contacts_.size(), 0.0);  // dashpot over stiffness
+  const auto blocks = [&](std::size_t c) { return std::minmax(contacts_[c].block_a, contacts_[c].block_b); };
+  for (std::size_t c = 0; c < contacts_.size();) {
+    std::size_t end = c;
+    double stiffest = 0.0;
+    const std::pair<int, int> of_first = blocks(c);
+    for (; end < contacts_.size() && std::pair<int, int>(blocks(end)) == of_first; ++end)
+      stiffest = std::max(stiffest, contacts_[end].normal_stiffness);
+    const double mass = reduced_mass(out.points, contacts_[c]);
+    std::fill(more.begin() + static_cast<std::ptrdiff_t>(c), more.begin() + static_cast<std::ptrdiff_t>(end),
+              damping * std::sqrt(mass / stiffest) + viscous);
+    c = end;
+  }
+  std::vector<std::size_t> rows;
+  std::vector<std::uint8_t> presses(contacts_.size(), 0);
+  for (const contact::JointFace& face : faces.all()) {
+    rows.clear();
+    const std::span<const std::size_t> of_face = faces.contacts_of(face);
+    for (const std::size_t c : of_face) rows.push_back(out.first + c);
+    if (face.pressure.pulls() ||
+        std::ranges::any_of(of_face, [&](std::size_t c) { return contacts_[c].depth > 0.0; })) {
+      for (const std::size_t c : of_face) presses[c] = 1;
+    }
+    springs.faces.add(face.pressure, more[faces.contacts_of(face).front()], rows);
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const std::size_t k = out.first + c;
+    if (!springs.faces.has(k)) continue;
+    const double moved = drive.moves_contacts() ? dot(out.rows[c].normal, out.rows[c].moved) : 0.0;
+    springs.kn[k] = faces.left()[c] * (1.0 + more[c]);
+    springs.y0[k] = springs.y[k] = contacts_[c].depth / (presses[c] != 0 ? 1.0 + more[c] : 1.0) - moved;
+    if (springs.kn[k] == 0.0) springs.low[k] = 0.0;  // there is no spring that could pull
+    springs.set_branch(k, springs.branch[k]);
+  }
+  springs.press_faces();
 }
 
 RowFacts ContactCoupling::build_row(const Drive& drive, std::size_t c, const CouplingRows& out) const {

@@ -22,12 +22,16 @@ class ContactCoupling final : public Coupling {
   /// Calls of_some(first, last) for all contacts, piece by piece, each when what build() reads of it is known; threads may do so at once.
   using ForContacts = std::function<void(const contact::Detection::OfSome& of_some)>;
 
-  /// pairs: Row::pair of every candidate of contact. for_contacts: {} where all contacts are known.
+  /// The faces of joints, found when all contacts are known.
+  using FindFaces = std::function<const contact::JointFaces&()>;
+
+  /// pairs: Row::pair of every candidate of contact. for_contacts: {} where all contacts are known. find_faces: {} where there are none.
   void begin_step(std::span<const contact::Contact> contacts, std::span<const int> pairs,
-                  ForContacts for_contacts) {
+                  ForContacts for_contacts, FindFaces find_faces) {
     contacts_ = contacts;
     pairs_ = pairs;
     for_contacts_ = std::move(for_contacts);
+    find_faces_ = std::move(find_faces);
   }
 
   void add_pairs(BlockPairs& pairs) const override;
@@ -43,10 +47,12 @@ class ContactCoupling final : public Coupling {
 
  private:
   RowFacts build_row(const Drive& drive, std::size_t c, const CouplingRows& out) const;
+  void build_faces(const Model& model, const Drive& drive, const CouplingRows& out) const;
 
   std::span<const contact::Contact> contacts_;
   std::span<const int> pairs_;
   ForContacts for_contacts_;
+  FindFaces find_faces_;
 };
 
 /// The spring of contact c in a step, at the start of the step where the `memory` of the contact has it.

@@ -9,6 +9,7 @@
 #include "contact/law.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
+#include "coupling/face_springs.h"
 #include "model/worth_threads.h"
 
 namespace keyblock::dynamics {
@@ -19,7 +20,7 @@ namespace keyblock::dynamics {
 ///     N = clamp(k_n y, low, ∞)          T = clamp(k_s w, ±bound)
 ///
 /// with penetration y and shear displacement w; low is 0, and −∞ for a bond, which also pulls. Their branches and lines are those of
-/// contact::ClampedSpring.
+/// contact::ClampedSpring. Where rows share the pressure of faces, N has that beside it (`faces`).
 class SpringArray {
  public:
   enum class Shear : std::int8_t { backward = -1, held = 0, forward = 1, none = 2 };
@@ -47,6 +48,7 @@ class SpringArray {
          {&kn, &ks, &bound, &low, &friction, &constant, &y0, &w0, &slipped, &y, &w, &dy, &dw})
       v->resize(n + lane_count);  // as many as there are lanes can be loaded anywhere
     branch.resize(n);
+    if (!faces.empty()) faces.begin(0);
     bounds_updated = false;
   }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -125,6 +127,11 @@ class SpringArray {
                                                 : shear.is_low(displacement)  ? Shear::backward
                                                                               : Shear::held};
   }
+  /// A branch that is known from elsewhere. A row that has no normal spring for itself is not closed by one.
+  void set_branch(std::size_t c, Branch p) {
+    p.closed = p.closed && kn[c] > 0.0;
+    branch[c] = p;
+  }
   /// As codes, of as many contacts as there are lanes; `held` where the shear spring is none of the others.
   [[nodiscard]] static LaneCondition codes_of(LaneCondition closed, LaneCondition none, LaneCondition forward,
                                               LaneCondition backward) {
@@ -168,7 +175,23 @@ class SpringArray {
   [[nodiscard]] Force force_at(std::size_t c, double penetration, double displacement) const {
     return {normal_law(c).force(penetration), shear_law(c).force(displacement)};
   }
-  [[nodiscard]] Force force(std::size_t c) const { return force_at(c, y[c], w[c]); }
+  /// Of all springs of the row, with its part of the pressure of faces.
+  [[nodiscard]] Force force(std::size_t c) const {
+    const Force own = force_at(c, y[c], w[c]);
+    return {own.normal + faces.force(c), own.shear};
+  }
+  /// The normal forces of as many rows as there are lanes, likewise.
+  [[nodiscard]] Lanes normal_forces(std::size_t c) const {
+    return normal_laws(c).force(load(&y[c])) + faces.forces(c);
+  }
+  /// Whether nothing presses or pulls along the normal.
+  [[nodiscard]] bool is_open(std::size_t c) const {
+    return normal_law(c).is_low(y[c]) && !(faces.force(c) != 0.0);
+  }
+  /// N/m per thickness, of what acts along the normal where the row is closed.
+  [[nodiscard]] double stiffness(std::size_t c) const { return kn[c] + faces.stiffness(c); }
+  /// After y has changed.
+  void press_faces() { faces.press(y); }
   /// On the straight line that goes on from a branch.
   [[nodiscard]] Force force_on(std::size_t c, Branch p, double penetration, double displacement) const {
     return {p.closed ? kn[c] * penetration : 0.0, p.shear == Shear::held ? ks[c] * displacement
@@ -191,7 +214,8 @@ class SpringArray {
   std::vector<double> slipped;  ///< m, slip of the step that w does not have
   std::vector<double> y, w;     ///< m, now
   std::vector<double> dy, dw;   ///< m, of the direction of search
-  std::vector<Branch> branch;   ///< of (y, w)
+  std::vector<Branch> branch;   ///< of (y, w), of the springs that the rows have for themselves
+  FaceSprings faces;
   bool bounds_updated = false;  ///< bounds are no more those of the last step
 
  private:
@@ -204,7 +228,7 @@ inline double largest_normal_force(const SpringArray& springs, ThreadTeam& team)
   return largest_of(team, (springs.size() + width - 1) / width, contacts_worth_threads / width,
                     [&](std::size_t group) {
                       const std::size_t c = group * width;
-                      const Lanes zero{}, force = springs.normal_laws(c).force(load(&springs.y[c]));
+                      const Lanes zero{}, force = springs.normal_forces(c);
                       return largest(where(first_lanes(springs.size() - c), largest(force, -force), zero));
                     });
 }
@@ -212,11 +236,13 @@ inline double largest_normal_force(const SpringArray& springs, ThreadTeam& team)
 /// N/m per thickness, of the stiffest normal spring; 0: there is none.
 inline double largest_stiffness(const SpringArray& springs, ThreadTeam& team) {
   constexpr std::size_t width = lane_count;
-  return largest_of(team, (springs.size() + width - 1) / width, contacts_worth_threads / width,
-                    [&](std::size_t group) {
-                      const std::size_t c = group * width;
-                      return largest(where(first_lanes(springs.size() - c), load(&springs.kn[c]), Lanes{}));
-                    });
+  double most = largest_of(
+      team, (springs.size() + width - 1) / width, contacts_worth_threads / width, [&](std::size_t group) {
+        const std::size_t c = group * width;
+        return largest(where(first_lanes(springs.size() - c), load(&springs.kn[c]), Lanes{}));
+      });
+  for (const std::size_t c : springs.faces.all_rows()) most = std::max(most, springs.stiffness(c));
+  return most;
 }
 
 }  // namespace keyblock::dynamics

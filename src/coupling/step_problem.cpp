@@ -103,12 +103,19 @@ void gradient_by_rows(const StepProblem& problem, std::span<const double> d, std
   const SpringArray& springs = problem.springs();
   for (std::size_t b = 0; b < problem.model().blocks.size(); ++b) problem.terms().multiply(b, d, g);
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= problem.terms().right()[k];
+  std::vector<double> y(springs.size());
   for (std::size_t c = 0; c < problem.rows().size(); ++c) {
     const Row& row = problem.rows()[c];
     const Vec2 r = problem.relative(row, d);
-    const SpringArray::Force force =
-        springs.force_at(c, springs.y0[c] - dot(row.normal, r), springs.w0[c] + dot(row.tangent(), r));
+    y[c] = springs.y0[c] - dot(row.normal, r);
+    const SpringArray::Force force = springs.force_at(c, y[c], springs.w0[c] + dot(row.tangent(), r));
     if (!force.is_zero()) problem.add_force(row, row.gradient(force), g);
+  }
+  FaceSprings faces = springs.faces;
+  faces.press(y);
+  for (std::size_t c = 0; c < problem.rows().size() && !faces.empty(); ++c) {
+    const Row& row = problem.rows()[c];
+    problem.add_force(row, row.gradient({faces.force(c), 0.0}), g);
   }
 }
 

@@ -65,6 +65,10 @@ class StepProblem {
   /// The same at all rows.
   void add_springs(std::span<const double> normal, std::span<const double> shear,
                    linalg::BlockSolver& solver) const;
+  /// Adds to the matrix what the pressure of a face does: h_ij, by rows, of the penetrations at rows i and j, which are at these places;
+  /// scale: 1, or −1 to take it away.
+  void add_face(std::span<const std::size_t> rows, std::span<const Place> places, std::span<const double> h,
+                double scale, linalg::BlockSolver& solver) const;
   /// (∂r/∂D)ᵀ direction: the parts of the two blocks, as long as their coefficients.
   void derivative(const Row& row, Vec2 direction, std::vector<double>& a, std::vector<double>& b) const;
   /// out += (∂r/∂D)ᵀ force.

@@ -1,5 +1,7 @@
 // The matrix of a step: stiffness and inertia of its blocks, and springs of its rows.
+#include <array>
 #include <cstddef>
+#include <vector>
 
 #include "core/lanes.h"
 #include "coupling/step_problem.h"
@@ -115,6 +117,53 @@ void StepProblem::add_spring(const Row& row, const Place& place, double kn, doub
       add_block(phi_b, size_b, phi_a, size_a, k, -1.0, slot.values, slot.stride);
     }
   });
+}
+
+/// −∂(n·r)/∂D of the rows, by the two bodies of the first: all rows of a face are between the same two.
+void StepProblem::add_face(std::span<const std::size_t> rows, std::span<const Place> places,
+                           std::span<const double> h, double scale, linalg::BlockSolver& solver) const {
+  const Row& first = rows_[rows.front()];
+  const std::array<int, 2> unknown{first.unknown_a, first.unknown_b};
+  const std::size_t n = rows.size();
+  std::array<std::vector<std::vector<double>>, 2> g;
+  for (auto& of_body : g) of_body.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Row& row = rows_[rows[i]];
+    const Vec2 normal = places[i].normal;
+    const auto take = [&](int body, const double* phi, int size, double sign) {
+      std::vector<double>& out = g[body == unknown[0] ? 0 : 1][i];
+      out.clear();
+      for (int k = 0; k < size; ++k) {
+        out.push_back(sign * phi[k] * normal.x);
+        out.push_back(sign * phi[k] * normal.y);
+      }
+    };
+    take(row.unknown_a, points_.phi_of(row.vertex), points_.body_of(row.vertex).size, -1.0);
+    points_.with_phi(row, places[i].position, [&](const double* phi) {
+      take(row.unknown_b, phi, points_.body_of(row.from).size, 1.0);
+    });
+  }
+  const auto add = [&](std::size_t of_rows, std::size_t of_columns, double* values, int stride) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        const double share = scale * h[i * n + j];
+        const std::vector<double>&r = g[of_rows][i], &c = g[of_columns][j];
+        for (std::size_t l = 0; l < c.size(); ++l) {
+          double* column = values + static_cast<std::ptrdiff_t>(l) * stride;
+          for (std::size_t k = 0; k < r.size(); ++k) column[k] += share * r[k] * c[l];
+        }
+      }
+    }
+  };
+  for (const std::size_t body : {0U, 1U}) {
+    if (unknown[body] >= 0 && !g[body][0].empty())
+      add(body, body, solver.diagonal(unknown[body]),
+          linalg::padded_rows(static_cast<int>(g[body][0].size())));
+  }
+  if (first.pair < 0) return;
+  const linalg::BlockSlot slot = solver.slot(first.pair);
+  const bool in_order = slot.row == unknown[0];
+  add(in_order ? 0 : 1, in_order ? 1 : 0, slot.values, slot.stride);
 }
 
 }  // namespace keyblock::dynamics

@@ -35,6 +35,13 @@ void ContactFinder::describe(const State& state, const contact::Detection::OfSom
   if (!detection_.describe(model_.surface, state.contacts, team_, contacts_, then)) ++version_;
 }
 
+/// Multipliers take the place of the stiffness of joints.
+const contact::JointFaces& ContactFinder::find_faces() {
+  if (model_.solver.contact == ContactMethod::penalty)
+    detection_.find_faces(model_.surface, contacts_, faces_);
+  return faces_;
+}
+
 void ContactFinder::find_at_rest(PredictedMotion& motion, State& state) {
   motion.stay();
   candidates_.update(model_.surface, motion.reach(), state.contacts, team_);

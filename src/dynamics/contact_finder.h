@@ -22,6 +22,8 @@ class ContactFinder {
   bool find_which(const PredictedMotion& motion, bool is_static, State& state);
   /// Geometry and springs of the contacts that were found. then: what is done with some of them while a cache has them.
   void describe(const State& state, const contact::Detection::OfSome& then);
+  /// Faces of joints among the contacts that are described.
+  const contact::JointFaces& find_faces();
   /// Both, of blocks that stay where they are.
   void find_at_rest(PredictedMotion& motion, State& state);
   /// The contacts of a state, found anew, with candidates of their own. The state and what find_which() found are left alone.
@@ -46,6 +48,7 @@ class ContactFinder {
   contact::Candidates candidates_;
   contact::Detection detection_;
   std::vector<contact::Contact> contacts_;
+  contact::JointFaces faces_;
   std::uint64_t version_ = 1;  ///< StepContacts::version
 };
 

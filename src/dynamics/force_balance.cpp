@@ -74,7 +74,7 @@ void ForceBalance::find_rounding(const Model& model, const StepProblem& problem)
     if (problem.springs().force(c).is_zero()) continue;
     for (const int unknown : {problem.rows()[c].unknown_a, problem.rows()[c].unknown_b})
       if (unknown >= 0)
-        force_[problem.points().block_of_unknown(at(unknown))] += problem.springs().kn[c] * extent;
+        force_[problem.points().block_of_unknown(at(unknown))] += problem.springs().stiffness(c) * extent;
   }
   for (const auto& coupling : model.couplings) coupling->add_rounding_forces(model, extent, force_);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {

@@ -169,7 +169,7 @@ Verdict RotationCorrection::check_contact(const Attempt& attempt, std::size_t c,
                force = std::abs(springs.force(c).normal);
   const bool bonds = has_bonds(attempt);
   const BondTolerance bond = bonds ? BondTolerance(contact) : BondTolerance();
-  const double most_missed = std::min(tolerated(work, force, springs.kn[c]), bond.across);
+  const double most_missed = std::min(tolerated(work, force, springs.stiffness(c)), bond.across);
   const double at_most =
       0.5 * (spin_[a] * spin_[a] * model.blocks[a].radius + spin_[b] * spin_[b] * model.blocks[b].radius) +
       std::abs(spin_[b] * (bonds ? norm(r) : dot(row.tangent(), r)));

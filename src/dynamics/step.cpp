@@ -72,7 +72,7 @@ void Stepper::start(State& state) {
   finder_.find_at_rest(motion_, state);
   state.contact_energy += begin_contacts(model_, finder_.tolerances(), finder_.contacts());
   contact::keep_memory(finder_.contacts(), state.contacts, team_);
-  contact_coupling_.begin_step(finder_.contacts(), {}, {});
+  contact_coupling_.begin_step(finder_.contacts(), {}, {}, {});
   systems_.make_room(model_, contact_coupling_, state);
 }
 
@@ -133,7 +133,7 @@ std::vector<ContactForce> Stepper::forces() const {
     ContactForce& force = forces[k];
     force.gap = c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
     force.normal = springs.force(k).normal;
-    if (springs.normal_law(k).is_low(springs.y[k])) continue;
+    if (springs.is_open(k)) continue;
     force.shear = springs.force(k).shear;
     const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
     force.state = holds ? contact::State::locked : contact::State::sliding;
@@ -174,7 +174,8 @@ void Stepper::build(State& state, const Drive& drive, bool knows_contacts) {
   const Profile::Scope scope(profile_, Phase::terms);
   const auto describe = [&](const contact::Detection::OfSome& then) { finder_.describe(state, then); };
   contact_coupling_.begin_step(finder_.contacts(), systems_.pairs(),
-                               knows_contacts ? ContactCoupling::ForContacts{} : describe);
+                               knows_contacts ? ContactCoupling::ForContacts{} : describe,
+                               [&]() -> const contact::JointFaces& { return finder_.find_faces(); });
   problem_.build(model_, state, drive, contact_coupling_, team_);
   if (problem_.facts().lacks_room) {
     systems_.make_room(model_, contact_coupling_, state);

@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0012;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0013;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -125,6 +125,7 @@ void transfer_settler(Archive& archive, MemoryOrConst& s) {
   archive(s.wait);
   archive(s.trial_acceleration);
   archive(s.inertia_scale);
+  archive(s.blocks.travel_limit);
   archive(s.blocks.travel);
   archive(s.blocks.nearest);
   archive(s.blocks.carried);

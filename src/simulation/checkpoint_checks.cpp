@@ -68,7 +68,7 @@ bool comes_before(const contact::Candidate& x, const contact::Candidate& y) {
 bool is_memory(const contact::Memory& m) {
   const double numbers[] = {m.offset,     m.stiffness, m.shear,  m.normal_force, m.bounding_force,
                             m.multiplier, m.drift,     m.stored, m.bond_length};
-  return m.state <= contact::State::locked && is_bool(m.bonded) && all_finite(numbers);
+  return m.state <= contact::State::locked && is_bool(m.bonded) && is_bool(m.in_face) && all_finite(numbers);
 }
 
 bool are_contacts(const contact::CandidateList& list, const contact::Surface& surface) {
@@ -174,14 +174,15 @@ bool is_damage(const DamageGauge::Memory& memory, const RunSetup& setup, const M
 
 bool is_settler(const Settler::Memory& s, std::size_t blocks) {
   const MovingBlocks::Memory& m = s.blocks;
-  const bool sizes = s.inertia_scale.size() == blocks && m.travel.size() == blocks &&
-                     m.nearest.size() == blocks && m.carried.size() == blocks && m.astray.size() == blocks &&
-                     m.state.size() == blocks;
+  const bool sizes = s.inertia_scale.size() == blocks && m.travel_limit.size() == blocks &&
+                     m.travel.size() == blocks && m.nearest.size() == blocks && m.carried.size() == blocks &&
+                     m.astray.size() == blocks && m.state.size() == blocks;
   constexpr std::uint8_t last_state = 2;
   return sizes && std::isfinite(s.time_step) && s.time_step > 0.0 && std::isfinite(s.creep) &&
          s.creep > 0.0 && are_counts({s.steps, s.quiet_steps, s.since_best, s.wait, m.candidates}) &&
          at(m.candidates) <= blocks && are_flags(m.state, last_state) && all_finite(s.inertia_scale) &&
-         all_finite(m.travel) && all_finite(m.carried) && all_finite(m.astray) &&
+         all_finite(m.travel_limit) && all_finite(m.travel) && all_finite(m.carried) &&
+         all_finite(m.astray) &&
          std::all_of(s.inertia_scale.begin(), s.inertia_scale.end(), [](double x) { return x >= 1.0; });
 }
 

@@ -109,7 +109,7 @@ bool Settler::try_far(dynamics::Stepper& stepper, dynamics::State& state, dynami
   report = stepper.relax(state, trial);
   report.iterations += iterations;
   const double ratio = first * first / (report.shortest * report.shortest);
-  if (report.converged && moving_.suspect(ways, stepper.travel(), ratio))
+  if (report.converged && moving_.suspect({ways, stepper.travel(), ratio}, stepper.contacts()))
     memory_.since_best = first_wait - walk;
   return false;
 }

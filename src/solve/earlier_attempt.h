@@ -31,7 +31,7 @@ class EarlierAttempt {
       while (k < candidates_.size() && candidates_[k] < contacts[c].candidate) ++k;
       if (k == candidates_.size()) break;
       if (candidates_[k] != contacts[c].candidate || contacts[c].memory.bonded) continue;
-      springs.branch[c] = branch_[k];
+      springs.set_branch(c, branch_[k]);
       springs.bound[c] = bound_[k];
       if (slipped_[k] == 0.0) springs.hold_from_start(c);
     }

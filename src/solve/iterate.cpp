@@ -24,6 +24,7 @@ void Iterate::place(const StepSystem& system) {
       store_pair(relative[c + i], r.each[i] + load_pair(system.row(c + i).moved));
     springs.stretch(c, count, r.normal, r.tangent);
   });
+  springs.press_faces();
   is_placed = true;
 }
 
@@ -46,6 +47,23 @@ void Iterate::take_force(const StepSystem& system, std::size_t c, Force before) 
   SpringArray& springs = system.springs();
   springs.branch[c] = springs.branch_at(c, springs.y[c], springs.w[c]);
   add_force(system, c, springs.force(c) - before);
+  gradient_changed();
+}
+
+void Iterate::let_go_of_faces(const StepSystem& system, std::size_t c) {
+  SpringArray& springs = system.springs();
+  if (!springs.faces.has(c)) return;
+  const std::vector<std::size_t> rows(springs.faces.all_rows().begin(), springs.faces.all_rows().end());
+  std::vector<double> before;
+  for (const std::size_t row : rows) before.push_back(springs.faces.force(row));
+  springs.faces.pull_no_more(c);
+  springs.press_faces();
+  std::vector<bool> is_done(springs.size(), false);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (is_done[rows[k]]) continue;
+    is_done[rows[k]] = true;
+    add_force(system, rows[k], {springs.faces.force(rows[k]) - before[k], 0.0});
+  }
   gradient_changed();
 }
 

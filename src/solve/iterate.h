@@ -34,6 +34,8 @@ class Iterate {
     change();
     take_force(system, c, before);
   }
+  /// The bond of a row has broken: faces that it is in pull no more.
+  void let_go_of_faces(const StepSystem& system, std::size_t c);
   /// Forgets what is known of how far blocks are out of balance.
   void gradient_changed() {
     largest_ratio_.reset();

@@ -14,7 +14,8 @@ constexpr std::size_t gone_contact = SIZE_MAX;
 }  // namespace
 
 bool KeptFactor::begin_step(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update) {
-  is_kept_ = was_tried_ = wait_ == 0 && fits(system) && carry(system, matrix, update);
+  is_kept_ = was_tried_ =
+      wait_ == 0 && fits(system) && carry(system, matrix, update) && matrix.has_faces(system.springs().faces);
   wait_ = std::max(0, wait_ - 1);
   updated_before_ = is_kept_ ? update.size() : 0;
   matrix.forget_free_blocks();

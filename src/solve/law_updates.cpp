@@ -120,19 +120,19 @@ bool LawUpdates::reverse_sliding(const StepSystem& system, Iterate& iterate, dou
 
 bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, double tolerance) {
   SpringArray& springs = system.springs();
-  const auto [errors, scales] = sum_of<Sums>(
-      system.team, (springs.size() + lane_count - 1) / lane_count, contacts_worth_threads / lane_count,
-      [&](std::size_t group) {
-        const std::size_t c = group * lane_count;
-        const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
-        const Lanes zero{}, normal = springs.normal_laws(c).force(at_c(springs.y)), w = at_c(springs.w);
-        // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
-        const Lanes wanted = springs.strengths(c, normal),
-                    change = contact::shear_spring(at_c(springs.ks), wanted).force(w) -
-                             springs.shear_laws(c).force(w);
-        const auto counts = (at_c(springs.friction) >= zero) & first_lanes(springs.size() - c);
-        return Sums{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
-      });
+  const auto [errors, scales] =
+      sum_of<Sums>(system.team, (springs.size() + lane_count - 1) / lane_count,
+                   contacts_worth_threads / lane_count, [&](std::size_t group) {
+                     const std::size_t c = group * lane_count;
+                     const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
+                     const Lanes zero{}, normal = springs.normal_forces(c), w = at_c(springs.w);
+                     // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
+                     const Lanes wanted = springs.strengths(c, normal),
+                                 change = contact::shear_spring(at_c(springs.ks), wanted).force(w) -
+                                          springs.shear_laws(c).force(w);
+                     const auto counts = (at_c(springs.friction) >= zero) & first_lanes(springs.size() - c);
+                     return Sums{where(counts, change * change, zero), where(counts, wanted * wanted, zero)};
+                   });
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
@@ -227,13 +227,18 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
   return for_bonds(system, [&](std::size_t c) {
     contact::Contact& contact = system.contacts.contacts[c];
     const double normal = springs.force(c).normal;
+    // At the end of a face the stress decides, not the force that the end has of all of the face.
+    const double pulled = springs.faces.has(c)
+                              ? -contact.normal_stiffness * springs.y[c] / springs.faces.elastic_share(c)
+                              : -normal;
     const bool holds = std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
-    if (-normal <= contact.tension && holds) return false;
+    if (pulled <= contact.tension && holds) return false;
     contact.memory.bonded = false;
     iterate.change_spring(system, c, [&] {
       springs.constant[c] = 0.0;
       springs.set_law(c, contact.friction_coefficient * std::max(0.0, normal), false);
     });
+    iterate.let_go_of_faces(system, c);
     return true;
   });
 }

@@ -28,7 +28,13 @@ std::size_t LowRankUpdate::limit(const StepSystem& system) {
 }
 
 bool LowRankUpdate::is_exact(const StepSystem& system, bool is_kept) const {
-  return !is_kept && system.solver.low_rank()->is_exact() && updated_.size() <= step_numbers::most_exact;
+  return !is_kept && !faces_bend_ && system.solver.low_rank()->is_exact() &&
+         updated_.size() <= step_numbers::most_exact;
+}
+
+/// Faces of joints that press otherwise than the matrix has it are refined for, from then on.
+void LowRankUpdate::look_at_faces(const StepSystem& system, const StepMatrix& matrix) {
+  faces_bend_ = faces_bend_ || !matrix.has_faces_as_they_press(system.springs());
 }
 
 std::vector<std::size_t> LowRankUpdate::contacts() const {
@@ -88,7 +94,9 @@ bool LowRankUpdate::iterate_until_done(const StepSystem& system, Iterate& iterat
 /// The first way from D, into `direction`. False when it is not found.
 bool LowRankUpdate::begin(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
                           double enough, bool from_zero, std::span<double> direction) {
+  faces_bend_ = false;
   if (!from_zero) {
+    look_at_faces(system, matrix);
     matrix.find_differing(system);
     find_wanted(system.springs(), matrix);
     leave_out_wanted(system, iterate, matrix);
@@ -110,8 +118,11 @@ void LowRankUpdate::start_on_lines(const StepSystem& system, Iterate& iterate, c
   const SpringArray& springs = system.springs();
   const std::span<const double> right = system.problem.terms().right();
   std::copy(right.begin(), right.end(), iterate.direction.begin());
+  const std::vector<double> faces = matrix.face_lines(springs, springs.y0);
   const auto minus_gradient = [&](std::size_t c) {
-    return -1.0 * system.row(c).gradient(springs.force_on(c, matrix.branch(c), springs.y0[c], springs.w0[c]));
+    Force force = springs.force_on(c, matrix.branch(c), springs.y0[c], springs.w0[c]);
+    if (!faces.empty()) force.normal += faces[c];
+    return -1.0 * system.row(c).gradient(force);
   };
   system.problem.add_forces(minus_gradient, iterate.vertex_force, iterate.direction);
 }
@@ -126,6 +137,7 @@ void LowRankUpdate::go(const StepSystem& system, Iterate& iterate, StepMatrix& m
   });
   for (const std::size_t b : matrix.free_blocks()) system.problem.terms().solve_alone(b, d);
   iterate.place(system);
+  look_at_faces(system, matrix);
   matrix.find_differing(system);
   find_wanted(system.springs(), matrix);
 }

@@ -54,6 +54,7 @@ class LowRankUpdate {
              std::span<double> direction);
   bool find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh);
   [[nodiscard]] bool is_exact(const StepSystem& system, bool is_kept) const;
+  void look_at_faces(const StepSystem& system, const StepMatrix& matrix);
   void remember_places();
   [[nodiscard]] bool is_updated(Spring spring) const {
     return spring.number() < place_.size() && place_[spring.number()] > 0;
@@ -75,6 +76,7 @@ class LowRankUpdate {
   std::vector<double> stretch_;
   std::vector<std::array<std::vector<double>, 2>> parts_;  ///< of the two blocks of a spring
   std::vector<linalg::LowRankSolver::PairVector> vectors_;
+  bool faces_bend_ = false;  ///< since begin(): faces of joints press otherwise than the matrix has it
 };
 
 }  // namespace keyblock::dynamics

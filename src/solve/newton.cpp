@@ -78,7 +78,7 @@ bool Newton::go_along(const StepSystem& system, Iterate& iterate, double enough,
   if (whole_way) find_changes(system, 1.0);
   double alpha = whole_way ? 1.0 : search_line(system, iterate);
   // Where no contact changes, what the system left over is all that is.
-  if (!local_.is_active() && changes_.empty() &&
+  if (!local_.is_active() && changes_.empty() && bends_.empty() &&
       system.problem.terms().residual_ratio(iterate.residual) >= enough) {
     if (!improve(system, iterate, exact)) return false;
     find_direction(system, iterate);
@@ -110,9 +110,23 @@ void Newton::find_direction(const StepSystem& system, Iterate& iterate) const {
   });
 }
 
+/// Faces of joints that open or close partly between where they are and α along the direction.
+void Newton::find_bends(const StepSystem& system, double alpha) {
+  bends_.clear();
+  const SpringArray& springs = system.springs();
+  const FaceSprings& faces = springs.faces;
+  if (faces.empty()) return;
+  const auto look_at = [&](std::size_t f) {
+    if (!faces.is_linear(f, springs.y, springs.dy, alpha)) bends_.emplace_back(f);
+  };
+  if (local_.is_active()) return faces.for_faces_of(local_.contacts(), look_at);
+  for (std::size_t f = 0; f < faces.size(); ++f) look_at(f);
+}
+
 /// Contacts that change their branch between where they are and α along the direction.
 void Newton::find_changes(const StepSystem& system, double alpha) {
   const SpringArray& springs = system.springs();
+  find_bends(system, alpha);
   const auto changes = [&](std::size_t c) {
     return springs.branch_at(c, springs.y[c] + alpha * springs.dy[c], springs.w[c] + alpha * springs.dw[c]) !=
            springs.branch[c];
@@ -149,6 +163,7 @@ double Newton::slope(const SpringArray& springs, double alpha) const {
     const Force extra = force_beside(springs, c, alpha);
     sum += extra.normal * springs.dy[c] + extra.shear * springs.dw[c];
   }
+  for (const FaceBend& bend : bends_) sum += bend.slope(springs.faces, springs.y, springs.dy, alpha);
   return sum;
 }
 
@@ -172,12 +187,18 @@ void Newton::go(const StepSystem& system, Iterate& iterate, double alpha) const 
     }
   });
   for (const std::size_t c : changes_) iterate.add_force(system, c, force_beside(springs, c, alpha));
+  for (const FaceBend& bend : bends_) {
+    bend.for_rows(springs.faces, springs.y, springs.dy, alpha, [&](std::size_t row, double beside) {
+      iterate.add_force(system, row, {beside, 0.0});
+    });
+  }
   if (local_.is_active()) {
     iterate.gradient_changed_at(system, local_.blocks());
   } else {
     iterate.gradient_changed();
   }
   for_reached_contacts(system, [&](std::size_t begin, std::size_t end) { springs.go(alpha, begin, end); });
+  springs.press_faces();
   iterate.is_placed = false;
   for (const std::size_t c : changes_) springs.branch[c] = springs.branch_at(c, springs.y[c], springs.w[c]);
 }

@@ -43,11 +43,13 @@ class Newton {
   void find_direction(const StepSystem& system, Iterate& iterate) const;
   [[nodiscard]] double search_line(const StepSystem& system, const Iterate& iterate);
   void find_changes(const StepSystem& system, double alpha);
+  void find_bends(const StepSystem& system, double alpha);
   [[nodiscard]] double slope(const SpringArray& springs, double alpha) const;
   void go(const StepSystem& system, Iterate& iterate, double alpha) const;
 
   LocalSolve local_;
   std::vector<std::size_t> changes_;  ///< contacts that change their branch along the direction of search
+  std::vector<FaceBend> bends_;       ///< faces of joints whose pressure is not linear along it
   double slope_at_zero_ = 0.0, curvature_ = 0.0;
   /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do otherwise is
   /// mended by local solves.

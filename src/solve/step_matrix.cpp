@@ -30,7 +30,91 @@ void StepMatrix::assemble(const StepSystem& system) {
     if (has_spring(c)) count_held(system, c, 1);
   }
   system.problem.add_springs(normal_stiffness_, shear_stiffness_, system.solver);
+  assemble_faces(system);
   is_assembled_ = true;
+}
+
+void StepMatrix::assemble_faces(const StepSystem& system) {
+  const FaceSprings& faces = system.springs().faces;
+  face_rows_.assign(faces.all_rows().begin(), faces.all_rows().end());
+  face_places_.clear();
+  for (const std::size_t row : face_rows_) face_places_.emplace_back(system.row(row));
+  first_tangents_.assign(1, 0);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::size_t n = faces.rows_of(f).size();
+    first_tangents_.push_back(first_tangents_.back() + n * n);
+  }
+  face_tangents_.resize(first_tangents_.back());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    faces.tangent(f, system.springs().y, tangent(f));
+    add_face(system, f, 1.0);
+    for (const std::size_t row : faces.rows_of(f)) count_held(system, row, 1);
+  }
+}
+
+/// The face as the matrix has it.
+void StepMatrix::add_face(const StepSystem& system, std::size_t f, double scale) const {
+  const std::span<const std::size_t> rows = system.springs().faces.rows_of(f);
+  const auto first = static_cast<std::size_t>(rows.data() - system.springs().faces.all_rows().data());
+  system.problem.add_face(rows, std::span(face_places_).subspan(first, rows.size()), tangent(f), scale,
+                          system.solver);
+}
+
+/// Brings the faces to how they press now. Whether that changed the matrix.
+bool StepMatrix::update_faces(const StepSystem& system) {
+  const FaceSprings& faces = system.springs().faces;
+  bool any = false;
+  std::vector<double> now;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    now.resize(tangent(f).size());
+    faces.tangent(f, system.springs().y, now);
+    if (std::ranges::equal(now, tangent(f))) continue;
+    any = true;
+    add_face(system, f, -1.0);
+    std::ranges::copy(now, tangent(f).begin());
+    const std::span<const std::size_t> rows = faces.rows_of(f);
+    const auto first = static_cast<std::size_t>(rows.data() - faces.all_rows().data());
+    for (std::size_t i = 0; i < rows.size(); ++i) face_places_[first + i] = Place(system.row(rows[i]));
+    add_face(system, f, 1.0);
+    const Row& row = system.row(rows.front());
+    if (row.unknown_a >= 0) system.solver.touch(row.unknown_a);
+    if (row.unknown_b >= 0) system.solver.touch(row.unknown_b);
+  }
+  return any;
+}
+
+bool StepMatrix::has_faces_as_they_press(const SpringArray& springs) const {
+  std::vector<double> now;
+  for (std::size_t f = 0; f < springs.faces.size(); ++f) {
+    now.resize(tangent(f).size());
+    springs.faces.tangent(f, springs.y, now);
+    if (!std::ranges::equal(now, tangent(f))) return false;
+  }
+  return true;
+}
+
+std::vector<double> StepMatrix::face_lines(const SpringArray& springs, std::span<const double> y) const {
+  std::vector<double> lines;
+  if (springs.faces.empty()) return lines;
+  lines.assign(springs.size(), 0.0);
+  for (std::size_t f = 0; f < springs.faces.size(); ++f) {
+    const std::span<const std::size_t> rows = springs.faces.rows_of(f);
+    const std::span<const double> h = tangent(f);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (std::size_t j = 0; j < rows.size(); ++j) lines[rows[i]] += h[i * rows.size() + j] * y[rows[j]];
+    }
+  }
+  return lines;
+}
+
+bool StepMatrix::has_faces(const FaceSprings& faces) const {
+  if (!std::ranges::equal(face_rows_, faces.all_rows()) || first_tangents_.size() != faces.size() + 1)
+    return face_rows_.empty() && faces.empty();
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::size_t n = faces.rows_of(f).size();
+    if (first_tangents_[f + 1] - first_tangents_[f] != n * n) return false;
+  }
+  return true;
 }
 
 bool StepMatrix::update(const StepSystem& system) {
@@ -65,7 +149,8 @@ bool StepMatrix::update(const StepSystem& system) {
     if (row.unknown_b >= 0) system.solver.touch(row.unknown_b);
   }
   system.problem.add_springs(changes_, system.solver);
-  return turned || !changes_.empty();
+  const bool faces_changed = update_faces(system);
+  return turned || faces_changed || !changes_.empty();
 }
 
 void StepMatrix::find_differing(const StepSystem& system) {
@@ -106,6 +191,7 @@ void StepMatrix::carry(std::span<const std::size_t> now, std::size_t gone, std::
   carry_one(normal_stiffness_);
   carry_one(shear_stiffness_);
   carry_one(places_);
+  for (std::size_t& row : face_rows_) row = now[row];
 }
 
 void StepMatrix::find_free_blocks(const StepSystem& system, std::span<const std::size_t> updated) {

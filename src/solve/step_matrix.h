@@ -32,10 +32,15 @@ class StepMatrix {
   [[nodiscard]] bool has_spring(std::size_t c) const {
     return normal_stiffness_[c] != 0.0 || shear_stiffness_[c] != 0.0;
   }
-  /// By how much the force of a contact differs from its straight line in the matrix.
+  /// By how much the force of a contact, of its own springs, differs from its straight line in the matrix.
   [[nodiscard]] SpringArray::Force force_beside(const SpringArray& springs, std::size_t c) const {
-    return springs.force(c) - springs.force_on(c, branches_[c], springs.y[c], springs.w[c]);
+    return springs.force_at(c, springs.y[c], springs.w[c]) -
+           springs.force_on(c, branches_[c], springs.y[c], springs.w[c]);
   }
+  /// Whether the faces of joints press as the matrix has it, so that the straight lines of the matrix have their forces.
+  [[nodiscard]] bool has_faces_as_they_press(const SpringArray& springs) const;
+  /// N per thickness, per row, of the straight lines on which the matrix has the faces, at penetrations y; empty: there are none.
+  [[nodiscard]] std::vector<double> face_lines(const SpringArray& springs, std::span<const double> y) const;
   /// Finds the contacts that are on another branch than in the matrix.
   void find_differing(const StepSystem& system);
   /// As found last.
@@ -43,8 +48,11 @@ class StepMatrix {
   [[nodiscard]] std::size_t count_differing(const SpringArray& springs) const;
   /// Where the same springs act the matrix is the same: branches that differ in nothing else are taken for its own.
   void take_branches_with_the_same_springs(const StepSystem& system);
-  /// What is known by contact goes over to the contacts of another step: now[k] of each of these, `gone` where it went.
+  /// What is known by contact goes over to the contacts of another step: now[k] of each of these, `gone` where it went. has_faces(): then,
+  /// whether the faces are those of the step.
   void carry(std::span<const std::size_t> now, std::size_t gone, std::size_t contacts);
+
+  [[nodiscard]] bool has_faces(const FaceSprings& faces) const;
 
   /// Blocks that no spring of the matrix holds, nor any at `updated` contacts. They may turn fast, which the factor of an earlier step knows
   /// nothing of, and are solved alone.
@@ -56,10 +64,22 @@ class StepMatrix {
 
  private:
   void count_held(const StepSystem& system, std::size_t c, int count);
+  void assemble_faces(const StepSystem& system);
+  [[nodiscard]] bool update_faces(const StepSystem& system);
+  void add_face(const StepSystem& system, std::size_t f, double scale) const;
+  [[nodiscard]] std::span<double> tangent(std::size_t f) {
+    return std::span(face_tangents_).subspan(first_tangents_[f], first_tangents_[f + 1] - first_tangents_[f]);
+  }
+  [[nodiscard]] std::span<const double> tangent(std::size_t f) const {
+    return std::span(face_tangents_).subspan(first_tangents_[f], first_tangents_[f + 1] - first_tangents_[f]);
+  }
 
   std::vector<Branch> branches_;                            ///< per contact
   std::vector<double> normal_stiffness_, shear_stiffness_;  ///< N/m per thickness, per contact
   std::vector<Place> places_;                               ///< of these springs
+  std::vector<std::size_t> face_rows_, first_tangents_;     ///< as FaceSprings::all_rows; per face
+  std::vector<Place> face_places_;                          ///< of these rows
+  std::vector<double> face_tangents_;                       ///< N/m per thickness, H of each face by rows
   std::vector<int> held_;  ///< per unknown block: contacts that have such springs
   std::vector<std::size_t> free_;
   std::vector<std::size_t> differing_;

@@ -1,0 +1,133 @@
+#include "contact/joint_pressure.h"
+
+#include <algorithm>
+#include <array>
+
+#include "geometry/quadrature.h"
+
+namespace keyblock::contact {
+
+namespace {
+
+using Shares = std::array<double, JointPressure::most_points>;
+
+/// N_i(s).
+void find_shares(const EdgeDivision& division, double s, Shares& shares) {
+  const std::vector<double>& points = division.points;
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    shares[j] = division.scales[j];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i != j) shares[j] *= s - points[i];
+    }
+  }
+}
+
+double closure_at(const EdgeDivision& division, std::span<const double> y, double s) {
+  Shares shares;
+  find_shares(division, s, shares);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) sum += shares[i] * y[i];
+  return sum;
+}
+
+/// Between two places where the closure has different signs: where it is zero.
+double find_zero(const EdgeDivision& division, std::span<const double> y, double from, double to,
+                 double at_from, double at_to) {
+  double zero = from + (to - from) * at_from / (at_from - at_to);
+  if (y.size() == 2) return zero;  // it is linear
+  constexpr int halvings = 60;
+  for (int k = 0; k < halvings && to - from > 1e-16; ++k) {
+    zero = 0.5 * (from + to);
+    const double at_zero = closure_at(division, y, zero);
+    if ((at_zero > 0.0) == (at_from > 0.0)) {
+      from = zero;
+    } else {
+      to = zero;
+    }
+  }
+  return zero;
+}
+
+/// Calls of_cell(from, to, closure at both) for the cells in which the sign of the closure is looked at: halves of what is between points.
+template <typename OfCell>
+void for_cells(const EdgeDivision& division, std::span<const double> y, const OfCell& of_cell) {
+  const std::vector<double>& points = division.points;
+  if (y.size() == 2) return of_cell(0.0, 1.0, y[0], y[1]);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double middle = 0.5 * (points[i] + points[i + 1]), at_middle = closure_at(division, y, middle);
+    of_cell(points[i], middle, y[i], at_middle);
+    of_cell(middle, points[i + 1], at_middle, y[i + 1]);
+  }
+}
+
+enum class Closed { all, none, partly };
+
+Closed closed_part(const EdgeDivision& division, std::span<const double> y) {
+  bool any = false, all = true;
+  for_cells(division, y, [&](double /*from*/, double /*to*/, double at_from, double at_to) {
+    any = any || at_from > 0.0 || at_to > 0.0;
+    all = all && at_from >= 0.0 && at_to >= 0.0;
+  });
+  return any ? all ? Closed::all : Closed::partly : Closed::none;
+}
+
+}  // namespace
+
+const EdgeDivision& two_ends() {
+  static const EdgeDivision ends({0.0, 1.0});
+  return ends;
+}
+
+/// Calls of_point(weight, N_i) for the points of Gauss's rule in the parts where the joint is closed: exact, as N_i N_j is a polynomial.
+template <typename OfPoint>
+void JointPressure::for_closed_points(std::span<const double> y, const OfPoint& of_point) const {
+  const LineRule& rule = gauss_legendre(static_cast<int>(y.size()));
+  Shares shares;
+  const auto add = [&](double from, double to) {
+    for (std::size_t q = 0; q < rule.points.size(); ++q) {
+      find_shares(*points_, from + (to - from) * rule.points[q], shares);
+      of_point((to - from) * rule.weights[q], shares);
+    }
+  };
+  const Closed closed = pulls_ ? Closed::all : closed_part(*points_, y);
+  if (closed == Closed::all) return add(0.0, 1.0);
+  if (closed == Closed::none) return;
+  for_cells(*points_, y, [&](double from, double to, double at_from, double at_to) {
+    if (at_from <= 0.0 && at_to <= 0.0) return;
+    if (at_from >= 0.0 && at_to >= 0.0) return add(from, to);
+    const double zero = find_zero(*points_, y, from, to, at_from, at_to);
+    if (at_from > 0.0) {
+      add(from, zero);
+    } else {
+      add(zero, to);
+    }
+  });
+}
+
+void JointPressure::forces(std::span<const double> y, std::span<double> force) const {
+  std::ranges::fill(force, 0.0);
+  for_closed_points(y, [&](double weight, const Shares& shares) {
+    double closure = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) closure += shares[i] * y[i];
+    const double pressed = stiffness_ * weight * closure;
+    for (std::size_t i = 0; i < y.size(); ++i) force[i] += pressed * shares[i];
+  });
+}
+
+void JointPressure::tangent(std::span<const double> y, std::span<double> h) const {
+  std::ranges::fill(h, 0.0);
+  const std::size_t n = y.size();
+  for_closed_points(y, [&](double weight, const Shares& shares) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) h[i * n + j] += stiffness_ * weight * shares[i] * shares[j];
+    }
+  });
+}
+
+bool JointPressure::is_linear_between(std::span<const double> from, std::span<const double> to) const {
+  if (pulls_) return true;
+  const Closed closed = closed_part(*points_, from);
+  return closed != Closed::partly && closed == closed_part(*points_, to);
+}
+
+}  // namespace keyblock::contact

@@ -1,0 +1,173 @@
+"""Case 38, joints of given stiffness, as generate.py writes it."""
+
+import math
+
+from case_text import FIXED, G, box, case, number, point, quantity, scenario
+
+RIGID = 'density = 2500.0\nyoung = 1.0e13\npoisson = 0.0\nstate = "plane-strain"'
+SETTLE = '[[stage]]\nname = "settle"\nkind = "settle"\n'
+EXACT = SETTLE + "tolerance = 1.0e-8\nmax_steps = 5000\n"
+# Tilt at which a pier of eight rigid blocks falls (pier_limit, below), degrees, by Pa/m of its joints.
+PIERS = {5e7: 8.122, 1e8: 9.528, 2e8: 10.582, 1e9: 12.136}
+
+
+def pier_limit(stiffness, count=8, height=0.5, width=1.0, density=2500.0):
+    """Degrees: rigid blocks on continuous joints that bear no tension, each turned by the triangle or trapezium of its pressure, and weights where
+    the turns have brought them. Independent of the program; takes seconds."""
+    weight = density * G * height * width
+
+    def stands(angle):
+        down = (math.sin(angle), -math.cos(angle))
+        turns = [0.0] * count
+        for _ in range(20000):
+            sums, total = [], 0.0
+            for turn in turns:
+                total += turn
+                sums.append(total)
+            joints, centres, x, y = [], [], 0.0, 0.0
+            for total in sums:
+                up = (math.sin(total), math.cos(total))
+                joints.append((x, y))
+                centres.append((x + up[0] * height / 2, y + up[1] * height / 2))
+                x, y = x + up[0] * height, y + up[1] * height
+            largest = 0.0
+            for j in range(count):
+                below = sums[j - 1] if j else 0.0
+                pressed = -weight * (count - j) * (down[0] * math.sin(below) + down[1] * math.cos(below))
+                moment = sum(weight * ((c[0] - joints[j][0]) * down[1] - (c[1] - joints[j][1]) * down[0]) for c in centres[j:])
+                turn = rotation(-moment / pressed, pressed, stiffness, width)
+                if turn is None:
+                    return False
+                largest = max(largest, abs(turn - turns[j]))
+                turns[j] += 0.3 * (turn - turns[j])
+            if largest < 1e-10:
+                return True
+        return False
+
+    low, high = 0.0, math.degrees(math.atan(width / (count * height)))
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stands(math.radians(middle)) else (low, middle)
+    return low
+
+
+def rotation(eccentricity, force, stiffness, width):
+    """Of rigid faces, by the pressure between them; None: the force is beyond the end."""
+    e = abs(eccentricity)
+    if e >= width / 2:
+        return None
+    closed = min(width, 3 * (width / 2 - e))
+    turn = 12 * force * e / (stiffness * width**3) if e <= width / 6 else 2 * force / (stiffness * closed**2)
+    return math.copysign(turn, eccentricity)
+
+
+def leaning(share, force, stiffness):
+    """Turn and largest closure of a block of 1 m, with the force at its top: as the block turns, the force moves away from its middle."""
+    turn = 0.0
+    for _ in range(200):
+        turn = rotation(share + turn, force, stiffness, 1.0)
+    middle = force / stiffness
+    e = share + turn
+    return turn, middle * (1 + 6 * e) if e <= 1 / 6 else turn * 3 * (0.5 - e)
+
+
+def eccentric():
+    scenario(
+        "eccentric_joint", title="A rigid block on a soft joint, with a load beside its middle", gravity=(0.0, 0.0), step=0.05, rock=RIGID,
+        joints="friction = 30.0\nnormal_stiffness = 1.0e8",
+        blocks=[("base", box(-1, -1, 3, 1), FIXED), ("block", box(0, 0, 1, 1), "")],
+        histories=[("left", "block", (0.0, 0.0)), ("right", "block", (1.0, 0.0))],
+        extra='[[load]]\nblock = "block"\nfrom = [0.0, 1.0]\nto = [1.0, 1.0]\ntraction = [0.0, -500.0]\ntraction_end = [0.0, -1500.0]\n\n',
+        stages=EXACT,
+    )
+    shares = (1 / 12, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45)
+    text = ""
+    for what, more in (
+        ("", "orders = [1, 2, 3]\n"),
+        (", more contacts", 'vary = { "solver.face_contacts" = [3, 5, 9] }\n'),
+        (", every solver", 'vary = { "solver.linear" = ["block", "direct", "iterative"] }\n'),
+    ):
+        text += f'\n[[run]]\nname = "eccentric load{what}"\nscenario = "scenarios/eccentric_joint.toml"\n{more}[run.points]\n'
+        text += 'keys = ["load.0.traction", "load.0.traction_end"]\nlabels = [' + ", ".join(f'"e {e:.4g} b"' for e in shares) + "]\n"
+        text += "values = [" + ", ".join(f"[{point((0, -1e3 * (1 - 6 * e)))}, {point((0, -1e3 * (1 + 6 * e)))}]" for e in shares) + "]\n"
+        turns, closed = zip(*(leaning(e, 1e3, 1e8) for e in shares))
+        text += quantity("turn of the block", "end('left.uy') - end('right.uy')", "rad", expected_by_point=f"[{', '.join(f'{t:.9e}' for t in turns)}]", tolerance=1e-3)
+        text += quantity("closure at the end that is pressed", "-end('right.uy')", "m", expected_by_point=f"[{', '.join(f'{c:.9e}' for c in closed)}]", tolerance=1e-3)
+    return text
+
+
+def cracks():
+    scenario(
+        "bond_in_bending", title="A rigid block on a bonded joint, bent until it breaks", gravity=(0.0, 0.0), step=0.005, rock=RIGID,
+        joints="friction = 30.0\ncohesion = 1.0e6\ntension = 6.0e4\nnormal_stiffness = 1.0e9",
+        blocks=[("base", box(-1, -1, 3, 1), FIXED), ("block", box(0, 0, 1, 1), "")],
+        histories=[("left", "block", (0.0, 0.0))],
+        extra='[[load]]\nblock = "block"\nfrom = [0.0, 1.0]\nto = [1.0, 1.0]\ntraction = [0.0, 6000.0]\ntraction_end = [0.0, -6000.0]\ntime = [[0.0, 0.0], [20.0, 20.0]]\n\n',
+        stages='[[stage]]\nname = "bend"\nkind = "rest"\nduration = 15.0\n',
+    )
+    text = '\n[[run]]\nname = "bond in bending"\nscenario = "scenarios/bond_in_bending.toml"\norders = [1]\n'
+    return text + quantity("moment at which it breaks", "1e3*crossing('left.vy', 5e-4)", "N m/m", expected="6e4/6", tolerance=2e-3)
+
+
+def piers():
+    scenario(
+        "soft_pier", title="A pier of eight blocks on soft joints", step=0.002, rock='density = 2500.0\nyoung = 5.0e9\npoisson = 0.2\nstate = "plane-strain"',
+        joints="friction = 35.0\nnormal_stiffness = 1.0e8",
+        blocks=[("floor", box(-3, -1, 7, 1), FIXED)] + [(f"b{k}", box(0, 0.5 * k, 1, 0.5), "") for k in range(8)], stages=SETTLE,
+    )
+    text = ""
+    for what, share, moving in (("stands", 0.98, {"at_most": 0}), ("falls", 1.02, {"at_least": 1})):
+        text += f'\n[[run]]\nname = "a pier on soft joints: {what}"\nscenario = "scenarios/soft_pier.toml"\n[run.points]\nkeys = ["joints.normal_stiffness", "gravity"]\n'
+        tilts = {k: math.radians(share * limit) for k, limit in PIERS.items()}
+        text += "labels = [" + ", ".join(f'"{k:.0e} Pa/m, {share} of {limit}°"' for k, limit in PIERS.items()) + "]\n"
+        text += "values = [" + ", ".join(f"[{number(k)}, {point((G * math.sin(a), -G * math.cos(a)))}]" for k, a in tilts.items()) + "]\n"
+        text += quantity("blocks that move", "summary('stages.0.equilibrium.moving_blocks')", **moving)
+        text += quantity("out of balance, of the others", "summary('stages.0.equilibrium.worst_residual_ratio')", at_most=1e-4)
+    return text
+
+
+def prestressed():
+    scenario(
+        "prestressed_joint", title="Joints that stress has closed, and a wall that moves away", gravity=(0.0, 0.0), step=0.001,
+        rock='density = 2500.0\nyoung = 1.0e10\npoisson = 0.0\nstate = "plane-strain"', joints="friction = 60.0\nnormal_stiffness = 1.0e8",
+        blocks=[
+            ("left", box(-1, -0.5, 1, 2), FIXED), ("block", box(0, 0, 1, 1), ""),
+            ("right", box(1, -0.5, 1, 2), FIXED + "motion = { x = [[0.0, 0.0], [1.0, 0.004], [3.0, 0.004]] }\n"),
+        ],
+        histories=[("middle", "block", (0.5, 0.5))], extra="[in_situ]\nsxx = -1.0e6\nsyy = 0.0\n\n", stages='[[stage]]\nname = "relax"\nkind = "rest"\nduration = 2.0\n',
+    )
+    ways = (0.0028, 0.0032, 0.004, 0.008, 0.016)
+    text = '\n[[run]]\nname = "a joint that stress has closed relaxes"\nscenario = "scenarios/prestressed_joint.toml"\norders = [1, 2, 3]\n[run.points]\nkeys = ["block.right.motion.x"]\n'
+    text += "labels = [" + ", ".join(f'"wall {1e3 * w:g} mm away"' for w in ways) + "]\n"
+    text += "values = [" + ", ".join(f"[[[0.0, 0.0], [1.0, {w}], [3.0, {w}]]]" for w in ways) + "]\n"
+    # Two joints and the rock between them, in a row: 1 MPa less w over their compliances.
+    expected = ", ".join(f"{-1e6 + w / (2 / 1e8 + 1 / 1e10):.6e}" for w in ways)
+    return text + quantity("stress of the block", "end('middle.sxx')", "Pa", expected_by_point=f"[{expected}]", tolerance=5e-3)
+
+
+def corners():
+    text = ""
+    for name, angle, slender in (("25", 25.0, 1 / 30), ("40", 40.0, 0.2)):
+        s, c, length = math.sin(math.radians(angle)), math.cos(math.radians(angle)), 6.0
+        thick = slender * length
+        foot, head = (-length * s, 0.0), (0.0, length * c)
+        left = [foot, head, (head[0] - thick * c, head[1] + thick * s), (foot[0] - thick * c, foot[1] + thick * s)]
+        right = [(-x, y) for x, y in reversed(left)]
+        tangent = 0.5 * (s / c - slender)
+        scenario(
+            f"corner_to_corner_{name}", title=f"Two blocks that lean on each other by their corners, {name} degrees from upright",
+            rock='density = 2600.0\nyoung = 5.0e10\npoisson = 0.2\nstate = "plane-stress"', joints="friction = 30.0", step=0.002,
+            blocks=[("floor", box(-8, -1, 16, 1), FIXED), ("left", left, ""), ("right", right, "")], stages=SETTLE,
+        )
+        for what, share, moving in (("stands", 1.01, {"at_most": 0}), ("slides", 0.99, {"at_least": 1})):
+            text += f'\n[[run]]\nname = "corner to corner, {name}°: {what}"\nscenario = "scenarios/corner_to_corner_{name}.toml"\nset = ["joints.friction={math.degrees(math.atan(share * tangent)):.9f}"]\n'
+            text += quantity("blocks that move", "summary('stages.0.equilibrium.moving_blocks')", **moving)
+    return text
+
+
+def joint_pressure():
+    text = '''title = "Pressure along joints"
+case  = 38
+about = """Joints of given stiffness k, at default settings. A rigid block of width b with a load e beside its middle: the pressure is a trapezium up to e = b/6, then a triangle of length 3 (b/2 − e), whatever the order and the number of contacts. A bond of strength t that is bent breaks at t b²/6. A pier of eight blocks on such joints falls at a tilt that an independent computation of rigid blocks gives (verification/joint_pressure.py), 2 % either side. A joint that in-situ stress has closed by 10 mm and a wall that moves away relaxes by what two joints and the rock between them give in a row. Two blocks that lean on each other corner to corner, θ from upright: the force between them is level, and their feet need a friction of ½ (tan θ − thickness/length), 1 % either side."""
+'''
+    case("joint_pressure", text + eccentric() + cracks() + piers() + prestressed() + corners())
