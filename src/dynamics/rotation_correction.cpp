@@ -7,6 +7,7 @@
 #include "contact/edge_curve.h"
 #include "core/index.h"
 #include "core/lanes.h"
+#include "coupling/coupling.h"
 #include "dynamics/energy.h"
 #include "model/worth_threads.h"
 #include "solve/step_numbers.h"
@@ -84,6 +85,7 @@ RotationCorrection::RotationCorrection(const Model& model, const contact::Tolera
     ++count;
   }
   weight_ = norm(model.gravity) * mass / static_cast<double>(count);
+  for (const int block : held_blocks(model)) held_.push_back(at(block));
 }
 
 void RotationCorrection::measure_spin(const Attempt& attempt) {
@@ -132,7 +134,14 @@ double RotationCorrection::tolerated(double work, double force, double stiffness
   return std::clamp(missed, least_rotation_share * tolerance_, tolerance_);
 }
 
+/// Springs to the ground are linear in D, too: where what they hold turns far, they pull the wrong way.
+bool RotationCorrection::turns_held_too_far() const {
+  return std::ranges::any_of(
+      held_, [&](std::size_t b) { return std::abs(spin_[b]) > step_numbers::most_held_rotation; });
+}
+
 Verdict RotationCorrection::check(const Attempt& attempt) {
+  if (turns_held_too_far()) return Verdict::rotated_too_far;
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   const double moved = std::sqrt(

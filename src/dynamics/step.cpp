@@ -220,7 +220,11 @@ Verdict Stepper::solve(State& state, Drive& drive, const SolverOptions& options,
   drive.rotation = rotation_.known();
   build(state, drive, attempts.same_contacts);
   linalg::BlockSolver& solver = choose_solver(state, drive.is_static, attempts.must_be_direct);
-  if (attempts.is_first()) guess(history_, solver, options, drive.step, increment_, team_);
+  if (!problem_.terms().has_weights()) {
+    std::fill(increment_.begin(), increment_.end(), 0.0);
+  } else if (attempts.is_first()) {
+    guess(history_, solver, options, drive.step, increment_, team_);
+  }
   const bool may_meet_impacts = attempts.count < step_numbers::most_attempts;
   const auto meets_impacts = [&] {
     return may_meet_impacts && rules_.meet_impacts(solution(state, drive), motion_.speed());
