@@ -38,6 +38,7 @@ double floor_of(const Drive& drive, double inertia) {
 void BlockTerms::build(const Model& model, const State& state, const Drive& drive, ThreadTeam& team) {
   team_ = &team;
   if (model_ != &model) begin(model);
+  is_static_ = drive.is_static;
   build_blocks(state, drive);
   add_loads(state, drive);
   for (std::size_t k = 0; k < model.couplings.size(); ++k)
@@ -305,7 +306,8 @@ double BlockTerms::residual_ratio(std::span<const double> g) const {
 
 template <typename Size>
 BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const double* position,
-                                               const double* d, double spin, double* turn) const {
+                                               const double* d, double spin, double* turn,
+                                               double* strained) const {
   const Lanes inertia = broadcast(inertia_[i]);
   double of_motion = 0.0, of_both = 0.0, of_turn = 0.0;  // dᵀ H d, dᵀ H s and sᵀ H s, without inertia
   const auto add = [](double& sum, int count, Lanes products) {
@@ -326,6 +328,10 @@ BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const d
   loss.damping = viscous_[i] * model_->blocks[i].elasticity.material_work(position, d);
   loss.numerical = 0.5 * (of_motion - loss.damping);
   loss.numerical += of_both - 0.5 * of_turn;
+  if (is_static_) {
+    for (int k = 0; k < 2 * size; ++k) strained[k] = d[k] - turn[k];
+    loss.numerical -= model_->blocks[i].elasticity.beyond_second_order(position, strained);
+  }
   return loss;
 }
 
@@ -333,12 +339,13 @@ BlockTerms::ElasticLoss BlockTerms::elastic_loss(const State& state, std::span<c
                                                  std::span<const double> spin) const {
   std::vector<ElasticLoss> losses(model_->blocks.size());
   team_->for_range(losses.size(), blocks_worth_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> turn(at(linalg::padded_rows(2 * largest_size_)));
+    std::vector<double> turn(at(linalg::padded_rows(2 * largest_size_))), strained(turn.size());
     for (std::size_t i = begin; i < end; ++i) {
       if (!model_->moves(i)) continue;
       const Block& block = model_->blocks[i];
       losses[i] = with_known_size(block.size, [&](auto size) {
-        return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data());
+        return block_loss(size, i, &state.position[block.first], &d[block.first], spin[i], turn.data(),
+                          strained.data());
       });
     }
   });

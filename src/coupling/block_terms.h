@@ -80,7 +80,8 @@ class BlockTerms {
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
   /// `spin`: what the forces at the end of the step lose against the potential.
   struct ElasticLoss {
-    /// ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out of D.
+    /// ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out of D. In static steps, which
+    /// may be long, less what the elastic energy changes by beyond second order.
     double numerical = 0.0;
     double damping = 0.0;  ///< by the viscosity of the rock
   };
@@ -104,7 +105,7 @@ class BlockTerms {
   [[nodiscard]] double largest_of_right(std::size_t i) const;
   template <typename Size>
   [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
-                                       double spin, double* turn) const;
+                                       double spin, double* turn, double* strained) const;
 
   const Model* model_ = nullptr;
   ThreadTeam* team_ = nullptr;
@@ -118,7 +119,7 @@ class BlockTerms {
   std::vector<double> body_force_;  ///< per block, Block::body_force
   std::vector<double> frequency_;   ///< rad/s, per block: its first elastic one, about
   std::vector<double> weight_;      ///< per block, N-like scale of its coefficients
-  bool has_weights_ = false;
+  bool has_weights_ = false, is_static_ = false;
   std::vector<double> stress_;  ///< the same of its in-situ stress, where there is no gravity; else 0
 };
 

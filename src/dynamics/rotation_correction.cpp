@@ -114,14 +114,25 @@ Vec2 RotationCorrection::at_end(const Attempt& attempt, std::size_t vertex) cons
   return centroid + moved + Vec2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
 }
 
+/// N per thickness, that a mean block has to carry. Without gravity it is what its residual is measured by.
+double RotationCorrection::carried(const Attempt& attempt) const {
+  if (weight_ > 0.0) return weight_;
+  const Model& model = attempt.model;
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (!model.moves(b)) continue;
+    sum += attempt.problem.terms().weight(b) * std::sqrt(model.blocks[b].area);
+    ++count;
+  }
+  return sum / static_cast<double>(std::max(count, 1));
+}
+
 /// J per thickness, that a contact may do over what turning makes it miss. farthest: m, what the sides of a contact go against each other.
-/// A static step without gravity has no such measure.
 double RotationCorrection::tolerated_work(const Attempt& attempt, double farthest) const {
   using namespace step_numbers;
-  const bool is_static = attempt.drive.is_static;
-  if (weight_ <= 0.0)
-    return is_static ? HUGE_VAL : weightless_work_share * kinetic_energy(attempt.model, attempt.state);
-  if (is_static) return static_work_share * weight_ * farthest;
+  if (attempt.drive.is_static) return static_work_share * carried(attempt) * farthest;
+  if (weight_ <= 0.0) return weightless_work_share * kinetic_energy(attempt.model, attempt.state);
   return std::min(weight_work_share * weight_ * attempt.model.block_size,
                   moving_work_share * kinetic_energy(attempt.model, attempt.state));
 }

@@ -45,6 +45,7 @@ class RotationCorrection {
 
  private:
   [[nodiscard]] bool turns_held_too_far() const;
+  [[nodiscard]] double carried(const Attempt& attempt) const;
   [[nodiscard]] double tolerated_work(const Attempt& attempt, double farthest) const;
   [[nodiscard]] double tolerated(double work, double force, double stiffness) const;
   Verdict check_contact(const Attempt& attempt, std::size_t c, double work);

@@ -188,7 +188,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"boundary", boundary(model)},
       {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
-      {"energy_warnings", simulation::energy_warnings(run.energy)},
+      {"energy_warnings", simulation::energy_warnings(run)},
       {"stages", stages}};
   for (const auto& [name, hash] : model.hooks) json["hooks"].push_back({{"name", name}, {"hash", hash}});
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

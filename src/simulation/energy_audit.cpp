@@ -24,6 +24,14 @@ double unseen_energy(const dynamics::Model& model) {
   return sum;
 }
 
+double largest_but_numerical(const dynamics::Model& model, const Energy& e) {
+  double largest = unseen_energy(model);
+  for (const double term :
+       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.radiated, e.input})
+    largest = std::max(largest, std::abs(term));
+  return largest;
+}
+
 }  // namespace
 
 double stored_energy(const dynamics::Model& model, const dynamics::State& state) {
@@ -45,13 +53,13 @@ Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, 
   e.gravity = dynamics::gravity_energy(model, state) - initial;
   const double residual = e.kinetic + e.strain + e.gravity + e.contact + e.friction + e.damping + e.radiated +
                           e.numerical - e.input;
-  double largest = unseen_energy(model);
-  for (const double term :
-       {e.kinetic, e.strain, e.gravity, e.contact, e.friction, e.damping, e.radiated, e.numerical, e.input}) {
-    largest = std::max(largest, std::abs(term));
-  }
+  const double largest = std::max(largest_but_numerical(model, e), std::abs(e.numerical));
   e.residual_ratio = residual == 0.0 ? 0.0 : std::abs(residual) / largest;  // no number where a term is none
   return e;
+}
+
+double made_ratio(const dynamics::Model& model, const Energy& energy) {
+  return std::max(0.0, -energy.numerical) / largest_but_numerical(model, energy);
 }
 
 }  // namespace keyblock::simulation

@@ -28,11 +28,22 @@ std::string reason_of_failure(const Energy& energy) {
 
 }  // namespace
 
-std::vector<std::string> energy_warnings(const Energy& energy) {
-  if (has_failed(energy)) return {reason_of_failure(energy)};
-  if (energy.residual_ratio <= doubtful_residual) return {};
-  return {fmt::format("{}, more than {:.0f} %: compare with a run with a smaller time.step", missed(energy),
-                      100.0 * doubtful_residual)};
+std::vector<std::string> energy_warnings(const RunRecord& run) {
+  std::vector<std::string> texts;
+  if (has_failed(run.energy)) {
+    texts.push_back(reason_of_failure(run.energy));
+  } else if (run.energy.residual_ratio > doubtful_residual) {
+    texts.push_back(fmt::format("{}, more than {:.0f} %: compare with a run with a smaller time.step",
+                                missed(run.energy), 100.0 * doubtful_residual));
+  }
+  if (run.made_ratio > doubtful_made) {
+    texts.push_back(
+        fmt::format("the rule of time integration has made energy, {:.3g} % of the largest term that is "
+                    "accounted for: compare with "
+                    "a run with a smaller time.step, or with another solver.integrator",
+                    100.0 * run.made_ratio));
+  }
+  return texts;
 }
 
 void check_balance(const RunRecord& run) {

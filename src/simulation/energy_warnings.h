@@ -10,9 +10,11 @@ namespace keyblock::simulation {
 inline constexpr double doubtful_residual = 0.01;
 /// … and above which they are none: forces and motion do not belong together.
 inline constexpr double failed_residual = 0.05;
+/// RunRecord::made_ratio, above which the time integration drives what moves.
+inline constexpr double doubtful_made = 0.1;
 
 /// What the balance of energies says against the results of a run, in plain words; empty: nothing.
-[[nodiscard]] std::vector<std::string> energy_warnings(const Energy& energy);
+[[nodiscard]] std::vector<std::string> energy_warnings(const RunRecord& run);
 
 /// After the results are written. Throws a RunError with the reason where the residual is above `failed_residual`. A run that was
 /// interrupted is judged once it has ended.

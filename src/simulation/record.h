@@ -267,6 +267,7 @@ struct RunRecord {
   OverlapRecord max_overlap;     ///< the largest that was seen
   double max_area_change = 0.0;  ///< relative
   Energy energy;
+  double made_ratio = 0.0;  ///< energy that the time integration has made, over the largest other term
   std::vector<StageRecord> stages;
   bool interrupted = false;
   Profile profile;  ///< of this run; of the part after resuming, if it was resumed

@@ -164,7 +164,7 @@ TEST(Weightless, BlocksAtRestStayAtRest) {
   }
 }
 
-// Its energy falls by 18 orders of magnitude.
+// Its energy falls by 20 orders of magnitude.
 TEST(Weightless, WhatIsDampedToRestConverges) {
   for (const LinearSolver solver : all_solvers) {
     Scene scene = weightless();
@@ -176,14 +176,16 @@ TEST(Weightless, WhatIsDampedToRestConverges) {
     scene.setup.supports.push_back(support);
     scene.setup.properties[0].velocity = {1.0, 0.5};
     Simulator s(scene);
-    s.run(0.5, weightless_step);
+    s.run(3.0, weightless_step);
     EXPECT_EQ(s.unconverged, 0);
-    EXPECT_LT(norm(s.velocity(0)), 1e-6);
+    EXPECT_LT(norm(s.velocity(0)), 1e-10);
   }
 }
 
 TEST(Weightless, AForceThatNothingMeasuresIsInfinitelyOutOfBalance) {
-  const Scene scene = apart_by_5_cm();
+  Scene scene(0.0, 40.0);  // rock without stiffness has no elastic force, not even by rounding
+  scene.setup.gravity = {};
+  scene.rectangle({0.0, 0.0}, 1.0, 1.0);
   Simulator s(scene);
   const auto solver = linalg::make_block_cholesky(linalg::Precision::full);
   const dynamics::OneStep step(s, *solver);
