@@ -290,7 +290,13 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   } else {
     history_.forget();
   }
+  const double loads_before = work_of_loads(model_, drive.end_time, state.position);
   move_blocks(solved, rotation_.spin(), rules_, state);
+  // Where blocks turn, loads go other ways than the step was solved with: what they do over the difference is input, and lost at once.
+  const double turned = work_of_loads(model_, drive.end_time, state.position) - loads_before -
+                        work_of_loads(model_, drive.end_time, solved.increment);
+  state.ledger.input += turned;
+  state.ledger.numerical += turned;
   move_prescribed(model_, drive, state);
   place_surface(model_, state, motion_, team_);
   // What turning did to springs that the step was linear in, now that blocks are where they come to be.
