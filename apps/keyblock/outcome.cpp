@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "simulation/before_shaking.h"
+#include "simulation/energy_warnings.h"
 #include "simulation/verdict.h"
 #include "terminal.h"
 
@@ -160,6 +161,7 @@ std::vector<std::string> warnings(const RunRecord& run) {
   if (run.open_close.unconverged_steps > 0) {
     texts.push_back(fmt::format("{} steps did not converge", run.open_close.unconverged_steps));
   }
+  for (const std::string& warning : simulation::energy_warnings(run)) texts.push_back(warning);
   const simulation::OverlapRecord& overlap = run.max_overlap;
   if (overlap.depth >= largest_overlap && overlap.block_a >= 0) {
     texts.push_back(

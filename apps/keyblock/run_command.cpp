@@ -15,9 +15,11 @@
 #include "model/options.h"
 #include "outcome.h"
 #include "progress.h"
+#include "results/run_data.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario_arguments.h"
+#include "simulation/energy_warnings.h"
 
 namespace keyblock::app {
 namespace {
@@ -75,6 +77,7 @@ void run_scenario(RunArguments arguments) {
     std::cout << arguments.folder << ": this run has ended; there is nothing to go on with\n";
     job::restore_conclusions(arguments.folder);
     say_where_report_is(arguments);
+    if (const auto ended = results::ended_run(arguments.folder)) simulation::check_balance(*ended);
     return;
   }
   if (const auto note = scenario::sliver_note(setup.system, scenario.blocks.size()))
@@ -89,6 +92,7 @@ void run_scenario(RunArguments arguments) {
   if (record.interrupted) {
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
   }
+  simulation::check_balance(record);
 }
 
 }  // namespace

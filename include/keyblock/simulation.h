@@ -73,7 +73,8 @@ class KEYBLOCK_API Simulation {
   /// One step of the plan; false when there is nothing left to do. Throws RunError when the run cannot go on.
   bool advance();
   [[nodiscard]] bool done() const;
-  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same.
+  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same. The first throws a
+  /// RunError, once all is written, where the balance of energies of a whole run misses more than 5 % of its largest term.
   std::string finish();
   /// The run ends within the step at hand. May be called from another thread and from a signal handler.
   void stop() noexcept;

@@ -197,7 +197,8 @@ class Simulation:
         return self.finish()
 
     def finish(self) -> dict[str, Any]:
-        """Ends the run where it is and writes what remains. Returns what summary.json has."""
+        """Ends the run where it is and writes what remains. Returns what summary.json has. Throws RunError, once all is written, where the
+        balance of energies of a whole run misses more than 5 % of its largest term; called again, it returns the summary all the same."""
         return json.loads(self._core.finish())
 
     def stop(self) -> None:

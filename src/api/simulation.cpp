@@ -15,6 +15,7 @@
 #include "results/summary.h"
 #include "scenario/build.h"
 #include "simulation/checkpoint.h"
+#include "simulation/energy_warnings.h"
 #include "simulation/feasibility.h"
 #include "simulation/refuse.h"
 
@@ -139,7 +140,9 @@ std::string Simulation::finish() {
   if (!parts_->summary.empty()) return parts_->summary;
   const simulation::RunRecord record =
       parts_->recorded ? parts_->recorded->finish() : parts_->alone->finish();
-  return parts_->summary = results::summary_json(parts_->listener.model, record);
+  parts_->summary = results::summary_json(parts_->listener.model, record);
+  simulation::check_balance(record);
+  return parts_->summary;
 }
 
 void Simulation::stop() noexcept {

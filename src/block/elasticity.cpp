@@ -245,6 +245,21 @@ void Elasticity::add_geometric_tangent(const double* geometric, double* tangent,
   });
 }
 
+double Elasticity::beyond_second_order(const double* a, const double* d) const {
+  std::vector<double> moved(2 * static_cast<std::size_t>(size_));
+  const double start = energy(a);
+  const auto change_at = [&](double share) {
+    for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = a[k] + share * d[k];
+    return energy(moved.data()) - start;
+  };
+  const double before = change_at(-1.0), half_before = change_at(-0.5), half = change_at(0.5),
+               end = change_at(1.0);
+  // Even and odd parts: of ½ k t² + q t⁴ at 1 and ½, and of f t + c t³.
+  const double even = 0.5 * (end + before), half_even = 0.5 * (half + half_before),
+               odd = 0.5 * (end - before), half_odd = 0.5 * (half - half_before);
+  return 4.0 / 3.0 * ((even - 4.0 * half_even) + (odd - 2.0 * half_odd));
+}
+
 double Elasticity::material_work(const double* a, const double* d) const {
   return sum_over_points([&](auto size, const auto& point, const auto* g) {
     const auto f = deformation(size, a, g), h = deformation(size, d, g);

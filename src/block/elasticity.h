@@ -45,6 +45,9 @@ class Elasticity {
   void add_geometric_tangent(const double* geometric, double* tangent, int stride) const;
   /// ∫ δE : C : δE dA with δE the linear part of the strain that increment d adds at a: dᵀ (material part of K) d. J.
   [[nodiscard]] double material_work(const double* a, const double* d) const;
+  /// U(a + d) − U(a) − fᵀ d − ½ dᵀ K d: what the energy changes by beyond second order. U is of fourth degree along d, so that its values at
+  /// a, a ± d/2 and a ± d say it exactly. J.
+  [[nodiscard]] double beyond_second_order(const double* a, const double* d) const;
   /// ∫ |S(a) − S(b)|² dA of the second Piola-Kirchhoff stress, Pa² m²; with a null b, of S(a) itself.
   [[nodiscard]] double squared_stress(const double* a, const double* b) const;
   /// Cauchy stress σ = F S Fᵀ / det F at a point of the region.

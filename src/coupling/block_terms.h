@@ -56,13 +56,17 @@ class BlockTerms {
   void assemble_block(std::size_t block, linalg::BlockSolver& solver) const;
   [[nodiscard]] std::span<const double> right() const { return b_; }  ///< b
 
-  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity).
+  /// Once b is known: without gravity, raises weights to a share of what makes the step, so that none is zero in a step in which anything
+  /// happens. row_force: N per thickness, the largest of a spring of the rows at D = 0.
+  void weigh_motion(const Drive& drive, double row_force);
+  /// Largest |g_k| of a block's coefficients over its weight (or what stands for it in a model without gravity). Infinite where a force
+  /// is out of balance that nothing measures.
   [[nodiscard]] double residual_ratio(std::span<const double> g) const;
   /// The ratio of one block.
   [[nodiscard]] double residual_ratio(std::size_t block, std::span<const double> g) const;
   [[nodiscard]] double weight(std::size_t block) const { return weight_[block]; }
-  /// Whether there is anything to measure residuals by: not without gravity, loads and shaking.
-  [[nodiscard]] bool has_weights() const { return !weight_.empty() && weight_.front() > 0.0; }
+  /// Whether there is anything to measure residuals by. Where there is not, nothing acts and nothing moves: the step is D = 0.
+  [[nodiscard]] bool has_weights() const { return has_weights_; }
   /// N/m per thickness and unit area: largest of a coefficient of the block, without inertia.
   [[nodiscard]] double largest_stiffness(std::size_t block) const;
   /// cρ/Δt², of each block; 0: it does not move.
@@ -76,7 +80,8 @@ class BlockTerms {
   /// Work that the elasticity of blocks and supports does not give back in a step of increment D that turns each block by
   /// `spin`: what the forces at the end of the step lose against the potential.
   struct ElasticLoss {
-    /// ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out of D.
+    /// ½ Dᵀ (K_t + K_support) D + Dᵀ K_t s − ½ sᵀ K_t s, with s = w × r the turn, which the pose update takes out of D. In static steps, which
+    /// may be long, less what the elastic energy changes by beyond second order.
     double numerical = 0.0;
     double damping = 0.0;  ///< by the viscosity of the rock
   };
@@ -97,9 +102,10 @@ class BlockTerms {
   void finish_blocks(PressedBlocks& pressed);
   void build_blocks(const State& state, const Drive& drive);
   void add_loads(const State& state, const Drive& drive);
+  [[nodiscard]] double largest_of_right(std::size_t i) const;
   template <typename Size>
   [[nodiscard]] ElasticLoss block_loss(Size size, std::size_t i, const double* position, const double* d,
-                                       double spin, double* turn) const;
+                                       double spin, double* turn, double* strained) const;
 
   const Model* model_ = nullptr;
   ThreadTeam* team_ = nullptr;
@@ -113,7 +119,8 @@ class BlockTerms {
   std::vector<double> body_force_;  ///< per block, Block::body_force
   std::vector<double> frequency_;   ///< rad/s, per block: its first elastic one, about
   std::vector<double> weight_;      ///< per block, N-like scale of its coefficients
-  std::vector<double> stress_;      ///< the same of its in-situ stress, where there is no gravity; else 0
+  bool has_weights_ = false, is_static_ = false;
+  std::vector<double> stress_;  ///< the same of its in-situ stress, where there is no gravity; else 0
 };
 
 }  // namespace keyblock::dynamics

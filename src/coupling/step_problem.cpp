@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -9,6 +10,18 @@
 #include "core/lanes.h"
 
 namespace keyblock::dynamics {
+
+namespace {
+
+/// N per thickness, at D = 0.
+double largest_force(const SpringArray& springs, ThreadTeam& team) {
+  return largest_of(team, springs.size(), contacts_worth_threads, [&](std::size_t c) {
+    const SpringArray::Force force = springs.force(c);
+    return std::hypot(force.normal, force.shear);
+  });
+}
+
+}  // namespace
 
 void StepProblem::build(const Model& model, const State& state, const Drive& drive, const Coupling& contacts,
                         ThreadTeam& team) {
@@ -40,6 +53,7 @@ void StepProblem::build(const Model& model, const State& state, const Drive& dri
     first_point += coupling->points().size();
   }
   owners_.find_ranges(team);
+  terms_.weigh_motion(drive, model.gravity == Vec2{} ? largest_force(springs_, team) : 0.0);
 }
 
 void StepProblem::name_rows(std::vector<Coupling::RowKey>& keys) const {

@@ -69,6 +69,18 @@ void place_surface(Model& model, State& state, PredictedMotion& motion, ThreadTe
   });
 }
 
+double work_of_loads(const Model& model, double time, std::span<const double> way) {
+  double work = 0.0;
+  for (std::size_t l = 0; l < model.loads.size(); ++l) {
+    const GeneralizedLoad& load = model.loads[l];
+    if (!model.moves(at(load.block))) continue;
+    const double f = model.load_factor(l, time);
+    const std::size_t first = model.blocks[at(load.block)].first;
+    for (std::size_t k = 0; k < load.force.size(); ++k) work += f * load.force[k] * way[first + k];
+  }
+  return work;
+}
+
 double renew_support_energy(const Model& model, double time, State& state) {
   if (model.couplings.empty()) return 0.0;
   const double now = support_energy(model, state, time), gained = now - state.support_energy;

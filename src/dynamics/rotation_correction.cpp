@@ -7,6 +7,7 @@
 #include "contact/edge_curve.h"
 #include "core/index.h"
 #include "core/lanes.h"
+#include "coupling/coupling.h"
 #include "dynamics/energy.h"
 #include "model/worth_threads.h"
 #include "solve/step_numbers.h"
@@ -84,6 +85,7 @@ RotationCorrection::RotationCorrection(const Model& model, const contact::Tolera
     ++count;
   }
   weight_ = norm(model.gravity) * mass / static_cast<double>(count);
+  for (const int block : held_blocks(model)) held_.push_back(at(block));
 }
 
 void RotationCorrection::measure_spin(const Attempt& attempt) {
@@ -112,14 +114,25 @@ Vec2 RotationCorrection::at_end(const Attempt& attempt, std::size_t vertex) cons
   return centroid + moved + Vec2{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
 }
 
+/// N per thickness, that a mean block has to carry. Without gravity it is what its residual is measured by.
+double RotationCorrection::carried(const Attempt& attempt) const {
+  if (weight_ > 0.0) return weight_;
+  const Model& model = attempt.model;
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (!model.moves(b)) continue;
+    sum += attempt.problem.terms().weight(b) * std::sqrt(model.blocks[b].area);
+    ++count;
+  }
+  return sum / static_cast<double>(std::max(count, 1));
+}
+
 /// J per thickness, that a contact may do over what turning makes it miss. farthest: m, what the sides of a contact go against each other.
-/// A static step without gravity has no such measure.
 double RotationCorrection::tolerated_work(const Attempt& attempt, double farthest) const {
   using namespace step_numbers;
-  const bool is_static = attempt.drive.is_static;
-  if (weight_ <= 0.0)
-    return is_static ? HUGE_VAL : weightless_work_share * kinetic_energy(attempt.model, attempt.state);
-  if (is_static) return static_work_share * weight_ * farthest;
+  if (attempt.drive.is_static) return static_work_share * carried(attempt) * farthest;
+  if (weight_ <= 0.0) return weightless_work_share * kinetic_energy(attempt.model, attempt.state);
   return std::min(weight_work_share * weight_ * attempt.model.block_size,
                   moving_work_share * kinetic_energy(attempt.model, attempt.state));
 }
@@ -132,7 +145,14 @@ double RotationCorrection::tolerated(double work, double force, double stiffness
   return std::clamp(missed, least_rotation_share * tolerance_, tolerance_);
 }
 
+/// Springs to the ground are linear in D, too: where what they hold turns far, they pull the wrong way.
+bool RotationCorrection::turns_held_too_far() const {
+  return std::ranges::any_of(
+      held_, [&](std::size_t b) { return std::abs(spin_[b]) > step_numbers::most_held_rotation; });
+}
+
 Verdict RotationCorrection::check(const Attempt& attempt) {
+  if (turns_held_too_far()) return Verdict::rotated_too_far;
   double turn = 0.0;
   for (const double spin : spin_) turn = std::max(turn, std::abs(spin));
   const double moved = std::sqrt(

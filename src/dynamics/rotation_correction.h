@@ -17,7 +17,8 @@ namespace keyblock::dynamics {
 ///
 /// δ matters where a contact presses, or comes to press by δ only. There are two measures: δ itself, and the work N δ of the normal force,
 /// which is done on no block. An attempt in which δ is too large is made again with g + δ in place of g, until δ is what it was made with.
-/// Where blocks turn so far that forces have other directions at the end, the step is too long (docs/theory.md, section "Rotation").
+/// Where blocks turn so far that forces have other directions at the end, the step is too long (docs/theory.md, section "Rotation"). So it
+/// is where a block turns that springs hold to the ground, whatever touches it.
 class RotationCorrection {
  public:
   RotationCorrection(const Model& model, const contact::Tolerances& tolerances);
@@ -43,13 +44,16 @@ class RotationCorrection {
   double keep_shear(const Attempt& attempt, std::span<contact::Memory> memory);
 
  private:
+  [[nodiscard]] bool turns_held_too_far() const;
+  [[nodiscard]] double carried(const Attempt& attempt) const;
   [[nodiscard]] double tolerated_work(const Attempt& attempt, double farthest) const;
   [[nodiscard]] double tolerated(double work, double force, double stiffness) const;
   Verdict check_contact(const Attempt& attempt, std::size_t c, double work);
 
-  double tolerance_;             ///< m, largest change of δ
-  double largest_radius_ = 0.0;  ///< m, of the blocks that move
-  double weight_ = 0.0;          ///< N per thickness, of a mean block; 0: there is no gravity
+  double tolerance_;               ///< m, largest change of δ
+  double largest_radius_ = 0.0;    ///< m, of the blocks that move
+  double weight_ = 0.0;            ///< N per thickness, of a mean block; 0: there is no gravity
+  std::vector<std::size_t> held_;  ///< blocks that springs hold to the ground
   std::vector<double> spin_;
   std::vector<Vec2> known_, found_;
   std::vector<double> gained_;  ///< J per thickness, per contact. Scratch

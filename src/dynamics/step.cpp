@@ -221,7 +221,11 @@ Verdict Stepper::solve(State& state, Drive& drive, const SolverOptions& options,
   drive.rotation = rotation_.known();
   build(state, drive, attempts.same_contacts);
   linalg::BlockSolver& solver = choose_solver(state, drive.is_static, attempts.must_be_direct);
-  if (attempts.is_first()) guess(history_, solver, options, drive.step, increment_, team_);
+  if (!problem_.terms().has_weights()) {
+    std::fill(increment_.begin(), increment_.end(), 0.0);
+  } else if (attempts.is_first()) {
+    guess(history_, solver, options, drive.step, increment_, team_);
+  }
   const bool may_meet_impacts = attempts.count < step_numbers::most_attempts;
   const auto meets_impacts = [&] {
     return may_meet_impacts && rules_.meet_impacts(solution(state, drive), motion_.speed());
@@ -287,7 +291,13 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   } else {
     history_.forget();
   }
+  const double loads_before = work_of_loads(model_, drive.end_time, state.position);
   move_blocks(solved, rotation_.spin(), rules_, state);
+  // Where blocks turn, loads go other ways than the step was solved with: what they do over the difference is input, and lost at once.
+  const double turned = work_of_loads(model_, drive.end_time, state.position) - loads_before -
+                        work_of_loads(model_, drive.end_time, solved.increment);
+  state.ledger.input += turned;
+  state.ledger.numerical += turned;
   move_prescribed(model_, drive, state);
   place_surface(model_, state, motion_, team_);
   // What turning did to springs that the step was linear in, now that blocks are where they come to be.

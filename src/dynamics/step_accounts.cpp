@@ -5,6 +5,7 @@
 
 #include "core/index.h"
 #include "core/known_size.h"
+#include "dynamics/position_update.h"
 #include "model/state_motion.h"
 #include "model/worth_threads.h"
 
@@ -50,13 +51,7 @@ void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const do
     ledger.numerical += work.numerical;
     ledger.input += work.input;
   }
-  for (std::size_t l = 0; l < model.loads.size(); ++l) {
-    const GeneralizedLoad& load = model.loads[l];
-    if (!model.moves(at(load.block))) continue;
-    const double f = model.load_factor(l, attempt.drive.end_time);
-    for (std::size_t k = 0; k < load.force.size(); ++k)
-      ledger.input += f * load.force[k] * attempt.increment[model.blocks[at(load.block)].first + k];
-  }
+  ledger.input += work_of_loads(model, attempt.drive.end_time, attempt.increment);
 }
 
 CouplingTotals account_for_couplings(const Attempt& attempt, std::span<const double> spin, State& state) {

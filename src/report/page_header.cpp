@@ -93,6 +93,7 @@ ordered_json run_json(const results::RunData& data) {
           {"max_overlap_m", run.max_overlap.depth},
           {"max_overlap_at", results::overlap_place_json(run.max_overlap, data.model.origin)},
           {"max_area_change", run.max_area_change},
+          {"made_ratio", run.made_ratio},
           {"energy", results::energy_json(run.energy)},
           {"stages", stages},
           {"interrupted", run.interrupted},

@@ -233,6 +233,7 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"max_overlap_at", overlap_place_json(run.max_overlap, {})},
                           {"max_area_change", run.max_area_change},
                           {"energy", energy_json(run.energy)},
+                          {"made_ratio", run.made_ratio},
                           {"interrupted", run.interrupted}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -250,6 +251,7 @@ simulation::RunRecord read_run_json(const std::string& text) {
     if (json.contains("max_overlap_at")) read_overlap_place(json.at("max_overlap_at"), run.max_overlap);
     run.max_area_change = number(json.at("max_area_change"));
     run.energy = read_energy(json.at("energy"));
+    run.made_ratio = json.contains("made_ratio") ? number(json.at("made_ratio")) : 0.0;
     json.at("interrupted").get_to(run.interrupted);
     return run;
   });

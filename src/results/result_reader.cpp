@@ -249,12 +249,15 @@ RunData read_run(const std::filesystem::path& directory) {
 }
 
 // summary.json is the last that a run writes, after the same text in result.h5.
-bool has_ended(const std::filesystem::path& directory) {
-  return with_file(directory, [&](hid_t file) {
-    const auto run = TextColumn::read_lines(file, "run");
+std::optional<simulation::RunRecord> ended_run(const std::filesystem::path& directory) {
+  return with_file(directory, [&](hid_t file) -> std::optional<simulation::RunRecord> {
+    const auto lines = TextColumn::read_lines(file, "run");
     const std::filesystem::path summary = directory / "summary.json";
-    return !run.empty() && !read_run_json(run.back()).interrupted && file_exists(summary) &&
-           read_file(summary) == TextColumn::read(file, "summary");
+    if (lines.empty()) return std::nullopt;
+    simulation::RunRecord run = read_run_json(lines.back());
+    const bool has_ended =
+        !run.interrupted && file_exists(summary) && read_file(summary) == TextColumn::read(file, "summary");
+    return has_ended ? std::optional(std::move(run)) : std::nullopt;
   });
 }
 

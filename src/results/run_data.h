@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "simulation/record.h"
@@ -29,8 +30,12 @@ std::size_t frame_of(const simulation::ContactFrame& snapshot, const std::vector
 /// Reads DIR/result.h5. Throws InputError when there is none, or when it is truncated or of another format.
 RunData read_run(const std::filesystem::path& directory);
 
-/// Whether the run has come to its end, so that all it leaves is in DIR but the report. Throws InputError as read_run does.
-bool has_ended(const std::filesystem::path& directory);
+/// The record of a run that has come to its end, so that all it leaves is in DIR but the report; else none. Throws InputError as read_run
+/// does.
+std::optional<simulation::RunRecord> ended_run(const std::filesystem::path& directory);
+inline bool has_ended(const std::filesystem::path& directory) {
+  return ended_run(directory).has_value();
+}
 
 /// Its histories alone.
 std::vector<simulation::HistoryRow> read_histories(const std::filesystem::path& directory);

@@ -7,6 +7,7 @@
 #include "core/checked_json.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
+#include "simulation/energy_warnings.h"
 #include "simulation/verdict.h"
 
 namespace keyblock::results {
@@ -187,6 +188,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"boundary", boundary(model)},
       {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
+      {"energy_warnings", simulation::energy_warnings(run)},
       {"stages", stages}};
   for (const auto& [name, hash] : model.hooks) json["hooks"].push_back({{"name", name}, {"hash", hash}});
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -136,9 +136,10 @@ struct Energy {
   double damping = 0.0;   ///< dissipated by the dashpots of contacts and the viscosity of the rock
   double input =
       0.0;  ///< work of ground motion, loads and moved supports; energy removed with excavated blocks is negative
-  double numerical = 0.0;       ///< dissipated by the time integration, computed step by step
-  double residual_ratio = 0.0;  ///< |residual| over the largest term
-  double radiated = 0.0;        ///< carried away by waves through a seismic boundary
+  double numerical = 0.0;  ///< dissipated by the time integration, computed step by step
+  double residual_ratio =
+      0.0;                ///< |residual| over the largest term, or over what nobody sees (energy_audit.cpp)
+  double radiated = 0.0;  ///< carried away by waves through a seismic boundary
 };
 
 /// How the steps went, one row now and then.
@@ -266,6 +267,7 @@ struct RunRecord {
   OverlapRecord max_overlap;     ///< the largest that was seen
   double max_area_change = 0.0;  ///< relative
   Energy energy;
+  double made_ratio = 0.0;  ///< energy that the time integration has made, over the largest other term
   std::vector<StageRecord> stages;
   bool interrupted = false;
   Profile profile;  ///< of this run; of the part after resuming, if it was resumed

@@ -149,6 +149,7 @@ void Runner::end() {
   record.open_close.mean_iterations =
       record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
   record.energy = energy();
+  record.made_ratio = made_ratio(model_, record.energy);
   record.interrupted = record.interrupted || is_set(options_.stop) || now_.stage < std::ssize(setup_.stages);
   record.profile = profile_;
   observer_.end(record);

@@ -97,6 +97,9 @@ inline constexpr int damped_patience = 5;
 
 /// rad, that a block in contact turns by in a step at most. Larger: forces keep a direction that they no longer have.
 inline constexpr double most_rotation = 0.1;
+/// The same of a block that springs hold to the ground, touched by others or not. Where it turns about a point, the springs come to be off
+/// by half the square of it, of its radius; larger: they crush the block as they take that back.
+inline constexpr double most_held_rotation = 0.3;
 /// Work that a contact may do over what turning makes it miss. Larger: energy comes and goes without account; smaller: more steps are taken
 /// again. It is a share of what lifts a mean block by its size, and of the kinetic energy where this is less.
 inline constexpr double weight_work_share = 1e-3, moving_work_share = 5e-4;

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
+#include "simulation/energy_warnings.h"
 #include "study/fragility_words.h"
 
 namespace keyblock::study {
@@ -50,6 +54,19 @@ std::string curve_line(const StudyData& study, const FragilityGroup& group) {
                             interval(group.curve.beta));
 }
 
+/// Empty where the balance of all runs closes.
+std::string balance_line(const StudyData& study) {
+  const auto is_doubtful = [](const RunResult& run) {
+    return run.error.empty() && run.energy_residual_ratio > simulation::doubtful_residual;
+  };
+  const auto doubtful = std::ranges::count_if(study.runs, is_doubtful);
+  if (doubtful == 0) return {};
+  return fmt::format(
+      "{} of {} runs: the balance of energies misses more than {:.0f} %, {}; see runs.csv", doubtful,
+      study.runs.size(), 100.0 * simulation::doubtful_residual,
+      std::ranges::find_if(study.runs, is_doubtful)->key + (doubtful > 1 ? " and others" : ""));
+}
+
 }  // namespace
 
 std::vector<std::string> findings(const StudyData& study, const Summary& summary) {
@@ -59,6 +76,7 @@ std::vector<std::string> findings(const StudyData& study, const Summary& summary
       if (!c.runs.empty()) lines.push_back(level_line(study, c, l));
   for (const FragilityGroup& group : summary.fragility)
     if (group.intensity == 0) lines.push_back(curve_line(study, group));
+  if (std::string line = balance_line(study); !line.empty()) lines.push_back(std::move(line));
   return lines;
 }
 

@@ -15,6 +15,7 @@
 #include "scenario/cut_summary.h"
 #include "scenario/key_path.h"
 #include "scenario/parse.h"
+#include "simulation/energy_warnings.h"
 #include "simulation/run.h"
 
 namespace keyblock::verification {
@@ -141,7 +142,9 @@ void run_engine(const RunSpec& run, const simulation::RunSetup& setup, const std
     options.stop = stop;
     options.resume = std::filesystem::exists(scratch->path() / "checkpoint.bin");
   }
-  if (simulation::run(setup, options, memory).interrupted) throw RunError("interrupted");
+  const simulation::RunRecord record = simulation::run(setup, options, memory);
+  if (record.interrupted) throw RunError("interrupted");
+  simulation::check_balance(record);
 }
 
 // Mean over realizations, and its standard error.

@@ -278,5 +278,47 @@ class Killed(Background, LittleRoom):
             self.assert_same(folder, "whole")
 
 
+class Balance(Scenario):
+    """A run whose energies do not balance has failed; its results are kept."""
+
+    SOURCE = ROOT / "tests/data/hard/made-energy.toml"
+    REASON = re.compile(
+        r"the balance of energies misses \d+\.?\d* % of its largest term, more than 5 %: forces and motion do not belong together, "
+        r"and the results are not to be used; a smaller time.step may help"
+    )
+
+    def test_a_run(self):
+        done = self.keyblock("run", self.SOURCE, "-o", "out", expect=2)
+        self.assertRegex(done.stderr.splitlines()[-1], "^keyblock: " + self.REASON.pattern + "; they are kept$")
+        self.assertRegex(done.stdout, "note: " + self.REASON.pattern)
+        summary = self.summary("out")
+        self.assertGreater(summary["energy"]["residual_ratio"], 0.05)
+        missed, made = summary["energy_warnings"]
+        self.assertRegex(missed, self.REASON)
+        self.assertIn("the rule of time integration has made energy", made)
+        self.assertFalse(summary["interrupted"])
+        before = {p.name: p.read_bytes() for p in (self.folder / "out").iterdir()}
+        self.assertIn("report.html", before)
+        done = self.keyblock("run", self.SOURCE, "-o", "out", "--resume", expect=2)
+        self.assertIn("this run has ended", done.stdout)
+        self.assertRegex(done.stderr, self.REASON)
+        self.assertEqual({p.name: p.read_bytes() for p in (self.folder / "out").iterdir()}, before)
+        self.keyblock("export", "out", "--format", "csv")
+
+    def test_runs_of_a_study_and_of_a_limit(self):
+        self.write("study.toml", self.SOURCE.read_text() + "[study]\nrealizations = 1\n")
+        done = self.keyblock("study", "run", "study.toml", "-o", "study", expect=2)
+        self.assertRegex(done.stdout, self.REASON)
+        (folder,) = (self.folder / "study/runs").iterdir()
+        self.assertRegex(json.loads((folder / "failed.json").read_text())["error"], self.REASON)
+        words = ("--key", "joints.friction", "--from", "0.2", "--to", "0", "--until", "moved", "-o", "limit")
+        done = self.keyblock("limit", self.SOURCE, *words, expect=2)
+        self.assertRegex(done.stdout + done.stderr, self.REASON)
+
+    def test_other_runs_balance(self):
+        self.keyblock("run", "incline.toml", "-o", "out")
+        self.assertEqual(self.summary("out")["energy_warnings"], [])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -137,6 +137,8 @@ export interface Header {
     max_overlap_m: number | null;
     max_overlap_at: { blocks: [number, number]; x: number; y: number; time_s: number; stage: string } | null;
     max_area_change: number | null;
+    /** Energy that the time integration made, over the largest other term. */
+    made_ratio: number | null;
     energy: Record<string, number | null>;
     stages: Stage[];
     interrupted: boolean;

@@ -198,6 +198,7 @@ export function checks(run: Run): Check[] {
     max_overlap_m,
     max_overlap_at: at,
     max_area_change,
+    made_ratio,
     energy,
     steps,
     cut_off,
@@ -242,6 +243,13 @@ export function checks(run: Run): Check[] {
             value: `${significant(Number.isFinite(residual) ? 100 * residual : null, 2)} %`,
             good: residual < 0.01,
           }),
+    },
+    {
+      name: "Energy made by the time integration, of the largest other term",
+      limit: "below 10\u00a0%",
+      ...(cut_off
+        ? unknown
+        : { value: `${significant(100 * (made_ratio ?? 0), 2)} %`, good: (made_ratio ?? 0) < 0.1 }),
     },
     {
       name: "Largest change of a block's area, elastic strain included",

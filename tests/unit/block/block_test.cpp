@@ -204,6 +204,28 @@ TEST_P(ElasticityOrder, MaterialWorkIsWhatViscosityAddsToTheTangent) {
   EXPECT_NEAR(elasticity.material_work(a.data(), d.data()) / work, 1.0, 1e-10);
 }
 
+TEST_P(ElasticityOrder, EnergyBeyondSecondOrderIsWhatForceAndTangentLeave) {
+  const Basis basis(l_shape, GetParam());
+  const Elasticity elasticity(l_shape, basis, rock, stress);
+  const std::vector<double> a = disturbed(basis, 0.02, 1), b = disturbed(basis, 0.3, 9);
+  const int n = 2 * basis.size();
+  const std::vector<double> force = force_of(elasticity, a);
+  std::vector<double> tangent(a.size() * a.size(), 0.0), d(a.size());
+  add_tangent(elasticity, a.data(), 0.0, 1e30, tangent.data(), n);
+  for (std::size_t k = 0; k < d.size(); ++k) d[k] = b[k] - a[k];
+  double known = 0.0;
+  for (int i = 0; i < n; ++i) {
+    known += force[static_cast<std::size_t>(i)] * d[static_cast<std::size_t>(i)];
+    for (int j = 0; j < n; ++j) {
+      const auto lower = static_cast<std::size_t>(std::min(i, j) * n + std::max(i, j));
+      known += 0.5 * d[static_cast<std::size_t>(i)] * tangent[lower] * d[static_cast<std::size_t>(j)];
+    }
+  }
+  const double change = elasticity.energy(b.data()) - elasticity.energy(a.data());
+  EXPECT_GT(std::abs(change - known), 1e-3 * std::abs(change));
+  EXPECT_NEAR(elasticity.beyond_second_order(a.data(), d.data()) / (change - known), 1.0, 1e-8);
+}
+
 TEST_P(ElasticityOrder, EnergyIsInvariantUnderRotationAndStressTurns) {
   const Basis basis(l_shape, GetParam());
   const Elasticity elasticity(l_shape, basis, rock, stress);

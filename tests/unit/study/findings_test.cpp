@@ -48,5 +48,17 @@ TEST(Findings, GiveTheMedianOfACurve) {
       testing::MatchesRegex("curve of light over PGA: median θ 4.* \\(.* … .*\\) m/s², β 0.* \\(.* … .*\\)"));
 }
 
+TEST(Findings, NameRunsWhoseEnergiesDoNotBalance) {
+  StudyData study = shaken({3.0, 2.0, 0.0, 0.0}, {{0, 0, 0}, {0, 0, 1.5}, {0, 1.5, 2}, {0, 0, 0}});
+  const std::size_t count = lines(study).size();
+  study.runs[1].energy_residual_ratio = 0.02;
+  ASSERT_EQ(lines(study).size(), count + 1);
+  EXPECT_THAT(lines(study).back(), StartsWith("1 of "));
+  EXPECT_THAT(lines(study).back(),
+              HasSubstr("runs: the balance of energies misses more than 1 %, " + study.runs[1].key));
+  study.runs[2].energy_residual_ratio = 0.03;
+  EXPECT_THAT(lines(study).back(), HasSubstr(" and others; see runs.csv"));
+}
+
 }  // namespace
 }  // namespace keyblock::study

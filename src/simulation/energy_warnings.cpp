@@ -1,0 +1,54 @@
+#include "simulation/energy_warnings.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace keyblock::simulation {
+
+namespace {
+
+std::string missed(const Energy& energy) {
+  return fmt::format("the balance of energies misses {:.3g} % of its largest term",
+                     100.0 * energy.residual_ratio);
+}
+
+/// Also where the ratio is no number.
+bool has_failed(const Energy& energy) {
+  return !(energy.residual_ratio <= failed_residual);
+}
+
+std::string reason_of_failure(const Energy& energy) {
+  return fmt::format(
+      "{}, more than {:.0f} %: forces and motion do not belong together, and the results are not to be used; "
+      "a "
+      "smaller time.step may help",
+      missed(energy), 100.0 * failed_residual);
+}
+
+}  // namespace
+
+std::vector<std::string> energy_warnings(const RunRecord& run) {
+  std::vector<std::string> texts;
+  if (has_failed(run.energy)) {
+    texts.push_back(reason_of_failure(run.energy));
+  } else if (run.energy.residual_ratio > doubtful_residual) {
+    texts.push_back(fmt::format("{}, more than {:.0f} %: compare with a run with a smaller time.step",
+                                missed(run.energy), 100.0 * doubtful_residual));
+  }
+  if (run.made_ratio > doubtful_made) {
+    texts.push_back(
+        fmt::format("the rule of time integration has made energy, {:.3g} % of the largest term that is "
+                    "accounted for: compare with "
+                    "a run with a smaller time.step, or with another solver.integrator",
+                    100.0 * run.made_ratio));
+  }
+  return texts;
+}
+
+void check_balance(const RunRecord& run) {
+  if (run.interrupted || !has_failed(run.energy)) return;
+  throw RunError(reason_of_failure(run.energy) + "; they are kept");
+}
+
+}  // namespace keyblock::simulation

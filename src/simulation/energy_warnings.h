@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "simulation/record.h"
+
+namespace keyblock::simulation {
+
+/// Energy::residual_ratio of a run, above which its results are to be looked at with other eyes …
+inline constexpr double doubtful_residual = 0.01;
+/// … and above which they are none: forces and motion do not belong together.
+inline constexpr double failed_residual = 0.05;
+/// RunRecord::made_ratio, above which the time integration drives what moves.
+inline constexpr double doubtful_made = 0.1;
+
+/// What the balance of energies says against the results of a run, in plain words; empty: nothing.
+[[nodiscard]] std::vector<std::string> energy_warnings(const RunRecord& run);
+
+/// After the results are written. Throws a RunError with the reason where the residual is above `failed_residual`. A run that was
+/// interrupted is judged once it has ended.
+void check_balance(const RunRecord& run);
+
+}  // namespace keyblock::simulation
