@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "simulation/before_shaking.h"
+#include "simulation/computation_errors.h"
 #include "simulation/energy_warnings.h"
 #include "simulation/verdict.h"
 #include "terminal.h"
@@ -187,6 +188,8 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
   text += aligned(rows);
   text += split_at_shaking(run);
   text += result_text(run);
+  for (const std::string& error : simulation::computation_errors(run))
+    text += "error of the computation: " + error + "\n";
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";
   return text;
 }

@@ -19,6 +19,7 @@
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario_arguments.h"
+#include "simulation/computation_errors.h"
 #include "simulation/energy_warnings.h"
 
 namespace keyblock::app {
@@ -92,7 +93,7 @@ void run_scenario(RunArguments arguments) {
   if (record.interrupted) {
     throw RunError(fmt::format("interrupted; --resume goes on from what is kept in {}", arguments.folder));
   }
-  simulation::check_balance(record);
+  simulation::check_computation(record);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include "results/summary.h"
 #include "scenario/build.h"
 #include "simulation/checkpoint.h"
-#include "simulation/energy_warnings.h"
+#include "simulation/computation_errors.h"
 #include "simulation/feasibility.h"
 #include "simulation/refuse.h"
 
@@ -141,7 +141,7 @@ std::string Simulation::finish() {
   const simulation::RunRecord record =
       parts_->recorded ? parts_->recorded->finish() : parts_->alone->finish();
   parts_->summary = results::summary_json(parts_->listener.model, record);
-  simulation::check_balance(record);
+  simulation::check_computation(record);
   return parts_->summary;
 }
 

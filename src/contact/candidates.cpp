@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "contact/box_grid.h"
+#include "contact/deep_contacts.h"
 #include "core/index.h"
 
 namespace keyblock::contact {
@@ -110,6 +111,7 @@ bool Candidates::update(const Surface& surface, std::span<const double> reach, C
   const Dirty dirty = begin_search(surface, reach, team);
   bool changed = false;
   if (!dirty.blocks.empty()) {
+    pressed_ = pressed_depths(list, tolerances_, at(surface.blocks()));
     std::vector<Candidate> found = collect(surface, dirty);
     add_held(surface, dirty, list, found);
     changed = !is_unchanged(found, dirty, list);
@@ -275,7 +277,8 @@ void Candidates::merge(std::span<const Candidate> found, const Dirty& dirty, Can
 void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<Candidate>& found) const {
   const auto ia = at(a), ib = at(b);
   // Positions are those of the last search, which the margins refer to.
-  const double margin = margin_[ia] + margin_[ib] + tolerances_.activation;
+  const double margin = margin_[ia] + margin_[ib] + tolerances_.activation,
+               deepest = tolerances_.depth_limit + pressed_depth(pressed_, a, b);
   const Box near = box_[ib].grown(margin_[ia] + tolerances_.depth_limit);
   for (int v = surface.block_begin[ia]; v < surface.block_begin[ia + 1]; ++v) {
     const auto iv = at(v);
@@ -285,7 +288,7 @@ void Candidates::collect_pair(const Surface& surface, int a, int b, std::vector<
       const auto from = at(e), to = at(surface.next[from]);
       const bool inside = cross(searched_at_[to] - searched_at_[from], p - searched_at_[from]) > 0.0;
       const bool deep = inside || surface.is_concave(from) || surface.is_concave(to);
-      const double reach = margin + (deep ? tolerances_.depth_limit : 0.0);
+      const double reach = margin + (deep ? deepest : 0.0);
       if (distance_to_segment(p, searched_at_[from], searched_at_[to]) < reach)
         found.push_back({v, e, a, b, clearance(surface, searched_at_, tolerances_, v, e)});
     }

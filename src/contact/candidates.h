@@ -62,6 +62,7 @@ class Candidates {
   std::vector<Vec2> searched_at_;  ///< vertex positions when their block was searched last
   std::vector<double> margin_;     ///< per block
   std::vector<double> away_;       ///< per block
+  std::vector<double> pressed_;    ///< pressed_depths(), when blocks were searched last
   std::vector<Box> box_;           ///< per block, when searched, grown by its margin
 };
 

@@ -1,5 +1,8 @@
 #include "contact/competitor.h"
 
+#include <cmath>
+
+#include "contact/deep_contacts.h"
 #include "core/lanes.h"
 
 namespace keyblock::contact {
@@ -12,6 +15,7 @@ struct Group {
   std::array<int, lane_count> candidate{}, pair{};
   std::array<double, lane_count> reach{}, turn{};
   std::array<double, lane_count> deepest{};            ///< m, depth up to which they may be in contact
+  std::array<double, lane_count> past_end{};           ///< m, beyond an end, what presses may be
   std::array<double, lane_count> bonded{}, presses{};  ///< 1 or 0
   std::array<double, lane_count>
       closure{};  ///< m, that in-situ stress has closed a joint by that still presses
@@ -43,7 +47,8 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
   const Lanes past_start = where(concave_start, deep_zone, zone),
               past_end = where(concave_end, deep_zone, zone);
   const auto presses = load(group.presses.data()) > 0.0;
-  const Lanes pressed_zone = largest(zone, deepest), before = where(presses, pressed_zone, past_start),
+  const Lanes pressed_zone = largest(zone, load(group.past_end.data())),
+              before = where(presses, pressed_zone, past_start),
               after = where(presses, pressed_zone, past_end);
   // The corner of a block that spins may pass the corner that is nearest now.
   // The open end of a face that presses at the other lies inside by as much as the face is tilted.
@@ -81,13 +86,14 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
 
 /// What two blocks together may do in the step.
 struct PairLimits {
-  double reach, turn, away, thickness, deepest;
+  double reach, turn, away, thickness, pressed, deepest;
   PairLimits(const CornerView& view, std::size_t a, std::size_t b)
       : reach(view.motion.reach[a] + view.motion.reach[b]),
         turn(view.motion.turn[a] + view.motion.turn[b]),
         away(view.motion.away[a] + view.motion.away[b]),
         thickness(std::min(view.surface.thickness[a], view.surface.thickness[b])),
-        deepest(std::min(view.tolerances.depth_limit, thickness)) {}
+        pressed(pressed_depth(view.pressed, static_cast<int>(a), static_cast<int>(b))),
+        deepest(std::min(view.tolerances.depth_limit + pressed, thickness)) {}
 };
 
 /// Into the group, unless the candidate is too far to be a contact: without a branch.
@@ -98,7 +104,9 @@ inline void add(Group& group, std::size_t candidate, std::size_t pair, const Pai
   group.pair[i] = static_cast<int>(pair);
   group.reach[i] = limits.reach;
   group.turn[i] = limits.turn;
-  group.deepest[i] = before.holds() ? limits.thickness : limits.deepest;
+  // What presses has come in here, or was let in: its spring pushes it out, however deep an impact takes it.
+  group.past_end[i] = before.holds() ? limits.thickness : limits.deepest;
+  group.deepest[i] = before.normal_force > 0.0 ? HUGE_VAL : group.past_end[i];
   group.presses[i] = before.normal_force > 0.0 ? 1.0 : 0.0;
   group.bonded[i] = before.bonded ? 1.0 : 0.0;
   group.closure[i] = before.normal_force > 0.0 ? std::max(0.0, -before.offset) : 0.0;
@@ -141,7 +149,7 @@ void find_competitors(const CornerView& view, std::span<const std::size_t> pairs
     for (std::size_t k = at(pair.first), end = candidates.end_of_pair(p); k < end; ++k) {
       const int memory = held_by(k);
       add(group, k, p, limits, memory >= 0 ? candidates.memory[at(memory)] : nothing,
-          candidates.pairs[k].clearance);
+          limits.pressed > 0.0 ? 0.0 : candidates.pairs[k].clearance);
       if (group.size == lane_count) take();
     }
   }

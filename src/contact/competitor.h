@@ -35,6 +35,7 @@ struct CornerView {
   const Tolerances& tolerances;
   const StepMotion& motion;
   std::span<const Corner> corners;  ///< Corners::all
+  std::span<const double> pressed;  ///< m, pressed_depths()
 
   [[nodiscard]] const Corner& corner(int vertex) const { return corners[at(vertex)]; }
   [[nodiscard]] const Candidate& candidate(const Competitor& c) const {

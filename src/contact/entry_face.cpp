@@ -26,9 +26,14 @@ NearEdge nearest_other_edge(const CornerView& view, int vertex, int edge, int ex
 
 bool has_come_in_elsewhere(const CornerView& view, const Competitor& competitor, int except) {
   if (competitor.gap >= -entry_depth(view, competitor)) return false;
-  if (has_come_in_here(view, competitor)) return false;
   const Candidate& c = view.candidate(competitor);
+  const bool is_here = has_come_in_here(view, competitor);
+  if (is_here && inside(view, competitor) >= -view.tolerances.end_zone &&
+      competitor.gap >= -view.surface.thickness[at(c.block_b)])
+    return false;
   const NearEdge nearest = nearest_other_edge(view, c.vertex, c.edge, except);
+  // It has slid past the end of the face that has held it, or through the block.
+  if (is_here) return nearest.distance < HUGE_VAL && nearest.gap > view.tolerances.end_zone;
   if (nearest.distance >= -competitor.gap) return false;
   // In front of the nearest edge the vertex is not in the block: it has gone around the end of the face, whatever runs along the face. Where a
   // block slides out of a plane wall its face and that of the wall stay parallel.

@@ -5,26 +5,9 @@
 #include <limits>
 
 #include "core/index.h"
+#include "dynamics/block_depth.h"
 
 namespace keyblock::dynamics {
-
-namespace {
-
-/// m, how deep p lies in a block whose vertices are where position() says; 0: it lies outside.
-template <typename Position>
-double depth_in(const contact::Surface& surface, int block, Vec2 p, const Position& position) {
-  double nearest = std::numeric_limits<double>::infinity();
-  bool inside = false;
-  const std::size_t first = at(surface.block_begin[at(block)]), last = at(surface.block_begin[at(block) + 1]);
-  for (std::size_t v = first; v < last; ++v) {
-    const Vec2 a = position(v), b = position(at(surface.next[v]));
-    nearest = std::min(nearest, contact::distance_to_segment(p, a, b));
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) inside = !inside;
-  }
-  return inside ? nearest : 0.0;
-}
-
-}  // namespace
 
 Intrusions::Intrusions(std::vector<double> sizes)
     : size_(std::move(sizes)),
@@ -48,7 +31,7 @@ void Intrusions::measure(const Step& step) {
 bool Intrusions::comes_in(const Step& step, int vertex, int block, double deepest) const {
   const Vec2 end = step.at_end(at(vertex));
   const double now = depth_in(step.surface, block, end, step.at_end);
-  if (now <= deepest || step.holds(vertex, block)) return false;
+  if (now <= deepest || now <= deepest + step.explained(vertex, block)) return false;
   const double before = depth_in(step.surface, block, step.surface.position[at(vertex)],
                                  [&](std::size_t v) { return step.surface.position[v]; });
   return now - before > least_added * deepest;
@@ -84,16 +67,22 @@ bool Intrusions::any(const Step& step, const contact::CandidateList& candidates)
 
 bool comes_inside(const Attempt& attempt, const RotationCorrection& rotation, Intrusions& intrusions) {
   const std::function<Vec2(std::size_t)> end = [&](std::size_t v) { return rotation.at_end(attempt, v); };
-  const std::function<bool(int, int)> holds = [&](int vertex, int block) {
+  const std::function<double(int, int)> explained = [&](int vertex, int block) {
+    const int own = attempt.model.surface.block[at(vertex)];
+    double closure = 0.0;
     for (std::size_t c = 0; c < attempt.contacts.size(); ++c) {
-      if (attempt.contacts[c].vertex == vertex && attempt.contacts[c].block_b == block &&
-          attempt.problem.springs().force(c).normal > 0.0)
-        return true;
+      const contact::Contact& contact = attempt.contacts[c];
+      const bool is_there = contact.block_a == own && contact.block_b == block,
+                 is_back = contact.block_a == block && contact.block_b == own;
+      if (!(is_there || is_back) || !(attempt.problem.springs().force(c).normal > 0.0)) continue;
+      if (is_there && contact.vertex == vertex) return std::numeric_limits<double>::infinity();
+      closure = std::max(closure, contact.depth - dot(contact.normal, attempt.relative[c]));
     }
-    return false;
+    return closure;
   };
-  return intrusions.any({attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, holds},
-                        attempt.state.contacts);
+  return intrusions.any(
+      {attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, explained},
+      attempt.state.contacts);
 }
 
 }  // namespace keyblock::dynamics

@@ -9,6 +9,7 @@
 #include "coupling/attempt.h"
 #include "coupling/contact_coupling.h"
 #include "coupling/step_problem.h"
+#include "dynamics/contact_audit.h"
 #include "dynamics/contact_finder.h"
 #include "dynamics/force_balance.h"
 #include "dynamics/intrusions.h"
@@ -43,6 +44,7 @@ struct StepReport {
   bool taken = true;              ///< false: a trial, after which everything is where it was
   double penetration = 0.0;       ///< m, largest depth of a contact
   double max_displacement = 0.0;  ///< m, of a vertex
+  ContactAudit audit;             ///< over all substeps
   int closed_contacts = 0;        ///< at the end
 };
 

@@ -5,6 +5,7 @@
 #include "results/json_parts.h"
 #include "results/record_json.h"
 #include "results/summary.h"
+#include "simulation/computation_errors.h"
 #include "simulation/verdict.h"
 
 namespace keyblock::report {
@@ -92,6 +93,8 @@ ordered_json run_json(const results::RunData& data) {
           {"open_close", data.cut_off ? ordered_json() : results::open_close_json(run.open_close)},
           {"max_overlap_m", run.max_overlap.depth},
           {"max_overlap_at", results::overlap_place_json(run.max_overlap, data.model.origin)},
+          {"contact_checks", results::contact_checks_json(run.contact_checks, data.model.origin)},
+          {"errors", simulation::computation_errors(run)},
           {"max_area_change", run.max_area_change},
           {"made_ratio", run.made_ratio},
           {"energy", results::energy_json(run.energy)},

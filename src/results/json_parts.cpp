@@ -179,6 +179,37 @@ ordered_json overlap_place_json(const simulation::OverlapRecord& overlap, Vec2 o
           {"stage", overlap.stage}};
 }
 
+/// A distance and its place under NAME_m and NAME_at.
+static void add_place(ordered_json& json, const std::string& name, const simulation::OverlapRecord& place,
+                      Vec2 origin) {
+  json[name + "_m"] = place.depth;
+  json[name + "_at"] = overlap_place_json(place, origin);
+}
+
+static simulation::OverlapRecord read_place(const ordered_json& json, const std::string& name) {
+  simulation::OverlapRecord place;
+  place.depth = number(json.at(name + "_m"));
+  read_overlap_place(json.at(name + "_at"), place);
+  return place;
+}
+
+ordered_json contact_checks_json(const simulation::ContactChecks& vertices, Vec2 origin) {
+  ordered_json json{{"across_gaps", vertices.across_gaps}};
+  add_place(json, "farthest", vertices.farthest, origin);
+  add_place(json, "deepest", vertices.deepest, origin);
+  add_place(json, "unexplained", vertices.unexplained, origin);
+  return json;
+}
+
+simulation::ContactChecks read_contact_checks(const ordered_json& json) {
+  simulation::ContactChecks vertices;
+  json.at("across_gaps").get_to(vertices.across_gaps);
+  vertices.farthest = read_place(json, "farthest");
+  vertices.deepest = read_place(json, "deepest");
+  vertices.unexplained = read_place(json, "unexplained");
+  return vertices;
+}
+
 void read_overlap_place(const ordered_json& json, simulation::OverlapRecord& overlap) {
   if (json.is_null()) return;
   json.at("blocks").at(0).get_to(overlap.block_a);

@@ -38,6 +38,8 @@ std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& j
 std::vector<simulation::ReleasePoint> read_release(const nlohmann::ordered_json& json);
 simulation::OpenCloseStatistics read_open_close(const nlohmann::ordered_json& json);
 /// Into an overlap, except for its depth; the origin of its coordinates stays in them.
+nlohmann::ordered_json contact_checks_json(const simulation::ContactChecks& vertices, Vec2 origin);
+simulation::ContactChecks read_contact_checks(const nlohmann::ordered_json& json);
 void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapRecord& overlap);
 std::vector<std::pair<std::string, std::string>> read_ground(const nlohmann::ordered_json& json);
 std::vector<Vec2> read_points(const nlohmann::ordered_json& json);

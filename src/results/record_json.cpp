@@ -231,6 +231,7 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"open_close", open_close_json(run.open_close)},
                           {"max_overlap", run.max_overlap.depth},
                           {"max_overlap_at", overlap_place_json(run.max_overlap, {})},
+                          {"contact_checks", contact_checks_json(run.contact_checks, {})},
                           {"max_area_change", run.max_area_change},
                           {"energy", energy_json(run.energy)},
                           {"made_ratio", run.made_ratio},
@@ -249,6 +250,7 @@ simulation::RunRecord read_run_json(const std::string& text) {
     run.max_overlap.depth = number(json.at("max_overlap"));
     // Files of earlier versions do not have it.
     if (json.contains("max_overlap_at")) read_overlap_place(json.at("max_overlap_at"), run.max_overlap);
+    if (json.contains("contact_checks")) run.contact_checks = read_contact_checks(json.at("contact_checks"));
     run.max_area_change = number(json.at("max_area_change"));
     run.energy = read_energy(json.at("energy"));
     run.made_ratio = json.contains("made_ratio") ? number(json.at("made_ratio")) : 0.0;

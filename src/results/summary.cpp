@@ -7,6 +7,7 @@
 #include "core/checked_json.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
+#include "simulation/computation_errors.h"
 #include "simulation/energy_warnings.h"
 #include "simulation/verdict.h"
 
@@ -184,6 +185,8 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"open_close", open_close_json(run.open_close)},
       {"max_overlap_m", run.max_overlap.depth},
       {"max_overlap_at", overlap_place_json(run.max_overlap, model.origin)},
+      {"contact_checks", contact_checks_json(run.contact_checks, model.origin)},
+      {"errors", simulation::computation_errors(run)},
       {"max_area_change", run.max_area_change},
       {"boundary", boundary(model)},
       {"damping", damping(model)},

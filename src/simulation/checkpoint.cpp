@@ -134,6 +134,16 @@ void transfer_settler(Archive& archive, MemoryOrConst& s) {
   archive(s.blocks.candidates);
 }
 
+template <typename Archive, typename OverlapOrConst>
+void transfer_overlap(Archive& archive, OverlapOrConst& overlap) {
+  archive(overlap.depth);
+  archive(overlap.block_a);
+  archive(overlap.block_b);
+  archive(overlap.where);
+  archive(overlap.time);
+  archive(overlap.stage);
+}
+
 template <typename Archive, typename RunStateOrConst>
 void transfer(Archive& archive, RunStateOrConst& s) {
   transfer_mechanics(archive, s.mechanics);
@@ -161,12 +171,11 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.reported.stages);
   archive(s.reported.within_stage);
   archive(s.record.open_close);
-  archive(s.record.max_overlap.depth);
-  archive(s.record.max_overlap.block_a);
-  archive(s.record.max_overlap.block_b);
-  archive(s.record.max_overlap.where);
-  archive(s.record.max_overlap.time);
-  archive(s.record.max_overlap.stage);
+  transfer_overlap(archive, s.record.max_overlap);
+  archive(s.record.contact_checks.across_gaps);
+  transfer_overlap(archive, s.record.contact_checks.farthest);
+  transfer_overlap(archive, s.record.contact_checks.deepest);
+  transfer_overlap(archive, s.record.contact_checks.unexplained);
   archive(s.record.max_area_change);
 }
 

@@ -207,8 +207,8 @@ bool has_counts(const RunState& state) {
   const OpenCloseStatistics& s = state.record.open_close;
   const Reported& r = state.reported;
   return are_counts({state.stage_step, state.iterations, s.max_iterations, s.retried_steps,
-                     s.unconverged_steps, s.last_converged_step, r.frames, r.contacts, r.histories, r.steps,
-                     r.stages}) &&
+                     s.unconverged_steps, s.last_converged_step, state.record.contact_checks.across_gaps,
+                     r.frames, r.contacts, r.histories, r.steps, r.stages}) &&
          state.stage_step <= state.mechanics.step && s.last_converged_step <= state.mechanics.step &&
          r.stages == state.stage && std::isfinite(state.stage_start) && std::isfinite(state.initial_energy) &&
          std::isfinite(state.wall_time);
@@ -266,9 +266,13 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!is_still(state.still, model)) return "places of other vertices";
   if (const std::string mistake = mistake_in_control(state.control, model); !mistake.empty()) return mistake;
   if (!are_records(state, setup, blocks)) return "stages that are not of this run";
-  const OverlapRecord& overlap = state.record.max_overlap;
+  const ContactChecks& vertices = state.record.contact_checks;
   const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
-  return is_known(overlap.block_a) && is_known(overlap.block_b) ? "" : "an overlap of unknown blocks";
+  for (const OverlapRecord* overlap :
+       {&state.record.max_overlap, &vertices.farthest, &vertices.deepest, &vertices.unexplained}) {
+    if (!is_known(overlap->block_a) || !is_known(overlap->block_b)) return "an overlap of unknown blocks";
+  }
+  return "";
 }
 
 }  // namespace keyblock::simulation

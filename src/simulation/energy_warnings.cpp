@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-
 namespace keyblock::simulation {
 
 namespace {
@@ -46,9 +44,8 @@ std::vector<std::string> energy_warnings(const RunRecord& run) {
   return texts;
 }
 
-void check_balance(const RunRecord& run) {
-  if (run.interrupted || !has_failed(run.energy)) return;
-  throw RunError(reason_of_failure(run.energy) + "; they are kept");
+std::string failed_balance(const RunRecord& run) {
+  return run.interrupted || !has_failed(run.energy) ? std::string() : reason_of_failure(run.energy);
 }
 
 }  // namespace keyblock::simulation

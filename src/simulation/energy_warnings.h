@@ -16,8 +16,8 @@ inline constexpr double doubtful_made = 0.1;
 /// What the balance of energies says against the results of a run, in plain words; empty: nothing.
 [[nodiscard]] std::vector<std::string> energy_warnings(const RunRecord& run);
 
-/// After the results are written. Throws a RunError with the reason where the residual is above `failed_residual`. A run that was
-/// interrupted is judged once it has ended.
-void check_balance(const RunRecord& run);
+/// Why the residual says that the results are none: it is above `failed_residual`, or no number; empty: it is not. A run that was interrupted is
+/// judged once it has ended.
+[[nodiscard]] std::string failed_balance(const RunRecord& run);
 
 }  // namespace keyblock::simulation

@@ -258,6 +258,15 @@ struct OverlapRecord {
   std::string stage;  ///< its name
 };
 
+/// Where vertices of blocks were against other blocks, looked for in every step (dynamics::ContactAudit).
+struct ContactChecks {
+  /// Contacts that pressed although their vertex was outside the other block, over all steps: a mistake of the program where it is not 0.
+  long across_gaps = 0;
+  OverlapRecord farthest;     ///< of these; `depth` is how far outside
+  OverlapRecord deepest;      ///< the deepest vertex that pressed
+  OverlapRecord unexplained;  ///< the deepest vertex, less what closes the joint there
+};
+
 struct RunRecord {
   long steps = 0;
   double wall_time = 0.0;  ///< s
@@ -265,6 +274,7 @@ struct RunRecord {
   std::string state_hash;  ///< of the final state, hexadecimal
   OpenCloseStatistics open_close;
   OverlapRecord max_overlap;     ///< the largest that was seen
+  ContactChecks contact_checks;  ///< of all steps
   double max_area_change = 0.0;  ///< relative
   Energy energy;
   double made_ratio = 0.0;  ///< energy that the time integration has made, over the largest other term

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/index.h"
 #include "core/out_of_memory.h"
 #include "dynamics/energy.h"
 #include "simulation/build_model.h"
@@ -43,6 +44,21 @@ void count(RunState& now, const dynamics::StepReport& report) {
   statistics.retried_steps += report.substeps > 1;
   statistics.unconverged_steps += !report.converged;
   if (report.converged) statistics.last_converged_step = now.mechanics.step;
+}
+
+void keep_larger(OverlapRecord& known, const dynamics::VertexPlace& found, const RunState& now,
+                 const RunSetup& setup) {
+  if (found.distance > known.depth)
+    known = {found.distance, found.block_a,      found.block_b,
+             found.where,    now.mechanics.time, setup.stages[at(now.stage)].name};
+}
+
+void keep_audit(const dynamics::ContactAudit& audit, const RunSetup& setup, RunState& now) {
+  ContactChecks& vertices = now.record.contact_checks;
+  vertices.across_gaps += audit.across_gaps;
+  keep_larger(vertices.farthest, audit.farthest, now, setup);
+  keep_larger(vertices.deepest, audit.deepest, now, setup);
+  keep_larger(vertices.unexplained, audit.unexplained, now, setup);
 }
 
 bool is_set(const std::atomic<bool>* flag) {
@@ -281,6 +297,7 @@ void Runner::after_step(const dynamics::StepReport& report, const StageOutlook& 
   const Profile::Scope scope(profile_, Phase::output);
   const bool ends_stage = outlook.steps_left == 0;
   count(now_, report);
+  keep_audit(report.audit, setup_, now_);
   opening_.drop_moved(gauge_, now_.mechanics);
   check_converging(setup_, now_);
   check_state(setup_, now_);

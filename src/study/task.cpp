@@ -13,7 +13,7 @@
 #include "scenario/build.h"
 #include "scenario/inputs.h"
 #include "scenario/parse.h"
-#include "simulation/energy_warnings.h"
+#include "simulation/computation_errors.h"
 #include "simulation/fan_out.h"
 #include "simulation/run.h"
 #include "study/collect.h"
@@ -88,7 +88,7 @@ class Task {
       if (!writer) results::write_summary(folder_, measures.model(), record);
     }
     write_file_atomically(folder_ / "thumbnail.svg", thumbnail_svg(measures.model(), measures.last_frame()));
-    simulation::check_balance(record);
+    simulation::check_computation(record);
     write_file_atomically(folder_ / "run.json", run_json(result_, run_input(plan_)));
     return TaskOutcome::done;
   }

@@ -15,6 +15,7 @@
 #include "scenario/cut_summary.h"
 #include "scenario/key_path.h"
 #include "scenario/parse.h"
+#include "simulation/computation_errors.h"
 #include "simulation/energy_warnings.h"
 #include "simulation/run.h"
 
@@ -144,7 +145,7 @@ void run_engine(const RunSpec& run, const simulation::RunSetup& setup, const std
   }
   const simulation::RunRecord record = simulation::run(setup, options, memory);
   if (record.interrupted) throw RunError("interrupted");
-  simulation::check_balance(record);
+  simulation::check_computation(record);
 }
 
 // Mean over realizations, and its standard error.

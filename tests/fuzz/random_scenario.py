@@ -1,5 +1,6 @@
-"""Scenarios that are right, from a seed: tunnels in joint sets, grids of blocks, loose blocks; every rule of integration, orders 1 and 2,
-penalty and augmented Lagrangian. Small, so that a run takes a second."""
+"""Scenarios that are right, from a seed: tunnels in joint sets, grids of blocks, loose blocks; every rule of integration, penalty and augmented
+Lagrangian. Half of them are demanding: soft joints, orders above 1 and "auto", tunnels under in-situ stress, slopes that are cut, stones
+that roll. Small, so that a run takes a second."""
 
 import math
 import random
@@ -18,10 +19,12 @@ class Writer:
 
     def __init__(self, seed):
         self.draw = random.Random(seed)
-        self.kind = self.draw.choice(["tunnel", "grid", "loose"])
+        self.demanding = self.chance(0.5)
+        self.kind = self.draw.choice(["tunnel", "cut", "rolling"] if self.demanding else ["tunnel", "grid", "loose"])
         self.tables = [f'title = "random {seed} {self.kind}"\nseed = {seed}']
         self.size = 1.0  # of blocks, m
-        self.facts = {"kind": self.kind}
+        self.slope = 0.0  # of the base
+        self.facts = {"kind": self.kind, "demanding": self.demanding}
 
     def uniform(self, low, high):
         return self.draw.uniform(low, high)
@@ -44,13 +47,13 @@ class Writer:
 
     def materials(self):
         young = self.scale(1e9, 5e10)
-        order = self.draw.choice([1, 1, 2])
+        order = self.draw.choice([1, 2, 2, 3, '"auto"'] if self.demanding else [1, 1, 2])
         self.facts["order"] = order
         self.add(
             "[rock]", density=self.uniform(2000, 3000), young=young, poisson=self.uniform(0.0, 0.35),
             state=self.draw.choice(['"plane-strain"', '"plane-stress"']), order=order,
         )  # fmt: skip
-        stiffness = young * self.scale(0.5, 40.0) if self.chance(0.5) else None
+        stiffness = self.scale(3e8, 2e10) if self.demanding else young * self.scale(0.5, 40.0) if self.chance(0.5) else None
         cohesion = self.scale(1e3, 1e6) if self.chance(0.3) else None
         self.add(
             "[joints]", friction=self.uniform(5, 60), cohesion=cohesion,
@@ -97,7 +100,9 @@ class Writer:
         else:
             width = self.uniform(0.5, 0.9) * half
             self.add("[[excavation]]", name='"E"', shape='"horseshoe"', invert=f"[0, {-0.5 * width:.3f}]", width=width, wall_height=0.4 * width, chords=24)
-        if self.chance(0.5):
+        if self.demanding:
+            self.add("[in_situ]", depth=self.uniform(5, 300), k0=self.uniform(0.3, 1.5))
+        elif self.chance(0.5):
             self.add("[in_situ]", depth=self.uniform(5, 100), k0=self.uniform(0.3, 1.5))
         return "E"
 
@@ -136,9 +141,54 @@ class Writer:
                 order=self.draw.randint(1, 4) if self.chance(0.2) else None,
             )  # fmt: skip
 
+    def cut(self):
+        """A slope that an excavation lays bare: a block on a joint that comes out of the new wall, and what stands on it."""
+        height, dip = self.uniform(2, 12), math.radians(self.uniform(15, 50))
+        wall = math.radians(self.uniform(math.degrees(dip) + 5, 90))
+        low = self.uniform(0.05, 0.4) * height
+        face = lambda y: y / math.tan(wall)  # noqa: E731
+        back = lambda y: face(low) + (y - low) / math.tan(dip)  # noqa: E731
+        far, front = back(height) + height, -2 * height
+        split = self.uniform(0.3, 0.7) * (height - low) + low
+        self.size = height - low
+        blocks = {
+            "below": [(front, -height), (far, -height), (far, height), (back(height), height), (face(low), low), (0, 0), (front, 0)],
+            "front": [(front, 0), (0, 0), (face(low), low), (face(height), height), (front, height)],
+        }
+        if self.chance(0.5):
+            blocks["lower"] = [(face(low), low), (back(split), split), (face(split), split)]
+            blocks["upper"] = [(face(split), split), (back(split), split), (back(height), height), (face(height), height)]
+            self.size = min(self.size, math.sqrt(0.5 * (split - low) * abs(back(split) - face(split))))
+        else:
+            blocks["slider"] = [(face(low), low), (back(height), height), (face(height), height)]
+        for name, ring in blocks.items():
+            self.add("[[block]]", name=f'"{name}"', outer=points(ring), fixed=True if name == "below" and self.chance(0.5) else None)
+        self.add("[[block]]", name='"floor"', outer=points([(front, -height - 1), (far, -height - 1), (far, -height), (front, -height)]), fixed=True)
+        self.add("[[excavation]]", name='"E"', shape='"polygon"', outer=points(blocks["front"]))
+        return "E"
+
+    def rolling(self):
+        """Stones of many corners that roll down a slope."""
+        self.slope = math.tan(math.radians(self.uniform(5, 35)))
+        self.base(40.0)
+        for k in range(self.draw.randint(1, 4)):
+            radius, corners = self.uniform(0.2, 0.8), self.draw.randint(4, 12)
+            self.size = min(self.size, radius)
+            angles = [2 * math.pi / corners * (c + self.uniform(-0.2, 0.2)) for c in range(corners)]
+            x = 3.0 * k
+            y = self.slope * x + 1.1 * radius / math.cos(math.atan(self.slope)) + self.uniform(0, 1.5)
+            ring = [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
+            speed = self.uniform(0, 6)
+            self.add(
+                "[[block]]", name=f'"s{k}"', outer=points(ring), velocity=f"[{-speed:.3f}, {-speed * self.slope:.3f}]",
+                spin=self.uniform(0, speed / radius),
+            )  # fmt: skip
+
     def base(self, width):
         """A fixed block below [0, 0]; returns its slope."""
-        slope = math.tan(math.radians(self.uniform(0, 25))) if self.kind == "loose" and self.chance(0.4) else 0.0
+        slope = self.slope
+        if self.kind == "loose" and self.chance(0.4):
+            slope = math.tan(math.radians(self.uniform(0, 25)))
         ring = [(-width, -slope * width), (-width, -slope * width - 1.0), (width, -slope * width - 1.0), (width, slope * width)]
         if slope == 0.0:
             ring = [(-width, 0.0), (-width, -1.0), (width, -1.0), (width, 0.0)]
@@ -152,7 +202,9 @@ class Writer:
             sine = f"{{ amplitude = {number(self.uniform(0.5, 8))}, frequency = {number(frequency)}, cycles = {self.draw.randint(1, 3)} }}"
             self.add("[[motion]]", name='"m"', **{self.draw.choice(["x", "y"]): sine})
         names = f'["{excavation}"]' if excavation else None
-        if self.kind != "loose" or self.chance(0.2):
+        if self.demanding and excavation:
+            self.add("[[stage]]", name='"in place"', kind='"settle"', max_steps=150)
+        if self.kind not in ("loose", "rolling") or self.chance(0.2):
             self.add("[[stage]]", name='"settle"', kind='"settle"', max_steps=150, excavate=names)
             names = None
         if shakes:
@@ -162,7 +214,7 @@ class Writer:
 
     def write(self):
         self.materials()
-        excavation = self.tunnel() if self.kind == "tunnel" else self.grid() if self.kind == "grid" else self.loose()
+        excavation = getattr(self, self.kind)()
         self.solver()
         self.stages(excavation)
         return "\n".join(self.tables) + "\n"

@@ -8,6 +8,7 @@
 
 #include "../scene.h"
 #include "core/error.h"
+#include "simulation/computation_errors.h"
 #include "simulation/energy_audit.h"
 
 namespace keyblock::simulation {
@@ -28,7 +29,7 @@ std::string balance_failure_of(double ratio, bool interrupted = false) {
   RunRecord run = missing(ratio);
   run.interrupted = interrupted;
   try {
-    check_balance(run);
+    check_computation(run);
   } catch (const RunError& error) {
     return error.what();
   }
@@ -59,7 +60,7 @@ TEST(EnergyWarnings, SayWhatTheTimeIntegrationHasMade) {
 
 TEST(EnergyWarnings, ARunThatMissesTooMuchHasFailed) {
   EXPECT_EQ(balance_failure_of(0.05), "");
-  EXPECT_THAT(balance_failure_of(0.0501), AllOf(HasSubstr("misses 5.01 %"), HasSubstr("they are kept")));
+  EXPECT_THAT(balance_failure_of(0.0501), AllOf(HasSubstr("misses 5.01 %"), HasSubstr("the results are kept")));
   EXPECT_THAT(balance_failure_of(std::numeric_limits<double>::quiet_NaN()), HasSubstr("more than 5 %"));
   EXPECT_EQ(balance_failure_of(2.22, true), "");
 }

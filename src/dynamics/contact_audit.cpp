@@ -1,0 +1,91 @@
+#include "dynamics/contact_audit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "dynamics/block_depth.h"
+
+namespace keyblock::dynamics {
+
+namespace {
+
+void take_farther(VertexPlace& place, const VertexPlace& other) {
+  if (other.distance > place.distance) place = other;
+}
+
+/// m², of a point from a segment.
+double squared_distance(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 along = b - a, from = p - a;
+  const double s = std::clamp(dot(from, along) / squared_norm(along), 0.0, 1.0);
+  return squared_norm(from - s * along);
+}
+
+class Audit {
+ public:
+  explicit Audit(const TakenStep& step) : step_(step) {}
+
+  ContactAudit run() {
+    const contact::CandidateList& list = step_.contacts;
+    const std::vector<Vec2>& position = step_.surface.position;
+    const double zone = step_.end_zone * step_.end_zone;
+    for (std::size_t k = 0; k < list.tracked.size(); ++k) {
+      if (!(list.memory[k].normal_force > 0.0)) continue;
+      const contact::Candidate& c = list.pairs[at(list.tracked[k])];
+      // On its edge, nearly all are.
+      if (squared_distance(position[at(c.vertex)], position[at(c.edge)],
+                           position[at(step_.surface.next[at(c.edge)])]) > zone)
+        look_at(k, c);
+    }
+    return found_;
+  }
+
+ private:
+  void look_at(std::size_t k, const contact::Candidate& c) {
+    const Vec2 where = step_.surface.position[at(c.vertex)];
+    const double depth = depth_of(where, c.block_b), offset = step_.contacts.memory[k].offset;
+    if (depth > 0.0) {
+      take_farther(found_.deepest, {depth, c.block_a, c.block_b, where});
+      take_farther(found_.unexplained, {std::min(depth, offset), c.block_a, c.block_b, where});
+      return;
+    }
+    const double reach = step_.reach[at(c.block_a)] + step_.reach[at(c.block_b)],
+                 near = step_.end_zone + reach + norm(step_.relative[k]) + std::max(0.0, -offset);
+    if (-depth <= near || -depth <= near + depth_in_others(c, where)) return;
+    ++found_.across_gaps;
+    take_farther(found_.farthest, {-depth, c.block_a, c.block_b, where});
+  }
+
+  [[nodiscard]] double depth_of(Vec2 where, int block) const {
+    return depth_in(step_.surface, block, where, [&](std::size_t v) { return step_.surface.position[v]; });
+  }
+
+  /// m, of the vertex in the block, beside block_b, in which it is deepest; 0: in none.
+  [[nodiscard]] double depth_in_others(const contact::Candidate& c, Vec2 where) const {
+    double deepest = 0.0;
+    for (const int p : step_.contacts.pairs_of(c.block_a)) {
+      const contact::BlockPair& pair = step_.contacts.block_pairs[at(p)];
+      const int other = pair.block_a == c.block_a ? pair.block_b : pair.block_a;
+      if (other != c.block_b) deepest = std::max(deepest, depth_of(where, other));
+    }
+    return deepest;
+  }
+
+  const TakenStep& step_;
+  ContactAudit found_;
+};
+
+}  // namespace
+
+void ContactAudit::add(const ContactAudit& other) {
+  across_gaps += other.across_gaps;
+  take_farther(farthest, other.farthest);
+  take_farther(deepest, other.deepest);
+  take_farther(unexplained, other.unexplained);
+}
+
+ContactAudit audit_contacts(const TakenStep& step) {
+  return Audit(step).run();
+}
+
+}  // namespace keyblock::dynamics
