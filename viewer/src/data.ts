@@ -136,6 +136,8 @@ export interface Header {
     } | null;
     max_overlap_m: number | null;
     max_overlap_at: { blocks: [number, number]; x: number; y: number; time_s: number; stage: string } | null;
+    /** Errors of the computation, in words. */
+    errors: string[];
     max_area_change: number | null;
     /** Energy that the time integration made, over the largest other term. */
     made_ratio: number | null;

@@ -197,6 +197,7 @@ export function checks(run: Run): Check[] {
     open_close: oc,
     max_overlap_m,
     max_overlap_at: at,
+    errors,
     max_area_change,
     made_ratio,
     energy,
@@ -218,6 +219,13 @@ export function checks(run: Run): Check[] {
       limit: "none",
       value: warnings.length === 0 ? "none" : `${count(warnings.length, "warning")}, listed above`,
       good: warnings.length === 0,
+    },
+    {
+      name: "Errors of the computation",
+      limit: "none",
+      ...(cut_off
+        ? unknown
+        : { value: errors.length === 0 ? "none" : errors.join("; "), good: errors.length === 0 }),
     },
     {
       name: "Steps that did not converge",

@@ -20,7 +20,7 @@ class CornerScene {
     motion = {still_, still_, away_, still_};
     corners_.measure(surface_, team_);
   }
-  [[nodiscard]] CornerView view() const { return {surface_, list, tolerances_, motion, corners_.all()}; }
+  [[nodiscard]] CornerView view() const { return {surface_, list, tolerances_, motion, corners_.all(), {}}; }
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const Tolerances& tolerances() const { return tolerances_; }
   [[nodiscard]] const Corners& corners() const { return corners_; }
