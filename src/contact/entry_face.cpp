@@ -28,12 +28,13 @@ bool has_come_in_elsewhere(const CornerView& view, const Competitor& competitor,
   if (competitor.gap >= -entry_depth(view, competitor)) return false;
   const Candidate& c = view.candidate(competitor);
   const bool is_here = has_come_in_here(view, competitor);
-  if (is_here && inside(view, competitor) >= -view.tolerances.end_zone &&
-      competitor.gap >= -view.surface.thickness[at(c.block_b)])
-    return false;
+  // Until it has left the end zone, what has come in here stays; beyond, where a joint goes on there (except).
+  const double zone = view.tolerances.end_zone + view.reach(c.block_a, c.block_b);
+  const bool is_over = except >= 0 || inside(view, competitor) >= -zone;
+  if (is_here && is_over && competitor.gap >= -view.surface.thickness[at(c.block_b)]) return false;
   const NearEdge nearest = nearest_other_edge(view, c.vertex, c.edge, except);
   // It has slid past the end of the face that has held it, or through the block.
-  if (is_here) return nearest.distance < HUGE_VAL && nearest.gap > view.tolerances.end_zone;
+  if (is_here) return nearest.distance < HUGE_VAL && nearest.gap > zone;
   if (nearest.distance >= -competitor.gap) return false;
   // In front of the nearest edge the vertex is not in the block: it has gone around the end of the face, whatever runs along the face. Where a
   // block slides out of a plane wall its face and that of the wall stay parallel.
