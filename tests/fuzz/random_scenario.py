@@ -53,7 +53,7 @@ class Writer:
             "[rock]", density=self.uniform(2000, 3000), young=young, poisson=self.uniform(0.0, 0.35),
             state=self.draw.choice(['"plane-strain"', '"plane-stress"']), order=order,
         )  # fmt: skip
-        stiffness = self.scale(3e8, 2e10) if self.demanding else young * self.scale(0.5, 40.0) if self.chance(0.5) else None
+        stiffness = self.scale(1.5e8, 2e10) if self.demanding else young * self.scale(0.5, 40.0) if self.chance(0.5) else None
         cohesion = self.scale(1e3, 1e6) if self.chance(0.3) else None
         self.add(
             "[joints]", friction=self.uniform(5, 60), cohesion=cohesion,
@@ -71,7 +71,7 @@ class Writer:
             restitution=self.uniform(0, 1) if self.chance(0.5) else None,
             face_contacts=self.draw.randint(2, 4) if self.chance(0.3) else None,
         )  # fmt: skip
-        self.add("[time]", step=self.draw.choice([0.001, 0.002, 0.005]))
+        self.add("[time]", step=self.draw.choice([0.002, 0.005, 0.01] if self.demanding else [0.001, 0.002, 0.005]))
 
     def joint_set(self, name, dip, extent):
         mean = self.uniform(0.18, 0.35) * extent
@@ -176,7 +176,7 @@ class Writer:
             self.size = min(self.size, radius)
             angles = [2 * math.pi / corners * (c + self.uniform(-0.2, 0.2)) for c in range(corners)]
             x = 3.0 * k
-            y = self.slope * x + 1.1 * radius / math.cos(math.atan(self.slope)) + self.uniform(0, 1.5)
+            y = self.slope * x + 1.1 * radius / math.cos(math.atan(self.slope)) + self.uniform(0, 5)
             ring = [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
             speed = self.uniform(0, 6)
             self.add(
@@ -196,7 +196,7 @@ class Writer:
         return slope
 
     def stages(self, excavation):
-        shakes = self.chance(0.6)
+        shakes = self.kind != "rolling" and self.chance(0.6)
         if shakes:
             frequency = self.uniform(1, 8)
             sine = f"{{ amplitude = {number(self.uniform(0.5, 8))}, frequency = {number(frequency)}, cycles = {self.draw.randint(1, 3)} }}"
@@ -210,7 +210,9 @@ class Writer:
         if shakes:
             self.add("[[stage]]", name='"shake"', kind='"shake"', motion='"m"', duration=self.uniform(0.1, 0.4), excavate=names)
         else:
-            self.add("[[stage]]", name='"rest"', kind='"rest"', duration=self.uniform(0.1, 0.6), excavate=names)
+            # Stones have to come down before they roll.
+            duration = self.uniform(1.0, 3.0) if self.kind == "rolling" else self.uniform(0.1, 0.6)
+            self.add("[[stage]]", name='"rest"', kind='"rest"', duration=duration, excavate=names)
 
     def write(self):
         self.materials()

@@ -59,8 +59,8 @@ TEST(Rolling, StonesDoNotPassAFloorOnSoftJoints) {
         const Stone stone(corners, order, spin);
         const double most = explained(Simulator(stone.scene), std::hypot(8.0, 0.55 * spin));
         for (const double dt : {0.01, 0.005, 0.002}) {
-          SCOPED_TRACE(testing::Message() << corners << " corners, order " << order << ", " << spin
-                                          << " rad/s, " << dt << " s");
+          SCOPED_TRACE(testing::Message()
+                       << corners << " corners, order " << order << ", " << spin << " rad/s, " << dt << " s");
           const Rolled rolled = roll(stone.scene, dt);
           EXPECT_GT(rolled.lowest, 0.0);
           EXPECT_LT(rolled.deepest, most);

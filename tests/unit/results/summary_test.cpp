@@ -74,6 +74,8 @@ TEST(Summary, NumbersComeBackToTheLastBit) {
   EXPECT_EQ(summary["seed"].get<std::uint64_t>(), sample.model.seed);
   EXPECT_EQ(summary["title"], sample.model.title);
   EXPECT_EQ(summary["step_size"].get<double>(), sample.model.step_size);
+  EXPECT_EQ(summary["contact_checks"]["across_gaps"], run.contact_checks.across_gaps);
+  EXPECT_TRUE(summary["errors"].empty());
   EXPECT_EQ(summary["max_overlap_m"].get<double>(), run.max_overlap.depth);
   const json& overlap = summary["max_overlap_at"];
   EXPECT_EQ(overlap["blocks"], json({0, 2}));

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "simulation/computation_errors.h"
+
 namespace keyblock::study {
 namespace {
 
