@@ -77,8 +77,8 @@ void run_scenario(RunArguments arguments) {
     say_where_report_is(arguments);
     return;
   }
-  if (const auto note = scenario::sliver_note(setup.system, scenario.blocks.size()))
-    std::cout << *note << std::endl;
+  for (const std::string& note : scenario::sliver_notes(scenario, setup.system))
+    std::cout << note << std::endl;
   say_beforehand(arguments, run);
   run.start();
   while (!run.runner().done()) run.advance();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <compare>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -36,9 +37,11 @@ std::vector<int> common(const std::vector<int>& a, const std::vector<int>& b) {
 /// its faces out of date; those faces wait for the next pass.
 class ClusterPass {
  public:
-  ClusterPass(PlanarGraph& graph, double reach, double local_size)
+  ClusterPass(PlanarGraph& graph, double reach, const JointStrengths& strengths, double local_size)
       : graph_(graph),
         reach_(reach),
+        strengths_(strengths),
+        alike_(strengths.alike()),
         local_(graph, local_size),
         incident_(graph.edges_of_vertices()),
         stale_(graph.faces.size(), false) {}
@@ -152,8 +155,25 @@ class ClusterPass {
     return sum;
   }
 
+  /// Strength of the weakest joint that is no longer where it was when u has gone to v; infinite where all stay.
+  [[nodiscard]] double weakest_bent(int u, int v) const {
+    constexpr double rounding = 4.0;  // steps
+    double weakest = std::numeric_limits<double>::infinity();
+    for (const int e : incident_[index(u)]) {
+      const int w = other_end(e, u);
+      if (w == v) continue;
+      const GridPoint from = graph_.point(u), to = graph_.point(v), end = graph_.point(w);
+      const double off =
+          std::abs(static_cast<double>(cross(from, to, end))) / norm(to_vec2(end) - to_vec2(to));
+      if (off > rounding) weakest = std::min(weakest, strengths_.of(graph_.edges[index(e)].label));
+    }
+    return weakest;
+  }
+
   bool move_either(int u, int v) {
-    if (swept_area(v, u) < swept_area(u, v)) std::swap(u, v);
+    const double bent_by_u = alike_ ? 0.0 : weakest_bent(u, v), bent_by_v = alike_ ? 0.0 : weakest_bent(v, u);
+    if (bent_by_v > bent_by_u || (bent_by_v == bent_by_u && swept_area(v, u) < swept_area(u, v)))
+      std::swap(u, v);
     return move(u, v) || move(v, u);
   }
 
@@ -243,6 +263,8 @@ class ClusterPass {
 
   PlanarGraph& graph_;
   double reach_;  ///< steps
+  const JointStrengths& strengths_;
+  bool alike_;
   LocalSize local_;
   std::vector<std::vector<int>> incident_;
   std::vector<bool> stale_;
@@ -250,10 +272,12 @@ class ClusterPass {
 
 }  // namespace
 
-int cluster_vertices(PlanarGraph& graph, double distance, double local_size) {
+int cluster_vertices(PlanarGraph& graph, double distance, const JointStrengths& strengths,
+                     double local_size) {
   int total = 0;
   if (distance > 0.0) {
-    while (const int moved = ClusterPass(graph, distance / graph.grid, local_size).run()) total += moved;
+    while (const int moved = ClusterPass(graph, distance / graph.grid, strengths, local_size).run())
+      total += moved;
   }
   return total;
 }
