@@ -16,6 +16,7 @@ namespace keyblock::cutting {
 namespace {
 
 struct Pair {
+  double bent;              ///< Pa, strength of the weakest joint that must bend for the two to become one
   double squared_distance;  ///< steps²
   int u, v;
 };
@@ -94,7 +95,7 @@ class ClusterPass {
       }
     }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-      return std::tie(a.squared_distance, a.u, a.v) < std::tie(b.squared_distance, b.u, b.v);
+      return std::tie(b.bent, a.squared_distance, a.u, a.v) < std::tie(a.bent, b.squared_distance, b.u, b.v);
     });
     return pairs;
   }
@@ -105,7 +106,8 @@ class ClusterPass {
     double reach = reach_;
     for (const int f : common(faces_at(u), faces_at(v)))
       reach = std::min(reach, local_.share(index(f)) * reach_);
-    if (d < reach * reach) pairs.push_back({d, std::min(u, v), std::max(u, v)});
+    if (!(d < reach * reach)) return;
+    pairs.push_back({std::max(weakest_bent(u, v), weakest_bent(v, u)), d, std::min(u, v), std::max(u, v)});
   }
 
   [[nodiscard]] std::vector<int> faces_at(int v) const {
@@ -155,9 +157,11 @@ class ClusterPass {
     return sum;
   }
 
-  /// Strength of the weakest joint that is no longer where it was when u has gone to v; infinite where all stay.
+  /// Strength of the weakest joint that is no longer where it was when u has gone to v; infinite where all stay. Not
+  /// looked for where all are alike.
   [[nodiscard]] double weakest_bent(int u, int v) const {
     constexpr double rounding = 4.0;  // steps
+    if (alike_) return 0.0;
     double weakest = std::numeric_limits<double>::infinity();
     for (const int e : incident_[index(u)]) {
       const int w = other_end(e, u);
@@ -171,7 +175,7 @@ class ClusterPass {
   }
 
   bool move_either(int u, int v) {
-    const double bent_by_u = alike_ ? 0.0 : weakest_bent(u, v), bent_by_v = alike_ ? 0.0 : weakest_bent(v, u);
+    const double bent_by_u = weakest_bent(u, v), bent_by_v = weakest_bent(v, u);
     if (bent_by_v > bent_by_u || (bent_by_v == bent_by_u && swept_area(v, u) < swept_area(u, v)))
       std::swap(u, v);
     return move(u, v) || move(v, u);

@@ -111,13 +111,35 @@ class SliverMerger {
   /// Across which border to merge: see cleaning.h.
   const std::pair<const std::size_t, Border>& best_of(std::size_t f,
                                                       const std::map<std::size_t, Border>& borders) const {
-    constexpr double longest_tongue = 10.0;
+    constexpr double longest_tongue = 10.0, thin = 0.05, side_by_side = 0.9;
+    const double area = regions_[f].area;
+    double longest = 0.0;
+    for (const auto& [other, border] : borders) longest = std::max(longest, border.length);
+    const Vec2 upwards = area < thin * longest * longest ? upward_normal(f) : Vec2{};
+    const bool is_strip = norm(upwards) > 0.0;
     const auto key = [&](const Border& border) {
-      const bool no_tongue = regions_[f].area <= longest_tongue * border.length * border.length;
-      return std::tuple(no_tongue, border.strength, border.through.empty(), border.length);
+      const bool is_side = is_strip && border.length > side_by_side * longest;
+      const GraphEdge& edge = graph_.edges[border.edges.front()];
+      return std::tuple(area <= longest_tongue * border.length * border.length, border.strength,
+                        border.through.empty(), is_side ? longest : border.length,
+                        dot(upwards, to_vec2(graph_.point(edge.from)) + to_vec2(graph_.point(edge.to))));
     };
     return *std::max_element(borders.begin(), borders.end(),
                              [&](const auto& a, const auto& b) { return key(a.second) < key(b.second); });
+  }
+
+  /// Normal on the longest edge of a region. Of the two the one that is alike for edges that are nearly parallel, unless
+  /// they happen to lie along (0.36, −0.93).
+  Vec2 upward_normal(std::size_t f) const {
+    constexpr Vec2 ahead{0.93, 0.36};
+    Vec2 along;
+    for (const std::size_t e : regions_[f].edges) {
+      const GraphEdge& edge = graph_.edges[e];
+      const Vec2 d = to_vec2(graph_.point(edge.to)) - to_vec2(graph_.point(edge.from));
+      if (squared_norm(d) > squared_norm(along)) along = d;
+    }
+    if (dot(along, ahead) < 0.0) along = -along;
+    return Vec2{-along.y, along.x} / norm(along);
   }
 
   void note_teeth(std::size_t f, const Border& border) {
