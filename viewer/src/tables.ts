@@ -183,9 +183,7 @@ export function cuttingFacts(run: Run): HTMLElement | null {
       ? ` (${fixed((100 * c.removed_length_m) / c.trace_length_m, 0)} % of ${significant(c.trace_length_m, 4)} m)`
       : "";
   const across =
-    c.merged_across_joints > 0
-      ? `; ${integer(c.merged_across_joints)} across a joint that runs through`
-      : "";
+    c.merged_across_joints > 0 ? `; ${integer(c.merged_across_joints)} across a joint that runs through` : "";
   return factList([
     ["Traces that meet the domain", integer(c.traces)],
     ["Traces that bound blocks", integer(c.joints_used)],
