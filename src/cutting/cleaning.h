@@ -29,6 +29,7 @@ std::vector<JointTooth> merge_slivers(PlanarGraph& graph, const CutTolerances& t
 /// that the domain keeps its shape. A move is made only if no vertex lies in the triangles that the edges sweep and the way
 /// crosses no edge: then no face turns over and no edges cross. Every face at the vertex changes alike, so neighbours stay
 /// conforming. Returns the number of vertices moved.
+/// Edges that become one have the label of the weaker joint, else that of higher rank (noding.h); below, too.
 int cluster_vertices(PlanarGraph& graph, double distance, const JointStrengths& strengths = {},
                      double local_size = 0.0);
 

@@ -252,9 +252,12 @@ class ClusterPass {
     return true;
   }
 
-  /// Edges vw and uw become one: it takes the label of higher rank and, on the side of u, the face beyond uw.
+  /// Edges vw and uw become one: it takes one of their labels and, on the side of u, the face beyond uw.
   void unite(GraphEdge& kept, const GraphEdge& gone, int u, int v, int w) {
-    if (rank(gone.label) < rank(kept.label)) kept.label = gone.label;
+    if (strengths_.is_weaker_joint(gone.label, kept.label) ||
+        (!strengths_.is_weaker_joint(kept.label, gone.label) && rank(gone.label) < rank(kept.label))) {
+      kept.label = gone.label;
+    }
     const bool u_left = orientation(graph_.point(v), graph_.point(w), graph_.point(u)) > 0;
     const int beyond_left = gone.from == u ? gone.left : gone.right;  // seen from u to w
     const int beyond_right = gone.from == u ? gone.right : gone.left;

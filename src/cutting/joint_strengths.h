@@ -24,6 +24,13 @@ struct JointStrengths {
     if (label.kind == EdgeKind::trace_map) return pick(trace_maps);
     return standard;
   }
+  /// Whether edges that become one are from then on a piece of the first: of two joints the weaker.
+  [[nodiscard]] bool is_weaker_joint(EdgeLabel first, EdgeLabel second) const {
+    const auto is_joint = [](EdgeLabel label) {
+      return label.kind == EdgeKind::joint_set || label.kind == EdgeKind::trace_map;
+    };
+    return is_joint(first) && is_joint(second) && of(first) < of(second);
+  }
   /// Whether no joint is weaker than another.
   [[nodiscard]] bool alike() const {
     const auto same = [&](double strength) { return strength == standard; };

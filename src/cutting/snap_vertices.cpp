@@ -180,7 +180,10 @@ class SnapPass {
       return;
     }
     GraphEdge& kept = graph_.edges[index(*twin)];
-    if (rank(old.label) < rank(kept.label)) kept.label = old.label;
+    if (strengths_.is_weaker_joint(old.label, kept.label) ||
+        (!strengths_.is_weaker_joint(kept.label, old.label) && rank(old.label) < rank(kept.label))) {
+      kept.label = old.label;
+    }
     const bool same_way = kept.from == from;
     // The sliver lay between the old edge and this one: its side now shows the face beyond the old edge.
     (bent_to_left_ == same_way ? kept.right : kept.left) = bent_to_left_ ? old.right : old.left;

@@ -197,6 +197,31 @@ TEST(WeakPlanes, StayWholeToTheWallOfAnOpening) {
   EXPECT_GT(merged, 30);
 }
 
+/// A triangle that becomes a line by vertices that become one: the line is a piece of the plane.
+TEST(WeakPlanes, KeepTheirStrengthWhereVerticesBecomeOne) {
+  for (int k = 0; k < 40; ++k) {
+    CutInput input = grid_of_blocks();
+    add_plane(input, {0.0005 * (k - 20), -11.0}, 20.0, 0);
+    for (rockmass::Trace& trace : input.traces) {
+      const bool is_plane = &trace == &input.traces.back();
+      trace.source = {TraceSource::Kind::trace_map, is_plane ? 1 : 0};
+    }
+    input.strengths = {1e12, {}, {1e12, 5e4}};
+    input.tolerances = CutTolerances::for_domain(900.0);
+    input.tolerances->sliver_area = input.tolerances->sliver_thickness = 0.0;
+    const BlockSystem system = cut(input);
+    double length = 0.0;  // of edges of the plane, from both sides
+    for (const CutBlock& block : system.blocks) {
+      const Ring& ring = block.polygon.outer;
+      for (std::size_t e = 0; e < ring.size(); ++e) {
+        if (block.labels[0][e] == EdgeLabel{EdgeKind::trace_map, 1})
+          length += norm(ring[(e + 1) % ring.size()] - ring[e]);
+      }
+    }
+    EXPECT_NEAR(0.5 * length, 30.0 / std::cos(20.0 * std::numbers::pi / 180.0), 1e-4) << k;
+  }
+}
+
 TEST(WeakPlanes, OfAJointSetStayWholeToo) {
   int merged = 0;
   for (int k = 0; k < 50; ++k) {
