@@ -1,4 +1,4 @@
-"""Case 38, joints of given stiffness, as generate.py writes it."""
+"""Case 41, joints of given stiffness, as generate.py writes it."""
 
 import math
 
@@ -167,7 +167,7 @@ def corners():
 
 def joint_pressure():
     text = '''title = "Pressure along joints"
-case  = 38
+case  = 41
 about = """Joints of given stiffness k, at default settings. A rigid block of width b with a load e beside its middle: the pressure is a trapezium up to e = b/6, then a triangle of length 3 (b/2 − e), whatever the order and the number of contacts. A bond of strength t that is bent breaks at t b²/6. A pier of eight blocks on such joints falls at a tilt that an independent computation of rigid blocks gives (verification/joint_pressure.py), 2 % either side. A joint that in-situ stress has closed by 10 mm and a wall that moves away relaxes by what two joints and the rock between them give in a row. Two blocks that lean on each other corner to corner, θ from upright: the force between them is level, and their feet need a friction of ½ (tan θ − thickness/length), 1 % either side."""
 '''
     case("joint_pressure", text + eccentric() + cracks() + piers() + prestressed() + corners())

@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 struct Checked {
   std::vector<std::string> warnings;
   std::size_t blocks = 0, traces = 0, stages = 0;
-  std::optional<std::string> slivers;
+  std::vector<std::string> notes;
   std::optional<study::Plan> plan;
 };
 
@@ -38,7 +38,7 @@ Checked checked(const ScenarioArguments& arguments) {
                 .blocks = system.blocks.size(),
                 .traces = static_cast<std::size_t>(system.statistics.traces),
                 .stages = scenario.stages.size(),
-                .slivers = scenario::sliver_note(system, scenario.blocks.size()),
+                .notes = scenario::sliver_notes(scenario, system),
                 .plan = {}};
   // Every combination of values is looked at here.
   if (scenario.study) found.plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
@@ -61,7 +61,7 @@ void check_scenario(const ScenarioArguments& arguments) {
                         found.plan->runs.size() / realizations);
   }
   std::cout << text << '\n';
-  if (found.slivers) std::cout << arguments.file << ": " << *found.slivers << '\n';
+  for (const std::string& note : found.notes) std::cout << arguments.file << ": " << note << '\n';
 }
 
 /// For other programs. Mistakes are printed here, and the exit code says that there are some.
@@ -70,6 +70,7 @@ void check_as_json(const ScenarioArguments& arguments, int& exit_code) {
   try {
     const Checked found = checked(arguments);
     json["warnings"] = found.warnings;
+    json["notes"] = found.notes;
     json["blocks"] = found.blocks;
     json["traces"] = found.traces;
     json["stages"] = found.stages;

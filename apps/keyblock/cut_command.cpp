@@ -68,8 +68,7 @@ void cut_scenario(const CutArguments& arguments) {
       "merged\n",
       model.system.blocks.size(), cut.joints_used, cut.traces, cut.removed_length, cut.trace_length,
       cut.merged_slivers);
-  if (const auto note = scenario::sliver_note(model.system, scenario.blocks.size()))
-    std::cout << *note << '\n';
+  for (const std::string& note : scenario::sliver_notes(scenario, model.system)) std::cout << note << '\n';
   std::cout << "picture: " << svg.string() << '\n';
 }
 

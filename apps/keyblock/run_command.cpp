@@ -81,8 +81,8 @@ void run_scenario(RunArguments arguments) {
     if (const auto ended = results::ended_run(arguments.folder)) simulation::check_balance(*ended);
     return;
   }
-  if (const auto note = scenario::sliver_note(setup.system, scenario.blocks.size()))
-    std::cout << *note << std::endl;
+  for (const std::string& note : scenario::sliver_notes(scenario, setup.system))
+    std::cout << note << std::endl;
   say_beforehand(arguments, run);
   run.start();
   while (!run.runner().done()) run.advance();

@@ -39,13 +39,33 @@ struct CutStatistics {
   double removed_length = 0.0;  ///< m of dead ends and of joints that bound no block (tree cutting)
   int removed_pieces = 0;
   int merged_slivers = 0;
-  int merged_vertices = 0;   ///< clustered or near-collinear vertices that were dropped
-  double domain_area = 0.0;  ///< m²
-  double sliver_area = 0.0;  ///< m² that changed its block by merging
+  int merged_across_joints = 0;  ///< of these, slivers that were merged across a joint that runs through
+  double highest_tooth = 0.0;    ///< m, of the teeth that this left in joints (JointTooth)
+  int slivers_left = 0;          ///< blocks that only the tolerances that were given keep from being merged
+  int merged_vertices = 0;       ///< clustered or near-collinear vertices that were dropped
+  double domain_area = 0.0;      ///< m²
+  double sliver_area = 0.0;      ///< m² that changed its block by merging
+};
+
+/// A place where rock of one wall of a joint reaches into the other, so that the walls hold each other: a sliver was merged across the
+/// joint, which goes on straight on both sides of it.
+struct JointTooth {
+  EdgeLabel joint;
+  Vec2 place;           ///< local coordinates
+  double height = 0.0;  ///< m, across the joint
+};
+
+/// A block that the usual tolerances would have merged. Its corners can catch the other wall of a joint beside it.
+struct SmallBlock {
+  EdgeLabel joint;    ///< the weakest at its border
+  Vec2 place;         ///< local coordinates
+  double area = 0.0;  ///< m²
 };
 
 struct BlockSystem {
   std::vector<CutBlock> blocks;
+  std::vector<JointTooth> teeth;         ///< in the order of cutting
+  std::vector<SmallBlock> slivers_left;  ///< in the order of the blocks
   CutStatistics statistics;
   /// Real coordinates of the local origin: block coordinates are real ones minus this. Zero unless the domain lies
   /// so far from the origin that digits would be lost (a map in national coordinates).

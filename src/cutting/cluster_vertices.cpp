@@ -2,6 +2,7 @@
 #include <cmath>
 #include <compare>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -15,6 +16,7 @@ namespace keyblock::cutting {
 namespace {
 
 struct Pair {
+  double bent;              ///< Pa, strength of the weakest joint that must bend for the two to become one
   double squared_distance;  ///< steps²
   int u, v;
 };
@@ -36,9 +38,11 @@ std::vector<int> common(const std::vector<int>& a, const std::vector<int>& b) {
 /// its faces out of date; those faces wait for the next pass.
 class ClusterPass {
  public:
-  ClusterPass(PlanarGraph& graph, double reach, double local_size)
+  ClusterPass(PlanarGraph& graph, double reach, const JointStrengths& strengths, double local_size)
       : graph_(graph),
         reach_(reach),
+        strengths_(strengths),
+        alike_(strengths.alike()),
         local_(graph, local_size),
         incident_(graph.edges_of_vertices()),
         stale_(graph.faces.size(), false) {}
@@ -91,7 +95,7 @@ class ClusterPass {
       }
     }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
-      return std::tie(a.squared_distance, a.u, a.v) < std::tie(b.squared_distance, b.u, b.v);
+      return std::tie(b.bent, a.squared_distance, a.u, a.v) < std::tie(a.bent, b.squared_distance, b.u, b.v);
     });
     return pairs;
   }
@@ -102,7 +106,8 @@ class ClusterPass {
     double reach = reach_;
     for (const int f : common(faces_at(u), faces_at(v)))
       reach = std::min(reach, local_.share(index(f)) * reach_);
-    if (d < reach * reach) pairs.push_back({d, std::min(u, v), std::max(u, v)});
+    if (!(d < reach * reach)) return;
+    pairs.push_back({std::max(weakest_bent(u, v), weakest_bent(v, u)), d, std::min(u, v), std::max(u, v)});
   }
 
   [[nodiscard]] std::vector<int> faces_at(int v) const {
@@ -152,8 +157,27 @@ class ClusterPass {
     return sum;
   }
 
+  /// Strength of the weakest joint that is no longer where it was when u has gone to v; infinite where all stay. Not
+  /// looked for where all are alike.
+  [[nodiscard]] double weakest_bent(int u, int v) const {
+    constexpr double rounding = 4.0;  // steps
+    if (alike_) return 0.0;
+    double weakest = std::numeric_limits<double>::infinity();
+    for (const int e : incident_[index(u)]) {
+      const int w = other_end(e, u);
+      if (w == v) continue;
+      const GridPoint from = graph_.point(u), to = graph_.point(v), end = graph_.point(w);
+      const double off =
+          std::abs(static_cast<double>(cross(from, to, end))) / norm(to_vec2(end) - to_vec2(to));
+      if (off > rounding) weakest = std::min(weakest, strengths_.of(graph_.edges[index(e)].label));
+    }
+    return weakest;
+  }
+
   bool move_either(int u, int v) {
-    if (swept_area(v, u) < swept_area(u, v)) std::swap(u, v);
+    const double bent_by_u = weakest_bent(u, v), bent_by_v = weakest_bent(v, u);
+    if (bent_by_v > bent_by_u || (bent_by_v == bent_by_u && swept_area(v, u) < swept_area(u, v)))
+      std::swap(u, v);
     return move(u, v) || move(v, u);
   }
 
@@ -228,9 +252,12 @@ class ClusterPass {
     return true;
   }
 
-  /// Edges vw and uw become one: it takes the label of higher rank and, on the side of u, the face beyond uw.
+  /// Edges vw and uw become one: it takes one of their labels and, on the side of u, the face beyond uw.
   void unite(GraphEdge& kept, const GraphEdge& gone, int u, int v, int w) {
-    if (rank(gone.label) < rank(kept.label)) kept.label = gone.label;
+    if (strengths_.is_weaker_joint(gone.label, kept.label) ||
+        (!strengths_.is_weaker_joint(kept.label, gone.label) && rank(gone.label) < rank(kept.label))) {
+      kept.label = gone.label;
+    }
     const bool u_left = orientation(graph_.point(v), graph_.point(w), graph_.point(u)) > 0;
     const int beyond_left = gone.from == u ? gone.left : gone.right;  // seen from u to w
     const int beyond_right = gone.from == u ? gone.right : gone.left;
@@ -243,6 +270,8 @@ class ClusterPass {
 
   PlanarGraph& graph_;
   double reach_;  ///< steps
+  const JointStrengths& strengths_;
+  bool alike_;
   LocalSize local_;
   std::vector<std::vector<int>> incident_;
   std::vector<bool> stale_;
@@ -250,10 +279,12 @@ class ClusterPass {
 
 }  // namespace
 
-int cluster_vertices(PlanarGraph& graph, double distance, double local_size) {
+int cluster_vertices(PlanarGraph& graph, double distance, const JointStrengths& strengths,
+                     double local_size) {
   int total = 0;
   if (distance > 0.0) {
-    while (const int moved = ClusterPass(graph, distance / graph.grid, local_size).run()) total += moved;
+    while (const int moved = ClusterPass(graph, distance / graph.grid, strengths, local_size).run())
+      total += moved;
   }
   return total;
 }

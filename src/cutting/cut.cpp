@@ -11,6 +11,7 @@
 #include "cutting/linework.h"
 #include "cutting/noding.h"
 #include "cutting/outline.h"
+#include "cutting/sliver_limits.h"
 
 namespace keyblock::cutting {
 
@@ -18,6 +19,10 @@ CutTolerances CutTolerances::for_domain(double domain_area, double trace_length)
   constexpr double most_spacings = 80.0;
   double size = std::sqrt(domain_area);
   if (trace_length > 0.0) size = std::min(size, most_spacings * domain_area / trace_length);
+  return for_size(size);
+}
+
+CutTolerances CutTolerances::for_size(double size) {
   CutTolerances t;
   t.size = size;
   t.snapping = 5e-5 * size;
@@ -135,6 +140,27 @@ void check_area(const PlanarGraph& graph, double domain_area) {
   }
 }
 
+/// Blocks that only the tolerances that were given keep from being merged; places in metres of the graph.
+std::vector<SmallBlock> slivers_left(const PlanarGraph& graph, const CutTolerances& given,
+                                     const JointStrengths& strengths) {
+  std::vector<SmallBlock> left;
+  if (!given.sliver_area_is_given && !given.sliver_thickness_is_given) return left;
+  const CutTolerances usual = CutTolerances::for_size(given.size);
+  SliverLimits limits(graph, usual);
+  for (std::size_t f = 0; f < graph.faces.size(); ++f) {
+    const Face& face = graph.faces[f];
+    if (!limits.is_sliver(f, face.area, face.perimeter)) continue;
+    const auto by_strength = [&](HalfEdge g, HalfEdge h) {
+      return strengths.of(graph.edge(g).label) < strengths.of(graph.edge(h).label);
+    };
+    const auto& ring = face.rings.front();
+    const HalfEdge weakest = *std::min_element(ring.begin(), ring.end(), by_strength);
+    left.push_back(
+        {graph.edge(weakest).label, graph.grid * to_vec2(graph.point(graph.origin(weakest))), face.area});
+  }
+  return left;
+}
+
 void sort_blocks(std::vector<CutBlock>& blocks) {
   struct Key {
     Vec2 centroid;
@@ -172,16 +198,29 @@ BlockSystem cut(const CutInput& input) {
   find_excavations(graph, work.excavations);
   check_area(graph, work.domain_area);
 
-  merge_slivers(graph, tolerances, statistics);
+  const Vec2 shift = work.shift - system.origin;
+  const auto merge = [&] {
+    for (JointTooth tooth : merge_slivers(graph, tolerances, input.strengths, statistics)) {
+      tooth.place += shift;
+      statistics.highest_tooth = std::max(statistics.highest_tooth, tooth.height);
+      system.teeth.push_back(tooth);
+    }
+  };
+  merge();
   const double local = tolerances.cluster_is_given ? 0.0 : tolerances.size;
-  statistics.merged_vertices += cluster_vertices(graph, tolerances.cluster, local);
-  snap_vertices_to_edges(graph, edge_share * tolerances.cluster, local);
-  merge_slivers(graph, tolerances, statistics);
+  statistics.merged_vertices += cluster_vertices(graph, tolerances.cluster, input.strengths, local);
+  snap_vertices_to_edges(graph, edge_share * tolerances.cluster, input.strengths, local);
+  merge();
   check_area(graph, work.domain_area);
+  for (SmallBlock block : slivers_left(graph, tolerances, input.strengths)) {
+    block.place += shift;
+    system.slivers_left.push_back(block);
+  }
+  statistics.slivers_left = static_cast<int>(system.slivers_left.size());
 
   // No default is larger than that of a domain without traces.
   const double straight = CutTolerances::for_domain(rough_area).collinear;
-  system.blocks = outlines_of(graph, tolerances.collinear, straight, work.shift - system.origin, statistics);
+  system.blocks = outlines_of(graph, tolerances.collinear, straight, shift, statistics);
   sort_blocks(system.blocks);
   return system;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cutting/block_system.h"
+#include "cutting/joint_strengths.h"
 #include "rockmass/trace.h"
 
 namespace keyblock::cutting {
@@ -37,6 +38,8 @@ struct CutTolerances {
   /// None is given. L is the square root of the area of the domain (m²), at most 80 times the area over the length of all traces in it (m):
   /// the size of blocks, not only that of the model, says what is small.
   static CutTolerances for_domain(double domain_area, double trace_length = 0.0);
+  /// None is given, and L is known (m).
+  static CutTolerances for_size(double size);
 };
 
 /// What is cut. Real coordinates; rings in either sense.
@@ -45,6 +48,7 @@ struct CutInput {
   std::vector<rockmass::Trace> traces;
   std::vector<Ring> excavations;            ///< outlines, by index of the excavation
   std::optional<CutTolerances> tolerances;  ///< default: CutTolerances::for_domain
+  JointStrengths strengths{};               ///< default: all joints are alike
 };
 
 /// Cuts the domain by traces and excavation outlines into blocks.
@@ -53,8 +57,8 @@ struct CutInput {
 ///    L·2⁻⁴⁴ and noded there by snap rounding (GEOS): lines meet in common vertices only.
 /// 2. Dead ends and joints that bound no block are removed (tree cutting): after that the two sides of every edge
 ///    are different blocks. A ring of joints within a block makes a hole in it and a block of its own.
-/// 3. Cleaning: slivers are merged into the neighbour with the longest common edge, smallest first, never across
-///    an excavation outline; vertices closer than `cluster` become one for all blocks at them, and edges take in
+/// 3. Cleaning: slivers are merged into a neighbour, smallest first, never across an excavation outline, and not across a weak plane
+///    or a joint that runs through if there is another way (cleaning.h); vertices closer than `cluster` become one for all blocks at them, and edges take in
 ///    the vertices they nearly touch, where that turns no block over; slivers are merged again; near-collinear
 ///    vertices are dropped, the foot of a T from the straight side only.
 ///

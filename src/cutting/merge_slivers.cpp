@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
+#include <utility>
 
 #include "cutting/cleaning.h"
-#include "cutting/local_size.h"
+#include "cutting/joint_course.h"
+#include "cutting/sliver_limits.h"
 
 namespace keyblock::cutting {
 
@@ -12,8 +15,8 @@ namespace {
 
 class SliverMerger {
  public:
-  SliverMerger(PlanarGraph& graph, const CutTolerances& tolerances)
-      : graph_(graph), tolerances_(tolerances), local_(graph, tolerances.size), regions_(graph.faces.size()) {
+  SliverMerger(PlanarGraph& graph, const CutTolerances& tolerances, const JointStrengths& strengths)
+      : graph_(graph), strengths_(strengths), limits_(graph, tolerances), regions_(graph.faces.size()) {
     for (std::size_t f = 0; f < regions_.size(); ++f) {
       regions_[f].area = graph.faces[f].area;
       regions_[f].perimeter = graph.faces[f].perimeter;
@@ -42,6 +45,8 @@ class SliverMerger {
 
   [[nodiscard]] int merged() const { return merged_; }
   [[nodiscard]] double merged_area() const { return merged_area_; }
+  [[nodiscard]] int merged_across_joints() const { return merged_across_joints_; }
+  [[nodiscard]] const std::vector<JointTooth>& teeth() const { return teeth_; }
 
  private:
   struct Region {
@@ -52,15 +57,7 @@ class SliverMerger {
 
   void consider(std::size_t f) {
     const Region& r = regions_[f];
-    const auto is_below = [&](double area, double thickness) {
-      return r.area < area || r.area < thickness * r.perimeter;
-    };
-    if (!is_below(tolerances_.sliver_area, tolerances_.sliver_thickness)) return;
-    const double share = local_.share(f);
-    const double area = tolerances_.sliver_area_is_given ? 1.0 : share * share;
-    const double thickness = tolerances_.sliver_thickness_is_given ? 1.0 : share;
-    if (is_below(area * tolerances_.sliver_area, thickness * tolerances_.sliver_thickness))
-      queue_.emplace(r.area, f);
+    if (limits_.is_sliver(f, r.area, r.perimeter)) queue_.emplace(r.area, f);
   }
 
   std::size_t root(int face) {
@@ -77,22 +74,98 @@ class SliverMerger {
     return left == f ? right : left;
   }
 
-  void merge(std::size_t f) {
-    std::map<std::size_t, double> borders;  // by neighbour, m
+  /// What a region shares with one neighbour.
+  struct Border {
+    double length = 0.0;  ///< m
+    std::vector<std::size_t> edges{};
+    double strength = 0.0;  ///< Pa, of its weakest joint
+    std::vector<JointCourse::Stretch> through{};
+  };
+
+  std::map<std::size_t, Border> borders_of(std::size_t f) {
+    std::map<std::size_t, Border> borders;  // by neighbour
     for (const std::size_t e : regions_[f].edges) {
       const std::size_t other = neighbour(f, graph_.edges[e]);
       if (other == f || graph_.faces[f].excavations != graph_.faces[other].excavations) continue;
-      borders[other] += graph_.length(graph_.edges[e]);
+      Border& border = borders[other];
+      border.length += graph_.length(graph_.edges[e]);
+      border.edges.push_back(e);
     }
+    for (auto& [other, border] : borders) look_at(border);
+    return borders;
+  }
+
+  void look_at(Border& border) {
+    if (!course_) {
+      course_.emplace(graph_, [this](const GraphEdge& e) {
+        return e.left < 0 || e.right < 0 || root(e.left) != root(e.right);
+      });
+    }
+    border.strength = strengths_.of(graph_.edges[border.edges.front()].label);
+    for (const std::size_t e : border.edges)
+      border.strength = std::min(border.strength, strengths_.of(graph_.edges[e].label));
+    border.through = course_->stretches(border.edges);
+    std::erase_if(border.through, [](const JointCourse::Stretch& stretch) { return !stretch.runs_through; });
+  }
+
+  /// Across which border to merge: see cleaning.h.
+  const std::pair<const std::size_t, Border>& best_of(std::size_t f,
+                                                      const std::map<std::size_t, Border>& borders) const {
+    constexpr double longest_tongue = 10.0, thin = 0.05, side_by_side = 0.9;
+    const double area = regions_[f].area;
+    double longest = 0.0;
+    for (const auto& [other, border] : borders) longest = std::max(longest, border.length);
+    const Vec2 upwards = area < thin * longest * longest ? upward_normal(f) : Vec2{};
+    const bool is_strip = norm(upwards) > 0.0;
+    const auto key = [&](const Border& border) {
+      const bool is_side = is_strip && border.length > side_by_side * longest;
+      const GraphEdge& edge = graph_.edges[border.edges.front()];
+      return std::tuple(area <= longest_tongue * border.length * border.length, border.strength,
+                        border.through.empty(), is_side ? longest : border.length,
+                        dot(upwards, to_vec2(graph_.point(edge.from)) + to_vec2(graph_.point(edge.to))));
+    };
+    return *std::max_element(borders.begin(), borders.end(),
+                             [&](const auto& a, const auto& b) { return key(a.second) < key(b.second); });
+  }
+
+  /// Normal on the longest edge of a region. Of the two the one that is alike for edges that are nearly parallel, unless
+  /// they happen to lie along (0.36, −0.93).
+  Vec2 upward_normal(std::size_t f) const {
+    constexpr Vec2 ahead{0.93, 0.36};
+    Vec2 along;
+    for (const std::size_t e : regions_[f].edges) {
+      const GraphEdge& edge = graph_.edges[e];
+      const Vec2 d = to_vec2(graph_.point(edge.to)) - to_vec2(graph_.point(edge.from));
+      if (squared_norm(d) > squared_norm(along)) along = d;
+    }
+    if (dot(along, ahead) < 0.0) along = -along;
+    return Vec2{-along.y, along.x} / norm(along);
+  }
+
+  void note_teeth(std::size_t f, const Border& border) {
+    if (!border.through.empty()) ++merged_across_joints_;
+    for (const JointCourse::Stretch& stretch : border.through) {
+      const Vec2 a = to_vec2(graph_.point(stretch.from)), b = to_vec2(graph_.point(stretch.to));
+      double height = 0.0;
+      for (const std::size_t e : regions_[f].edges) {
+        for (const int v : {graph_.edges[e].from, graph_.edges[e].to})
+          height = std::max(height, std::abs(cross(b - a, to_vec2(graph_.point(v)) - a)) / norm(b - a));
+      }
+      teeth_.push_back({stretch.label, 0.5 * graph_.grid * (a + b), graph_.grid * height});
+    }
+  }
+
+  void merge(std::size_t f) {
+    const std::map<std::size_t, Border> borders = borders_of(f);
     if (borders.empty()) return;
-    const auto& [best, length] = *std::max_element(
-        borders.begin(), borders.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto& [best, border] = best_of(f, borders);
+    note_teeth(f, border);
     ++merged_;
     merged_area_ += regions_[f].area;
     Region& target = regions_[best];
     regions_[f].into = best;
     target.area += regions_[f].area;
-    target.perimeter += regions_[f].perimeter - 2.0 * length;
+    target.perimeter += regions_[f].perimeter - 2.0 * border.length;
     target.edges.insert(target.edges.end(), regions_[f].edges.begin(), regions_[f].edges.end());
     std::erase_if(target.edges, [&](std::size_t e) {
       const GraphEdge& edge = graph_.edges[e];
@@ -102,10 +175,12 @@ class SliverMerger {
   }
 
   PlanarGraph& graph_;
-  const CutTolerances& tolerances_;
-  LocalSize local_;  ///< of the blocks before any is merged
+  const JointStrengths& strengths_;
+  std::optional<JointCourse> course_;  ///< where there are slivers
+  SliverLimits limits_;                ///< of the blocks before any is merged
   std::vector<Region> regions_;
-  int merged_ = 0;
+  int merged_ = 0, merged_across_joints_ = 0;
+  std::vector<JointTooth> teeth_;  ///< metres of the graph
   double merged_area_ = 0.0;
   using Entry = std::tuple<double, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
@@ -113,12 +188,15 @@ class SliverMerger {
 
 }  // namespace
 
-void merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances, CutStatistics& statistics) {
-  if (!(tolerances.sliver_area > 0.0) && !(tolerances.sliver_thickness > 0.0)) return;
-  SliverMerger merger(graph, tolerances);
+std::vector<JointTooth> merge_slivers(PlanarGraph& graph, const CutTolerances& tolerances,
+                                      const JointStrengths& strengths, CutStatistics& statistics) {
+  if (!(tolerances.sliver_area > 0.0) && !(tolerances.sliver_thickness > 0.0)) return {};
+  SliverMerger merger(graph, tolerances, strengths);
   merger.run();
   statistics.merged_slivers += merger.merged();
+  statistics.merged_across_joints += merger.merged_across_joints();
   statistics.sliver_area += merger.merged_area();
+  return merger.teeth();
 }
 
 }  // namespace keyblock::cutting

@@ -21,9 +21,10 @@ struct NearPair {
 /// they wait for the next pass.
 class SnapPass {
  public:
-  SnapPass(PlanarGraph& graph, double reach, double local_size)
+  SnapPass(PlanarGraph& graph, double reach, const JointStrengths& strengths, double local_size)
       : graph_(graph),
         reach_(reach),
+        strengths_(strengths),
         local_(graph, local_size),
         incident_(graph.edges_of_vertices()),
         stale_(graph.faces.size(), false) {}
@@ -116,7 +117,10 @@ class SnapPass {
     if (face < 0 || (beyond >= 0 && stale_[index(beyond)])) return false;
     const GridPoint a = graph_.point(edge.from), b = graph_.point(edge.to), p = graph_.point(v);
     if (!is_empty(face, a, b, p)) return false;
-    if (beyond < 0 && !move_to_border(v, nearest_grid_point(foot(v, edge)))) return false;
+    if ((beyond < 0 || is_weaker_than_all(edge, v)) &&
+        !move_to_border(v, nearest_grid_point(foot(v, edge)))) {
+      return false;
+    }
     mark_stale(v, edge);
     bent_to_left_ = face == edge.left;
     replace(e, edge.from, v, edge);
@@ -124,7 +128,14 @@ class SnapPass {
     return true;
   }
 
-  /// The domain keeps its shape: the vertex goes to the border, not the border to the vertex.
+  [[nodiscard]] bool is_weaker_than_all(const GraphEdge& edge, int v) const {
+    const auto& here = incident_[index(v)];
+    return std::all_of(here.begin(), here.end(), [&](int g) {
+      return strengths_.of(edge.label) < strengths_.of(graph_.edges[index(g)].label);
+    });
+  }
+
+  /// The domain and weak planes keep their shape: the vertex goes to the border, not the border to the vertex.
   bool move_to_border(int v, GridPoint target) {
     const GridPoint from = graph_.point(v);
     for (const int g : incident_[index(v)]) {
@@ -169,7 +180,10 @@ class SnapPass {
       return;
     }
     GraphEdge& kept = graph_.edges[index(*twin)];
-    if (rank(old.label) < rank(kept.label)) kept.label = old.label;
+    if (strengths_.is_weaker_joint(old.label, kept.label) ||
+        (!strengths_.is_weaker_joint(kept.label, old.label) && rank(old.label) < rank(kept.label))) {
+      kept.label = old.label;
+    }
     const bool same_way = kept.from == from;
     // The sliver lay between the old edge and this one: its side now shows the face beyond the old edge.
     (bent_to_left_ == same_way ? kept.right : kept.left) = bent_to_left_ ? old.right : old.left;
@@ -178,6 +192,7 @@ class SnapPass {
 
   PlanarGraph& graph_;
   double reach_;  ///< steps
+  const JointStrengths& strengths_;
   LocalSize local_;
   std::vector<std::vector<int>> incident_;
   std::vector<bool> stale_;
@@ -186,12 +201,13 @@ class SnapPass {
 
 }  // namespace
 
-void snap_vertices_to_edges(PlanarGraph& graph, double distance, double local_size) {
+void snap_vertices_to_edges(PlanarGraph& graph, double distance, const JointStrengths& strengths,
+                            double local_size) {
   // Every pass closes gaps; a bent edge may come near another vertex, so that some are needed, but never many.
   constexpr int max_passes = 100;
   if (!(distance > 0.0)) return;
-  for (int pass = 0; pass < max_passes && SnapPass(graph, distance / graph.grid, local_size).run() > 0;
-       ++pass) {
+  for (int pass = 0;
+       pass < max_passes && SnapPass(graph, distance / graph.grid, strengths, local_size).run() > 0; ++pass) {
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/index.h"
 #include "dynamics/block_depth.h"
@@ -51,7 +52,7 @@ class Audit {
     }
     const double reach = step_.reach[at(c.block_a)] + step_.reach[at(c.block_b)],
                  near = step_.end_zone + reach + norm(step_.relative[k]) + std::max(0.0, -offset);
-    if (-depth <= near || -depth <= near + depth_in_others(c, where)) return;
+    if (-depth <= near || -depth <= near + depth_in_others(c, where) || shares_pressure(k)) return;
     ++found_.across_gaps;
     take_farther(found_.farthest, {-depth, c.block_a, c.block_b, where});
   }
@@ -60,6 +61,27 @@ class Audit {
     return depth_in(step_.surface, block, where, [&](std::size_t v) { return step_.surface.position[v]; });
   }
 
+  /// Whether the contact has its force of the pressure of a face (contact::JointFaces) that is closed at another contact of the same blocks.
+  [[nodiscard]] bool shares_pressure(std::size_t k) const {
+    const contact::CandidateList& list = step_.contacts;
+    if (!list.memory[k].in_face) return false;
+    const auto blocks = [&](std::size_t i) {
+      const contact::Candidate& c = list.pairs[at(list.tracked[i])];
+      return std::pair(std::min(c.block_a, c.block_b), std::max(c.block_a, c.block_b));
+    };
+    const auto is_closed = [&](std::size_t i) {
+      const contact::Candidate& c = list.pairs[at(list.tracked[i])];
+      return i != k && list.memory[i].in_face && list.memory[i].normal_force > 0.0 &&
+             depth_of(step_.surface.position[at(c.vertex)], c.block_b) >= -step_.end_zone;
+    };
+    std::size_t first = k, end = k + 1;
+    while (first > 0 && blocks(first - 1) == blocks(k)) --first;
+    while (end < list.tracked.size() && blocks(end) == blocks(k)) ++end;
+    for (std::size_t i = first; i < end; ++i) {
+      if (is_closed(i)) return true;
+    }
+    return false;
+  }
   /// m, of the vertex in the block, beside block_b, in which it is deepest; 0: in none.
   [[nodiscard]] double depth_in_others(const contact::Candidate& c, Vec2 where) const {
     double deepest = 0.0;

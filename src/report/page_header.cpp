@@ -79,7 +79,10 @@ ordered_json model_json(const simulation::ModelRecord& model) {
             {"merged_slivers", cut.merged_slivers},
             {"merged_vertices", cut.merged_vertices},
             {"domain_area_m2", cut.domain_area},
-            {"sliver_area_m2", cut.sliver_area}}}};
+            {"sliver_area_m2", cut.sliver_area},
+            {"merged_across_joints", cut.merged_across_joints},
+            {"highest_tooth_m", cut.highest_tooth},
+            {"slivers_left", cut.slivers_left}}}};
 }
 
 ordered_json run_json(const results::RunData& data) {

@@ -39,6 +39,14 @@ void visit_cutting(Record& c, const Visit& visit) {
   visit("sliver_area", c.sliver_area);
 }
 
+// Those that files of earlier versions do not have.
+template <class Record, class Visit>
+void visit_later_cutting(Record& c, const Visit& visit) {
+  visit("merged_across_joints", c.merged_across_joints);
+  visit("highest_tooth", c.highest_tooth);
+  visit("slivers_left", c.slivers_left);
+}
+
 // Calls visit_… with a function that writes into, or reads from, `json`.
 struct Write {
   ordered_json& json;
@@ -78,6 +86,7 @@ std::string model_json(const simulation::ModelRecord& model) {
   ordered_json outlines = ordered_json::array(), cutting;
   for (const auto& outline : model.excavation_outlines) outlines.push_back(points_json(outline));
   visit_cutting(model.cutting, Write{cutting});
+  visit_later_cutting(model.cutting, Write{cutting});
   const ordered_json json{{"title", model.title},
                           {"version", model.version},
                           {"seed", model.seed},
@@ -121,7 +130,9 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     model.opening_width = optional_number(json.at("opening_width"));
     model.slip_limit = later_number(json, "slip_limit");
     model.opening_limit = later_number(json, "opening_limit");
-    visit_cutting(model.cutting, Read{json.at("cutting")});
+    const ordered_json& cutting = json.at("cutting");
+    visit_cutting(model.cutting, Read{cutting});
+    if (cutting.contains("slivers_left")) visit_later_cutting(model.cutting, Read{cutting});
     // Files of earlier versions have none of these.
     if (json.contains("warnings")) json.at("warnings").get_to(model.warnings);
     if (json.contains("closure_is_lower_bound"))

@@ -46,7 +46,10 @@ ordered_json cutting(const cutting::CutStatistics& c) {
           {"removed_length_m", c.removed_length},
           {"removed_pieces", c.removed_pieces},
           {"merged_vertices", c.merged_vertices},
-          {"sliver_area_m2", c.sliver_area}};
+          {"sliver_area_m2", c.sliver_area},
+          {"merged_across_joints", c.merged_across_joints},
+          {"highest_tooth_m", c.highest_tooth},
+          {"slivers_left", c.slivers_left}};
 }
 
 // Equilibrium is a question only where the stage seeks it.

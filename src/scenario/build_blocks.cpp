@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
@@ -42,6 +43,29 @@ cutting::CutTolerances tolerances_of(const CuttingKeys& keys, const Box& window,
   tolerances.cluster_is_given = keys.cluster.has_value();
   tolerances.collinear = keys.collinear.value_or(tolerances.collinear);
   return tolerances;
+}
+
+// Stress at which joints are compared: the weight of the rock down to the middle of the domain. Where nothing has weight, any will do
+// that makes friction count beside the cohesion of weak joints.
+double normal_stress_of_comparison(const Scenario& scenario) {
+  constexpr double without_weight = 1e5;
+  const double depth = scenario.in_situ ? scenario.in_situ->depth.value_or(0.0) : 0.0;
+  const double middle = depth + 0.5 * scenario.domain->box().size().y;
+  const double stress = scenario.rock.density.value_or(0.0) * norm(scenario.gravity) * middle;
+  return stress > 0.0 ? stress : without_weight;
+}
+
+cutting::JointStrengths joint_strengths(const Scenario& scenario) {
+  const double stress = normal_stress_of_comparison(scenario);
+  const auto strength = [&](const JointKeys& own) {
+    const double friction = own.friction.value_or(scenario.joints.friction.value_or(0.0));
+    return own.cohesion.value_or(scenario.joints.cohesion.value_or(0.0)) +
+           stress * std::tan(friction * std::numbers::pi / 180.0);
+  };
+  cutting::JointStrengths strengths{.standard = strength({})};
+  for (const JointSetSpec& spec : scenario.joint_sets) strengths.joint_sets.push_back(strength(spec.joints));
+  for (const TraceMapSpec& spec : scenario.trace_maps) strengths.trace_maps.push_back(strength(spec.joints));
+  return strengths;
 }
 
 // What the generator refuses shows at the joint set in the file.
@@ -104,6 +128,7 @@ void cut_domain(const Scenario& scenario, int realization, BlockModel& model) {
   input.traces = model.traces;
   input.excavations = model.outlines;
   input.tolerances = tolerances_of(scenario.cutting, window, model.traces);
+  input.strengths = joint_strengths(scenario);
   check_expected_blocks(scenario, input, window);
   try {
     model.system =

@@ -1,10 +1,15 @@
 #include "scenario/cut_summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iterator>
+#include <map>
+#include <optional>
 
 #include "core/checked_json.h"
+#include "cutting/edge_name.h"
 #include "rockmass/intensity.h"
 #include "rockmass/section.h"
 
@@ -44,12 +49,33 @@ ordered_json cutting_json(const cutting::CutStatistics& cut) {
           {"removed_length_m", cut.removed_length},
           {"removed_pieces", cut.removed_pieces},
           {"merged_vertices", cut.merged_vertices},
-          {"sliver_area_m2", cut.sliver_area}};
+          {"sliver_area_m2", cut.sliver_area},
+          {"merged_across_joints", cut.merged_across_joints},
+          {"highest_tooth_m", cut.highest_tooth},
+          {"slivers_left", cut.slivers_left}};
 }
 
-}  // namespace
+std::string joint_name(const Scenario& scenario, cutting::EdgeLabel label) {
+  std::vector<std::string> sets, maps, excavations;
+  for (const JointSetSpec& spec : scenario.joint_sets) sets.push_back(spec.set.name);
+  for (const TraceMapSpec& spec : scenario.trace_maps) maps.push_back(spec.name);
+  for (const ExcavationSpec& spec : scenario.excavations) excavations.push_back(spec.name);
+  return cutting::edge_name(label, sets, maps, excavations);
+}
 
-std::optional<std::string> sliver_note(const cutting::BlockSystem& system, std::size_t explicit_blocks) {
+ordered_json teeth_json(const Scenario& scenario, const cutting::BlockSystem& system) {
+  ordered_json teeth = ordered_json::array();
+  for (const cutting::JointTooth& tooth : system.teeth) {
+    const Vec2 place = system.origin + tooth.place;
+    teeth.push_back({{"joint", joint_name(scenario, tooth.joint)},
+                     {"x", place.x},
+                     {"y", place.y},
+                     {"height_m", tooth.height}});
+  }
+  return teeth;
+}
+
+std::optional<std::string> note_of_many(const cutting::BlockSystem& system, std::size_t explicit_blocks) {
   constexpr double worth_saying = 0.01;
   const cutting::CutStatistics& cut = system.statistics;
   const auto merged = static_cast<std::size_t>(cut.merged_slivers);
@@ -59,6 +85,60 @@ std::optional<std::string> sliver_note(const cutting::BlockSystem& system, std::
       "{} of {} blocks are slivers and part of their neighbours, {:.3g} m2 of {:.6g} m2 in all; [cutting] "
       "has the limits",
       merged, blocks, cut.sliver_area, cut.domain_area);
+}
+
+std::string counted_slivers(int count) {
+  return fmt::format("{} sliver{}", count, count == 1 ? "" : "s");
+}
+
+/// Joints with how often each comes, and one place of each: "'weak' (2, one at (11.00, -14.00), 4.1 mm high)".
+template <class Place>
+std::string places_by_joint(const Scenario& scenario, const cutting::BlockSystem& system,
+                            const std::vector<Place>& places, double Place::*size,
+                            std::string (*size_text)(double)) {
+  std::map<std::string, std::vector<const Place*>> by_joint;
+  for (const Place& place : places) by_joint[joint_name(scenario, place.joint)].push_back(&place);
+  std::vector<std::string> texts;
+  for (const auto& [name, here] : by_joint) {
+    const Place& largest = **std::max_element(
+        here.begin(), here.end(), [&](const Place* a, const Place* b) { return a->*size < b->*size; });
+    const Vec2 at = system.origin + largest.place;
+    texts.push_back(fmt::format("'{}' {}at ({:.2f}, {:.2f}), {}", name,
+                                here.size() == 1 ? "" : fmt::format("{} times, most ", here.size()), at.x,
+                                at.y, size_text(largest.*size)));
+  }
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+std::optional<std::string> note_of_teeth(const Scenario& scenario, const cutting::BlockSystem& system) {
+  const cutting::CutStatistics& cut = system.statistics;
+  if (system.teeth.empty()) return std::nullopt;
+  return fmt::format(
+      "{} merged, {} of them across a joint that runs through, which is held there by a tooth of rock: {}",
+      counted_slivers(cut.merged_slivers), cut.merged_across_joints,
+      places_by_joint(scenario, system, system.teeth, &cutting::JointTooth::height,
+                      [](double height) { return fmt::format("{:.2g} mm high", 1e3 * height); }));
+}
+
+std::optional<std::string> note_of_slivers_left(const Scenario& scenario,
+                                                const cutting::BlockSystem& system) {
+  if (system.slivers_left.empty()) return std::nullopt;
+  return fmt::format(
+      "{} left, as [cutting] asks for; their corners can hold the joints beside them: {}",
+      counted_slivers(static_cast<int>(system.slivers_left.size())),
+      places_by_joint(scenario, system, system.slivers_left, &cutting::SmallBlock::area,
+                      [](double area) { return fmt::format("{:.2g} cm2 large", 1e4 * area); }));
+}
+
+}  // namespace
+
+std::vector<std::string> sliver_notes(const Scenario& scenario, const cutting::BlockSystem& system) {
+  std::vector<std::string> notes;
+  for (const auto& note : {note_of_many(system, scenario.blocks.size()), note_of_teeth(scenario, system),
+                           note_of_slivers_left(scenario, system)}) {
+    if (note) notes.push_back(*note);
+  }
+  return notes;
 }
 
 std::string cut_summary(const Scenario& scenario, int realization, const BlockModel& model,
@@ -80,6 +160,7 @@ std::string cut_summary(const Scenario& scenario, int realization, const BlockMo
                           {"area", {{"blocks", left}, {"excavated", excavated}, {"domain", cut.domain_area}}},
                           {"merged_slivers", cut.merged_slivers},
                           {"cutting", cutting_json(cut)},
+                          {"teeth", teeth_json(scenario, model.system)},
                           {"joint_sets", joint_sets(scenario, model)}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -1,7 +1,6 @@
 #pragma once
-#include <cstddef>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "scenario/build.h"
 
@@ -13,8 +12,9 @@ namespace keyblock::scenario {
 std::string cut_summary(const Scenario& scenario, int realization, const BlockModel& model,
                         const std::string& version);
 
-/// What to say where more than 1 % of the blocks that joints cut were merged as slivers; the last `explicit_blocks` of the
-/// system were not cut.
-std::optional<std::string> sliver_note(const cutting::BlockSystem& system, std::size_t explicit_blocks);
+/// What to say of slivers: where more than 1 % of the blocks that joints cut were merged; across which joints that run through, and how
+/// high the teeth are that this left in them; which were left as the scenario's tolerances ask for it. The last blocks of
+/// the system are the scenario's own, which were not cut.
+std::vector<std::string> sliver_notes(const Scenario& scenario, const cutting::BlockSystem& system);
 
 }  // namespace keyblock::scenario

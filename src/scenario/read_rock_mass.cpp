@@ -244,11 +244,14 @@ void read_cutting(TableReader& t, CuttingKeys& cutting) {
             .unit = "m",
             .at_least = 0.0,
             .fallback = "5e-5 L"});
-  t.number("sliver_area", cutting.sliver_area,
-           {.meaning = "Blocks of less area are merged into the neighbour with the longest common edge.",
-            .unit = "m²",
-            .at_least = 0.0,
-            .fallback = "2.5e-6 L²"});
+  t.number(
+      "sliver_area", cutting.sliver_area,
+      {.meaning =
+           "Blocks of less area are merged into a neighbour: not across a weak plane if there is another "
+           "way, nor across a joint that runs through; else the one with the longest common edge.",
+       .unit = "m²",
+       .at_least = 0.0,
+       .fallback = "2.5e-6 L²"});
   t.number("sliver_thickness", cutting.sliver_thickness,
            {.meaning = "Blocks of less area over perimeter are merged, too.",
             .unit = "m",

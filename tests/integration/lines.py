@@ -83,6 +83,38 @@ points = [[5.0, 0.0], [5.0, 5.0], [6.0, 10.0]]
             file.write(stage)
         self.assertIn(said, self.keyblock("run", scenario, "-o", "run", *wide).stdout)
 
+    def crossing(self, friction="20.0"):
+        """A plane that passes the crossing of two joints by centimetres."""
+        joint = '[[trace_map]]\nname = "{}"\npoints = {}\nfriction = {}\n'
+        return self.lines(
+            joint.format("level", "[[0.0, 5.0], [10.0, 5.0]]", "40.0")
+            + joint.format("upright", "[[5.0, 0.0], [5.0, 10.0]]", "40.0")
+            + joint.format("plane", "[[0.0, 6.84], [10.0, 3.19]]", friction)
+        )
+
+    def test_a_sliver_is_not_merged_across_the_weak_plane(self):
+        cut = self.keyblock("cut", self.crossing(), "-o", "cut", "--set", "cutting.sliver_area=0.001")
+        self.assertRegex(cut.stdout, r"1 sliver merged, 1 of them across a joint that runs through, .*: '(level|upright)' at \((4|5)\.\d\d, 5\.0\d\)")
+        summary = json.loads((self.folder / "cut/summary.json").read_text())
+        self.assertEqual(summary["cutting"]["merged_across_joints"], 1)
+        [tooth] = summary["teeth"]
+        self.assertAlmostEqual(tooth["height_m"], summary["cutting"]["highest_tooth_m"])
+        self.assertNotEqual(tooth["joint"], "plane")
+
+    def test_which_plane_is_locked_and_by_what_is_told(self):
+        scenario = self.crossing(friction="40.0")
+        checked = self.keyblock("check", scenario, "--set", "cutting.sliver_area=0.001").stdout
+        self.assertRegex(checked, r"which is held there by a tooth of rock: 'plane' at \(5\.0\d, 5\.0\d\), \d+ mm high\n")
+
+    def test_slivers_that_are_left_are_told(self):
+        none = [word for key in ("sliver_area", "sliver_thickness", "cluster") for word in ("--set", f"cutting.{key}=0.0")]
+        scenario = self.lines((self.folder / self.crossing()).read_text().replace(DOMAIN.format(x="[0.0, 10.0]", y="[0.0, 10.0]", boundary="free"), "").replace("6.84", "6.827").replace("3.19", "3.177"))
+        said = r"1 sliver left, as \[cutting\] asks for; their corners can hold the joints beside them: 'plane' at \(\d\.\d\d, \d\.\d\d\)"
+        self.assertRegex(self.keyblock("check", scenario, *none).stdout, said)
+        notes = json.loads(self.keyblock("check", scenario, "--json", *none).stdout)["notes"]
+        self.assertRegex(notes[0], said)
+        self.assertNotIn("left", self.keyblock("check", scenario).stdout)
+
     def test_blocks_in_the_frame_and_in_the_domain_are_told(self):
         block = "[[block]]\nname = \"b\"\nouter = [[-1.0, {0}], [1.0, {0}], [1.0, {1}], [-1.0, {1}]]\n"
         sets = {"x": "[-5.0, 5.0]", "y": "[-5.0, 5.0]", "boundary": "frame"}

@@ -83,6 +83,11 @@ const tests = {
       findings,
       /2 of 6 other checks need attention: steps that did not converge and largest true overlap of two blocks\./,
     );
+    assert.match(
+      findings,
+      /7 slivers merged, 3 of them across a joint that runs through\. Teeth of rock of up to 12\smm hold the joint there\./,
+    );
+    assert.match(findings, /1 sliver left in the model, as the scenario asks\./);
     // One of them is listed in both stages.
     assert.match(
       await text(page, "#verdict summary"),

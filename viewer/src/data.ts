@@ -120,6 +120,11 @@ export interface Header {
       merged_vertices: number;
       domain_area_m2: number;
       sliver_area_m2: number;
+      /** Slivers that were merged across a joint that runs through; the highest tooth that this left. */
+      merged_across_joints: number;
+      highest_tooth_m: number;
+      /** Blocks that only the tolerances that were given keep from being merged. */
+      slivers_left: number;
     };
   };
   area: { blocks_m2: number; excavated_m2: number };

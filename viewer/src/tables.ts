@@ -182,6 +182,8 @@ export function cuttingFacts(run: Run): HTMLElement | null {
     c.trace_length_m > 0
       ? ` (${fixed((100 * c.removed_length_m) / c.trace_length_m, 0)} % of ${significant(c.trace_length_m, 4)} m)`
       : "";
+  const across =
+    c.merged_across_joints > 0 ? `; ${integer(c.merged_across_joints)} across a joint that runs through` : "";
   return factList([
     ["Traces that meet the domain", integer(c.traces)],
     ["Traces that bound blocks", integer(c.joints_used)],
@@ -191,7 +193,7 @@ export function cuttingFacts(run: Run): HTMLElement | null {
     ],
     [
       "Slivers merged into neighbours",
-      `${integer(c.merged_slivers)}, ${significant(c.sliver_area_m2, 3)} m² in all`,
+      `${integer(c.merged_slivers)}, ${significant(c.sliver_area_m2, 3)} m² in all${across}`,
     ],
     ["Vertices merged or dropped", integer(c.merged_vertices)],
     ["Area of the domain", `${significant(c.domain_area_m2, 5)} m²`],

@@ -47,7 +47,25 @@ export function sureness(run: Run): Finding[] {
     ...(run.header.run.interrupted ? [interruption(run)] : []),
     ...marginal,
     checksFinding(others, marginal.length > 0 ? "other " : ""),
+    ...sliverFindings(run),
   ];
+}
+
+/** Joints that cutting may have locked. */
+function sliverFindings(run: Run): Finding[] {
+  const c = run.header.model.cutting;
+  const found: Finding[] = [];
+  if (c.merged_across_joints > 0)
+    found.push({
+      grade: "plain",
+      text: `${count(c.merged_slivers, "sliver")} merged, ${integer(c.merged_across_joints)} of them across a joint that runs through. Teeth of rock of up to ${length(c.highest_tooth_m, 2)} hold the joint there.`,
+    });
+  if (c.slivers_left > 0)
+    found.push({
+      grade: "plain",
+      text: `${count(c.slivers_left, "sliver")} left in the model, as the scenario asks. Their corners can hold the joints beside them.`,
+    });
+  return found;
 }
 
 /** Where a run stopped: "within “first earthquake”, after 14.04 of 20 s". */

@@ -81,6 +81,9 @@ class Wall {
     model.cutting.merged_vertices = 19;
     model.cutting.domain_area = width_ * height_;
     model.cutting.sliver_area = 0.0123;
+    model.cutting.merged_across_joints = 3;
+    model.cutting.highest_tooth = 0.012;
+    model.cutting.slivers_left = 1;
     if (options_.excavation) {
       model.opening_width = opening_.size().x;
       model.excavation_names = {"tunnel"};

@@ -76,6 +76,9 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
   EXPECT_TRUE(same(a.cutting.removed_length, b.cutting.removed_length));
   EXPECT_TRUE(same(a.cutting.domain_area, b.cutting.domain_area));
   EXPECT_TRUE(same(a.cutting.sliver_area, b.cutting.sliver_area));
+  EXPECT_EQ(a.cutting.merged_across_joints, b.cutting.merged_across_joints);
+  EXPECT_TRUE(same(a.cutting.highest_tooth, b.cutting.highest_tooth));
+  EXPECT_EQ(a.cutting.slivers_left, b.cutting.slivers_left);
 }
 
 void expect_equal(const simulation::Energy& a, const simulation::Energy& b) {
@@ -234,7 +237,7 @@ SampleRun::SampleRun() {
   model.slip_limit = 0.1 / 3.0;
   model.warnings = {"rock.density = 2.6 kg/m3", "a \"quoted\" one"};
   model.closure_is_lower_bound = true;
-  model.cutting = {10, 7, 12.3, 4.5, 6, 2, 8, 16.0, 1e-5};
+  model.cutting = {10, 7, 12.3, 4.5, 6, 2, 1, 0.02, 3, 8, 16.0, 1e-5};
   model.ground = {{"friction φ", "30°"}, {"set “J 2”", "dip 65°, \"spacing\" 0.5 m"}};
 }
 
