@@ -78,7 +78,7 @@ void run_scenario(RunArguments arguments) {
     std::cout << arguments.folder << ": this run has ended; there is nothing to go on with\n";
     job::restore_conclusions(arguments.folder);
     say_where_report_is(arguments);
-    if (const auto ended = results::ended_run(arguments.folder)) simulation::check_balance(*ended);
+    if (const auto ended = results::ended_run(arguments.folder)) simulation::check_computation(*ended);
     return;
   }
   for (const std::string& note : scenario::sliver_notes(scenario, setup.system))

@@ -49,7 +49,7 @@ class CoupledContacts {
     int most = -1;
     for (const contact::Contact& c : contacts) most = std::max(most, c.candidate);
     pairs_.assign(static_cast<std::size_t>(most + 1), -1);
-    coupling_.begin_step(contacts, pairs_, {});
+    coupling_.begin_step(contacts, pairs_, {}, {});
   }
   CoupledContacts(const CoupledContacts&) = delete;
   CoupledContacts& operator=(const CoupledContacts&) = delete;

@@ -20,6 +20,7 @@ SpringArray springs_of(const std::vector<SpringArray::Branch>& branches, const s
   SpringArray springs;
   springs.resize(branches.size());
   springs.branch = branches;
+  for (std::size_t c = 0; c < branches.size(); ++c) springs.kn[c] = 1.0;
   for (std::size_t c = 0; c < bounds.size(); ++c) springs.bound[c] = bounds[c];
   return springs;
 }

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "simulation/computation_errors.h"
-
 namespace keyblock::study {
 namespace {
 
