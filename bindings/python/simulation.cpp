@@ -39,6 +39,11 @@ class Stepped {
     const py::gil_scoped_release free;
     return simulation_.finish();
   }
+  void close() {
+    const Stepping now(*this);
+    const py::gil_scoped_release free;
+    simulation_.close();
+  }
   void stop() noexcept { simulation_.stop(); }
 
   [[nodiscard]] const Simulation& at_rest() const {
@@ -65,8 +70,9 @@ class Stepped {
 
  private:
   static Simulation begin(const Scenario& scenario, const RunOptions& options) {
+    const Scenario own = scenario;  // other threads of Python may change it meanwhile
     const py::gil_scoped_release free;
-    return Simulation(scenario, options);
+    return Simulation(own, options);
   }
 
   /// While it lives, this thread is in a step.
@@ -163,9 +169,11 @@ py::dict contact_table(const Stepped& stepped) {
   table["length"] = array_of(c.length);
   table["gap"] = array_of(c.gap);
   table["slip"] = array_of(c.slip);
+  table["shear_displacement"] = array_of(c.shear_displacement);
   table["normal_force"] = array_of(c.normal_force);
   table["shear_force"] = array_of(c.shear_force);
-  table["joint"] = py::cast(c.joint);
+  table["joint_code"] = array_of(c.joint);
+  table["joint_names"] = py::cast(c.joint_names);
   return table;
 }
 
@@ -205,6 +213,7 @@ void bind_simulation(py::module_& module) {
           },
           py::arg("steps") = 1, py::arg("after_step") = py::none(), py::arg("progress") = py::none())
       .def("finish", [](Stepped& s) { return s.finish(); })
+      .def("close", [](Stepped& s) { s.close(); })
       .def("stop", [](Stepped& s) { s.stop(); })
       .def_property_readonly("done", [](const Stepped& s) { return s.at_rest().done(); })
       .def_property_readonly("time", [](const Stepped& s) { return s.at_rest().time(); })

@@ -35,12 +35,16 @@ struct JointStrength {
 
 /// Contacts between blocks after a step, one element each in every list.
 struct Contacts {
-  std::vector<std::int32_t> block_a, block_b;     ///< the block with the vertex, and the block with the edge
-  std::vector<std::uint8_t> state;                ///< 0 open, 1 sliding, 2 locked
-  std::vector<double> position, normal;           ///< m; unit vector out of block_b; x and y in turn
-  std::vector<double> length, gap, slip;          ///< m; gap negative where the contact is pressed
+  std::vector<std::int32_t> block_a, block_b;  ///< the block with the vertex, and the block with the edge
+  std::vector<std::uint8_t> state;             ///< 0 open, 1 sliding, 2 locked
+  std::vector<double> position, normal;        ///< m; unit vector out of block_b; x and y in turn
+  std::vector<double> length, gap;             ///< m; gap negative where the contact is pressed
+  std::vector<double> slip;                    ///< m, since the excavation: the magnitude
+  std::vector<double>
+      shear_displacement;  ///< m, the same with its sign: of block_a along (-normal y, normal x)
   std::vector<double> normal_force, shear_force;  ///< N per metre thickness, compression positive
-  std::vector<std::string> joint;                 ///< as in Block::edges
+  std::vector<std::int32_t> joint;                ///< place in joint_names
+  std::vector<std::string> joint_names;           ///< as in Block::edges
 };
 
 /// How far a run is.
@@ -70,11 +74,16 @@ class KEYBLOCK_API Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// One step of the plan; false when there is nothing left to do. Throws RunError when the run cannot go on.
+  /// One step of the plan; false when there is nothing left to do. Throws RunError when the run cannot go on, and std::logic_error within
+  /// after_step() and on_progress(), and after close().
   bool advance();
   [[nodiscard]] bool done() const;
-  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same.
+  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same. The folder is let go:
+  /// other runs may use it. Not within after_step().
   std::string finish();
+  /// Lets the folder go without more ado: it then has what a killed run leaves, results up to the last flush and a checkpoint. The run can
+  /// still be looked at, but goes on no more. Not within after_step().
+  void close();
   /// The run ends within the step at hand. May be called from another thread and from a signal handler.
   void stop() noexcept;
   /// Is called after each step, before a checkpoint is written: here changes belong, or a resumed run misses them. Exceptions that it throws

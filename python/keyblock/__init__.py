@@ -13,7 +13,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from .errors import DamagedError, FormatError, KeyblockError, MissingPackageError, NoResultError, UnfinishedWarning
+from .errors import DamagedError, DataError, FormatError, KeyblockError, MissingPackageError, NoResultError, UnfinishedWarning
 
 if TYPE_CHECKING:
     from ._compiled import Diagnostic, InputError, RunError
@@ -62,6 +62,7 @@ __all__ = [
     "controller",
     "run_study",
     "DamagedError",
+    "DataError",
     "FormatError",
     "KeyblockError",
     "MissingPackageError",

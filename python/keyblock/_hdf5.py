@@ -28,16 +28,27 @@ def text_of(value: Any) -> str:
 def _open(h5py: Any, path: Path) -> Any:
     """A file that is complete is opened as any other. One that a run still writes, or was killed over, says that it is open for writing.
 
-    Then it is read as one that grows. A damaged file must not be: there HDF5 waits long for each checksum to come right. No lock is
-    taken, so that no run is in the way of a reader, nor a reader in that of a run.
+    Then it is read as one that grows. A damaged file must not be: there HDF5 waits long for each checksum to come right. Within a
+    process all that opens a file must say the same of locks: HDF5's own default, as h5py.File and the compiled module do. A run writes
+    into a file of its own and renames it, so that a lock of a reader is in nobody's way.
     """
     try:
-        return h5py.File(path, "r", locking=False)
+        return _open_locked(h5py, path)
     except OSError as error:
         # The second: this process has opened the file as one that grows, and it was completed since.
         if "open for write" not in str(error) and "SWMR" not in str(error):
             raise
-        return h5py.File(path, "r", swmr=True, locking=False)
+        return _open_locked(h5py, path, swmr=True)
+
+
+def _open_locked(h5py: Any, path: Path, **mode: Any) -> Any:
+    """Without locks where the file system has none."""
+    try:
+        return h5py.File(path, "r", **mode)
+    except OSError as error:
+        if "unable to lock file" not in str(error):
+            raise
+        return h5py.File(path, "r", locking=False, **mode)
 
 
 class ResultFile:

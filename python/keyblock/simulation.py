@@ -26,6 +26,7 @@ import numpy as np
 from ._compiled import core as _core
 from .progress import Progress as _Shown
 from .progress import words_of_run
+from .record import did_you_mean
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -86,18 +87,29 @@ class Contacts:
     normal: np.ndarray  #: (n, 2), unit vectors out of block_b
     length: np.ndarray
     gap: np.ndarray  #: negative where the contact is pressed
-    slip: np.ndarray
+    slip: np.ndarray  #: since the excavation: the magnitude
+    shear_displacement: np.ndarray  #: the same with its sign: of block_a along (−normal y, normal x)
     normal_force: np.ndarray  #: compression positive
     shear_force: np.ndarray
-    joint: np.ndarray  #: names of joint sets, trace maps and excavations; "domain"
+    joint_code: np.ndarray  #: place in `joint_names`
+    joint_names: list[str]  #: of joint sets, trace maps and excavations; "domain"; "" for edges of blocks of the scenario
+
+    @property
+    def joint(self) -> np.ndarray:
+        """What each contact's edge is a piece of, by name."""
+        return np.array(self.joint_names, dtype=object)[self.joint_code]
 
     def __len__(self) -> int:
         return len(self.block_a)
 
     def of(self, joint: str) -> Contacts:
         """Those of one joint set, trace map or excavation."""
-        chosen = self.joint == joint
-        return Contacts(**{field.name: getattr(self, field.name)[chosen] for field in fields(self)})
+        if joint not in self.joint_names:
+            raise KeyError(f"no joint set {joint!r}{did_you_mean(joint, [name for name in self.joint_names if name])}")
+        codes = [code for code, name in enumerate(self.joint_names) if name == joint]
+        chosen = np.isin(self.joint_code, codes)
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Contacts(**{name: column if name == "joint_names" else column[chosen] for name, column in columns.items()})
 
 
 class JointStrength:
@@ -188,17 +200,18 @@ class Simulation:
             try:
                 self._core.advance(sys.maxsize, self._after_step if self._controllers else None, shown.call)
             except BaseException:
-                self.stop()
-                try:
-                    self.finish()
-                except Exception:  # the first failure is the one to be told about
-                    pass
+                self._end_after_failure()
                 raise
         return self.finish()
 
     def finish(self) -> dict[str, Any]:
-        """Ends the run where it is and writes what remains. Returns what summary.json has."""
+        """Ends the run where it is, writes what remains, and lets the folder go. Returns what summary.json has."""
         return json.loads(self._core.finish())
+
+    def close(self) -> None:
+        """Lets the folder go as it is: without finish(), it has what a killed run leaves, results and a checkpoint. The run can still be
+        looked at, but goes on no more."""
+        self._core.close()
 
     def stop(self) -> None:
         """The run ends within the step at hand. From any thread."""
@@ -208,8 +221,20 @@ class Simulation:
         return self
 
     def __exit__(self, *error: object) -> None:
-        if not any(error):
+        if any(error):
+            self._end_after_failure()
+        else:
             self.finish()
+
+    def _end_after_failure(self) -> None:
+        """In good order as far as that goes; the first failure is the one to be told about."""
+        try:
+            self.stop()
+            self.finish()
+        except Exception:
+            pass
+        finally:
+            self.close()
 
     def _after_step(self) -> None:
         step = self._core.step
@@ -303,9 +328,7 @@ class Simulation:
     @property
     def contacts(self) -> Contacts:
         """After the last step; none before the first one."""
-        table = self._core.contacts
-        table["joint"] = np.array(table["joint"], dtype=object)
-        return Contacts(**table)
+        return Contacts(**self._core.contacts)
 
     @property
     def energy(self) -> dict[str, float]:

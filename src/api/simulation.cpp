@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "api/edge_names.h"
@@ -70,6 +71,23 @@ struct Simulation::Parts {
     }
   }
 
+  /// While it lives, a step is taken: what would begin another one is refused.
+  class Stepping {
+   public:
+    explicit Stepping(Parts& of) : of_(of) {
+      if (of_.stepping) throw std::logic_error("the simulation is within a step");
+      of_.stepping = true;
+    }
+    ~Stepping() { of_.stepping = false; }
+    Stepping(const Stepping&) = delete;
+    Stepping& operator=(const Stepping&) = delete;
+
+   private:
+    Parts& of_;
+  };
+
+  bool stepping = false;
+  bool closed = false;  ///< it goes on no more
   scenario::Scenario scenario;
   std::vector<std::string> warnings;
   simulation::RunSetup setup;
@@ -121,7 +139,9 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 bool Simulation::advance() {
+  const Parts::Stepping now(*parts_);
   if (parts_->runner().done()) return false;
+  if (parts_->closed) throw std::logic_error("the simulation was closed");
   if (parts_->recorded) {
     parts_->recorded->advance();
   } else {
@@ -137,9 +157,18 @@ bool Simulation::done() const {
 
 std::string Simulation::finish() {
   if (!parts_->summary.empty()) return parts_->summary;
+  const Parts::Stepping now(*parts_);
+  if (parts_->closed) throw std::logic_error("the simulation was closed");
+  parts_->closed = true;
   const simulation::RunRecord record =
       parts_->recorded ? parts_->recorded->finish() : parts_->alone->finish();
   return parts_->summary = results::summary_json(parts_->listener.model, record);
+}
+
+void Simulation::close() {
+  const Parts::Stepping now(*parts_);
+  parts_->closed = true;
+  if (parts_->recorded) parts_->recorded->close();
 }
 
 void Simulation::stop() noexcept {
@@ -239,6 +268,7 @@ Contacts Simulation::contacts() const {
   const simulation::ContactFrame frame = parts_->runner().contacts();
   const simulation::ModelRecord& model = parts_->listener.model;
   const api::EdgeNames names{model.joint_set_names, model.trace_map_names, model.excavation_names};
+  contacts.joint_names = names.all();
   for (const simulation::ContactRecord& c : frame.contacts) {
     contacts.block_a.push_back(c.block_a);
     contacts.block_b.push_back(c.block_b);
@@ -247,10 +277,11 @@ Contacts Simulation::contacts() const {
     contacts.normal.insert(contacts.normal.end(), {c.normal.x, c.normal.y});
     contacts.length.push_back(c.length);
     contacts.gap.push_back(c.gap);
-    contacts.slip.push_back(c.slip);
+    contacts.slip.push_back(c.slip());
+    contacts.shear_displacement.push_back(c.shear_displacement);
     contacts.normal_force.push_back(c.normal_force);
     contacts.shear_force.push_back(c.shear_force);
-    contacts.joint.push_back(names.of(c.label));
+    contacts.joint.push_back(names.code_of(c.label));
   }
   return contacts;
 }

@@ -204,7 +204,7 @@ void refuse_checkpoint(const std::filesystem::path& directory, std::string found
   diagnostic.where.file = checkpoint_path(directory).string();
   diagnostic.found = std::move(found);
   diagnostic.expected = std::move(expected);
-  diagnostic.hint = "run without --resume to begin anew";
+  diagnostic.hint = "to begin anew, run into another folder";
   throw InputError(std::move(diagnostic));
 }
 

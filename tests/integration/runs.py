@@ -266,7 +266,7 @@ class OtherFiles(Scenario):
     def test_results_that_are_gone_are_not_resumed(self):
         self.keyblock("run", "incline.toml", "-o", "out")
         (self.folder / "out/result.h5").unlink()
-        self.assertIn("run without --resume to begin anew", self.refused("out", "--resume"))
+        self.assertIn("to begin anew, run into another folder", self.refused("out", "--resume"))
         self.keyblock("run", "incline.toml", "-o", "out")
 
 
