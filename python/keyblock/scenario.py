@@ -302,26 +302,38 @@ class Scenario(_Keys):
         """The blocks of one of the rock masses that the joint statistics and the seed stand for."""
         return CutBlocks(self._core.cut(realization))
 
-    def simulate(self, folder: str | os.PathLike[str] | None = None, **options: Any) -> Simulation:
+    def simulate(
+        self,
+        folder: str | os.PathLike[str] | None = None,
+        *,
+        realization: int = 0,
+        threads: int = 1,
+        resume: bool = False,
+        replace: bool = False,
+        controllers: Sequence[Controller | Callable[[Simulation], Any]] = (),
+    ) -> Simulation:
         """A run to be taken step by step; the options are those of Simulation."""
         from .simulation import Simulation
 
-        return Simulation(self, folder, **options)
+        return Simulation(self, folder, realization=realization, threads=threads, resume=resume, replace=replace, controllers=controllers)
 
     def run(
         self,
         folder: str | os.PathLike[str] | None = None,
         *,
+        realization: int = 0,
+        threads: int = 1,
+        resume: bool = False,
+        replace: bool = False,
         controllers: Sequence[Controller | Callable[[Simulation], Any]] = (),
         progress: Any = None,
-        **options: Any,
     ) -> dict[str, Any]:
         """All stages, as `keyblock run` does. Returns what summary.json has. `controllers` are called after steps, see
         keyblock.controller; `progress` is a function of a Progress; True for a bar in a notebook and a line elsewhere; "notebook" or "line"
         for one of them. Ctrl-C ends the run in good order: what was computed is kept, and `resume=True` goes on."""
-        from .simulation import Simulation
-
-        simulation = Simulation(self, folder, controllers=controllers, **options)
+        simulation = self.simulate(
+            folder, realization=realization, threads=threads, resume=resume, replace=replace, controllers=controllers
+        )
         return simulation.run(progress=progress)
 
 

@@ -313,11 +313,26 @@ std::string Scenario::toml() const {
   return scenario::toml_text(document_->value);
 }
 
+namespace {
+
+void check_realization(int realization) {
+  if (realization >= 0) return;
+  Diagnostic diagnostic;
+  diagnostic.key = "realization";
+  diagnostic.found = std::to_string(realization);
+  diagnostic.expected = "a whole number, at least 0";
+  throw InputError(std::move(diagnostic));
+}
+
+}  // namespace
+
 std::vector<std::string> Scenario::check(int realization) const {
+  check_realization(realization);
   return job::check(api::parsed(*this), realization).warnings;
 }
 
 std::vector<Block> Scenario::cut(int realization) const {
+  check_realization(realization);
   const scenario::Scenario parsed = api::parsed(*this);
   const scenario::BlockModel model = scenario::build_blocks(parsed, realization);
   const api::EdgeNames names = names_of(parsed);

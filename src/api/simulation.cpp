@@ -7,8 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/edge_names.h"
+#include "api/contact_columns.h"
 #include "api/scenario_source.h"
+#include "api/steered.h"
 #include "core/error.h"
 #include "core/out_of_memory.h"
 #include "job/recorded_run.h"
@@ -16,6 +17,7 @@
 #include "results/summary.h"
 #include "scenario/build.h"
 #include "simulation/checkpoint.h"
+#include "simulation/damage_fields.h"
 #include "simulation/feasibility.h"
 #include "simulation/refuse.h"
 
@@ -43,6 +45,7 @@ void check(const RunOptions& options) {
 }  // namespace
 
 struct Simulation::Parts {
+  Parts() = default;
   /// Passes progress on and keeps what summary.json is made of.
   class Listener final : public simulation::RunObserver {
    public:
@@ -58,7 +61,12 @@ struct Simulation::Parts {
 
   Parts(const Scenario& of, const RunOptions& options);
 
-  [[nodiscard]] simulation::Runner& runner() { return recorded ? recorded->runner() : *alone; }
+  [[nodiscard]] simulation::Runner& runner() {
+    if (recorded) return recorded->runner();
+    if (alone) return *alone;
+    if (borrowed == nullptr) throw std::logic_error("the run has ended");
+    return *borrowed;
+  }
   simulation::RunOptions run_options(const RunOptions& options);
   /// An exception of a caller's function stops the run, which ends in good order; advance() throws it then.
   template <typename Call>
@@ -98,6 +106,7 @@ struct Simulation::Parts {
   std::exception_ptr failure;
   std::optional<job::RecordedRun> recorded;  ///< of a run with a folder
   std::optional<simulation::Runner> alone;   ///< of a run without one
+  simulation::Runner* borrowed = nullptr;    ///< of a run that somebody else steps
   std::string summary;                       ///< once it is finished
 };
 
@@ -134,9 +143,59 @@ Simulation::Parts::Parts(const Scenario& of, const RunOptions& options) : scenar
 
 Simulation::Simulation(const Scenario& scenario, const RunOptions& options)
     : parts_(std::make_unique<Parts>(scenario, options)) {}
+Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+namespace api {
+
+struct SimulationAccess {
+  static std::shared_ptr<Simulation> make(const simulation::ModelRecord& model) {
+    auto parts = std::make_unique<Simulation::Parts>();
+    parts->stepping = true;  // by somebody else, all the time
+    parts->listener.model = model;
+    parts->warnings = model.warnings;
+    return std::shared_ptr<Simulation>(new Simulation(std::move(parts)));
+  }
+  static void put(Simulation& simulation, simulation::Runner* runner) {
+    simulation.parts_->borrowed = runner;
+  }
+  static bool was_stopped(const Simulation& simulation) { return simulation.parts_->stop; }
+};
+
+namespace {
+
+class ModelKeeper final : public simulation::RunObserver {
+ public:
+  explicit ModelKeeper(simulation::ModelRecord& model) : model_(model) {}
+  void begin(const simulation::ModelRecord& model) override { model_ = model; }
+
+ private:
+  simulation::ModelRecord& model_;
+};
+
+}  // namespace
+
+Steered::~Steered() {
+  if (simulation_) SimulationAccess::put(*simulation_, nullptr);
+}
+
+std::unique_ptr<simulation::RunObserver> Steered::observer() {
+  return std::make_unique<ModelKeeper>(model_);
+}
+
+Simulation& Steered::of(simulation::Runner& runner) {
+  if (!simulation_) simulation_ = SimulationAccess::make(model_);
+  SimulationAccess::put(*simulation_, &runner);
+  return *simulation_;
+}
+
+bool Steered::was_stopped() const {
+  return simulation_ && SimulationAccess::was_stopped(*simulation_);
+}
+
+}  // namespace api
 
 bool Simulation::advance() {
   const Parts::Stepping now(*parts_);
@@ -199,7 +258,7 @@ int Simulation::stage() const {
 
 std::vector<std::string> Simulation::stages() const {
   std::vector<std::string> names;
-  for (const simulation::Stage& stage : parts_->setup.stages) names.push_back(stage.name);
+  for (const std::string& name : parts_->listener.model.stage_names) names.push_back(name);
   return names;
 }
 
@@ -262,28 +321,78 @@ std::vector<std::size_t> Simulation::first_coefficient() const {
   return first;
 }
 
-Contacts Simulation::contacts() const {
-  Contacts contacts;
-  if (parts_->runner().state().step == 0) return contacts;
-  const simulation::ContactFrame frame = parts_->runner().contacts();
+std::vector<BlockFacts> Simulation::block_facts() const {
   const simulation::ModelRecord& model = parts_->listener.model;
-  const api::EdgeNames names{model.joint_set_names, model.trace_map_names, model.excavation_names};
-  contacts.joint_names = names.all();
-  for (const simulation::ContactRecord& c : frame.contacts) {
-    contacts.block_a.push_back(c.block_a);
-    contacts.block_b.push_back(c.block_b);
-    contacts.state.push_back(static_cast<std::uint8_t>(c.state));
-    contacts.position.insert(contacts.position.end(), {c.position.x, c.position.y});
-    contacts.normal.insert(contacts.normal.end(), {c.normal.x, c.normal.y});
-    contacts.length.push_back(c.length);
-    contacts.gap.push_back(c.gap);
-    contacts.slip.push_back(c.slip());
-    contacts.shear_displacement.push_back(c.shear_displacement);
-    contacts.normal_force.push_back(c.normal_force);
-    contacts.shear_force.push_back(c.shear_force);
-    contacts.joint.push_back(names.code_of(c.label));
+  std::vector<BlockFacts> facts;
+  for (const simulation::ModelRecord::Block& block : model.blocks) {
+    BlockFacts& of = facts.emplace_back(
+        BlockFacts{block.name, {}, block.fixed, block.area, block.density, block.young, block.poisson});
+    for (const int e : block.excavations)
+      of.excavations.push_back(model.excavation_names.at(static_cast<std::size_t>(e)));
   }
-  return contacts;
+  return facts;
+}
+
+std::array<double, 2> Simulation::origin() const {
+  const Vec2 origin = parts_->listener.model.origin;
+  return {origin.x, origin.y};
+}
+
+std::vector<double> Simulation::stress() const {
+  const std::vector<double>& a = parts_->runner().state().position;
+  std::vector<double> stress;
+  for (const dynamics::Block& block : parts_->runner().model().blocks) {
+    const block::Stress s = block.fixed ? block::Stress{} : block.elasticity.mean_cauchy(&a[block.first]);
+    stress.insert(stress.end(), {s.xx, s.yy, s.xy});
+  }
+  return stress;
+}
+
+std::vector<std::uint8_t> Simulation::status() const {
+  std::vector<std::uint8_t> status;
+  for (const simulation::BlockStatus s : parts_->runner().status())
+    status.push_back(static_cast<std::uint8_t>(s));
+  return status;
+}
+
+std::vector<std::pair<std::string, double>> Simulation::damage() const {
+  std::vector<std::pair<std::string, double>> measures;
+  if (const auto damage = parts_->runner().damage()) {
+    for (const std::string& name : simulation::damage_names())
+      measures.emplace_back(name, simulation::damage_value(*damage, name));
+  }
+  return measures;
+}
+
+std::array<double, 2> Simulation::ground_acceleration() const {
+  const Vec2 a = parts_->runner().ground_acceleration();
+  return {a.x, a.y};
+}
+
+std::vector<SpringState> Simulation::springs() const {
+  std::vector<SpringState> springs;
+  for (const simulation::SpringNow& s : parts_->runner().control().springs())
+    springs.push_back({s.name,
+                       {s.from.x, s.from.y},
+                       {s.to.x, s.to.y},
+                       s.length,
+                       s.stiffness,
+                       s.force,
+                       s.yield,
+                       s.is_there});
+  return springs;
+}
+
+std::vector<AppliedForce> Simulation::forces() const {
+  std::vector<AppliedForce> forces;
+  for (const simulation::AppliedForce& f : parts_->runner().control().forces())
+    forces.push_back({static_cast<std::size_t>(f.block), f.slot, {f.force.x, f.force.y}});
+  return forces;
+}
+
+Contacts Simulation::contacts() const {
+  if (parts_->runner().state().step == 0) return {};
+  return api::contact_columns(parts_->runner().contacts(), parts_->listener.model);
 }
 
 std::vector<std::pair<std::string, double>> Simulation::energy() const {
@@ -319,6 +428,20 @@ void Simulation::set_strength(const std::string& joint, const JointStrength& str
 
 void Simulation::set_load_factor(std::size_t load, double factor) {
   parts_->runner().control().set_load_scale(load, factor);
+}
+
+void Simulation::set_force(std::size_t block, const std::array<double, 2>& force,
+                           const std::optional<std::array<double, 2>>& place, std::int64_t slot) {
+  const auto at = place ? std::optional(Vec2{(*place)[0], (*place)[1]}) : std::nullopt;
+  parts_->runner().control().set_force(block, slot, at, {force[0], force[1]});
+}
+
+void Simulation::set_spring_stiffness(std::size_t spring, double stiffness) {
+  parts_->runner().control().set_spring_stiffness(spring, stiffness);
+}
+
+void Simulation::set_spring_force(std::size_t spring, double force) {
+  parts_->runner().control().set_spring_force(spring, force);
 }
 
 void Simulation::set_motion_scale(double factor) {

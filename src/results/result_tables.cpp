@@ -157,10 +157,12 @@ ContactTable::ContactTable(hid_t file)
       stage_(group_, "stage", {}),
       step_(group_, "step", {}),
       end_(group_, "end", {}),
+      contact_(group_, "contact", {}),
       time_(group_, "time", {}) {}
 
 void ContactTable::append(const simulation::ContactFrame& frame) {
   for (const simulation::ContactRecord& c : frame.contacts) {
+    contact_.append(static_cast<std::int64_t>(contact_.rows()));
     block_a_.append(c.block_a);
     block_b_.append(c.block_b);
     state_.append(static_cast<std::uint8_t>(c.state));
@@ -188,7 +190,7 @@ void ContactTable::flush() {
   for (auto* column :
        {&position_, &normal_, &length_, &gap_, &slip_, &shear_displacement_, &normal_force_, &shear_force_})
     column->flush();
-  for (auto* column : {&step_, &end_}) column->flush();
+  for (auto* column : {&step_, &end_, &contact_}) column->flush();
   time_.flush();
 }
 

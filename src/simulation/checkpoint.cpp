@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0012;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0013;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -147,6 +147,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.control.strengths);
   archive(s.control.load_scale);
   archive(s.control.motion_scale);
+  archive(s.control.forces);
+  archive(s.control.spring_stiffness);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);
