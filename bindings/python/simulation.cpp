@@ -19,13 +19,14 @@ namespace py = pybind11;
 namespace keyblock::python {
 namespace {
 
+/// The numbers themselves, which the array owns from now on.
 template <typename Number>
-py::array_t<Number> array_of(const std::vector<Number>& values, std::size_t columns = 1) {
+py::array_t<Number> array_of(std::vector<Number> values, std::size_t columns = 1) {
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size() / columns)};
   if (columns > 1) shape.push_back(static_cast<py::ssize_t>(columns));
-  py::array_t<Number> array(shape);
-  std::copy(values.begin(), values.end(), array.mutable_data());
-  return array;
+  auto* owner = new std::vector<Number>(std::move(values));
+  const py::capsule keep(owner, [](void* p) { delete static_cast<std::vector<Number>*>(p); });
+  return py::array_t<Number>(shape, owner->data(), keep);
 }
 
 /// A Simulation that Python may call from any thread at any time: what does not fit the moment is refused. Every call holds the
@@ -185,20 +186,20 @@ py::dict by_name(const std::vector<std::pair<std::string, double>>& values) {
 }
 
 py::dict contact_table(const Stepped& stepped) {
-  const Contacts c = stepped.at_rest().contacts();
+  Contacts c = stepped.at_rest().contacts();
   py::dict table;
-  table["block_a"] = array_of(c.block_a);
-  table["block_b"] = array_of(c.block_b);
-  table["state"] = array_of(c.state);
-  table["position"] = array_of(c.position, 2);
-  table["normal"] = array_of(c.normal, 2);
-  table["length"] = array_of(c.length);
-  table["gap"] = array_of(c.gap);
-  table["slip"] = array_of(c.slip);
-  table["shear_displacement"] = array_of(c.shear_displacement);
-  table["normal_force"] = array_of(c.normal_force);
-  table["shear_force"] = array_of(c.shear_force);
-  table["joint_code"] = array_of(c.joint);
+  table["block_a"] = array_of(std::move(c.block_a));
+  table["block_b"] = array_of(std::move(c.block_b));
+  table["state"] = array_of(std::move(c.state));
+  table["position"] = array_of(std::move(c.position), 2);
+  table["normal"] = array_of(std::move(c.normal), 2);
+  table["length"] = array_of(std::move(c.length));
+  table["gap"] = array_of(std::move(c.gap));
+  table["slip"] = array_of(std::move(c.slip));
+  table["shear_displacement"] = array_of(std::move(c.shear_displacement));
+  table["normal_force"] = array_of(std::move(c.normal_force));
+  table["shear_force"] = array_of(std::move(c.shear_force));
+  table["joint_code"] = array_of(std::move(c.joint));
   table["joint_names"] = py::cast(c.joint_names);
   return table;
 }

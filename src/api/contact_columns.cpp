@@ -8,6 +8,13 @@ Contacts contact_columns(const simulation::ContactFrame& frame, const simulation
   Contacts contacts;
   const EdgeNames names{model.joint_set_names, model.trace_map_names, model.excavation_names};
   contacts.joint_names = names.all();
+  const std::size_t count = frame.contacts.size();
+  for (auto* column : {&contacts.block_a, &contacts.block_b, &contacts.joint}) column->reserve(count);
+  for (auto* column : {&contacts.position, &contacts.normal}) column->reserve(2 * count);
+  for (auto* column : {&contacts.length, &contacts.gap, &contacts.slip, &contacts.shear_displacement,
+                       &contacts.normal_force, &contacts.shear_force})
+    column->reserve(count);
+  contacts.state.reserve(count);
   for (const simulation::ContactRecord& c : frame.contacts) {
     contacts.block_a.push_back(c.block_a);
     contacts.block_b.push_back(c.block_b);
