@@ -47,31 +47,45 @@ KeyMeaning meaning_of(const KeyReference& key, std::size_t prefix) {
 
 }  // namespace
 
+namespace {
+
+/// The tables of a scenario, as keys of it.
+void add_tables(std::vector<KeyMeaning>& keys) {
+  for (const SectionReference& s : reference()) {
+    const std::size_t brackets = s.title.starts_with("[[") ? 2 : s.title.starts_with('[') ? 1 : 0;
+    if (brackets == 0) continue;
+    keys.push_back({s.title.substr(brackets, s.title.size() - 2 * brackets), s.meaning,
+                    brackets == 2 ? "list of tables" : "table", std::nullopt, "none"});
+  }
+}
+
+/// A key whose table has a section of its own, by the path of it with a point behind.
+const KeyReference* group_key(const SectionReference& of, const std::string& within) {
+  const auto found = std::find_if(of.keys.begin(), of.keys.end(), [&](const KeyReference& key) {
+    return key.key + "." == within && !key.value_type.group.empty();
+  });
+  return found == of.keys.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
 std::vector<KeyMeaning> known_keys(const std::string& table) {
-  std::vector<KeyMeaning> keys;
   const std::size_t dot = std::min(table.find('.'), table.size());
   const std::string first = table.substr(0, dot);
   std::string within = dot < table.size() ? table.substr(dot + 1) + "." : "";
   const SectionReference* of = section(first.empty() ? "" : "[" + first + "]");
   if (of == nullptr) of = section(list_title(first));
-  if (of == nullptr) return keys;
-  for (const KeyReference& key : of->keys) {
-    if (key.key + "." != within || key.value_type.group.empty()) continue;
-    of = section(key.value_type.group);
+  const KeyReference* group = of == nullptr ? nullptr : group_key(*of, within);
+  if (group != nullptr) {
+    of = section(group->value_type.group);
     within.clear();
-    break;
   }
+  std::vector<KeyMeaning> keys;
   if (of == nullptr) return keys;
   for (const KeyReference& key : of->keys) {
     if (key.key.starts_with(within)) keys.push_back(meaning_of(key, within.size()));
   }
-  if (!first.empty()) return keys;
-  for (const SectionReference& s : reference()) {
-    const std::size_t brackets = s.title.starts_with("[[") ? 2 : s.title.starts_with('[') ? 1 : 0;
-    if (brackets > 0)
-      keys.push_back({s.title.substr(brackets, s.title.size() - 2 * brackets), s.meaning,
-                      brackets == 2 ? "list of tables" : "table", std::nullopt, "none"});
-  }
+  if (first.empty()) add_tables(keys);
   return keys;
 }
 

@@ -86,38 +86,44 @@ std::size_t read_title(const MotionText& text, std::size_t size_at, MotionCompon
   return classical ? title_line : text.size();
 }
 
-// What stands behind the last comma of the title: `090`, `COMP 090`, `S16E`, `UP`, `L-N-S`, `H-E05140`, `A-HMC180`, `ELC-UP`.
-MotionDirection at2_direction(std::string_view label) {
+// Without signs and words such as `COMP`.
+std::string plain_label(std::string_view label) {
   std::string words = lower(label.substr(0, label.find('(')));
-  for (const char* sign : {"°", "=", ":", "_"}) {
+  for (const std::string_view sign : {"°", "=", ":", "_"}) {
     for (std::size_t at = words.find(sign); at != std::string::npos; at = words.find(sign, at))
-      words.replace(at, std::string_view(sign).size(), " ");
+      words.replace(at, sign.size(), " ");
   }
   words = squeeze(words);
-  for (const char* word : {"component", "comp.", "comp", "direction", "dir.", "dir", "azimuth", "az.", "az",
-                           "horizontal", "horiz.", "hor"}) {
-    if (words.starts_with(word))
-      words = squeeze(std::string_view(words).substr(std::string_view(word).size()));
-    if (words.ends_with(word))
-      words = squeeze(std::string_view(words).substr(0, words.size() - std::string_view(word).size()));
+  for (const std::string_view word : {"component", "comp.", "comp", "direction", "dir.", "dir", "azimuth",
+                                      "az.", "az", "horizontal", "horiz.", "hor"}) {
+    if (words.starts_with(word)) words = squeeze(std::string_view(words).substr(word.size()));
+    if (words.ends_with(word)) words = squeeze(std::string_view(words).substr(0, words.size() - word.size()));
   }
-  if (const auto whole = parse_direction(words); whole.stated()) return whole;
-  if (const auto code = channel_code_direction(words); code.stated()) return code;
-  // A code of the station and the direction.
-  for (const char* end : {"-up", " up", "-ud", "-dwn", "-down", "-ver", "-vert", "-ns", "-ew", "-n", "-e",
-                          "up", "dwn", "ver"}) {
-    if (words.ends_with(end))
-      return parse_direction(trim(std::string_view(words).substr(words.size() - std::string_view(end).size() +
-                                                                 (end[0] == '-' ? 1 : 0))));
+  return words;
+}
+
+// Of a code of the station and the direction.
+MotionDirection direction_at_end(std::string_view words) {
+  for (const std::string_view end : {"-up", " up", "-ud", "-dwn", "-down", "-ver", "-vert", "-ns", "-ew",
+                                     "-n", "-e", "up", "dwn", "ver"}) {
+    if (words.ends_with(end)) return parse_direction(trim(end.starts_with('-') ? end.substr(1) : end));
   }
   constexpr std::size_t digits = 3;
   if (words.size() <= digits) return {};
-  const std::string_view last = std::string_view(words).substr(words.size() - digits);
+  const std::string_view last = words.substr(words.size() - digits);
   const char before = words[words.size() - digits - 1];
-  const bool letters =
-      (before >= 'a' && before <= 'z') || before == '-' || before == ' ' || (before >= '0' && before <= '9');
-  const bool number = last.find_first_not_of("0123456789") == std::string_view::npos;
-  return letters && number ? parse_direction(last) : MotionDirection{};
+  const bool in_code =
+      std::string_view("- 0123456789abcdefghijklmnopqrstuvwxyz").find(before) != std::string_view::npos;
+  const bool is_number = last.find_first_not_of("0123456789") == std::string_view::npos;
+  return in_code && is_number ? parse_direction(last) : MotionDirection{};
+}
+
+// What stands behind the last comma of the title: `090`, `COMP 090`, `S16E`, `UP`, `L-N-S`, `H-E05140`, `A-HMC180`, `ELC-UP`.
+MotionDirection at2_direction(std::string_view label) {
+  const std::string words = plain_label(label);
+  if (const auto whole = parse_direction(words); whole.stated()) return whole;
+  if (const auto code = channel_code_direction(words); code.stated()) return code;
+  return direction_at_end(words);
 }
 
 bool matches_at2(const MotionText& text) {

@@ -173,28 +173,32 @@ void check_unnamed(const MotionText& text, const TextTable& table) {
             "times in the first column only", "other tables are read with skip, column, dt and unit");
 }
 
+// Adds numbers in turn of times, which ascend, and accelerations; false where they are none.
+bool append_pairs(const std::vector<std::string_view>& fields, std::vector<double>& pairs) {
+  for (const std::string_view field : fields) {
+    const auto number = parse_number(field);
+    const bool is_time = pairs.size() % 2 == 0, is_first = pairs.size() < 2;
+    if (!number || (is_time && !is_first && !(*number > pairs[pairs.size() - 2]))) return false;
+    pairs.push_back(*number);
+  }
+  return true;
+}
+
 // Several pairs of time and acceleration in a line, the last one perhaps with fewer: the times ascend from pair to pair. Of other tables the
 // third column holds accelerations, which do not lie between the times around them.
 std::optional<std::vector<double>> pairs_of(const MotionText& text, std::size_t rows,
                                             std::vector<std::size_t>& lines) {
-  constexpr std::size_t least_pairs = 8;
+  constexpr std::size_t least_pairs = 8, least_columns = 4;
   std::vector<double> pairs;
-  std::size_t columns = 0;
-  bool shorter = false;
+  std::size_t columns = 0, last = 0;  // of the first row; of the last one
   for (std::size_t k = rows; k < text.size(); ++k) {
     if (is_comment(text.line(k))) continue;
     const auto separator = row_separator(text.line(k));
-    if (!separator || shorter) return {};
+    if (!separator || last < columns) return {};
     const auto fields = split_fields(text.line(k), *separator);
-    if (columns == 0) columns = fields.size();
-    shorter = fields.size() < columns;
-    if (columns < 4 || fields.size() % 2 != 0 || fields.size() > columns) return {};
-    for (const std::string_view field : fields) {
-      const auto number = parse_number(field);
-      if (!number) return {};
-      pairs.push_back(*number);
-      if (pairs.size() % 2 == 1 && pairs.size() > 1 && !(*number > pairs[pairs.size() - 3])) return {};
-    }
+    last = fields.size();
+    if (columns == 0) columns = last;
+    if (columns < least_columns || last % 2 != 0 || last > columns || !append_pairs(fields, pairs)) return {};
     lines.resize(pairs.size() / 2, k);
   }
   if (pairs.size() < 2 * least_pairs) return {};

@@ -157,27 +157,37 @@ MotionDirection name_direction(std::string_view name) {
   return {};
 }
 
+bool is_digit(const std::string& words, std::size_t k) {
+  return k < words.size() && words[k] >= '0' && words[k] <= '9';
+}
+
+// Length of a sign of multiplication at place k: `*`, `×`, or an `x` that belongs to no word; 0: there is none.
+std::size_t multiplication_sign(const std::string& words, std::size_t k) {
+  if (words.compare(k, 2, "×") == 0) return 2;
+  const bool in_word = k > 0 && words[k - 1] >= 'a' && words[k - 1] <= 'z';
+  return words[k] == '*' || (words[k] == 'x' && !in_word) ? 1 : 0;
+}
+
+// Whether the sign of this length at place k has a number beside it that is no exponent.
+bool multiplies(const std::string& words, std::size_t k, std::size_t length) {
+  const std::size_t after = std::min(words.find_first_not_of("* ", k + length), words.size());
+  if (words[k] == 'x')  // `x10`, `x 0.01`; x1 is a name
+    return is_digit(words, after) &&
+           (words.compare(after, 2, "10") == 0 || words.find('.', after) < words.size());
+  std::size_t before = k;
+  while (before > 0 && (words[before - 1] == ' ' || words[before - 1] == '*')) --before;
+  const char last = before > 0 ? words[before - 1] : ' ';
+  const bool is_exponent = (last == 's' || last == 'c') && words[after] == '2' && !is_digit(words, after + 1);
+  const bool number_before = last >= '0' && last <= '9' && words[after] != 's';
+  return !is_exponent && (is_digit(words, after) || number_before);
+}
+
 // A number that multiplies the samples or their unit: `acc*10`, `m/s2 x 100`. The exponent of `s**2` is none.
 bool has_factor(std::string_view name) {
   const std::string words = lower(name);
-  const auto digit = [&](std::size_t k) { return k < words.size() && words[k] >= '0' && words[k] <= '9'; };
   for (std::size_t k = 0; k < words.size(); ++k) {
-    const bool cross = words.compare(k, 2, "×") == 0;
-    const bool alone = k == 0 || words[k - 1] < 'a' || words[k - 1] > 'z';
-    if (words[k] != '*' && !cross && !(words[k] == 'x' && alone)) continue;
-    std::size_t after = words.find_first_not_of("* ", k + (cross ? 2 : 1));
-    if (after == std::string::npos) after = words.size();
-    std::size_t before = k;
-    while (before > 0 && (words[before - 1] == ' ' || words[before - 1] == '*')) --before;
-    const bool second = before > 0 && (words[before - 1] == 's' || words[before - 1] == 'c');
-    const bool exponent = second && after < words.size() && words[after] == '2' && !digit(after + 1);
-    if (words[k] == 'x') {  // `x10`, `x 0.01`; x1 is a name
-      const bool power =
-          digit(after) && (words.compare(after, 2, "10") == 0 || words.find('.', after) < words.size());
-      if (power) return true;
-      continue;
-    }
-    if (!exponent && (digit(after) || (before > 0 && digit(before - 1) && words[after] != 's'))) return true;
+    const std::size_t length = multiplication_sign(words, k);
+    if (length > 0 && multiplies(words, k, length)) return true;
   }
   return false;
 }

@@ -106,58 +106,67 @@ std::string plain_name(std::string name) {
   return name;
 }
 
-/// Columns of the x and y of each vertex of a line, whatever else stands beside them: `x1 y1 x2 y2 …`, or those of two ends by one of the
-/// usual names; empty when there are no two vertices.
-std::vector<std::pair<std::size_t, std::size_t>> places_of_vertices(const std::vector<std::string>& names) {
-  std::vector<std::string> plain;
-  for (const std::string& name : names) plain.push_back(plain_name(name));
-  const auto pair_of = [&](const std::string& x, const std::string& y) {
-    const auto at_x = std::find(plain.begin(), plain.end(), x),
-               at_y = std::find(plain.begin(), plain.end(), y);
-    return at_x == plain.end() || at_y == plain.end()
-               ? std::nullopt
-               : std::optional(std::pair(static_cast<std::size_t>(at_x - plain.begin()),
-                                         static_cast<std::size_t>(at_y - plain.begin())));
-  };
-  std::vector<std::pair<std::size_t, std::size_t>> places;
+using VertexPlaces = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// Columns of these names, if there are both.
+std::optional<std::pair<std::size_t, std::size_t>> pair_of(const std::vector<std::string>& names,
+                                                           const std::string& x, const std::string& y) {
+  const auto at_x = std::find(names.begin(), names.end(), x), at_y = std::find(names.begin(), names.end(), y);
+  if (at_x == names.end() || at_y == names.end()) return {};
+  return std::pair(static_cast<std::size_t>(at_x - names.begin()),
+                   static_cast<std::size_t>(at_y - names.begin()));
+}
+
+/// `x1 y1 x2 y2 …`, counted from 1 or 0.
+VertexPlaces numbered_vertices(const std::vector<std::string>& names) {
   for (const auto& [x, y] : {std::pair("x", "y"), std::pair("easting", "northing"), std::pair("e", "n")}) {
     for (const int first : {1, 0}) {
-      places.clear();
-      for (int k = first;; ++k) {
-        const auto vertex = pair_of(x + std::to_string(k), y + std::to_string(k));
-        if (!vertex) break;
+      VertexPlaces places;
+      for (int k = first; const auto vertex = pair_of(names, x + std::to_string(k), y + std::to_string(k));
+           ++k)
         places.push_back(*vertex);
-      }
       if (places.size() >= 2) return places;
     }
   }
+  return {};
+}
+
+/// `xstart ystart xend yend`, `START_X …` and the like.
+VertexPlaces named_ends(const std::vector<std::string>& names) {
   constexpr std::pair<const char*, const char*> ends[] = {
       {"start", "end"},  {"from", "to"}, {"begin", "end"}, {"beg", "end"},
       {"first", "last"}, {"ini", "fin"}, {"i", "f"},       {"s", "e"},
       {"a", "b"},        {"p1", "p2"},   {"pt1", "pt2"},   {"start", "stop"}};
   for (const auto& [from, to] : ends) {
-    for (const bool axis_first : {true, false}) {
-      const auto named = [&](const char* end) {
-        const std::string of = end;
-        return axis_first ? pair_of("x" + of, "y" + of) : pair_of(of + "x", of + "y");
-      };
-      const auto one = named(from), other = named(to);
-      if (one && other) return {*one, *other};
-    }
+    const std::string a = from, b = to;
+    const auto x_first = pair_of(names, "x" + a, "y" + a), x_last = pair_of(names, "x" + b, "y" + b);
+    if (x_first && x_last) return {*x_first, *x_last};
+    const auto first = pair_of(names, a + "x", a + "y"), last = pair_of(names, b + "x", b + "y");
+    if (first && last) return {*first, *last};
   }
-  // `id x y x y`
-  const auto count = [&](const char* name) { return std::count(plain.begin(), plain.end(), name); };
-  places.clear();
-  if (count("x") >= 2 && count("x") == count("y")) {
-    for (std::size_t k = 0; k < plain.size(); ++k) {
-      if (plain[k] == "x") places.emplace_back(k, k);
-    }
-    std::size_t vertex = 0;
-    for (std::size_t k = 0; k < plain.size(); ++k) {
-      if (plain[k] == "y") places[vertex++].second = k;
-    }
+  return {};
+}
+
+/// `id x y x y`
+VertexPlaces repeated_vertices(const std::vector<std::string>& names) {
+  std::vector<std::size_t> x, y;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == "x") x.push_back(k);
+    if (names[k] == "y") y.push_back(k);
   }
+  VertexPlaces places;
+  for (std::size_t k = 0; x.size() >= 2 && x.size() == y.size() && k < x.size(); ++k)
+    places.emplace_back(x[k], y[k]);
   return places;
+}
+
+/// Columns of the x and y of each vertex of a line, whatever else stands beside them; empty when there are no two vertices.
+VertexPlaces places_of_vertices(const std::vector<std::string>& names) {
+  std::vector<std::string> plain;
+  for (const std::string& name : names) plain.push_back(plain_name(name));
+  VertexPlaces places = numbered_vertices(plain);
+  if (places.empty()) places = named_ends(plain);
+  return places.empty() ? repeated_vertices(plain) : places;
 }
 
 bool are_points(std::vector<Cell> cells, char separator) {
