@@ -9,6 +9,8 @@ import os
 import signal
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -111,18 +113,24 @@ def test_a_worker_that_is_killed_is_one_failed_run(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     study = incline()
     study.study.vary[0].values = [20.0, 25.0, 26.0]
-
-    def kill_the_first(ended: int, runs: int) -> None:
-        mine = [int(p) for p in os.listdir("/proc") if p.isdigit() and _is_worker(int(p), str(folder))]
-        if mine and not killed:
-            killed.append(mine[0])
-            os.kill(mine[0], signal.SIGKILL)
-
-    killed: list[int] = []
     study.stage[0].duration = 3.0  # long enough to be met
-    study.time.step = 1e-3
+    study.time.step = 1e-4
+    killed: list[int] = []
+
+    def kill_the_first() -> None:
+        end = time.monotonic() + 60.0
+        while not killed and time.monotonic() < end:
+            mine = [int(p) for p in os.listdir("/proc") if p.isdigit() and _is_worker(int(p), str(folder))]
+            if mine:
+                os.kill(mine[0], signal.SIGKILL)
+                killed.append(mine[0])
+            time.sleep(0.005)
+
+    killer = threading.Thread(target=kill_the_first)
+    killer.start()
     with pytest.raises(kb.RunError, match="1 run has failed"):
-        kb.run_study(study, folder, workers=1, progress=kill_the_first)
+        kb.run_study(study, folder, workers=1)
+    killer.join()
     state = kb.study_state(folder)
     assert killed and len(state.failures) == 1 and "SIGKILL" in state.failures[0] and state.missing == []
     assert len(list(folder.glob("runs/*/run.json"))) == 2
