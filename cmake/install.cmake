@@ -40,6 +40,7 @@ install(DIRECTORY include/keyblock DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPO
 install(EXPORT keyblockTargets NAMESPACE keyblock:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/keyblock COMPONENT library)
 file(WRITE ${PROJECT_BINARY_DIR}/keyblockConfig.cmake "include(\"\${CMAKE_CURRENT_LIST_DIR}/keyblockTargets.cmake\")\n")
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/keyblockConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+file(RELATIVE_PATH KEYBLOCK_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/keyblock.pc.in ${PROJECT_BINARY_DIR}/keyblock.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/keyblockConfig.cmake ${PROJECT_BINARY_DIR}/keyblockConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/keyblock COMPONENT library)

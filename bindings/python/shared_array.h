@@ -47,8 +47,8 @@ class SharedArray {
            !std::equal(now.begin(), now.end(), memory_->begin());
   }
   [[nodiscard]] std::span<const Number> values() const { return *memory_; }
-  /// The values that Python has put there were refused.
-  void forget() { memory_.reset(), is_current_ = false; }
+  /// The values that Python has put there were refused: arrays have those of the simulation again.
+  void put(std::span<const Number> now) { std::copy(now.begin(), now.end(), memory_->begin()); }
 
  private:
   std::shared_ptr<std::vector<Number>> memory_;

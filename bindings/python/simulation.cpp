@@ -4,12 +4,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "bindings.h"
+#include "keyblock/study.h"
 #include "shared_array.h"
 
 namespace py = pybind11;
@@ -17,62 +19,82 @@ namespace py = pybind11;
 namespace keyblock::python {
 namespace {
 
+/// The numbers themselves, which the array owns from now on.
 template <typename Number>
-py::array_t<Number> array_of(const std::vector<Number>& values, std::size_t columns = 1) {
+py::array_t<Number> array_of(std::vector<Number> values, std::size_t columns = 1) {
   std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size() / columns)};
   if (columns > 1) shape.push_back(static_cast<py::ssize_t>(columns));
-  py::array_t<Number> array(shape);
-  std::copy(values.begin(), values.end(), array.mutable_data());
-  return array;
+  auto* owner = new std::vector<Number>(std::move(values));
+  const py::capsule keep(owner, [](void* p) { delete static_cast<std::vector<Number>*>(p); });
+  return py::array_t<Number>(shape, owner->data(), keep);
 }
 
 /// A Simulation that Python may call from any thread at any time: what does not fit the moment is refused. Every call holds the
 /// interpreter's lock; a step gives it back meanwhile.
 class Stepped {
  public:
-  Stepped(const Scenario& scenario, const RunOptions& options) : simulation_(begin(scenario, options)) {}
+  Stepped(const Scenario& scenario, const RunOptions& options)
+      : own_(begin(scenario, options)), simulation_(&*own_) {}
+  /// Of a run that a study takes step by step.
+  explicit Stepped(Simulation& of) : simulation_(&of) {}
 
   /// Steps that were taken: fewer than asked for when the run has come to its end.
   long advance(long steps, const py::object& after_step, const py::object& progress);
   std::string finish() {
     const Stepping now(*this);
     const py::gil_scoped_release free;
-    return simulation_.finish();
+    return simulation_->finish();
   }
-  void stop() noexcept { simulation_.stop(); }
+  void close() {
+    const Stepping now(*this);
+    const py::gil_scoped_release free;
+    simulation_->close();
+  }
+  void stop() noexcept {
+    if (simulation_ != nullptr) simulation_->stop();
+  }
 
   [[nodiscard]] const Simulation& at_rest() const {
     check_access();
-    return simulation_;
+    return *simulation_;
   }
   Simulation& at_rest() {
     check_access();
-    return simulation_;
+    return *simulation_;
   }
+  /// Calls a function of Python within a step that somebody else has taken.
+  void steer(const py::object& function) {
+    const Stepping now(*this);
+    call(function);
+  }
+  /// The run has ended: nothing can be asked of it any more.
+  void release() { simulation_ = nullptr; }
   py::array_t<double> velocity() {
     check_access();
-    return velocity_.array(simulation_.velocity(), 1, true);
+    return velocity_.array(simulation_->velocity(), 1, true);
   }
   py::array_t<double> vertices() {
     check_access();
-    return vertices_.array(simulation_.vertices(), 2, false);
+    return vertices_.array(simulation_->vertices(), 2, false);
   }
   void set_velocity(const py::array_t<double, py::array::c_style | py::array::forcecast>& values) {
     check_access();
-    simulation_.set_velocity({values.data(), static_cast<std::size_t>(values.size())});
-    velocity_.refresh(simulation_.velocity());
+    simulation_->set_velocity({values.data(), static_cast<std::size_t>(values.size())});
+    velocity_.refresh(simulation_->velocity());
   }
 
  private:
   static Simulation begin(const Scenario& scenario, const RunOptions& options) {
+    const Scenario own = scenario;  // other threads of Python may change it meanwhile
     const py::gil_scoped_release free;
-    return Simulation(scenario, options);
+    return Simulation(own, options);
   }
 
   /// While it lives, this thread is in a step.
   class Stepping {
    public:
     explicit Stepping(Stepped& of) : of_(of) {
+      of_.check_there();
       if (of_.stepping_) throw std::runtime_error("the simulation is within a step");
       of_.stepping_ = std::this_thread::get_id();
     }
@@ -84,23 +106,27 @@ class Stepped {
     Stepped& of_;
   };
 
+  void check_there() const {
+    if (simulation_ == nullptr) throw std::runtime_error("the run has ended");
+  }
   void check_access() const {
+    check_there();
     if (stepping_ && !(in_callback_ && *stepping_ == std::this_thread::get_id()))
       throw std::runtime_error("the simulation is within a step of another thread");
   }
   /// Velocities that Python has written come into force.
   void take_over() {
-    if (!velocity_.differs(simulation_.velocity())) return;
+    if (!velocity_.differs(simulation_->velocity())) return;
     try {
-      simulation_.set_velocity(velocity_.values());
+      simulation_->set_velocity(velocity_.values());
     } catch (...) {
-      velocity_.forget();
+      velocity_.put(simulation_->velocity());
       throw;
     }
   }
   void refresh() {
-    velocity_.refresh(simulation_.velocity());
-    vertices_.refresh(simulation_.vertices());
+    velocity_.refresh(simulation_->velocity());
+    vertices_.refresh(simulation_->vertices());
   }
   void call(const py::object& function) {
     const py::gil_scoped_acquire lock;
@@ -116,7 +142,8 @@ class Stepped {
     in_callback_ = false;
   }
 
-  Simulation simulation_;
+  std::optional<Simulation> own_;
+  Simulation* simulation_;  ///< null: the run has ended
   std::optional<std::thread::id> stepping_;
   bool in_callback_ = false;
   SharedArray<double> velocity_, vertices_;
@@ -125,47 +152,55 @@ class Stepped {
 long Stepped::advance(long steps, const py::object& after_step, const py::object& progress) {
   const Stepping now(*this);
   take_over();
-  simulation_.after_step(after_step.is_none() ? std::function<void()>() : [&] { call(after_step); });
-  simulation_.on_progress(progress.is_none() ? std::function<void(const Progress&)>()
-                                             : [&](const Progress& at) {
-                                                 const py::gil_scoped_acquire lock;
-                                                 progress(py::cast(at));
-                                               });
-  const long first = simulation_.step();
+  simulation_->after_step(after_step.is_none() ? std::function<void()>() : [&] { call(after_step); });
+  simulation_->on_progress(progress.is_none() ? std::function<void(const Progress&)>()
+                                              : [&](const Progress& at) {
+                                                  const py::gil_scoped_acquire lock;
+                                                  progress(py::cast(at));
+                                                });
+  const long first = simulation_->step();
   try {
-    for (bool more = true; more && simulation_.step() - first < steps;) {
+    for (bool more = true; more && simulation_->step() - first < steps;) {
       {
         const py::gil_scoped_release free;
-        more = simulation_.advance();
+        more = simulation_->advance();
       }
       refresh();
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     }
   } catch (...) {
     refresh();
-    simulation_.after_step({});
-    simulation_.on_progress({});
+    simulation_->after_step({});
+    simulation_->on_progress({});
     throw;
   }
-  simulation_.after_step({});
-  simulation_.on_progress({});
-  return simulation_.step() - first;
+  simulation_->after_step({});
+  simulation_->on_progress({});
+  return simulation_->step() - first;
+}
+
+py::dict by_name(const std::vector<std::pair<std::string, double>>& values) {
+  py::dict named;
+  for (const auto& [name, value] : values) named[name.c_str()] = value;
+  return named;
 }
 
 py::dict contact_table(const Stepped& stepped) {
-  const Contacts c = stepped.at_rest().contacts();
+  Contacts c = stepped.at_rest().contacts();
   py::dict table;
-  table["block_a"] = array_of(c.block_a);
-  table["block_b"] = array_of(c.block_b);
-  table["state"] = array_of(c.state);
-  table["position"] = array_of(c.position, 2);
-  table["normal"] = array_of(c.normal, 2);
-  table["length"] = array_of(c.length);
-  table["gap"] = array_of(c.gap);
-  table["slip"] = array_of(c.slip);
-  table["normal_force"] = array_of(c.normal_force);
-  table["shear_force"] = array_of(c.shear_force);
-  table["joint"] = py::cast(c.joint);
+  table["block_a"] = array_of(std::move(c.block_a));
+  table["block_b"] = array_of(std::move(c.block_b));
+  table["state"] = array_of(std::move(c.state));
+  table["position"] = array_of(std::move(c.position), 2);
+  table["normal"] = array_of(std::move(c.normal), 2);
+  table["length"] = array_of(std::move(c.length));
+  table["gap"] = array_of(std::move(c.gap));
+  table["slip"] = array_of(std::move(c.slip));
+  table["shear_displacement"] = array_of(std::move(c.shear_displacement));
+  table["normal_force"] = array_of(std::move(c.normal_force));
+  table["shear_force"] = array_of(std::move(c.shear_force));
+  table["joint_code"] = array_of(std::move(c.joint));
+  table["joint_names"] = py::cast(c.joint_names);
   return table;
 }
 
@@ -183,16 +218,50 @@ void bind_values(py::module_& module) {
 
 }  // namespace
 
+namespace {
+
+/// One run of a study, with `steer` called after each step with the simulation of the run.
+void run_steered(const std::filesystem::path& folder, std::size_t run,
+                 const std::vector<std::pair<std::string, std::string>>& hooks, const py::object& steer) {
+  std::shared_ptr<Stepped> stepped;
+  py::object function;
+  const auto let_go = [&] {
+    if (stepped) stepped->release();
+    function = py::object();
+  };
+  try {
+    const py::gil_scoped_release free;
+    run_of_study(folder, run, hooks, [&](Simulation& simulation) {
+      const py::gil_scoped_acquire lock;
+      if (!stepped) {
+        stepped = std::make_shared<Stepped>(simulation);
+        function = steer(py::cast(stepped));
+      }
+      stepped->steer(function);
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    });
+  } catch (...) {
+    let_go();
+    throw;
+  }
+  let_go();
+}
+
+}  // namespace
+
 void bind_simulation(py::module_& module) {
   bind_values(module);
+  module.def("run_of_study_steered", &run_steered, py::arg("folder"), py::arg("run"), py::arg("hooks"),
+             py::arg("steer"));
   // Functions take references: a method by its address would take None for the object, and use it.
-  py::class_<Stepped> simulation(module, "Simulation", py::is_final(), "A run, step by step.");
+  py::class_<Stepped, std::shared_ptr<Stepped>> simulation(module, "Simulation", py::is_final(),
+                                                           "A run, step by step.");
   simulation
       .def_static(
           "begin",
           [](const Scenario& scenario, const std::filesystem::path& folder, int realization, int threads,
              bool resume, bool replace, std::vector<std::pair<std::string, std::string>> hooks) {
-            return std::make_unique<Stepped>(
+            return std::make_shared<Stepped>(
                 scenario, RunOptions{folder, realization, threads, resume, replace, std::move(hooks)});
           },
           py::arg("scenario"), py::kw_only(), py::arg("folder") = "", py::arg("realization") = 0,
@@ -205,6 +274,7 @@ void bind_simulation(py::module_& module) {
           },
           py::arg("steps") = 1, py::arg("after_step") = py::none(), py::arg("progress") = py::none())
       .def("finish", [](Stepped& s) { return s.finish(); })
+      .def("close", [](Stepped& s) { s.close(); })
       .def("stop", [](Stepped& s) { s.stop(); })
       .def_property_readonly("done", [](const Stepped& s) { return s.at_rest().done(); })
       .def_property_readonly("time", [](const Stepped& s) { return s.at_rest().time(); })
@@ -226,7 +296,11 @@ void bind_simulation(py::module_& module) {
                                return array_of(std::vector<int>(first.begin(), first.end()));
                              })
       .def_property_readonly("first_coefficient",
-                             [](const Stepped& s) { return array_of(s.at_rest().first_coefficient()); })
+                             [](const Stepped& s) {
+                               // Signed: with unsigned numbers, first_coefficient + 1 would be no integer in numpy.
+                               const auto first = s.at_rest().first_coefficient();
+                               return array_of(std::vector<std::int64_t>(first.begin(), first.end()));
+                             })
       .def_property_readonly("present",
                              [](const Stepped& s) {
                                const std::span<const std::uint8_t> there = s.at_rest().present();
@@ -237,13 +311,36 @@ void bind_simulation(py::module_& module) {
       .def_property_readonly("block_velocities",
                              [](const Stepped& s) { return array_of(s.at_rest().block_velocities(), 2); })
       .def_property_readonly("contacts", &contact_table)
-      .def_property_readonly("energy",
+      .def_property_readonly("block_facts",
                              [](const Stepped& s) {
-                               py::dict energy;
-                               for (const auto& [name, value] : s.at_rest().energy())
-                                 energy[name.c_str()] = value;
-                               return energy;
+                               py::list blocks;
+                               for (const BlockFacts& b : s.at_rest().block_facts())
+                                 blocks.append(py::make_tuple(b.name, b.excavations, b.fixed, b.area,
+                                                              b.density, b.young, b.poisson));
+                               return blocks;
                              })
+      .def_property_readonly("origin", [](const Stepped& s) { return s.at_rest().origin(); })
+      .def_property_readonly("stress", [](const Stepped& s) { return array_of(s.at_rest().stress(), 3); })
+      .def_property_readonly("status", [](const Stepped& s) { return array_of(s.at_rest().status()); })
+      .def_property_readonly("damage", [](const Stepped& s) { return by_name(s.at_rest().damage()); })
+      .def_property_readonly("ground_acceleration",
+                             [](const Stepped& s) { return s.at_rest().ground_acceleration(); })
+      .def_property_readonly("springs",
+                             [](const Stepped& s) {
+                               py::list springs;
+                               for (const SpringState& k : s.at_rest().springs())
+                                 springs.append(py::make_tuple(k.name, k.from, k.to, k.length, k.stiffness,
+                                                               k.force, k.yield, k.is_there));
+                               return springs;
+                             })
+      .def_property_readonly("forces",
+                             [](const Stepped& s) {
+                               py::list forces;
+                               for (const AppliedForce& f : s.at_rest().forces())
+                                 forces.append(py::make_tuple(f.block, f.slot, f.force));
+                               return forces;
+                             })
+      .def_property_readonly("energy", [](const Stepped& s) { return by_name(s.at_rest().energy()); })
       .def("strength",
            [](const Stepped& s, const std::string& joint) {
              const JointStrength strength = s.at_rest().strength(joint);
@@ -255,6 +352,16 @@ void bind_simulation(py::module_& module) {
            })
       .def("set_load_factor",
            [](Stepped& s, std::size_t load, double factor) { s.at_rest().set_load_factor(load, factor); })
+      .def(
+          "set_force",
+          [](Stepped& s, std::size_t block, std::array<double, 2> force,
+             std::optional<std::array<double, 2>> place,
+             std::int64_t slot) { s.at_rest().set_force(block, force, place, slot); },
+          py::arg("block"), py::arg("force"), py::arg("place"), py::arg("slot"))
+      .def("set_spring_stiffness", [](Stepped& s, std::size_t spring,
+                                      double value) { s.at_rest().set_spring_stiffness(spring, value); })
+      .def("set_spring_force",
+           [](Stepped& s, std::size_t spring, double value) { s.at_rest().set_spring_force(spring, value); })
       .def("set_motion_scale", [](Stepped& s, double factor) { s.at_rest().set_motion_scale(factor); });
   seal(simulation);
 }

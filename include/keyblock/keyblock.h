@@ -4,6 +4,8 @@
 #include "keyblock/scenario.h"
 #include "keyblock/simulation.h"
 #include "keyblock/study.h"
+#include "keyblock/value.h"
+#include "keyblock/verify.h"
 
 namespace keyblock {
 

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "keyblock/error.h"
 #include "keyblock/export.h"
+#include "keyblock/simulation.h"
 
 namespace keyblock {
 
@@ -18,6 +20,31 @@ struct Frame {
   std::vector<std::array<float, 2>> displacement;  ///< m, of every vertex of Results::vertices
   std::vector<std::array<float, 3>> stress;        ///< Pa, mean of every block: xx, yy, xy; tension positive
   std::vector<unsigned char> status;  ///< of every block: 0 in place, 1 loosened, 2 fallen, 3 excavated
+  std::vector<std::array<float, 2>> velocity;  ///< m/s, of the mass centre of every block; NaN: not known
+};
+
+/// All contacts at one moment; lengths, forces and names as in a Simulation, positions without the origin.
+struct ContactSnapshot {
+  double time = 0.0;  ///< s, simulated
+  int stage = 0;
+  long step = 0;  ///< of the run
+  Contacts contacts;
+};
+
+/// A chosen point ([[history]]): a value for each of Results::history_times.
+struct HistoryOfPoint {
+  std::string name;
+  std::vector<std::array<double, 2>> displacement;  ///< m, since the start
+  std::vector<std::array<double, 2>> velocity;      ///< m/s
+  std::vector<std::array<double, 3>> stress;        ///< Pa: xx, yy, xy; tension positive
+};
+
+/// A step of which a row was kept.
+struct StepEnergies {
+  double time = 0.0;  ///< s, simulated
+  long step = 0;      ///< of the run
+  std::vector<std::pair<std::string, double>>
+      energy;  ///< J per metre thickness, by name; residual_ratio without unit
 };
 
 /// What a run has left in its folder. Also of a run that goes on or was killed: what is there so far.
@@ -34,6 +61,16 @@ class KEYBLOCK_API Results {
   [[nodiscard]] std::size_t frames() const;
   /// Throws std::out_of_range.
   [[nodiscard]] Frame frame(std::size_t k) const;
+  [[nodiscard]] std::size_t contact_snapshots() const;
+  /// Throws std::out_of_range.
+  [[nodiscard]] ContactSnapshot contacts(std::size_t k) const;
+  [[nodiscard]] std::vector<double> history_times() const;  ///< s
+  [[nodiscard]] std::vector<HistoryOfPoint> histories() const;
+  [[nodiscard]] std::vector<StepEnergies> energies() const;
+  /// Writes them for other programs: "vtk", "csv" or "geojson", in the place of an earlier export; returns the files. `replace`: other
+  /// files that are in the way may go. Throws InputError and RunError.
+  std::vector<std::filesystem::path> export_to(const std::filesystem::path& folder, const std::string& format,
+                                               bool replace = false) const;
   /// m, of all points by which outlines are drawn, before anything moved, without the origin.
   [[nodiscard]] std::vector<std::array<double, 2>> vertices() const;
   /// Of each block, ring by ring: its first vertex, and the first one after it.

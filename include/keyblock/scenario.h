@@ -2,17 +2,37 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "keyblock/error.h"
 #include "keyblock/export.h"
+#include "keyblock/value.h"
 
 namespace keyblock {
 
+namespace api {
+struct ScenarioAccess;
+}
+
 namespace scenario {
 struct Override;
-}
+struct PathSegment;
+struct Value;
+}  // namespace scenario
+
+/// What docs/scenario.md says of a key.
+struct KeyMeaning {
+  std::string key;      ///< within its table: `young`, `spacing.mean`
+  std::string meaning;  ///< with its unit
+  std::string type;     ///< with range and words
+  /// What holds where the key is not given; empty where that is none, or is said in words, as in `standard_text`.
+  std::optional<Value> standard;
+  std::string standard_text;
+};
 
 /// A block as it is cut, before anything moves.
 struct Block {
@@ -32,6 +52,8 @@ class KEYBLOCK_API Scenario {
  public:
   /// An empty scenario, to be filled by set().
   Scenario();
+  /// An empty one, paths in which count from the folder of `file`.
+  static Scenario empty(std::filesystem::path file);
   /// Reads a file. Throws InputError when there is none, and when it is no TOML.
   static Scenario load(const std::filesystem::path& file);
   /// From text. `file` stands in messages; paths in the scenario count from its folder.
@@ -41,20 +63,48 @@ class KEYBLOCK_API Scenario {
   /// value as TOML has it. What is no TOML value is taken as a string. Tables on the way are made. Throws InputError for a path that is
   /// none, and for elements of lists that do not exist.
   void set(const std::string& key, const std::string& toml);
+  /// The same of a value at hand, in time and memory proportional to it.
+  void set(const std::string& key, const Value& value);
+  template <class Number, std::enable_if_t<std::is_arithmetic_v<Number>, int> = 0>
+  void set(const std::string& key, Number value) {
+    set(key, Value(value));
+  }
   /// Adds an element to a list, which is made where there is none. Throws InputError where something else stands there.
   void append(const std::string& key, const std::string& toml);
+  void append(const std::string& key, const Value& value);
+  /// Adds several.
+  void extend(const std::string& key, const Value::List& values);
+  /// Takes a key or an element of a list out. The text is then made of what is left. Throws InputError where there is nothing to take out.
+  void remove(const std::string& key);
   /// The value of a key path as JSON, or the whole scenario for an empty path; empty text when the scenario does not say it. Throws
   /// InputError for a path that is none.
   [[nodiscard]] std::string json(const std::string& key = "") const;
+  /// The same as a value, or none.
+  [[nodiscard]] std::optional<Value> value(const std::string& key = "") const;
+  [[nodiscard]] bool has(const std::string& key) const;
+  /// Keys of a table in their order; of a list the names of its elements, empty where they have none. Nothing for other values, and for
+  /// what the scenario does not say.
+  [[nodiscard]] std::optional<std::vector<std::string>> keys(const std::string& key = "") const;
+  [[nodiscard]] bool is_table(const std::string& key) const;
+  /// Whether a list of tables stands there; or could, as a [[list]] of the scenario that is empty.
+  [[nodiscard]] bool is_list_of_tables(const std::string& key) const;
+  /// The keys that the program knows of a table of the scenario: `rock`, or `joint_set` for elements of that list; empty for the keys outside all tables.
+  [[nodiscard]] static std::vector<KeyMeaning> known_keys(const std::string& table = "");
   /// The text that was read; of a scenario that began empty, what was set, as TOML.
   [[nodiscard]] std::string text() const;
-  /// Whether it began empty: its text is made of what was set.
-  [[nodiscard]] bool is_made() const { return is_made_; }
+  /// Whether its text is made of what was set, as it began empty, or something was taken out of it.
+  [[nodiscard]] bool is_made() const { return text_ == nullptr; }
   /// The whole scenario as TOML, with what was set in its place. Comments of the text are lost.
   [[nodiscard]] std::string toml() const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   /// `key=value` of what was set, in its order, without what was replaced later.
-  [[nodiscard]] const std::vector<std::string>& changes() const { return changes_; }
+  [[nodiscard]] std::vector<std::string> changes() const;
+
+  /// The same as keys and values.
+  [[nodiscard]] std::vector<std::pair<std::string, Value>> values_set() const;
+  /// Writes toml(). Relative paths of motions and trace maps are rewritten, as they count from the folder of the new file. Throws
+  /// InputError and RunError where it cannot be written.
+  void save(const std::filesystem::path& file) const;
 
   /// All that `keyblock check` looks at. Returns warnings. Throws one InputError with all mistakes, and RunError where a model cannot be
   /// built.
@@ -64,13 +114,15 @@ class KEYBLOCK_API Scenario {
 
  private:
   struct Document;
-  KEYBLOCK_HIDDEN void put(const scenario::Override& override_, std::string change);
+  friend struct api::ScenarioAccess;
+  KEYBLOCK_HIDDEN Document& own_document();
+  KEYBLOCK_HIDDEN void put(const scenario::Override& override_, const std::string& key);
+  KEYBLOCK_HIDDEN void add(const std::string& key, std::vector<scenario::Value> elements);
+  KEYBLOCK_HIDDEN void note_change(const std::vector<scenario::PathSegment>& path, const std::string& key);
 
-  std::shared_ptr<const Document> document_;
-  std::string text_;  ///< that was read
+  std::shared_ptr<Document> document_;
+  std::shared_ptr<const std::string> text_;  ///< that was read; null: it is made of the document
   std::filesystem::path file_ = "scenario.toml";
-  std::vector<std::string> changes_;
-  bool is_made_ = true;
 };
 
 }  // namespace keyblock

@@ -15,6 +15,10 @@
 
 namespace keyblock {
 
+namespace api {
+struct SimulationAccess;
+}
+
 struct RunOptions {
   /// Where results go: result.h5, summary.json, histories.csv, report.html, checkpoints. Empty: nothing is written.
   std::filesystem::path folder;
@@ -35,12 +39,44 @@ struct JointStrength {
 
 /// Contacts between blocks after a step, one element each in every list.
 struct Contacts {
-  std::vector<std::int32_t> block_a, block_b;     ///< the block with the vertex, and the block with the edge
-  std::vector<std::uint8_t> state;                ///< 0 open, 1 sliding, 2 locked
-  std::vector<double> position, normal;           ///< m; unit vector out of block_b; x and y in turn
-  std::vector<double> length, gap, slip;          ///< m; gap negative where the contact is pressed
+  std::vector<std::int32_t> block_a, block_b;  ///< the block with the vertex, and the block with the edge
+  std::vector<std::uint8_t> state;             ///< 0 open, 1 sliding, 2 locked
+  std::vector<double> position, normal;        ///< m; unit vector out of block_b; x and y in turn
+  std::vector<double> length, gap;             ///< m; gap negative where the contact is pressed
+  std::vector<double> slip;                    ///< m, since the excavation: the magnitude
+  std::vector<double>
+      shear_displacement;  ///< m, the same with its sign: of block_a along (-normal y, normal x)
   std::vector<double> normal_force, shear_force;  ///< N per metre thickness, compression positive
-  std::vector<std::string> joint;                 ///< as in Block::edges
+  std::vector<std::int32_t> joint;                ///< place in joint_names
+  std::vector<std::string> joint_names;           ///< as in Block::edges
+};
+
+/// What of a block stays the same in a run.
+struct BlockFacts {
+  std::string name;                      ///< of an explicit block; "frame"; empty for cut ones
+  std::vector<std::string> excavations;  ///< whose outlines hold the block
+  bool fixed = false;
+  double area = 0.0;                  ///< m², in reference position
+  double density = 0.0;               ///< kg/m³
+  double young = 0.0, poisson = 0.0;  ///< Pa; –
+};
+
+/// A force on a block that set_force() has put there.
+struct AppliedForce {
+  std::size_t block = 0;
+  std::int64_t slot = 0;
+  std::array<double, 2> force{};  ///< N per metre thickness
+};
+
+/// A [[spring]] as it is, in the order of the scenario.
+struct SpringState {
+  std::string name;
+  std::array<double, 2> from{}, to{};  ///< m, local coordinates
+  double length = 0.0;                 ///< m
+  double stiffness = 0.0;              ///< N/m per metre thickness
+  double force = 0.0;                  ///< N per metre thickness, tension positive
+  double yield = 0.0;                  ///< N per metre thickness; infinite: it never yields
+  bool is_there = false;               ///< installed, and both its blocks are there
 };
 
 /// How far a run is.
@@ -63,6 +99,8 @@ struct Progress {
 ///
 /// Not for several threads at once, except stop(). Spans hold until the next call that is not const.
 class KEYBLOCK_API Simulation {
+  struct Parts;
+
  public:
   /// Cuts the blocks and makes the model. Throws InputError, RunError.
   explicit Simulation(const Scenario& scenario, const RunOptions& options = {});
@@ -70,12 +108,17 @@ class KEYBLOCK_API Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// One step of the plan; false when there is nothing left to do. Throws RunError when the run cannot go on.
+  /// One step of the plan; false when there is nothing left to do. Throws RunError when the run cannot go on, and std::logic_error within
+  /// after_step() and on_progress(), and after close().
   bool advance();
   [[nodiscard]] bool done() const;
-  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same. The first throws a
-  /// RunError, once all is written, where the balance of energies of a whole run misses more than 5 % of its largest term.
+  /// Ends the run where it is and writes what remains; summary.json as text. Calls after the first give the same. The folder is let go:
+  /// other runs may use it. Not within after_step(). The first call throws a RunError, once all is written, where a whole run has errors of the
+  /// computation.
   std::string finish();
+  /// Lets the folder go without more ado: it then has what a killed run leaves, results up to the last flush and a checkpoint. The run can
+  /// still be looked at, but goes on no more. Not within after_step().
+  void close();
   /// The run ends within the step at hand. May be called from another thread and from a signal handler.
   void stop() noexcept;
   /// Is called after each step, before a checkpoint is written: here changes belong, or a resumed run misses them. Exceptions that it throws
@@ -92,6 +135,9 @@ class KEYBLOCK_API Simulation {
   [[nodiscard]] std::string state_hash() const;
 
   [[nodiscard]] std::size_t blocks() const;
+  [[nodiscard]] std::vector<BlockFacts> block_facts() const;
+  /// m: real coordinates of (0, 0) of local ones.
+  [[nodiscard]] std::array<double, 2> origin() const;
   /// m, x and y of all vertices of all blocks where they are now; block b has vertices first_vertex()[b] … first_vertex()[b + 1].
   [[nodiscard]] std::span<const double> vertices() const;
   [[nodiscard]] std::span<const int> first_vertex() const;
@@ -105,6 +151,16 @@ class KEYBLOCK_API Simulation {
   [[nodiscard]] std::vector<std::size_t> first_coefficient() const;
   /// None before the first step.
   [[nodiscard]] Contacts contacts() const;
+  /// Pa, mean of every block: xx, yy, xy in turn; tension positive.
+  [[nodiscard]] std::vector<double> stress() const;
+  /// Of every block: 0 in place, 1 loosened, 2 fallen, 3 excavated.
+  [[nodiscard]] std::vector<std::uint8_t> status() const;
+  /// Measures of damage so far, by their names in summary.json; none before the first excavation.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> damage() const;
+  /// m/s², of the ground now; zero outside of shaking stages.
+  [[nodiscard]] std::array<double, 2> ground_acceleration() const;
+  [[nodiscard]] std::vector<SpringState> springs() const;
+  [[nodiscard]] std::vector<AppliedForce> forces() const;
   /// J per metre thickness, by name: kinetic, strain, gravity, contact, friction, damping, input, numerical, radiated.
   [[nodiscard]] std::vector<std::pair<std::string, double>> energy() const;
 
@@ -115,11 +171,21 @@ class KEYBLOCK_API Simulation {
   void set_strength(const std::string& joint, const JointStrength& strength);
   /// Factor on the load of this number, in the order of the scenario, beside its own. Throws InputError for an unknown one.
   void set_load_factor(std::size_t load, double factor);
+  /// A force on a block, N per metre thickness, in the place of the one of this slot before; zero takes it away. `place`: where it acts, m, in
+  /// local coordinates, as the block lies now; none: its mass centre. It acts until it is changed, and goes with the block without turning; its
+  /// work is in the energy "input". Throws InputError for a block that is fixed, gone or unknown, and for a place outside of it.
+  void set_force(std::size_t block, const std::array<double, 2>& force,
+                 const std::optional<std::array<double, 2>>& place = {}, std::int64_t slot = 0);
+  /// N/m per metre thickness; the spring keeps its elongation. Throws InputError for an unknown spring.
+  void set_spring_stiffness(std::size_t spring, double stiffness);
+  /// N per metre thickness, tension positive: the spring is made as long as that takes. What both change of the stored energy is in "input".
+  void set_spring_force(std::size_t spring, double force);
   /// Factor on ground motions, beside that of the stage. Throws InputError where a seismic boundary has waves under way.
   void set_motion_scale(double factor);
 
  private:
-  struct Parts;
+  friend struct api::SimulationAccess;
+  KEYBLOCK_HIDDEN explicit Simulation(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;
 };
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from .errors import DamagedError, FormatError, KeyblockError, MissingPackageError, NoResultError, UnfinishedWarning
+from .errors import DamagedError, DataError, FormatError, KeyblockError, MissingPackageError, NoResultError, UnfinishedWarning
 
 if TYPE_CHECKING:
     from ._compiled import Diagnostic, InputError, RunError
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from .motion import Motion
     from .opening import open, open_limit, open_study
     from .results import Result
-    from .study_runs import run_study
+    from .study_runs import StudyState, collect_study, find_limit, plan_study, run_study, study_state, study_task, verify
+    from .run_table import run_table
     from .scenario import Scenario
     from .simulation import Controller, Simulation, controller
     from .study import Study
@@ -37,6 +38,14 @@ _LAZY = {
     "controller": "simulation",
     "Motion": "motion",
     "run_study": "study_runs",
+    "plan_study": "study_runs",
+    "study_task": "study_runs",
+    "study_state": "study_runs",
+    "collect_study": "study_runs",
+    "find_limit": "study_runs",
+    "verify": "study_runs",
+    "StudyState": "study_runs",
+    "run_table": "run_table",
     "TraceMap": "traces",
     "InputError": "_compiled",
     "RunError": "_compiled",
@@ -48,7 +57,7 @@ _LAZY = {
     "Study": "study",
     "Limit": "limit",
 }
-_MODULES = {"scenario", "simulation", "motion", "traces", "cut", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
+_MODULES = {"scenario", "simulation", "motion", "traces", "steering", "cut", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
 
 __all__ = [
     "Controller",
@@ -61,7 +70,16 @@ __all__ = [
     "TraceMap",
     "controller",
     "run_study",
+    "plan_study",
+    "study_task",
+    "study_state",
+    "collect_study",
+    "find_limit",
+    "verify",
+    "StudyState",
+    "run_table",
     "DamagedError",
+    "DataError",
     "FormatError",
     "KeyblockError",
     "MissingPackageError",
@@ -87,4 +105,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *_MODULES})
+    return sorted({*(name for name in globals() if name.startswith("__")), *__all__, *_MODULES})

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import platform
+import re
+import sys
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 
 def _flags() -> set[str]:
@@ -33,10 +38,28 @@ def _load() -> ModuleType:
             f"this keyblock was built for processors with {', '.join(_build.NEEDS)}, and this {platform.machine()} machine lacks "
             f"{', '.join(missing)}; build it here (./dev build)"
         )
-    from . import _core
-
+    try:
+        from . import _core
+    except ImportError as error:
+        raise ImportError(_why_not(error)) from None
     return _core
 
 
-core = _load()
+def _why_not(error: ImportError) -> str:
+    """In a sentence why there is no module beside `_build`."""
+    here = Path(__file__).parent
+    own = f"Python {sys.version_info.major}.{sys.version_info.minor}"
+    others = sorted({match["version"] for path in here.glob("_core*.so") if (match := re.search(r"cpython-(?P<version>\d+)-", path.name))})
+    if any(here.glob(f"_core{suffix}") for suffix in EXTENSION_SUFFIXES):
+        return f"the compiled part of keyblock cannot be loaded: {error}"
+    if others:
+        names = ", ".join(f"{version[0]}.{version[1:]}" for version in others)
+        return f"the compiled part of keyblock here is for Python {names}, and this is {own}: use that one, or build it for this one (./dev build with -DKEYBLOCK_PYTHON_PROGRAM={sys.executable})"
+    return "the compiled part of keyblock was not built: ./dev build, or ninja -C build/release keyblock_python, makes it; reading results needs none"
+
+
+if TYPE_CHECKING:
+    from . import _core as core
+else:
+    core = _load()
 Diagnostic, InputError, RunError = core.Diagnostic, core.InputError, core.RunError

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from . import _optional
+from . import _optional, record
 from .errors import DamagedError, FormatError, NoResultError
 
 FORMAT = "keyblock result"
@@ -28,16 +29,27 @@ def text_of(value: Any) -> str:
 def _open(h5py: Any, path: Path) -> Any:
     """A file that is complete is opened as any other. One that a run still writes, or was killed over, says that it is open for writing.
 
-    Then it is read as one that grows. A damaged file must not be: there HDF5 waits long for each checksum to come right. No lock is
-    taken, so that no run is in the way of a reader, nor a reader in that of a run.
+    Then it is read as one that grows. A damaged file must not be: there HDF5 waits long for each checksum to come right. Within a
+    process all that opens a file must say the same of locks: HDF5's own default, as h5py.File and the compiled module do. A run writes
+    into a file of its own and renames it, so that a lock of a reader is in nobody's way.
     """
     try:
-        return h5py.File(path, "r", locking=False)
+        return _open_locked(h5py, path)
     except OSError as error:
         # The second: this process has opened the file as one that grows, and it was completed since.
         if "open for write" not in str(error) and "SWMR" not in str(error):
             raise
-        return h5py.File(path, "r", swmr=True, locking=False)
+        return _open_locked(h5py, path, swmr=True)
+
+
+def _open_locked(h5py: Any, path: Path, **mode: Any) -> Any:
+    """Without locks where the file system has none."""
+    try:
+        return h5py.File(path, "r", **mode)
+    except OSError as error:
+        if "unable to lock file" not in str(error):
+            raise
+        return h5py.File(path, "r", locking=False, **mode)
 
 
 class ResultFile:
@@ -114,8 +126,23 @@ class ResultFile:
         except _BROKEN as error:
             raise DamagedError(f"{self.path} is damaged: {name} cannot be read ({error})") from None
 
+    # Texts of any length lie in a heap without a checksum, and a wrong byte there ends the interpreter. `texts` has all of them as bytes.
+    _IN_TEXTS = {"model/block_name": "block_names", "histories/names": "history_names", "steps/energy_names": "energy_names"}
+
+    @cached_property
+    def _texts(self) -> dict[str, Any]:
+        """Empty in files of earlier versions, whose texts have one length each."""
+        return record.parse(self.bytes_as_text("texts"), f"texts of {self.path}") if self.has("texts") else {}
+
     def texts(self, name: str) -> list[str]:
-        return [text_of(value) for value in self.read(name)]
+        if not self._texts:
+            return [text_of(value) for value in self.read(name)]
+        try:
+            if name in self._IN_TEXTS:
+                return [str(text) for text in self._texts.get(self._IN_TEXTS[name], [])]
+            return [str(self._texts[name.rpartition("/")[2]])]
+        except KeyError:
+            raise DamagedError(f"{self.path} is damaged: {name} is missing") from None
 
     def bytes_as_text(self, name: str) -> str:
         """Of a dataset that holds the bytes of a text."""
@@ -139,7 +166,7 @@ class ResultFile:
 
     def unit(self, name: str) -> str:
         """Unit of a dataset; "" for numbers without one. Of columns that differ: one for each, after commas."""
-        unit = text_of(self._attribute(name, "unit"))
+        unit = text_of(self._attribute(name, "units") or self._attribute(name, "unit"))
         return "" if unit == "1" else unit
 
     def units(self, name: str) -> list[str]:
@@ -161,5 +188,7 @@ class ResultFile:
         return self._names(name, "values", otherwise)
 
     def _names(self, name: str, attribute: str, otherwise: list[str]) -> list[str]:
+        if self._texts:
+            return list(self._texts.get("meanings", {}).get(name, {}).get(attribute, otherwise))
         found = self._attribute(name, attribute)
         return otherwise if found is None else [text_of(value) for value in found]

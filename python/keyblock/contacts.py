@@ -16,7 +16,7 @@ from .frames import Frame, Moments, When
 STATES = ["open", "sliding", "locked"]
 OPEN, SLIDING, LOCKED = 0, 1, 2
 
-_COLUMNS = ["block_a", "block_b", "state", "position", "normal", "length", "gap", "slip", "normal_force", "shear_force"]
+_COLUMNS = ["block_a", "block_b", "state", "position", "normal", "length", "gap", "slip", "shear_displacement", "normal_force", "shear_force"]
 
 # Sine of the largest angle between an edge of one block and the edge of the other that it lies on.
 _ALONG = 0.3
@@ -44,7 +44,8 @@ class Contacts:
     normal: np.ndarray = field(repr=False)  #: (n, 2), unit vectors out of block_b
     length: np.ndarray = field(repr=False)  #: (n,), m, of joint that belongs to the contact
     gap: np.ndarray = field(repr=False)  #: (n,), m, negative where it is pressed
-    slip: np.ndarray = field(repr=False)  #: (n,), m, of block_a against block_b since the excavation
+    slip: np.ndarray = field(repr=False)  #: (n,), m, since the excavation: the magnitude
+    shear_displacement: np.ndarray = field(repr=False)  #: (n,), m, of block_a against block_b along `tangent`: the slip with its sign
     normal_force: np.ndarray = field(repr=False)  #: (n,), N/m, compression positive
     shear_force: np.ndarray = field(repr=False)  #: (n,), N/m
     edge_kind: np.ndarray = field(repr=False)  #: (n,), number in `keyblock.blocks.EDGE_KINDS`
@@ -65,7 +66,7 @@ class Contacts:
 
     @cached_property
     def tangent(self) -> np.ndarray:
-        """Unit vectors along the edges, in the direction of `slip`, (n, 2)."""
+        """Unit vectors along the edges, in the direction of `shear_displacement`, (n, 2)."""
         return np.column_stack([-self.normal[:, 1], self.normal[:, 0]])
 
     @property
@@ -83,7 +84,7 @@ class Contacts:
         """The largest slip of a joint of each block, (nb,), m; NaN for blocks without contacts."""
         slip = np.full(len(self._blocks), -np.inf)
         for side in (self.block_a, self.block_b):
-            np.maximum.at(slip, side, np.abs(self.slip))
+            np.maximum.at(slip, side, self.slip)
         return np.where(np.isinf(slip), np.nan, slip)
 
     def stretches(self, local: np.ndarray) -> np.ndarray:
@@ -145,12 +146,13 @@ class Contacts:
                 "length": self.length,
                 "gap": self.gap,
                 "slip": self.slip,
+                "shear_displacement": self.shear_displacement,
                 "normal_force": self.normal_force,
                 "shear_force": self.shear_force,
                 "edge": self.edge_names,
             }
         )
-        metres = dict.fromkeys(("x", "y", "length", "gap", "slip"), "m")
+        metres = dict.fromkeys(("x", "y", "length", "gap", "slip", "shear_displacement"), "m")
         table.attrs["units"] = metres | {"normal_force": "N/m", "shear_force": "N/m"}
         return table
 
@@ -163,8 +165,12 @@ class ContactSnapshots:
         self._blocks = blocks
         moments = Moments.read(file, "contacts", stage_names, "contacts")
         self._end = file.read("contacts/end")[: len(moments)]
-        complete = int(np.searchsorted(self._end, min(file.shape(f"contacts/{name}")[0] for name in _COLUMNS), "right"))
+        complete = int(np.searchsorted(self._end, min(file.shape(f"contacts/{self._in_file(name)}")[0] for name in _COLUMNS), "right"))
         self.moments = Moments(moments.time[:complete], moments.stage[:complete], moments.step[:complete], stage_names, "contacts")
+
+    def _in_file(self, name: str) -> str:
+        """Earlier files have the shear displacement under the name of its magnitude."""
+        return "slip" if name == "shear_displacement" and not self._file.has("contacts/shear_displacement") else name
 
     def __len__(self) -> int:
         return len(self.moments)
@@ -186,7 +192,8 @@ class ContactSnapshots:
     def read(self, row: int) -> Contacts:
         begin = int(self._end[row - 1]) if row > 0 else 0
         rows = slice(begin, int(self._end[row]))
-        columns = {name: self._file.read(f"contacts/{name}", rows) for name in (*_COLUMNS, "edge_kind", "edge_index")}
+        columns = {name: self._file.read(f"contacts/{self._in_file(name)}", rows) for name in (*_COLUMNS, "edge_kind", "edge_index")}
+        columns["slip"] = np.abs(columns["slip"])
         columns["position"] = columns["position"] + self._blocks.origin
         m = self.moments
         return Contacts(float(m.time[row]), m.stage_name(row), int(m.step[row]), _blocks=self._blocks, **columns)

@@ -21,6 +21,10 @@ class DamagedError(KeyblockError, ValueError):
     """A result file is damaged: a checksum is wrong, a dataset is missing, or its parts do not fit each other."""
 
 
+class DataError(KeyblockError, ValueError):
+    """Arrays, or data of another library, cannot be used as they are."""
+
+
 class MissingPackageError(KeyblockError, ImportError):
     """Something was asked for that needs an optional package, and the package is not installed."""
 

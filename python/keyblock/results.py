@@ -153,6 +153,14 @@ class Result:
 
         return animate.animate(self, path, color, **options)
 
+    def export(self, format: str, folder: str | Path | None = None, *, replace: bool = False) -> list[Path]:
+        """Files for other programs, as `keyblock export`: "vtk" for ParaView, "csv", or "geojson"; returns them. `folder`: by default one of the
+        name of the format beside the results. `replace`: other files there that are in the way may go. Needs the compiled module."""
+        from ._compiled import core
+
+        target = self.path.parent / format if folder is None else Path(folder)
+        return [Path(file) for file in core.export_run(self.path.parent, target, format, replace or folder is None)]
+
     def to_xarray(self, frames: slice = slice(None)) -> Any:
         """Frames as xarray.Dataset with the dimensions time, vertex, block and component."""
         from . import convert

@@ -215,7 +215,7 @@ def draw_sizes(ax: Axes, look: Look, contacts: Contacts, which: str, scale: fiel
     from matplotlib.collections import LineCollection
 
     segments, rows = pieces(look, contacts)
-    values = np.abs(contacts.slip[rows]) if which == "slip" else contacts.gap[rows]
+    values = contacts.slip[rows] if which == "slip" else contacts.gap[rows]
     place = np.clip(np.log(np.maximum(values, scale.low) / scale.low) / np.log(scale.high / scale.low), 0.0, 1.0)
     kept = np.flatnonzero(values > scale.low)
     kept = kept[np.argsort(place[kept])]
@@ -227,7 +227,7 @@ def draw_sizes(ax: Axes, look: Look, contacts: Contacts, which: str, scale: fiel
 def size_scale(run: Result, which: str) -> fields.Scale:
     """Three decades up to the largest slip or opening that was kept, m."""
     ends = [run.contact_snapshots.near(run.frames[k]) for k in fields.stage_ends(run)]
-    values = [np.abs(c.slip) if which == "slip" else c.gap for c in ends if c is not None]
+    values = [c.slip if which == "slip" else c.gap for c in ends if c is not None]
     largest = max((float(v.max(initial=0.0)) for v in values), default=0.0)
     high = fields.nice_above(max(largest, 1e-5))
     return fields.Scale(high / 1e3, high, True)

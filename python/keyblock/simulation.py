@@ -15,25 +15,34 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import logging
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._compiled import core as _core
+from ._sealed import Sealed
 from .progress import Progress as _Shown
 from .progress import words_of_run
+from .record import did_you_mean
+from .steering import JointStrength, SimulatedBlocks, Springs, Strengths, read_only
 
 if TYPE_CHECKING:
     from .scenario import Scenario
 
 Progress = _core.Progress
 
+# Begins and ends of runs, and warnings of the input: `logging.basicConfig(level="INFO")` shows them.
+_log = logging.getLogger("keyblock")
+_log.addHandler(logging.NullHandler())
 
-class Controller:
+
+class Controller(Sealed):
     """A function that is called with the Simulation after every `every`-th step. It looks at the run and changes what acts from the next
     step on. What it has to remember between steps must follow from the simulation, or a resumed run goes another way."""
 
@@ -42,13 +51,18 @@ class Controller:
             raise TypeError("a controller is a function of a Simulation")
         if every < 1:
             raise ValueError("every: at least 1")
-        self.function = function
-        self.every = int(every)
-        self.name = name or _name_of(function)
-        self.hash = hashlib.sha256(f"{_source_of(function)}\n{self.every}".encode()).hexdigest()[:16]
+        self._function = function
+        self._every = int(every)
+        self._name = name or _name_of(function)
+        self._hash = hashlib.sha256(f"{_source_of(function)}\n{_held_values(function)}{self._every}".encode()).hexdigest()[:16]
+
+    function = property(lambda self: self._function)
+    every = property(lambda self: self._every, doc="steps")
+    name = property(lambda self: self._name)
+    hash = property(lambda self: self._hash, doc="Of its text and what it closes over.")
 
     def __call__(self, simulation: Simulation) -> Any:
-        return self.function(simulation)
+        return self._function(simulation)
 
     def __repr__(self) -> str:
         return f"<keyblock.Controller {self.name}, every {self.every} steps, {self.hash}>"
@@ -62,7 +76,10 @@ def controller(function: Callable[[Simulation], Any] | None = None, *, every: in
 
 
 def _name_of(function: Callable[..., Any]) -> str:
-    place = os.path.basename(inspect.getsourcefile(function) or "") if inspect.isroutine(function) else ""
+    try:
+        place = os.path.basename(inspect.getsourcefile(function) or "") if inspect.isroutine(function) else ""
+    except TypeError:  # a function of C
+        place = ""
     return f"{place}:{getattr(function, '__qualname__', type(function).__name__)}".lstrip(":")
 
 
@@ -73,6 +90,26 @@ def _source_of(function: Callable[..., Any]) -> str:
     except (OSError, TypeError):  # typed at a prompt
         code = getattr(of, "__code__", None)
         return repr(of) if code is None else f"{code.co_code.hex()} {code.co_consts!r} {code.co_names!r}"
+
+
+def _held_values(function: Callable[..., Any]) -> str:
+    """What a function closes over, as far as it is plain: `make(8000)` and `make(6000)` are two controllers."""
+    plain = (bool, int, float, complex, str, bytes, type(None))
+    names = getattr(getattr(function, "__code__", None), "co_freevars", ())
+    values = [cell.cell_contents for cell in getattr(function, "__closure__", None) or () if _is_full(cell)]
+    held = [f"{name}={value!r}" for name, value in zip(names, values) if isinstance(value, plain)]
+    held += [f"{value!r}" for value in (getattr(function, "__defaults__", None) or ()) if isinstance(value, plain)]
+    if not inspect.isroutine(function):
+        held += [f"{name}={value!r}" for name, value in sorted(vars(function).items()) if isinstance(value, plain)] if hasattr(function, "__dict__") else []
+    return "".join(f"{text}\n" for text in held)
+
+
+def _is_full(cell: Any) -> bool:
+    try:
+        cell.cell_contents
+    except ValueError:
+        return False
+    return True
 
 
 @dataclass(frozen=True)
@@ -86,54 +123,32 @@ class Contacts:
     normal: np.ndarray  #: (n, 2), unit vectors out of block_b
     length: np.ndarray
     gap: np.ndarray  #: negative where the contact is pressed
-    slip: np.ndarray
+    slip: np.ndarray  #: since the excavation: the magnitude
+    shear_displacement: np.ndarray  #: the same with its sign: of block_a along (−normal y, normal x)
     normal_force: np.ndarray  #: compression positive
     shear_force: np.ndarray
-    joint: np.ndarray  #: names of joint sets, trace maps and excavations; "domain"
+    joint_code: np.ndarray  #: place in `joint_names`
+    joint_names: list[str]  #: of joint sets, trace maps and excavations; "domain"; "" for edges of blocks of the scenario
+
+    @property
+    def joint(self) -> np.ndarray:
+        """What each contact's edge is a piece of, by name."""
+        return np.array(self.joint_names, dtype=object)[self.joint_code]
 
     def __len__(self) -> int:
         return len(self.block_a)
 
     def of(self, joint: str) -> Contacts:
         """Those of one joint set, trace map or excavation."""
-        chosen = self.joint == joint
-        return Contacts(**{field.name: getattr(self, field.name)[chosen] for field in fields(self)})
+        if joint not in self.joint_names:
+            raise KeyError(f"no joint set {joint!r}{did_you_mean(joint, [name for name in self.joint_names if name])}")
+        codes = [code for code, name in enumerate(self.joint_names) if name == joint]
+        chosen = np.isin(self.joint_code, codes)
+        columns = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Contacts(**{name: column if name == "joint_names" else column[chosen] for name, column in columns.items()})
 
 
-class JointStrength:
-    """Friction (degrees), cohesion and tension (Pa) of joints, to be read and set. Bonds that have broken stay broken."""
-
-    def __init__(self, core: _core.Simulation, joint: str) -> None:
-        self._core, self._joint = core, joint
-
-    def _get(self) -> tuple[float, float, float]:
-        return self._core.strength(self._joint)
-
-    def _set(self, place: int, value: float) -> None:
-        values = list(self._get())
-        values[place] = float(value)
-        self._core.set_strength(self._joint, *values)
-
-    friction = property(lambda self: self._get()[0], lambda self, value: self._set(0, value))
-    cohesion = property(lambda self: self._get()[1], lambda self, value: self._set(1, value))
-    tension = property(lambda self: self._get()[2], lambda self, value: self._set(2, value))
-
-    def __repr__(self) -> str:
-        friction, cohesion, tension = self._get()
-        return f"<{self._joint}: friction {friction:g}°, cohesion {cohesion:g} Pa, tension {tension:g} Pa>"
-
-
-class _Strengths:
-    def __init__(self, core: _core.Simulation) -> None:
-        self._core = core
-
-    def __getitem__(self, joint: str) -> JointStrength:
-        strength = JointStrength(self._core, joint)
-        strength._get()  # an unknown name is refused here
-        return strength
-
-
-class Simulation:
+class Simulation(Sealed):
     """A run that is taken step by step. Between steps it can be looked at and changed; what changes it belongs in a controller where the
     run is to be resumed. Arrays stay valid as long as they are kept, also after the simulation has gone.
 
@@ -156,16 +171,28 @@ class Simulation:
     ) -> None:
         """`folder`: where results go, None: nowhere. `threads`: any number gives the same bits. `resume`: goes on from the checkpoint in
         the folder, with the same controllers. `replace`: results of other input there may go. Throws InputError, RunError."""
+        self._blocks: SimulatedBlocks | None = None
+        self._folder = "" if folder is None else os.fspath(folder)
         self._controllers = [c if isinstance(c, Controller) else Controller(c) for c in controllers]
         self._core = _core.Simulation.begin(
             scenario._core,
-            folder="" if folder is None else os.fspath(folder),
+            folder=self._folder,
             realization=realization,
             threads=threads,
             resume=resume,
             replace=replace,
             hooks=[(c.name, c.hash) for c in self._controllers],
         )
+        for warning in self._core.warnings:
+            _log.warning("%s", warning)
+        _log.info("%s of %d blocks begins%s", "resumed run" if resume else "run", self._core.blocks, f" in {self._folder}" if self._folder else "")
+
+    @classmethod
+    def _of_study(cls, core: _core.Simulation, controllers: Sequence[Controller]) -> Simulation:
+        """That of a run which a study takes step by step."""
+        simulation = cls.__new__(cls)
+        simulation._blocks, simulation._folder, simulation._controllers, simulation._core = None, "", list(controllers), core
+        return simulation
 
     # ── going on ──
 
@@ -188,18 +215,21 @@ class Simulation:
             try:
                 self._core.advance(sys.maxsize, self._after_step if self._controllers else None, shown.call)
             except BaseException:
-                self.stop()
-                try:
-                    self.finish()
-                except Exception:  # the first failure is the one to be told about
-                    pass
+                self._end_after_failure()
                 raise
         return self.finish()
 
     def finish(self) -> dict[str, Any]:
-        """Ends the run where it is and writes what remains. Returns what summary.json has. Throws RunError, once all is written, where the
-        balance of energies of a whole run misses more than 5 % of its largest term; called again, it returns the summary all the same."""
-        return json.loads(self._core.finish())
+        """Ends the run where it is, writes what remains, and lets the folder go. Returns what summary.json has. Throws RunError, once all is
+        written, where a whole run has errors of the computation; called again, it returns the summary all the same."""
+        summary = json.loads(self._core.finish())
+        _log.info("run ended after %d steps, %g s%s", summary["steps"], self._core.time, f", in {self._folder}" if self._folder else "")
+        return summary
+
+    def close(self) -> None:
+        """Lets the folder go as it is: without finish(), it has what a killed run leaves, results and a checkpoint. The run can still be
+        looked at, but goes on no more."""
+        self._core.close()
 
     def stop(self) -> None:
         """The run ends within the step at hand. From any thread."""
@@ -209,8 +239,20 @@ class Simulation:
         return self
 
     def __exit__(self, *error: object) -> None:
-        if not any(error):
+        if any(error):
+            self._end_after_failure()
+        else:
             self.finish()
+
+    def _end_after_failure(self) -> None:
+        """In good order as far as that goes; the first failure is the one to be told about."""
+        try:
+            self.stop()
+            self.finish()
+        except Exception:
+            pass
+        finally:
+            self.close()
 
     def _after_step(self) -> None:
         step = self._core.step
@@ -257,9 +299,16 @@ class Simulation:
         return self._core.state_hash
 
     @property
-    def blocks(self) -> int:
-        """How many there are. The frame, if any, is the last one."""
-        return self._core.blocks
+    def blocks(self) -> SimulatedBlocks:
+        """All blocks, by index or name, with their names, materials, stress; `len(sim.blocks)` of them. The frame, if any, is the last one."""
+        if self._blocks is None:
+            self._blocks = SimulatedBlocks(self, self._core.block_facts)
+        return self._blocks
+
+    @property
+    def origin(self) -> np.ndarray:
+        """(2,), m: real coordinates of (0, 0) of local ones. `sim.vertices + sim.origin` are real."""
+        return read_only(np.array(self._core.origin))
 
     @property
     def vertices(self) -> np.ndarray:
@@ -269,22 +318,22 @@ class Simulation:
     @property
     def first_vertex(self) -> np.ndarray:
         """(blocks + 1,): block b has the vertices first_vertex[b] … first_vertex[b + 1] − 1."""
-        return self._core.first_vertex
+        return read_only(self._core.first_vertex)
 
     @property
     def present(self) -> np.ndarray:
         """(blocks,): False once a block is excavated."""
-        return self._core.present.astype(bool)
+        return read_only(self._core.present.astype(bool))
 
     @property
     def centroids(self) -> np.ndarray:
         """(blocks, 2), m: mass centres now; a copy. Local coordinates."""
-        return self._core.centroids
+        return read_only(self._core.centroids)
 
     @property
     def block_velocities(self) -> np.ndarray:
         """(blocks, 2), m/s, of mass centres; a copy."""
-        return self._core.block_velocities
+        return read_only(self._core.block_velocities)
 
     @property
     def velocity(self) -> np.ndarray:
@@ -299,26 +348,61 @@ class Simulation:
     @property
     def first_coefficient(self) -> np.ndarray:
         """(blocks,): where the coefficients of each block begin."""
-        return self._core.first_coefficient
+        return read_only(self._core.first_coefficient)
 
     @property
     def contacts(self) -> Contacts:
         """After the last step; none before the first one."""
-        table = self._core.contacts
-        table["joint"] = np.array(table["joint"], dtype=object)
-        return Contacts(**table)
+        return Contacts(**{name: read_only(of) if isinstance(of, np.ndarray) else of for name, of in self._core.contacts.items()})
 
     @property
-    def energy(self) -> dict[str, float]:
+    def stress(self) -> np.ndarray:
+        """(blocks, 3), Pa: mean xx, yy, xy of each block; tension positive; a copy."""
+        return read_only(self._core.stress)
+
+    @property
+    def status(self) -> np.ndarray:
+        """(blocks,): 0 in place, 1 loosened, 2 fallen, 3 excavated; a copy."""
+        return read_only(self._core.status)
+
+    @property
+    def damage(self) -> Mapping[str, float]:
+        """Measures of damage so far, by their names in summary.json: `sim.damage["fallen_area_m2"]`. Empty before the first excavation."""
+        return MappingProxyType(self._core.damage)
+
+    @property
+    def ground_acceleration(self) -> np.ndarray:
+        """(2,), m/s², of the ground now; zero outside of shaking stages."""
+        return read_only(np.array(self._core.ground_acceleration))
+
+    @property
+    def energy(self) -> Mapping[str, float]:
         """J per metre thickness, by name; losses and inputs since the start."""
-        return self._core.energy
+        return MappingProxyType(self._core.energy)
 
     # ── what can be changed ──
 
     @property
-    def strength(self) -> _Strengths:
+    def strength(self) -> Strengths:
         """By the name of a joint set or trace map, "joints" for all others, or "frame": `sim.strength["J1"].friction = 25`."""
-        return _Strengths(self._core)
+        return Strengths(self._core)
+
+    @property
+    def springs(self) -> Springs:
+        """The [[spring]]s, by place or name: `sim.springs["bolt 1"].force`; stiffness and force can be set."""
+        return Springs(self._core)
+
+    def apply_force(self, block: int | str, force: Any, point: Any = None, slot: int = 0) -> None:
+        """A force on a block, (2,), N per metre thickness. It acts from the next step on until it is changed; another one of the same `slot` takes
+        its place, and zero takes it away. `point`: where it acts, (2,), m, local coordinates, as the block lies now; None: its mass centre. It goes
+        with the block without turning. Its work is in energy["input"], and it is in checkpoints."""
+        where = None if point is None else [float(x) for x in point]
+        self._core.set_force(self.blocks.index_of(block), [float(f) for f in force], where, int(slot))
+
+    @property
+    def forces(self) -> list[tuple[int, int, tuple[float, float]]]:
+        """Those that apply_force has put: block, slot, force."""
+        return [(block, slot, tuple(force)) for block, slot, force in self._core.forces]
 
     def set_load_factor(self, load: int, factor: float) -> None:
         """Factor on a load, by its place among [[load]], beside its own."""

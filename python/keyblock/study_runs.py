@@ -1,34 +1,74 @@
-"""Studies from Python: all runs by processes of this machine, or by an executor of another library.
+"""Studies and limits from Python: all runs by processes of this machine, or by an executor of another library.
 
     study = keyblock.run_study(keyblock.Scenario.load("study.toml"), "out/study", workers=4)
     study.table("wide")
 
-Each run is a task that needs the folder and a number only, so that processes on other machines can do it, where they see the folder.
+Each run is a task that needs the folder and a number only, so that processes on other machines can do it, where they see the folder:
+plan_study, then study_task for each run, then collect_study. The workers of run_study are interpreters of their own, which import nothing of
+the script that calls it; one that is killed is one failed run.
 """
 
 from __future__ import annotations
 
 import concurrent.futures
-import multiprocessing
+import json
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ._compiled import core as _core
 from .progress import Progress, words_of_study
+from .record import Record, parse
+
+from .steered_study import run_steered
+from .steered_study import file_of_controllers as _controllers_file
 
 if TYPE_CHECKING:
+    from .limit import Limit
     from .scenario import Scenario
+    from .simulation import Controller, Simulation
     from .study import Study
 
 
-def study_task(folder: str, run: int) -> int:
+
+@dataclass(frozen=True)
+class StudyState:
+    """How far a study is."""
+
+    runs: int  #: that it asks for
+    missing: list[int]  #: neither done nor failed
+    failures: list[str]  #: why runs failed, one sentence each
+
+
+def plan_study(scenario: Scenario, folder: str | os.PathLike[str], *, resume: bool = False) -> list[str]:
+    """Makes the plan of a study and puts it into the folder; returns warnings. `resume`: goes on with what is there, and runs that failed are tried
+    again. Throws InputError."""
+    return _core.plan_study(scenario._core, os.path.abspath(os.fspath(folder)), resume)
+
+
+def study_state(folder: str | os.PathLike[str]) -> StudyState:
+    """How far a study is. Throws InputError where the folder holds no plan."""
+    return StudyState(*_core.study_state(os.fspath(folder)))
+
+
+def study_task(folder: str | os.PathLike[str], run: int) -> int:
     """Does one run of a planned study, in this process; returns its number. A run that fails leaves the reason in the folder."""
     try:
-        _core.run_of_study(folder, run)
+        _core.run_of_study(os.fspath(folder), run)
     except _core.RunError:
         pass
     return run
+
+
+def collect_study(folder: str | os.PathLike[str]) -> Study:
+    """Gathers the runs that are there into runs.csv, study.json and report.html. Throws InputError where the folder holds no plan."""
+    from .study import Study
+
+    _core.collect_study(os.fspath(folder))
+    return Study(os.fspath(folder))
 
 
 def run_study(
@@ -38,30 +78,114 @@ def run_study(
     workers: int | None = None,
     executor: concurrent.futures.Executor | None = None,
     resume: bool = False,
+    controllers: Sequence[Controller | Callable[[Simulation], Any]] = (),
     progress: Callable[[int, int], Any] | bool | str | None = None,
 ) -> Study:
-    """Runs what is missing of a study, and collects it. `scenario` was loaded from a file. `workers`: processes, by default one for each
-    processor. `executor`: anything with the `submit` of concurrent.futures, in the place of own processes; its workers must see the folder.
-    `progress`: called with runs that have ended, and all; or True, "notebook", "line" as for a run. What is done is never done again:
-    `resume=True` goes on. Throws InputError, and RunError with the reasons where runs have failed, after the others are collected."""
+    """Runs what is missing of a study, and collects it. `workers`: processes, by default one for each processor. `executor`: anything with the
+    `submit` of concurrent.futures, in the place of own processes; its workers must see the folder. `progress`: called with runs that have ended,
+    and all; or True, "notebook", "line" as for a run. What is done is never done again: `resume=True` goes on. Ctrl-C ends it in good order.
+    `controllers` steer every run; then the processes are forks of this one, so that functions of a script or a notebook go along. A run that a
+    controller stops has failed, as a study has no use for a part of a run. Throws InputError, and RunError with the reasons where runs have
+    failed, after the others are collected."""
+    if controllers and executor is not None:
+        raise ValueError("controllers need own processes, and no executor")
     path = os.path.abspath(os.fspath(folder))
     _core.plan_study(scenario._core, path, resume)
     with Progress(progress, words_of_study) as shown:
-        if executor is not None:
+        if controllers or _controllers_file(path).exists():
+            run_steered(path, _count(workers), controllers, shown.call)
+        elif executor is not None:
             _run_all(path, executor, shown.call)
         else:
-            count = workers or os.cpu_count() or 1
-            spawned = multiprocessing.get_context("spawn")  # threads of the parent do not come along
-            with concurrent.futures.ProcessPoolExecutor(count, mp_context=spawned) as own:
-                _run_all(path, own, shown.call)
-    _core.collect_study(path)
-    _, missing, failures = _core.study_state(path)
-    if failures or missing:
-        first = failures[0] if failures else f"run {missing[0]} is missing"
-        raise _core.RunError(f"{len(failures) + len(missing)} runs have failed; resume=True tries them again; the first: {first}")
-    from .study import Study
+            _core.run_study(path, _count(workers), _worker_command(), shown.call)
+    study = collect_study(path)
+    state = study_state(path)
+    if state.failures or state.missing:
+        failed = len(state.failures) + len(state.missing)
+        first = state.failures[0] if state.failures else f"run {state.missing[0]} is missing"
+        raise _core.RunError(f"{failed} {'run has' if failed == 1 else 'runs have'} failed; resume=True tries again; the first: {first}")
+    return study
 
-    return Study(path)
+
+def find_limit(
+    scenario: Scenario,
+    folder: str | os.PathLike[str],
+    key: str,
+    start: float,
+    stop: float,
+    *,
+    until: str = "fallen",
+    above: float | None = None,
+    since: str = "",
+    tolerance: float = 0.02,
+    realizations: int = 1,
+    workers: int | None = None,
+    resume: bool = False,
+    progress: Callable[[int, int], Any] | bool | str | None = None,
+) -> Limit:
+    """The value of a number of the scenario at which rock first falls, moves or collapses, as `keyblock limit` finds it: bisection between `start`,
+    at which that does not hold, and `stop`, at which it does. `until`: "fallen", "moved", "collapsed" or a measure of summary.json, which
+    is to be larger than `above`. Throws InputError, and RunError where a run fails."""
+    from .limit import Limit
+
+    path = os.path.abspath(os.fspath(folder))
+    with Progress(progress, words_of_study) as shown:
+        _core.find_limit(
+            scenario._core,
+            path,
+            key=key,
+            start=float(start),
+            stop=float(stop),
+            until=until,
+            above=None if above is None else float(above),
+            since=since,
+            tolerance=float(tolerance),
+            realizations=realizations,
+            resume=resume,
+            workers=_count(workers),
+            command=_worker_command(),
+            progress=shown.call,
+        )
+    return Limit(path)
+
+
+def verify(
+    cases: str | os.PathLike[str],
+    names: Sequence[str] = (),
+    *,
+    orders: Sequence[int] = (),
+    all: bool = False,
+    workers: int | None = None,
+    progress: Callable[[int, int], Any] | bool | str | None = None,
+) -> Record:
+    """Solves problems with known answers, and compares, as `keyblock verify` does; what its JSON has: `passed`, `failed`, `rows`. `cases`: the folder of
+    the case files, `verification` of the source. `names`: of case files; none: all but the long ones."""
+    with Progress(progress, words_of_study) as shown:
+        text = _core.verify(
+            os.fspath(cases), names=list(names), orders=list(orders), all=all, workers=_count(workers), progress=shown.call
+        )
+    return parse(text, "the table")
+
+
+def _count(workers: int | None) -> int:
+    if workers is not None and workers < 1:
+        raise ValueError("workers: at least 1")
+    return workers or os.cpu_count() or 1
+
+
+def _worker_command() -> list[str]:
+    """What does one run, given the folder and its number: it imports this package, wherever it is, and nothing of the calling script."""
+    package = str(Path(__file__).absolute().parent.parent)
+    return [sys.executable, "-c", f"import sys; sys.path.insert(0, {json.dumps(package)}); from keyblock.study_runs import _work; _work()"]
+
+
+def _work() -> None:
+    folder, run = sys.argv[1], int(sys.argv[2])
+    try:
+        _core.run_of_study(folder, run)
+    except (_core.RunError, _core.InputError) as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
 
 
 def _run_all(path: str, executor: concurrent.futures.Executor, progress: Callable[[int, int], Any] | None) -> None:
@@ -72,13 +196,22 @@ def _run_all(path: str, executor: concurrent.futures.Executor, progress: Callabl
         todo = [run for run in missing if run not in tried]
         if not todo:
             return
-        tasks = [executor.submit(study_task, path, run) for run in todo[: max(64, len(todo) // 4)]]
+        tasks = {executor.submit(study_task, path, run): run for run in todo[: max(64, len(todo) // 4)]}
         try:
             for task in concurrent.futures.as_completed(tasks):
-                tried.add(task.result())
+                _note_end(path, task, tasks[task])
+                tried.add(tasks[task])
                 if progress is not None:
                     progress(runs - len(missing) + len(tried), runs)
         except BaseException:
             for task in tasks:
                 task.cancel()
             raise
+
+
+def _note_end(path: str, task: concurrent.futures.Future[int], run: int) -> None:
+    """A worker that was killed costs the runs that it had, and no others."""
+    try:
+        task.result()
+    except concurrent.futures.BrokenExecutor as error:
+        _core.note_failed_run(path, run, f"its worker was ended: {error}")

@@ -13,6 +13,64 @@ from conftest import ROOT, optional
 BLOCK = re.compile(r"^```python\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
+# What each snippet did: words that only it has, and what must hold after it. `n` are the names that the page has defined so far.
+RESULTS = {
+    'keyblock.open("out/tunnel")\nrun.plot': lambda n: n["run"].summary.blocks > 0 and exists("tunnel.pdf"),
+    "run.summary.blocks": lambda n: n["run"].steps["penetration"].max() >= 0 and len(n["run"].stages.table()) == len(n["run"].stages),
+    "the crown has settled": lambda n: list(n["crown"].columns[:2]) == ["ux", "uy"] and -n["crown"]["uy"].iloc[-1] > 0,
+    "heading.release.groupby": lambda n: n["axes"] is not None and len(n["axes"].lines) == len(set(n["heading"].release["excavation"])),
+    "frame.principal": lambda n: (n["principal"][:, 0] >= n["principal"][:, 1]).all() and abs(n["frame"].time - 0.3) < 0.05,
+    "block = run.blocks[3]": lambda n: n["run"].blocks.area[3] == n["block"].area > 0,
+    'groupby("edge").slip.max()': lambda n: (n["contacts"].slip >= 0).all()
+    and (n["contacts"].slip == abs(n["contacts"].shear_displacement)).all()
+    and (n["contacts"].table().groupby("edge").slip.max() == abs(n["contacts"].table().shear_displacement).groupby(n["contacts"].table().edge).max()).all()
+    and abs(n["contacts"].force_on("frame")).max() > 0,
+    "# open, sliding, locked": lambda n: exists("sets.svg"),
+    "before-and-after": lambda n: exists("before-and-after.pdf"),
+    "run.animate": lambda n: exists("fall.mp4") and exists("fall.gif"),
+    "study = keyblock.open": lambda n: len(n["study"].table()) == 6 * 8 and set(n["last"].stage) == {"after"},
+    "study.statistics(": lambda n: len(n["study"].statistics("displacement_max_m")) == 8,
+    "where = study.map": lambda n: exists("fragility.pdf") and exists("map.png") and 0.0 < n["np"].nanmax(n["where"].fallen) <= 1.0,
+    "worst = study.combination": lambda n: exists("worst.png"),
+    "safety.key": lambda n: n["safety"].value == pytest.approx(29.9, abs=0.5) and exists("limit.pdf"),
+    "run.to_xarray()": lambda n: {"time", "vertex", "block"} <= set(n["dataset"].dims),
+    "run.to_geodataframe": lambda n: (n["blocks"].slip.fillna(0) >= 0).all(),
+    "run.unfinished or": lambda n: not n["run"].unfinished,
+}
+RUNS = {
+    "a block that falls": lambda n: n["summary"]["steps"] == 500 and exists("stone.png") and n["kb"].open("out/stone").frames.at().block_displacement[1, 1] < -0.19,
+    "kb.Scenario.load(\"examples/01-tunnel.toml\")": lambda n: n["scenario"].rock.young == 4e9
+    and n["scenario"]["stage.'first earthquake'.scale"] == 2.0
+    and n["scenario"].joint_set.names[-1] == "J4",
+    "scenario.cut(realization=7)": lambda n: len(n["blocks"]) > 100 and exists("blocks.pdf"),
+    "progress=lambda now": lambda n: n["summary"]["realization"] == 7 and exists("out/seven/result.h5"),
+    "def tell(now)": lambda n: True,
+    "kb.run_study(": lambda n: len(n["study"].table()) > 1 and (n["study"].table().status == "done").all(),
+    "scenario.simulate() as sim": lambda n: n["sim"].done and 0.90 < n["contacts"].slip.max() < 0.91 and n["contacts"].shear_displacement.min() < -0.9,
+    "def weaken(sim)": lambda n: n["weak"]["state_hash"] != n["held"]["state_hash"] and displacement(n["weak"]) > 1.5 > displacement(n["held"]),
+    "kb.Motion(step=0.01": lambda n: n["scenario"].motion["sine"].x[1][1] == n["motion"].x[1] and len(n["scenario"].motion["sine"].x) == 200,
+    "def hold(sim)": lambda n: 0.0 < displacement(n["slow"]) < 0.5 * displacement(n["held"]),
+    "kb.run_table(": lambda n: sorted(n["table"]["joints.friction"]) == [10.0, 20.0, 30.0]
+    and n["table"].sort_values("joints.friction").displacement_max_m.is_monotonic_decreasing,
+    "wrong.check()": lambda n: True,
+}
+
+
+def exists(name: str) -> bool:
+    return os.path.exists(name)
+
+
+def displacement(summary: dict) -> float:
+    return summary["stages"][-1]["damage"]["displacement_max_m"]
+
+
+def check_effect(code: str, effects: dict, names: dict) -> None:
+    """Every snippet has an effect that is asserted: that it runs says nothing of what it did."""
+    found = [effect for words, effect in effects.items() if words in code]
+    assert len(found) == 1, f"{len(found)} effects of\n{code}"
+    assert found[0](names), f"no such effect of\n{code}"
+
+
 def test_blocks_of_the_page(tunnel_folder, heading_folder, study_folder, limit_folder, tmp_path, monkeypatch, capsys):
     for name in ("pandas", "matplotlib", "xarray"):
         optional(name)
@@ -30,6 +88,7 @@ def test_blocks_of_the_page(tunnel_folder, heading_folder, study_folder, limit_f
         if "animate" in code and shutil.which("ffmpeg") is None and not os.environ.get("CI"):
             pytest.skip("ffmpeg is not installed")
         exec(compile(code, "docs/python.md", "exec"), names)  # noqa: S102
+        check_effect(code, RESULTS, names)
         pyplot.close("all")
     written = {path.name for path in tmp_path.iterdir()}
     assert {"tunnel.pdf", "sets.svg", "before-and-after.pdf", "fall.mp4", "fall.gif", "fragility.pdf", "map.png", "limit.pdf"} <= written
@@ -53,6 +112,7 @@ def test_blocks_of_the_page_on_runs(tmp_path, monkeypatch, capsys):
         file = tmp_path / f"block{number}.py"
         file.write_text(code)
         exec(compile(code, str(file), "exec"), names)  # noqa: S102
+        check_effect(code, RUNS, names)
         pyplot.close("all")
     said = capsys.readouterr().out
     assert "mine.toml 3 9 rock.young" in said and "weaken" in said

@@ -1,6 +1,13 @@
 #include "keyblock/results.h"
 
+#include <cmath>
+#include <utility>
+
+#include "api/contact_columns.h"
+#include "job/result_folder.h"
 #include "keyblock/keyblock.h"
+#include "results/export.h"
+#include "results/record_fields.h"
 #include "results/run_data.h"
 #include "results/summary.h"
 
@@ -30,10 +37,65 @@ std::size_t Results::frames() const {
 
 Frame Results::frame(std::size_t k) const {
   const simulation::Frame& of = parts_->data.frames.at(k);
-  Frame frame{of.time, of.stage, of.step, of.displacement, of.stress, {}};
+  Frame frame{of.time, of.stage, of.step, of.displacement, of.stress, {}, of.velocity};
+  if (frame.velocity.empty()) frame.velocity.assign(blocks(), {std::nanf(""), std::nanf("")});
   for (const simulation::BlockStatus status : of.status)
     frame.status.push_back(static_cast<unsigned char>(status));
   return frame;
+}
+
+std::size_t Results::contact_snapshots() const {
+  return parts_->data.contacts.size();
+}
+
+ContactSnapshot Results::contacts(std::size_t k) const {
+  const simulation::ContactFrame& of = parts_->data.contacts.at(k);
+  return {of.time, of.stage, of.step, api::contact_columns(of, parts_->data.model)};
+}
+
+std::vector<double> Results::history_times() const {
+  std::vector<double> times;
+  for (const simulation::HistoryRow& row : parts_->data.histories) times.push_back(row.time);
+  return times;
+}
+
+std::vector<HistoryOfPoint> Results::histories() const {
+  std::vector<HistoryOfPoint> histories;
+  const std::vector<std::string>& names = parts_->data.model.history_names;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    HistoryOfPoint& of = histories.emplace_back(HistoryOfPoint{names[k], {}, {}, {}});
+    for (const simulation::HistoryRow& row : parts_->data.histories) {
+      const simulation::HistoryRow::Point& p = row.points.at(k);
+      of.displacement.push_back({p.ux, p.uy});
+      of.velocity.push_back({p.vx, p.vy});
+      of.stress.push_back({p.sxx, p.syy, p.sxy});
+    }
+  }
+  return histories;
+}
+
+std::vector<StepEnergies> Results::energies() const {
+  std::vector<StepEnergies> steps;
+  for (const simulation::StepRow& row : parts_->data.steps) {
+    StepEnergies& of = steps.emplace_back(StepEnergies{row.time, row.step, {}});
+    for (const auto& [name, member] : results::energy_fields)
+      of.energy.emplace_back(name, row.energy.*member);
+  }
+  return steps;
+}
+
+std::vector<std::filesystem::path> Results::export_to(const std::filesystem::path& folder,
+                                                      const std::string& format, bool replace) const {
+  const auto known = results::export_format(format);
+  if (!known) {
+    Diagnostic diagnostic;
+    diagnostic.key = "format";
+    diagnostic.found = "\"" + format + "\"";
+    diagnostic.expected = "\"vtk\", \"csv\" or \"geojson\"";
+    throw InputError(std::move(diagnostic));
+  }
+  job::check_holds_no_run(folder);
+  return results::export_run(parts_->data, folder, *known, replace);
 }
 
 std::vector<std::array<double, 2>> Results::vertices() const {

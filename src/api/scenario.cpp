@@ -1,10 +1,15 @@
 #include "keyblock/scenario.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "api/edge_names.h"
+#include "api/known_keys.h"
 #include "api/scenario_source.h"
+#include "core/atomic_file.h"
 #include "core/checked_json.h"
+#include "core/folder.h"
 #include "core/read_file.h"
 #include "job/check.h"
 #include "scenario/build.h"
@@ -16,27 +21,27 @@ namespace keyblock {
 namespace {
 
 using nlohmann::ordered_json;
-using scenario::Value;
+using Node = scenario::Value;
 
-ordered_json to_json(const Value& value) {
+ordered_json to_json(const Node& value) {
   switch (value.type) {
-    case Value::Type::string:
-    case Value::Type::date:
+    case Node::Type::string:
+    case Node::Type::date:
       return value.text;
-    case Value::Type::integer:
+    case Node::Type::integer:
       return value.integer;
-    case Value::Type::number:
+    case Node::Type::number:
       return value.number;
-    case Value::Type::boolean:
+    case Node::Type::boolean:
       return value.boolean;
-    case Value::Type::array: {
+    case Node::Type::array: {
       ordered_json list = ordered_json::array();
-      for (const Value& item : value.items) list.push_back(to_json(item));
+      for (const Node& item : value.items) list.push_back(to_json(item));
       return list;
     }
-    case Value::Type::table: {
+    case Node::Type::table: {
       ordered_json table = ordered_json::object();
-      for (const Value& item : value.items) table[item.key] = to_json(item);
+      for (const Node& item : value.items) table[item.key] = to_json(item);
       return table;
     }
   }
@@ -71,25 +76,42 @@ Block block_of(const cutting::CutBlock& cut, Vec2 origin, const api::EdgeNames& 
 
 }  // namespace
 
-using Path = std::vector<scenario::PathSegment>;
-
 /// What was set, put into what the text says.
 struct Scenario::Document {
-  Value value;
-  std::vector<Path> changed;  ///< by each of Scenario::changes
+  using Path = std::vector<scenario::PathSegment>;
+  struct Change {
+    Path path;
+    std::string key;
+    std::optional<Node> value;  ///< none: what the document says there, as nothing can move it
+  };
+
+  Node value;
+  std::vector<Change> changes;
+
+  [[nodiscard]] const Node& value_of(const Change& change) const;
 };
 
 namespace api {
 
+struct ScenarioAccess {
+  static const Node& document(const Scenario& scenario) { return scenario.document_->value; }
+};
+
 scenario::Scenario parsed(const Scenario& scenario) {
-  const std::vector<std::string> none;
-  return scenario::parse_scenario_text(scenario.text(), scenario.file(),
-                                       scenario.is_made() ? none : scenario.changes());
+  std::string text = scenario.text();
+  if (!scenario.is_made()) text = scenario::with_overrides(std::move(text), scenario.changes());
+  return scenario::parse_document(ScenarioAccess::document(scenario), scenario.file(), std::move(text));
 }
 
 }  // namespace api
 
 Scenario::Scenario() : document_(std::make_shared<Document>()) {}
+
+Scenario Scenario::empty(std::filesystem::path file) {
+  Scenario scenario;
+  scenario.file_ = std::move(file);
+  return scenario;
+}
 
 Scenario Scenario::load(const std::filesystem::path& file) {
   return parse(read_file(file, scenario::largest_scenario), file);
@@ -97,74 +119,220 @@ Scenario Scenario::load(const std::filesystem::path& file) {
 
 Scenario Scenario::parse(std::string text, std::filesystem::path file) {
   Scenario scenario;
-  scenario.document_ = std::make_shared<Document>(Document{scenario::parse_toml(text, file.string()), {}});
-  scenario.text_ = std::move(text);
+  scenario.document_->value = scenario::parse_toml(text, file.string());
+  scenario.text_ = std::make_shared<const std::string>(std::move(text));
   scenario.file_ = std::move(file);
-  scenario.is_made_ = false;
   return scenario;
 }
 
 void Scenario::set(const std::string& key, const std::string& toml) {
-  std::string change = key + "=" + toml;
-  const scenario::Override override_ = scenario::parse_override(change);
-  put(override_, std::move(change));
+  put(scenario::parse_override(key + "=" + toml), key);
+}
+
+void Scenario::set(const std::string& key, const Value& value) {
+  put(scenario::make_override(key, api::document_value(value)), key);
 }
 
 void Scenario::append(const std::string& key, const std::string& toml) {
-  scenario::Override list = scenario::make_override(key, {});
-  list.value.type = Value::Type::array;
-  if (const Value* there = scenario::find_value(list.path, document_->value)) list.value = *there;
-  if (!list.value.is(Value::Type::array)) {
+  add(key, {scenario::parse_override(key + "=" + toml).value});
+}
+
+void Scenario::append(const std::string& key, const Value& value) {
+  add(key, {api::document_value(value)});
+}
+
+void Scenario::extend(const std::string& key, const Value::List& values) {
+  std::vector<Node> elements;
+  elements.reserve(values.size());
+  for (const Value& value : values) elements.push_back(api::document_value(value));
+  add(key, std::move(elements));
+}
+
+/// Copies of this scenario keep what they say.
+Scenario::Document& Scenario::own_document() {
+  if (document_.use_count() > 1) document_ = std::make_shared<Document>(*document_);
+  return *document_;
+}
+
+void Scenario::put(const scenario::Override& override_, const std::string& key) {
+  if (const auto mistake = scenario::apply_override(override_, own_document().value))
+    throw InputError(*mistake);
+  note_change(override_.path, key);
+}
+
+void Scenario::add(const std::string& key, std::vector<Node> elements) {
+  const scenario::Override list = scenario::make_override(key, api::document_value(Value::List()));
+  const Node* there = scenario::find_value(list.path, document_->value);
+  if (there != nullptr && !there->is(Node::Type::array)) {
     Diagnostic diagnostic;
     diagnostic.key = key;
-    diagnostic.found = scenario::describe(list.value);
+    diagnostic.found = scenario::describe(*there);
     diagnostic.expected = "a list";
     throw InputError(std::move(diagnostic));
   }
-  list.value.items.push_back(scenario::parse_override(key + "=" + toml).value);
-  std::string change = key + "=" + scenario::to_toml(list.value);
-  put(list, std::move(change));
+  Document& document = own_document();
+  if (there == nullptr) {
+    if (const auto mistake = scenario::apply_override(list, document.value)) throw InputError(*mistake);
+  }
+  std::vector<Node>& items = scenario::find_value(list.path, document.value)->items;
+  items.insert(items.end(), std::make_move_iterator(elements.begin()),
+               std::make_move_iterator(elements.end()));
+  note_change(list.path, key);
 }
 
-void Scenario::put(const scenario::Override& override_, std::string change) {
-  // Copies of this scenario keep what they say.
-  auto document = std::make_shared<Document>(*document_);
-  if (const auto mistake = scenario::apply_override(override_, document->value)) throw InputError(*mistake);
-  // What lies in what is replaced now counts no more.
-  std::vector<std::string> changes;
-  std::vector<Path> paths;
-  for (std::size_t k = 0; k < changes_.size(); ++k) {
-    if (scenario::begins_with(document->changed[k], override_.path)) continue;
-    changes.push_back(std::move(changes_[k]));
-    paths.push_back(std::move(document->changed[k]));
+/// What lies in what is replaced now counts no more.
+void Scenario::note_change(const Document::Path& path, const std::string& key) {
+  std::vector<Document::Change>& changes = document_->changes;
+  std::erase_if(changes,
+                [&](const Document::Change& change) { return scenario::begins_with(change.path, path); });
+  // Keys at the top have no other place to go to, and their lists may be long.
+  std::optional<Node> value;
+  if (path.size() > 1) value = *scenario::find_value(path, document_->value);
+  changes.push_back({path, key, std::move(value)});
+}
+
+void Scenario::remove(const std::string& key) {
+  const scenario::Override at = scenario::make_override(key, {});
+  if (!scenario::remove_value(at.path, own_document().value)) {
+    Diagnostic diagnostic;
+    diagnostic.key = key;
+    diagnostic.found = "nothing";
+    diagnostic.expected = "a key, or an element of a list, that the scenario has";
+    throw InputError(std::move(diagnostic));
   }
-  changes.push_back(std::move(change));
-  paths.push_back(override_.path);
-  document->changed = std::move(paths);
-  changes_ = std::move(changes);
-  document_ = std::move(document);
+  text_ = nullptr;
+  document_->changes.clear();
+}
+
+const Node& Scenario::Document::value_of(const Change& change) const {
+  return change.value ? *change.value : *scenario::find_value(change.path, value);
+}
+
+std::vector<std::string> Scenario::changes() const {
+  std::vector<std::string> texts;
+  for (const Document::Change& change : document_->changes)
+    texts.push_back(change.key + "=" + scenario::to_toml(document_->value_of(change)));
+  return texts;
+}
+
+std::vector<std::pair<std::string, Value>> Scenario::values_set() const {
+  std::vector<std::pair<std::string, Value>> values;
+  for (const Document::Change& change : document_->changes)
+    values.emplace_back(change.key, api::public_value(document_->value_of(change)));
+  return values;
+}
+
+namespace {
+
+/// Paths that count from the folder `from`: from `to`.
+void move_paths(Node& value, const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (value.key == "file" && value.is(Node::Type::string) && !value.text.empty() &&
+      std::filesystem::path(value.text).is_relative()) {
+    const std::filesystem::path moved = (from / value.text).lexically_normal().lexically_relative(to);
+    if (!moved.empty()) value.text = moved.string();
+  }
+  for (Node& item : value.items) move_paths(item, from, to);
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return std::filesystem::absolute(file).lexically_normal().parent_path();
+}
+
+}  // namespace
+
+void Scenario::save(const std::filesystem::path& file) const {
+  Node moved = document_->value;
+  for (Node& section : moved.items) {
+    if (section.key == "motion" || section.key == "trace_map")
+      move_paths(section, folder_of(file_), folder_of(file));
+  }
+  check_can_write(file);
+  write_file_atomically(file, scenario::toml_text(moved));
 }
 
 std::string Scenario::text() const {
-  return is_made_ ? scenario::toml_text(document_->value) : text_;
+  return is_made() ? scenario::toml_text(document_->value) : *text_;
 }
 
+namespace {
+
+const Node* find(const std::string& key, const Node& document) {
+  return key.empty() ? &document : scenario::find_value(scenario::make_override(key, {}).path, document);
+}
+
+bool is_table_node(const Node& value) {
+  return value.is(Node::Type::table);
+}
+
+}  // namespace
+
 std::string Scenario::json(const std::string& key) const {
-  if (key.empty()) return to_json(document_->value).dump();
-  const scenario::Override at = scenario::make_override(key, {});
-  const Value* value = scenario::find_value(at.path, document_->value);
-  return value == nullptr ? std::string() : to_json(*value).dump();
+  const Node* found = find(key, document_->value);
+  return found == nullptr ? std::string() : to_json(*found).dump();
+}
+
+std::optional<Value> Scenario::value(const std::string& key) const {
+  const Node* found = find(key, document_->value);
+  return found == nullptr ? std::nullopt : std::optional(api::public_value(*found));
+}
+
+std::optional<std::vector<std::string>> Scenario::keys(const std::string& key) const {
+  const Node* found = find(key, document_->value);
+  if (found == nullptr || !(is_table_node(*found) || found->is(Node::Type::array))) return std::nullopt;
+  std::vector<std::string> keys;
+  for (const Node& item : found->items) {
+    if (is_table_node(*found))
+      keys.push_back(item.key);
+    else
+      keys.push_back(item.name() == nullptr ? "" : *item.name());
+  }
+  return keys;
+}
+
+bool Scenario::has(const std::string& key) const {
+  return find(key, document_->value) != nullptr;
+}
+
+bool Scenario::is_table(const std::string& key) const {
+  const Node* found = find(key, document_->value);
+  return found != nullptr && is_table_node(*found);
+}
+
+bool Scenario::is_list_of_tables(const std::string& key) const {
+  const Node* found = find(key, document_->value);
+  if (found != nullptr && found->is(Node::Type::array) && !found->items.empty())
+    return std::all_of(found->items.begin(), found->items.end(), is_table_node);
+  return (found == nullptr || found->is(Node::Type::array)) && api::is_list_section(key);
+}
+
+std::vector<KeyMeaning> Scenario::known_keys(const std::string& table) {
+  return api::known_keys(table);
 }
 
 std::string Scenario::toml() const {
   return scenario::toml_text(document_->value);
 }
 
+namespace {
+
+void check_realization(int realization) {
+  if (realization >= 0) return;
+  Diagnostic diagnostic;
+  diagnostic.key = "realization";
+  diagnostic.found = std::to_string(realization);
+  diagnostic.expected = "a whole number, at least 0";
+  throw InputError(std::move(diagnostic));
+}
+
+}  // namespace
+
 std::vector<std::string> Scenario::check(int realization) const {
+  check_realization(realization);
   return job::check(api::parsed(*this), realization).warnings;
 }
 
 std::vector<Block> Scenario::cut(int realization) const {
+  check_realization(realization);
   const scenario::Scenario parsed = api::parsed(*this);
   const scenario::BlockModel model = scenario::build_blocks(parsed, realization);
   const api::EdgeNames names = names_of(parsed);

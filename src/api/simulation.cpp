@@ -1,20 +1,14 @@
 #include "keyblock/simulation.h"
 
-#include <atomic>
-#include <cmath>
-#include <exception>
-#include <numbers>
+#include <stdexcept>
 #include <utility>
 
-#include "api/edge_names.h"
 #include "api/scenario_source.h"
-#include "core/error.h"
+#include "api/simulation_parts.h"
 #include "core/out_of_memory.h"
-#include "job/recorded_run.h"
 #include "keyblock/keyblock.h"
 #include "results/summary.h"
 #include "scenario/build.h"
-#include "simulation/checkpoint.h"
 #include "simulation/computation_errors.h"
 #include "simulation/feasibility.h"
 #include "simulation/refuse.h"
@@ -23,8 +17,6 @@ namespace keyblock {
 namespace {
 
 using simulation::refuse;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 job::ResultFolder::Use use_of(const RunOptions& options) {
   if (options.resume) return job::ResultFolder::Use::resume;
@@ -41,48 +33,6 @@ void check(const RunOptions& options) {
 }
 
 }  // namespace
-
-struct Simulation::Parts {
-  /// Passes progress on and keeps what summary.json is made of.
-  class Listener final : public simulation::RunObserver {
-   public:
-    void begin(const simulation::ModelRecord& record) override { model = record; }
-    void progress(const simulation::Progress& now) override {
-      if (!call) return;
-      call({now.stage, now.stage_count, now.stage_name, now.fraction, now.time, now.step, now.seconds_left});
-    }
-
-    simulation::ModelRecord model;
-    std::function<void(const Progress&)> call;
-  };
-
-  Parts(const Scenario& of, const RunOptions& options);
-
-  [[nodiscard]] simulation::Runner& runner() { return recorded ? recorded->runner() : *alone; }
-  simulation::RunOptions run_options(const RunOptions& options);
-  /// An exception of a caller's function stops the run, which ends in good order; advance() throws it then.
-  template <typename Call>
-  void keep_failure(const Call& call) {
-    try {
-      call();
-    } catch (...) {
-      if (!failure) failure = std::current_exception();
-      stop = true;
-    }
-  }
-
-  scenario::Scenario scenario;
-  std::vector<std::string> warnings;
-  simulation::RunSetup setup;
-  Listener listener;
-  std::atomic<bool> stop = false;
-  std::function<void()> after_step;
-  std::function<void(const Progress&)> progress;
-  std::exception_ptr failure;
-  std::optional<job::RecordedRun> recorded;  ///< of a run with a folder
-  std::optional<simulation::Runner> alone;   ///< of a run without one
-  std::string summary;                       ///< once it is finished
-};
 
 simulation::RunOptions Simulation::Parts::run_options(const RunOptions& options) {
   simulation::RunOptions run;
@@ -117,12 +67,15 @@ Simulation::Parts::Parts(const Scenario& of, const RunOptions& options) : scenar
 
 Simulation::Simulation(const Scenario& scenario, const RunOptions& options)
     : parts_(std::make_unique<Parts>(scenario, options)) {}
+Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 bool Simulation::advance() {
+  const Parts::Stepping now(*parts_);
   if (parts_->runner().done()) return false;
+  if (parts_->closed) throw std::logic_error("the simulation was closed");
   if (parts_->recorded) {
     parts_->recorded->advance();
   } else {
@@ -138,11 +91,20 @@ bool Simulation::done() const {
 
 std::string Simulation::finish() {
   if (!parts_->summary.empty()) return parts_->summary;
+  const Parts::Stepping now(*parts_);
+  if (parts_->closed) throw std::logic_error("the simulation was closed");
+  parts_->closed = true;
   const simulation::RunRecord record =
       parts_->recorded ? parts_->recorded->finish() : parts_->alone->finish();
   parts_->summary = results::summary_json(parts_->listener.model, record);
   simulation::check_computation(record);
   return parts_->summary;
+}
+
+void Simulation::close() {
+  const Parts::Stepping now(*parts_);
+  parts_->closed = true;
+  if (parts_->recorded) parts_->recorded->close();
 }
 
 void Simulation::stop() noexcept {
@@ -155,146 +117,6 @@ void Simulation::after_step(std::function<void()> call) {
 
 void Simulation::on_progress(std::function<void(const Progress&)> call) {
   parts_->progress = std::move(call);
-}
-
-// ── what it is like ──────────────────────────────────────────────────────────────────────────────────────────────────
-
-double Simulation::time() const {
-  return parts_->runner().state().time;
-}
-
-long Simulation::step() const {
-  return parts_->runner().state().step;
-}
-
-int Simulation::stage() const {
-  return parts_->runner().stage();
-}
-
-std::vector<std::string> Simulation::stages() const {
-  std::vector<std::string> names;
-  for (const simulation::Stage& stage : parts_->setup.stages) names.push_back(stage.name);
-  return names;
-}
-
-std::vector<std::string> Simulation::warnings() const {
-  return parts_->warnings;
-}
-
-std::string Simulation::state_hash() const {
-  return simulation::state_hash(parts_->runner().state());
-}
-
-std::size_t Simulation::blocks() const {
-  return parts_->runner().model().blocks.size();
-}
-
-std::span<const double> Simulation::vertices() const {
-  static_assert(sizeof(Vec2) == 2 * sizeof(double));
-  const std::vector<Vec2>& points = parts_->runner().model().surface.position;
-  return {points.empty() ? nullptr : &points.front().x, 2 * points.size()};
-}
-
-std::span<const int> Simulation::first_vertex() const {
-  return parts_->runner().model().surface.block_begin;
-}
-
-std::span<const std::uint8_t> Simulation::present() const {
-  return parts_->runner().model().surface.present;
-}
-
-std::vector<double> Simulation::centroids() const {
-  const dynamics::Model& model = parts_->runner().model();
-  const std::vector<double>& a = parts_->runner().state().position;
-  std::vector<double> centroids;
-  for (const dynamics::Block& block : model.blocks) {
-    const double scale = 1.0 / std::sqrt(block.area);
-    centroids.push_back(a[block.first] * scale);
-    centroids.push_back(a[block.first + 1] * scale);
-  }
-  return centroids;
-}
-
-std::vector<double> Simulation::block_velocities() const {
-  const std::vector<double>& v = parts_->runner().state().velocity;
-  std::vector<double> velocities;
-  for (const dynamics::Block& block : parts_->runner().model().blocks) {
-    const double scale = 1.0 / std::sqrt(block.area);
-    velocities.push_back(v[block.first] * scale);
-    velocities.push_back(v[block.first + 1] * scale);
-  }
-  return velocities;
-}
-
-std::span<const double> Simulation::velocity() const {
-  return parts_->runner().state().velocity;
-}
-
-std::vector<std::size_t> Simulation::first_coefficient() const {
-  std::vector<std::size_t> first;
-  for (const dynamics::Block& block : parts_->runner().model().blocks) first.push_back(block.first);
-  return first;
-}
-
-Contacts Simulation::contacts() const {
-  Contacts contacts;
-  if (parts_->runner().state().step == 0) return contacts;
-  const simulation::ContactFrame frame = parts_->runner().contacts();
-  const simulation::ModelRecord& model = parts_->listener.model;
-  const api::EdgeNames names{model.joint_set_names, model.trace_map_names, model.excavation_names};
-  for (const simulation::ContactRecord& c : frame.contacts) {
-    contacts.block_a.push_back(c.block_a);
-    contacts.block_b.push_back(c.block_b);
-    contacts.state.push_back(static_cast<std::uint8_t>(c.state));
-    contacts.position.insert(contacts.position.end(), {c.position.x, c.position.y});
-    contacts.normal.insert(contacts.normal.end(), {c.normal.x, c.normal.y});
-    contacts.length.push_back(c.length);
-    contacts.gap.push_back(c.gap);
-    contacts.slip.push_back(c.slip);
-    contacts.normal_force.push_back(c.normal_force);
-    contacts.shear_force.push_back(c.shear_force);
-    contacts.joint.push_back(names.of(c.label));
-  }
-  return contacts;
-}
-
-std::vector<std::pair<std::string, double>> Simulation::energy() const {
-  const simulation::Energy e = parts_->runner().energy();
-  return {{"kinetic", e.kinetic}, {"strain", e.strain},       {"gravity", e.gravity},
-          {"contact", e.contact}, {"friction", e.friction},   {"damping", e.damping},
-          {"input", e.input},     {"numerical", e.numerical}, {"radiated", e.radiated}};
-}
-
-// ── changes ──────────────────────────────────────────────────────────────────────────────────────────────────────────
-
-void Simulation::set_velocity(std::span<const double> velocity) {
-  parts_->runner().control().set_velocity(velocity);
-}
-
-JointStrength Simulation::strength(const std::string& joint) const {
-  const contact::JointLaw* law = parts_->runner().control().law(joint);
-  if (law == nullptr)
-    refuse("joint", "\"" + joint + "\"",
-           "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
-  return {std::atan(law->friction_coefficient) * degrees, law->cohesion, law->tension};
-}
-
-void Simulation::set_strength(const std::string& joint, const JointStrength& strength) {
-  if (!(strength.friction >= 0.0 && strength.friction < 90.0))
-    refuse("friction", std::to_string(strength.friction), "degrees, from 0 to less than 90");
-  // What was read and is set again changes no bit.
-  const bool same = strength.friction == this->strength(joint).friction;
-  const double coefficient = same ? parts_->runner().control().law(joint)->friction_coefficient
-                                  : std::tan(strength.friction / degrees);
-  parts_->runner().control().set_strength(joint, {coefficient, strength.cohesion, strength.tension});
-}
-
-void Simulation::set_load_factor(std::size_t load, double factor) {
-  parts_->runner().control().set_load_scale(load, factor);
-}
-
-void Simulation::set_motion_scale(double factor) {
-  parts_->runner().control().set_motion_scale(factor);
 }
 
 std::string run(const Scenario& scenario, const RunOptions& options,

@@ -119,7 +119,7 @@ void JointPressure::tangent(std::span<const double> y, std::span<double> h) cons
   const std::size_t n = y.size();
   for_closed_points(y, [&](double weight, const Shares& shares) {
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) h[i * n + j] += stiffness_ * weight * shares[i] * shares[j];
+      for (std::size_t j = 0; j < n; ++j) h[i * n + j] += stiffness_ * weight * (shares[i] * shares[j]);
     }
   });
 }

@@ -42,6 +42,10 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
+std::string own_text() {
+  return fmt::format("{}{} on {}\n", lock_begin, ::getpid(), host_name());
+}
+
 // Whoever held the lock before may have taken the file away meanwhile: then others lock another file of this name.
 bool is_file_of_name(int file, const fs::path& path) {
   struct stat opened = {};
@@ -111,7 +115,7 @@ void FileLock::lock() {
   } while (held_ && !is_file_of_name(file_, path_));
   if (!held_) return;
   check_is_lock();
-  const std::string text = fmt::format("{}{} on {}\n", lock_begin, ::getpid(), host_name());
+  const std::string text = own_text();
   // Only for people; a full disk does not matter.
   static_cast<void>(::ftruncate(file_, 0) == 0 && ::pwrite(file_, text.data(), text.size(), 0) > 0);
 }
@@ -141,6 +145,10 @@ FileLock::~FileLock() {
   if (held_ && afterwards_ == Afterwards::remove_file && is_file_of_name(file_, path_))
     fs::remove(path_, ignored);
   if (file_ >= 0) ::close(file_);
+}
+
+bool FileLock::held_by_this_process() const {
+  return held_ || content() == own_text();
 }
 
 std::string FileLock::holder() const {

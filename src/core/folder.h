@@ -32,6 +32,8 @@ class FileLock {
   [[nodiscard]] bool held() const { return held_; }
   /// Who holds it, as far as is known: `process 1234 on HOST`.
   [[nodiscard]] std::string holder() const;
+  /// Whether an object of this process holds it.
+  [[nodiscard]] bool held_by_this_process() const;
 
  private:
   void lock();

@@ -55,11 +55,10 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
     out.owners.set(out.first + k, row.unknown_a, row.unknown_b);
     facts.lacks_room |= row.pair == Row::without_room;
     const PointSpring& spring = springs_[k];
-    const double stretch = stretch_of(k, length, memory),
-                 force = std::clamp(spring.stiffness * stretch, -spring.yield, spring.yield);
+    const double stretch = stretch_of(k, length, memory), force = force_of(model, k, stretch);
     if (length > 0.0 && is_there(model, state, k)) {
       out.springs.set_row(out.first + k, {.normal_stiffness = std::max(force, 0.0) / length,
-                                          .shear_stiffness = spring.stiffness,
+                                          .shear_stiffness = stiffness_of(model, k),
                                           .largest_shear = spring.yield,
                                           .normal = -dot(row.normal, row.moved),
                                           .shear = stretch + dot(row.tangent(), row.moved)});
@@ -68,6 +67,23 @@ RowFacts PointSprings::build(const Model& model, const State& state, const Drive
     }
   }
   return facts;
+}
+
+std::vector<PointSprings::Now> PointSprings::now(const Model& model, const State& state,
+                                                 std::span<const double> memory) const {
+  std::vector<Now> springs;
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const double length = norm(chord(model, state, k)), stretch = stretch_of(k, length, memory);
+    const bool there = is_there(model, state, k);
+    springs.push_back({position_of(model, state, end(k, 0)), position_of(model, state, end(k, 1)), length,
+                       stiffness_of(model, k), there ? force_of(model, k, stretch) : 0.0, there});
+  }
+  return springs;
+}
+
+void PointSprings::set_force(const Model& model, const State& state, std::size_t k, double force,
+                             std::span<double> memory) const {
+  memory[k] = norm(chord(model, state, k)) - springs_[k].length - force / stiffness_of(model, k);
 }
 
 void PointSprings::install(const Model& model, const State& state, std::span<const std::uint8_t> now,
@@ -85,7 +101,7 @@ CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const dou
     const std::size_t c = first + k;
     if (rows.ks[c] == 0.0) continue;
     const Row& row = attempt.problem.rows()[c];
-    const double stiffness = springs_[k].stiffness,
+    const double stiffness = stiffness_of(attempt.model, k),
                  before = stretch_of(k, norm(chord(attempt.model, state, k)), memory);
     const SpringArray::Force force = rows.force(c);
     const Vec2 on_points = row.gradient(force);  // that stretches the spring
@@ -107,15 +123,15 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     if (!is_there(model, state, k)) continue;
     const double stretch = stretch_of(k, norm(chord(model, state, k)), memory);
-    sum += 0.5 * springs_[k].stiffness * stretch * stretch;
+    sum += 0.5 * stiffness_of(model, k) * stretch * stretch;
   }
   return sum;
 }
 
-void PointSprings::add_rounding_forces(const Model& /*model*/, double extent, std::span<double> force) const {
+void PointSprings::add_rounding_forces(const Model& model, double extent, std::span<double> force) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    force[at(end(k, 0).block)] += springs_[k].stiffness * extent;
-    force[at(end(k, 1).block)] += springs_[k].stiffness * extent;
+    force[at(end(k, 0).block)] += stiffness_of(model, k) * extent;
+    force[at(end(k, 1).block)] += stiffness_of(model, k) * extent;
   }
 }
 

@@ -1,9 +1,11 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "coupling/coupling.h"
+#include "model/model.h"
 
 namespace keyblock::dynamics {
 
@@ -28,6 +30,19 @@ class PointSprings final : public Coupling {
   PointSprings(std::vector<PointSpring> springs, std::vector<MaterialPoint> points)
       : springs_(std::move(springs)), points_(std::move(points)) {}
 
+  /// A spring as it is.
+  struct Now {
+    Vec2 from, to;  ///< m
+    double length = 0.0, stiffness = 0.0, force = 0.0;
+    bool is_there = false;
+  };
+  [[nodiscard]] std::vector<Now> now(const Model& model, const State& state,
+                                     std::span<const double> memory) const;
+  /// Yields as much as leaves a spring this force, N per thickness, where it is.
+  void set_force(const Model& model, const State& state, std::size_t k, double force,
+                 std::span<double> memory) const;
+  [[nodiscard]] std::span<const PointSpring> springs() const { return springs_; }
+
   [[nodiscard]] std::span<const MaterialPoint> points() const override { return points_; }
   void add_pairs(BlockPairs& pairs) const override;
   [[nodiscard]] std::size_t memory_size() const override { return springs_.size(); }
@@ -48,6 +63,13 @@ class PointSprings final : public Coupling {
     return points_[2 * k + which];
   }
   [[nodiscard]] bool is_there(const Model& model, const State& state, std::size_t k) const;
+  /// N/m, which a program that steers the run may have changed.
+  [[nodiscard]] double stiffness_of(const Model& model, std::size_t k) const {
+    return model.spring_stiffness.empty() ? springs_[k].stiffness : model.spring_stiffness[k];
+  }
+  [[nodiscard]] double force_of(const Model& model, std::size_t k, double stretch) const {
+    return std::clamp(stiffness_of(model, k) * stretch, -springs_[k].yield, springs_[k].yield);
+  }
   /// From the second end to the first, m.
   [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
   /// m, that has not yielded, of a spring of this length.

@@ -54,9 +54,20 @@ simulation::Advance RecordedRun::advance() {
 }
 
 simulation::RunRecord RecordedRun::finish() {
-  simulation::RunRecord record = with_report_of_failure([&] { return runner_->finish(); });
-  write_report(options_.folder);
-  return record;
+  try {
+    simulation::RunRecord record = with_report_of_failure([&] { return runner_->finish(); });
+    write_report(options_.folder);
+    close();
+    return record;
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+void RecordedRun::close() {
+  writer_.close();
+  guard_.let_go();
 }
 
 std::vector<std::filesystem::path> files_read(const scenario::Scenario& scenario) {

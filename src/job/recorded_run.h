@@ -19,8 +19,8 @@ namespace keyblock::job {
 ///     while (!run.runner().done()) run.advance();
 ///     const simulation::RunRecord record = run.finish();
 ///
-/// The folder belongs to this process while the object lives. An object that is destroyed before finish() leaves what a killed run
-/// leaves: results up to the last flush, and a checkpoint.
+/// The folder belongs to this process until finish() or close(), or while the object lives. An object that is closed or destroyed before
+/// finish() leaves what a killed run leaves: results up to the last flush, and a checkpoint.
 class RecordedRun {
  public:
   struct Options {
@@ -41,8 +41,10 @@ class RecordedRun {
   void start();
   /// One step of the plan. Where the run cannot go on, the report is written before the RunError is passed on.
   simulation::Advance advance();
-  /// Ends the run where it is; the page is written.
+  /// Ends the run where it is; the page is written. The folder is let go, also where that fails.
   simulation::RunRecord finish();
+  /// Lets the folder go. The runner must not advance after that.
+  void close();
   /// After start().
   [[nodiscard]] simulation::Runner& runner() { return *runner_; }
 

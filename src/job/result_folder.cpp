@@ -61,7 +61,7 @@ bool results_have_ended(const fs::path& folder) {
     return results::has_ended(folder);
   } catch (const InputError& error) {
     Diagnostic diagnostic = error.diagnostics().front();
-    diagnostic.hint = "run without --resume to begin anew";
+    diagnostic.hint = "to begin anew, run into another folder";
     throw InputError(std::move(diagnostic));
   }
 }
@@ -85,6 +85,9 @@ ResultFolder::ResultFolder(fs::path folder, const std::vector<fs::path>& inputs,
   make_folder(folder_);
   lock_.emplace(folder_ / "lock", FileLock::Afterwards::remove_file);
   if (!lock_->held()) {
+    if (lock_->held_by_this_process())
+      refuse(folder_, "a simulation of this process that is at it", "a folder that no simulation works in",
+             "its finish() or close() lets the folder go");
     refuse(folder_, fmt::format("a run that {} is at", lock_->holder()),
            "a folder that no other process works in", "wait until it has ended");
   }
@@ -104,7 +107,7 @@ void ResultFolder::check_state(Use use) const {
     const fs::path checkpoint = simulation::checkpoint_path(folder_);
     if (use == Use::resume && !results && file_exists(checkpoint)) {
       refuse(folder_ / result_name, "no such file, but a " + checkpoint.filename().string(),
-             "the results of the run to be resumed", "run without --resume to begin anew");
+             "the results of the run to be resumed", "to begin anew, run into another folder");
     }
     return;
   }

@@ -39,6 +39,9 @@ class ResultFolder {
   /// earlier run had concluded.
   void enter();
 
+  /// Others may work in the folder from now on.
+  void let_go() { lock_.reset(); }
+
   /// Whether the folder holds results of this run, so far as there are any.
   [[nodiscard]] bool holds_this_run() const { return resumes_ || entered_; }
 

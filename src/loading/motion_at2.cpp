@@ -86,6 +86,46 @@ std::size_t read_title(const MotionText& text, std::size_t size_at, MotionCompon
   return classical ? title_line : text.size();
 }
 
+// Without signs and words such as `COMP`.
+std::string plain_label(std::string_view label) {
+  std::string words = lower(label.substr(0, label.find('(')));
+  for (const std::string_view sign : {"°", "=", ":", "_"}) {
+    for (std::size_t at = words.find(sign); at != std::string::npos; at = words.find(sign, at))
+      words.replace(at, sign.size(), " ");
+  }
+  words = squeeze(words);
+  for (const std::string_view word : {"component", "comp.", "comp", "direction", "dir.", "dir", "azimuth",
+                                      "az.", "az", "horizontal", "horiz.", "hor"}) {
+    if (words.starts_with(word)) words = squeeze(std::string_view(words).substr(word.size()));
+    if (words.ends_with(word)) words = squeeze(std::string_view(words).substr(0, words.size() - word.size()));
+  }
+  return words;
+}
+
+// Of a code of the station and the direction.
+MotionDirection direction_at_end(std::string_view words) {
+  for (const std::string_view end : {"-up", " up", "-ud", "-dwn", "-down", "-ver", "-vert", "-ns", "-ew",
+                                     "-n", "-e", "up", "dwn", "ver"}) {
+    if (words.ends_with(end)) return parse_direction(trim(end.starts_with('-') ? end.substr(1) : end));
+  }
+  constexpr std::size_t digits = 3;
+  if (words.size() <= digits) return {};
+  const std::string_view last = words.substr(words.size() - digits);
+  const char before = words[words.size() - digits - 1];
+  const bool in_code =
+      std::string_view("- 0123456789abcdefghijklmnopqrstuvwxyz").find(before) != std::string_view::npos;
+  const bool is_number = last.find_first_not_of("0123456789") == std::string_view::npos;
+  return in_code && is_number ? parse_direction(last) : MotionDirection{};
+}
+
+// What stands behind the last comma of the title: `090`, `COMP 090`, `S16E`, `UP`, `L-N-S`, `H-E05140`, `A-HMC180`, `ELC-UP`.
+MotionDirection at2_direction(std::string_view label) {
+  const std::string words = plain_label(label);
+  if (const auto whole = parse_direction(words); whole.stated()) return whole;
+  if (const auto code = channel_code_direction(words); code.stated()) return code;
+  return direction_at_end(words);
+}
+
 bool matches_at2(const MotionText& text) {
   return size_line(text) < text.size();
 }
@@ -104,7 +144,7 @@ std::vector<MotionComponent> read_at2(const MotionText& text, const MotionReadin
   const AccelerationUnit unit = find_unit(text, title, header, reading, component);
   std::size_t next = 0;
   set_samples(component, text.numbers(header + 1, *points, 0, "samples", &next), unit,
-              parse_direction(component.label));
+              at2_direction(component.label));
   if (next < text.size()) text.fail(next, fmt::format("the end of the file after {} samples", *points));
   return {std::move(component)};
 }

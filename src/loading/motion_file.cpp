@@ -23,9 +23,9 @@ std::size_t MotionComponent::peak_index() const {
 namespace {
 
 // A new format has its line here; the order is that in which they are tried.
-constexpr const MotionFormat* formats[] = {&smc_format,  &csmip_format, &cosmos_format,
-                                           &knet_format, &esm_format,   &geonet_format,
-                                           &afad_format, &at2_format,   &table_format};
+constexpr const MotionFormat* formats[] = {
+    &smc_format,  &usc_format, &csmip_format, &cosmos_format, &knet_format, &esm_format,     &geonet_format,
+    &afad_format, &cwa_format, &bhrc_format,  &unam_format,   &at2_format,  &counted_format, &table_format};
 
 // m/s². What is summed and squared of larger ones would not stay finite.
 constexpr double largest_acceleration = 1e9;
@@ -91,7 +91,7 @@ void check_unit(const MotionText& text, const MotionReading& reading,
 std::string motion_format_names() {
   std::string names;
   for (const MotionFormat* format : formats) {
-    if (format == &table_format) continue;
+    if (format == &table_format || format == &counted_format) continue;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
   }
   return names + " or a table";

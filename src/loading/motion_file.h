@@ -53,8 +53,8 @@ struct MotionReading {
 /// Reads all acceleration components of a strong-motion file. The format is recognized by the content; the formats, and what is read of
 /// each, are in docs/user-guide.md. Samples are in m/s², those of vertical components positive upwards.
 ///
-/// A unit is read from the file, and one that is not understood is refused. Where a file names none, `reading` does; a table is else
-/// taken to be in m/s² and an AT2 file in g, with a note.
+/// A unit is read from the file, and one that is not understood is refused. Where a file names none, `reading` must; an AT2 file is else
+/// taken to be in g, with a note.
 ///
 /// Throws InputError, with line and column, for a file that is of no known format, holds no acceleration, is cut short or longer than
 /// it says, has a sample that is not a finite number, or has steps of less than 1e-9 s or more than 1e6 s. Samples are at most 1e9

@@ -37,6 +37,14 @@ std::optional<AccelerationUnit> stated_unit(const MotionText& text, const Motion
   return unit;
 }
 
+void refuse_without_unit(const MotionText& text, std::size_t line) {
+  text.fail(
+      line, 1, fmt::format("no unit of the samples in {}", quoted_text(text.line(line))),
+      fmt::format("the unit in the header, as in 'time (s), acceleration (m/s2)', or the key unit: {}",
+                  acceleration_units_text),
+      "write unit = \"m/s2\" beside file = …, or unit = \"g\", \"cm/s2\" …; keyblock motion takes --unit");
+}
+
 void compare_peak(MotionComponent& component, double stated, double rounding) {
   constexpr double tolerance = 0.01;
   const double unit = component.file_unit_in_si;

@@ -20,7 +20,7 @@ struct MotionFormat {
 };
 
 extern const MotionFormat smc_format, csmip_format, cosmos_format, knet_format, esm_format, geonet_format,
-    afad_format, at2_format, table_format;
+    afad_format, cwa_format, usc_format, bhrc_format, unam_format, at2_format, counted_format, table_format;
 
 /// Reads a text of numbers whose layout the user states.
 std::vector<MotionComponent> read_by_hand(const MotionText& text, const MotionReading& reading);
@@ -34,6 +34,9 @@ void set_samples(MotionComponent& component, std::vector<double> samples, const 
 
 /// The unit that the user states; absent when none is. Throws InputError for one that is not understood.
 std::optional<AccelerationUnit> stated_unit(const MotionText& text, const MotionReading& reading);
+
+/// Throws InputError for a file that names no unit where `line` is the first that could: it says which key names it.
+[[noreturn]] void refuse_without_unit(const MotionText& text, std::size_t line);
 
 /// Adds a note when the largest sample is not what the header states, in m/s², rounded by at most `rounding`.
 void compare_peak(MotionComponent& component, double stated, double rounding = 0.0);

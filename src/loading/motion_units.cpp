@@ -28,8 +28,12 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
 
 std::string canonical(std::string_view word) {
   std::string out = lower(word);
-  for (std::size_t at = out.find("²"); at != std::string::npos; at = out.find("²", at))
-    out.replace(at, std::string_view("²").size(), "2");
+  constexpr std::pair<std::string_view, std::string_view> plain[] = {{"²", "2"}, {"³", "3"}, {"⁻", "-"},
+                                                                     {"−", "-"}, {"·", "."}, {"⋅", "."}};
+  for (const auto& [sign, by] : plain) {
+    for (std::size_t at = out.find(sign); at != std::string::npos; at = out.find(sign, at))
+      out.replace(at, sign.size(), by);
+  }
   std::erase_if(out, [](char c) { return c == '^' || c == '*'; });
   while (out.ends_with('.')) out.pop_back();
   while (out.starts_with('.') && out.size() > 1 && (out[1] < '0' || out[1] > '9')) out.erase(0, 1);
@@ -50,8 +54,12 @@ std::vector<Token> tokens_of(std::string_view line) {
       continue;
     }
     const std::size_t end = std::min(line.find_first_of(parting, at), line.size());
-    if (std::string word = canonical(line.substr(at, end - at)); !word.empty())
+    std::string word = canonical(line.substr(at, end - at));
+    if (word == "g" && !tokens.empty() && tokens.back().text == "%") {
+      tokens.back().text = "%g";  // `% g`
+    } else if (!word.empty()) {
       tokens.push_back({std::move(word), at, before, joined, false});
+    }
     before = ' ';
     joined = false;
     at = end;
@@ -145,6 +153,22 @@ std::optional<UnitMention> fraction(std::string_view head, std::string_view belo
   return mention;
 }
 
+// A unit without a sign between length and time, as names of columns have it: `cms2`, `cmss`, `mps2`; of a velocity `cms`, `mps`. `ms`
+// is none, as it may be milliseconds.
+std::optional<UnitMention> compact(std::string_view word) {
+  for (const std::string_view prefix : {"mm", "cm", "in", "ft", "m"}) {
+    if (!word.starts_with(prefix) || word == "ms") continue;
+    std::string_view below = word.substr(prefix.size());
+    if (below.starts_with('p')) below.remove_prefix(1);
+    const bool twice = is_one_of(below, {"ss", "s2", "sec2", "secsec", "s-2", "sec-2"});
+    if (!twice && !is_second(below)) continue;
+    UnitMention mention = of_length(*length_of(prefix), twice ? 2 : 1);
+    mention.sure = below.ends_with('2');
+    return mention;
+  }
+  return {};
+}
+
 // A unit in one word.
 std::optional<UnitMention> single(std::string_view word) {
   if (const auto plain = plain_acceleration(word)) {
@@ -163,6 +187,7 @@ std::optional<UnitMention> single(std::string_view word) {
     if (start.ends_with('.')) start.remove_suffix(1);
     if (const Length* length = length_of(start)) return of_length(*length, 2);
   }
+  if (auto mention = compact(word)) return mention;
   UnitMention mention;
   if (is_one_of(word, {"kine", "kines"})) {
     mention.kind = UnitKind::velocity;

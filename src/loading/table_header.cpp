@@ -48,18 +48,32 @@ std::vector<std::string> blank_fields(std::string_view line) {
   return fields;
 }
 
+// Fields that `parting` parts where it stands in no quotes.
+std::vector<std::string> parted_names(std::string_view line, char parting) {
+  std::vector<std::string> names;
+  char quote = 0;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k <= line.size(); ++k) {
+    const char c = k < line.size() ? line[k] : parting;
+    const bool at_start = trim(line.substr(begin, k - begin)).empty();
+    if (quote == 0 && c == parting) {
+      names.push_back(unquoted(line.substr(begin, k - begin)));
+      begin = k + 1;
+    } else if (c == quote) {
+      quote = 0;
+    } else if (quote == 0 && at_start && (c == '"' || c == '\'')) {
+      quote = c;
+    }
+  }
+  return names;
+}
+
 // The names of `count` columns; with two columns, all words but the last may be of the time. Empty when there are more or fewer.
 std::vector<std::string> column_names(std::string_view line, std::size_t count) {
   line = trim(line);
-  for (const char* parting : {";", ",", "\t"}) {
-    if (line.find(*parting) == std::string_view::npos) continue;
-    std::vector<std::string> names;
-    for (std::string_view rest = line;;) {
-      const std::size_t end = rest.find(*parting);
-      names.push_back(unquoted(rest.substr(0, end)));
-      if (end == std::string_view::npos) break;
-      rest.remove_prefix(end + 1);
-    }
+  for (const char parting : {';', ',', '\t'}) {
+    if (line.find(parting) == std::string_view::npos) continue;
+    std::vector<std::string> names = parted_names(line, parting);
     if (names.size() == count) return names;
   }
   std::vector<std::string> names;
@@ -143,22 +157,72 @@ MotionDirection name_direction(std::string_view name) {
   return {};
 }
 
+bool is_digit(const std::string& words, std::size_t k) {
+  return k < words.size() && words[k] >= '0' && words[k] <= '9';
+}
+
+// Length of a sign of multiplication at place k: `*`, `×`, or an `x` that belongs to no word; 0: there is none.
+std::size_t multiplication_sign(const std::string& words, std::size_t k) {
+  if (words.compare(k, 2, "×") == 0) return 2;
+  const bool in_word = k > 0 && words[k - 1] >= 'a' && words[k - 1] <= 'z';
+  return words[k] == '*' || (words[k] == 'x' && !in_word) ? 1 : 0;
+}
+
+// Whether the sign of this length at place k has a number beside it that is no exponent.
+bool multiplies(const std::string& words, std::size_t k, std::size_t length) {
+  const std::size_t after = std::min(words.find_first_not_of("* ", k + length), words.size());
+  if (words[k] == 'x')  // `x10`, `x 0.01`; x1 is a name
+    return is_digit(words, after) &&
+           (words.compare(after, 2, "10") == 0 || words.find('.', after) < words.size());
+  std::size_t before = k;
+  while (before > 0 && (words[before - 1] == ' ' || words[before - 1] == '*')) --before;
+  const char last = before > 0 ? words[before - 1] : ' ';
+  const bool is_exponent = (last == 's' || last == 'c') && words[after] == '2' && !is_digit(words, after + 1);
+  const bool number_before = last >= '0' && last <= '9' && words[after] != 's';
+  return !is_exponent && (is_digit(words, after) || number_before);
+}
+
+// A number that multiplies the samples or their unit: `acc*10`, `m/s2 x 100`. The exponent of `s**2` is none.
+bool has_factor(std::string_view name) {
+  const std::string words = lower(name);
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::size_t length = multiplication_sign(words, k);
+    if (length > 0 && multiplies(words, k, length)) return true;
+  }
+  return false;
+}
+
+// What the words of a name say that the column is.
+UnitKind kind_of_words(const std::string& name) {
+  const std::string words = lower(name);
+  if (words.find("acc") != std::string::npos) return UnitKind::acceleration;
+  const auto all = words_between(words, " \t_:()[]/,.-");
+  const auto has = [&](std::initializer_list<std::string_view> known) {
+    return std::any_of(all.begin(), all.end(), [&](const std::string& word) { return is_any(word, known); });
+  };
+  if (words.find("veloc") != std::string::npos || words.starts_with("vel") || has({"vel", "vx", "vy", "vz"}))
+    return UnitKind::velocity;
+  if (words.find("displ") != std::string::npos || words.starts_with("disp") ||
+      has({"disp", "dis", "ux", "uy", "uz", "dx", "dy", "dz"}))
+    return UnitKind::displacement;
+  return UnitKind::acceleration;
+}
+
 TableColumn read_column_name(const MotionText& text, std::size_t line, const std::string& name) {
   TableColumn column;
   column.name = name;
-  const std::string words = lower(name);
-  if (words.find("accel") == std::string::npos) {
-    if (words.find("veloc") != std::string::npos || words.starts_with("vel"))
-      column.kind = UnitKind::velocity;
-    if (words.find("displ") != std::string::npos || words.starts_with("disp"))
-      column.kind = UnitKind::displacement;
-  }
+  column.kind = kind_of_words(name);
   const auto mentions = unit_mentions(name);
   const auto is_unit = [&](const UnitMention& m) {
-    return m.sure || (m.last && (m.at > 0 || m.kind == UnitKind::acceleration));
+    return m.sure || (m.last && (m.at > 0 || m.kind == UnitKind::acceleration)) ||
+           (m.at > 0 && m.words.size() > 2 && m.kind != UnitKind::unknown);
   };
   const auto mention = std::find_if(mentions.begin(), mentions.end(), is_unit);
   const bool other = column.kind != UnitKind::acceleration;
+  if (!other && has_factor(name))
+    text.fail(line, 1, quoted_text(name),
+              fmt::format("a unit of acceleration without a factor beside it: {}", acceleration_units_text),
+              "unit = \"…\" names the unit that a sample of 1 has, as \"mm/s2\" or \"g/10\"");
   if (mention == mentions.end() ? !other && has_strange_unit(name)
                                 : !other && (mention->kind == UnitKind::unknown || is_scaled(name, *mention)))
     text.fail(line, 1, quoted_text(name),
@@ -168,6 +232,25 @@ TableColumn read_column_name(const MotionText& text, std::size_t line, const std
   if (mention != mentions.end() && column.kind == UnitKind::acceleration) column.unit = mention->unit;
   column.direction = name_direction(name);
   return column;
+}
+
+// Beside a column `a` or `acc` those that begin with `v`, `d` or `u` alone are velocity and displacement. Elsewhere they may be directions.
+void tell_quantities_apart(std::vector<TableColumn>& columns) {
+  const auto first_word = [](const TableColumn& column) {
+    const auto words = words_between(column.name, " \t_:()[]/,.-");
+    return words.empty() ? std::string() : words.front();
+  };
+  const bool acceleration = std::any_of(columns.begin(), columns.end(), [&](const TableColumn& column) {
+    const std::string word = first_word(column);
+    return word == "a" || word.starts_with("acc");
+  });
+  if (!acceleration) return;
+  for (TableColumn& column : columns) {
+    if (column.unit) continue;
+    const std::string word = first_word(column);
+    if (word == "v") column.kind = UnitKind::velocity;
+    if (word == "d" || word == "u" || word == "s") column.kind = UnitKind::displacement;
+  }
 }
 
 void check_time_column(const MotionText& text, std::size_t line, const std::vector<std::string>& names) {
@@ -196,6 +279,10 @@ bool names_columns(std::string_view line, std::size_t count) {
   return !names.empty() && is_time_name(names.front()) && !parse_number(names.back());
 }
 
+bool has_column_names(std::string_view line, std::size_t count) {
+  return !column_names(line, count).empty();
+}
+
 TableHeader read_table_header(const MotionText& text, const std::vector<std::size_t>& lines,
                               std::size_t count) {
   TableHeader header;
@@ -215,6 +302,7 @@ TableHeader read_table_header(const MotionText& text, const std::vector<std::siz
   header.seconds = time_unit_of(text, lines.back(), names.front());
   for (std::size_t c = 1; c < count; ++c)
     header.columns[c - 1] = read_column_name(text, lines.back(), names[c]);
+  tell_quantities_apart(header.columns);
   return header;
 }
 

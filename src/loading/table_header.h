@@ -33,6 +33,9 @@ TableHeader read_table_header(const MotionText& text, const std::vector<std::siz
 /// Whether a line, or a comment, has the names of `count` columns, of which the first one is a time.
 bool names_columns(std::string_view line, std::size_t count);
 
+/// Whether a line can be the names of `count` columns, whatever they are.
+bool has_column_names(std::string_view line, std::size_t count);
+
 /// A comment without its sign and without a key before a colon: `#DataSequence: Time U(+)`.
 std::string_view comment_words(std::string_view line);
 

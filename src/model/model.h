@@ -66,6 +66,8 @@ struct Model {
   std::vector<contact::JointLaw> laws;
   std::vector<GeneralizedLoad> loads;
   std::vector<double> load_scale;  ///< factor on each load, of a program that steers the run; empty: 1
+  std::vector<double>
+      spring_stiffness;  ///< N/m of each of the springs between points, likewise; empty: their own
   std::vector<std::shared_ptr<const Coupling>> couplings;  ///< all except contacts
   std::vector<PrescribedMotion> motions;
   std::optional<InSituStress> in_situ;

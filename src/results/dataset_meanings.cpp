@@ -1,6 +1,7 @@
 #include <string>
 #include <vector>
 
+#include "core/checked_json.h"
 #include "results/block_shape.h"
 #include "results/record_fields.h"
 #include "results/result_tables.h"
@@ -18,6 +19,50 @@ struct Meaning {
   Names columns{};  ///< of the last dimension
   Names values{};   ///< by number
 };
+
+/// The dimensions of datasets, by the scales that they are; of all others nothing is said.
+struct Dimensions {
+  const char* dataset;
+  Names scales;
+};
+
+std::vector<Dimensions> dimensions() {
+  const char *const frame = "frames/time", *const snapshot = "contacts/time",
+                    *const contact = "contacts/contact", *const row = "histories/time",
+                    *const step = "steps/time";
+  std::vector<Dimensions> all{{"frames/displacement", {frame, "vertex", "component"}},
+                              {"frames/velocity", {frame, "block", "component"}},
+                              {"frames/stress", {frame, "block", "stress_component"}},
+                              {"frames/status", {frame, "block"}},
+                              {"frames/order", {frame, "block"}},
+                              {"histories/names", {"point"}},
+                              {"histories/values", {row, "point", "quantity"}},
+                              {"steps/energy", {step, "energy_term"}},
+                              {"steps/energy_names", {"energy_term"}},
+                              {"model/vertices", {"vertex", "component"}},
+                              {"model/edge_kind", {"vertex"}},
+                              {"model/edge_index", {"vertex"}},
+                              {"model/block_centroid", {"block", "component"}},
+                              {"contacts/position", {contact, "component"}},
+                              {"contacts/normal", {contact, "component"}}};
+  for (const char* name : {"frames/stage", "frames/step"}) all.push_back({name, {frame}});
+  for (const char* name : {"contacts/stage", "contacts/step", "contacts/end"})
+    all.push_back({name, {snapshot}});
+  all.push_back({"histories/step", {row}});
+  for (const char* name : {"steps/stage", "steps/step", "steps/iterations", "steps/closed_contacts",
+                           "steps/step_size", "steps/penetration", "steps/max_displacement"})
+    all.push_back({name, {step}});
+  for (const char* name :
+       {"contacts/block_a", "contacts/block_b", "contacts/state", "contacts/length", "contacts/gap",
+        "contacts/slip", "contacts/shear_displacement", "contacts/normal_force", "contacts/shear_force",
+        "contacts/edge_kind", "contacts/edge_index"})
+    all.push_back({name, {contact}});
+  for (const char* name :
+       {"model/block_name", "model/block_order", "model/block_fixed", "model/block_area",
+        "model/block_density", "model/block_stress_ratio_zz", "model/block_young", "model/block_poisson"})
+    all.push_back({name, {"block"}});
+  return all;
+}
 
 template <class Enum>
 Names names_up_to(Enum last, std::string (*name)(Enum)) {
@@ -43,32 +88,41 @@ std::string energy_units() {
 
 std::vector<Meaning> of_the_model() {
   const Names kinds = names_up_to(cutting::EdgeKind::domain, edge_kind_name);
-  return {{"scenario", "", "the scenario that was run, TOML"},
-          {"model/record", "", "names, outlines, limits and what cutting did, JSON"},
-          {"model/vertices", "m", "reference positions of the display vertices", {"x", "y"}},
-          {"model/edge_kind",
-           "1",
-           "what the edge from each vertex to the next of its ring is a piece of",
-           {},
-           kinds},
-          {"model/edge_index", "1", "which joint set, trace map or excavation of edge_kind"},
-          {"model/block_rings", "1",
-           "entries [block_rings[b], block_rings[b + 1]) of ring_start belong to block b"},
-          {"model/ring_start", "1",
-           "ring r of block b: vertices [ring_start[a + r], ring_start[a + r + 1]), a = block_rings[b]"},
-          {"model/block_name", "", "names; empty for cut blocks"},
-          {"model/block_order", "1", "order of the displacement polynomial at the start"},
-          {"model/block_fixed", "1", "whether the block is fixed", {}, {"free", "fixed"}},
-          {"model/block_area", "m2", "reference area"},
-          {"model/block_density", "kg/m3", "mass per volume"},
-          {"model/block_centroid", "m", "reference position of the centroid", {"x", "y"}},
-          {"model/block_stress_ratio_zz", "1",
-           "stress zz over xx + yy: 0 in plane stress, Poisson's ratio in plane strain"},
-          {"model/block_young", "Pa", "Young's modulus"},
-          {"model/block_poisson", "1", "Poisson's ratio"},
-          {"model/block_excavations", "1",
-           "entries [block_excavations[b], block_excavations[b + 1]) of excavation belong to block b"},
-          {"model/excavation", "1", "numbers of excavations"}};
+  return {
+      {"scenario", "", "the scenario that was run, TOML"},
+      {"texts", "", "all texts of the file as JSON, bytes: what keyblock itself reads, as it has a checksum"},
+      {"block", "1", "number of the block"},
+      {"vertex", "1", "number of the display vertex"},
+      {"point", "1", "number of the chosen point"},
+      {"component", "", "of vectors"},
+      {"stress_component", "", "of stresses"},
+      {"quantity", "", "of histories"},
+      {"energy_term", "", "of the energy balance"},
+      {"model/record", "", "names, outlines, limits and what cutting did, JSON"},
+      {"model/vertices", "m", "reference positions of the display vertices", {"x", "y"}},
+      {"model/edge_kind",
+       "1",
+       "what the edge from each vertex to the next of its ring is a piece of",
+       {},
+       kinds},
+      {"model/edge_index", "1", "which joint set, trace map or excavation of edge_kind"},
+      {"model/block_rings", "1",
+       "entries [block_rings[b], block_rings[b + 1]) of ring_start belong to block b"},
+      {"model/ring_start", "1",
+       "ring r of block b: vertices [ring_start[a + r], ring_start[a + r + 1]), a = block_rings[b]"},
+      {"model/block_name", "", "names; empty for cut blocks"},
+      {"model/block_order", "1", "order of the displacement polynomial at the start"},
+      {"model/block_fixed", "1", "whether the block is fixed", {}, {"free", "fixed"}},
+      {"model/block_area", "m2", "reference area"},
+      {"model/block_density", "kg/m3", "mass per volume"},
+      {"model/block_centroid", "m", "reference position of the centroid", {"x", "y"}},
+      {"model/block_stress_ratio_zz", "1",
+       "stress zz over xx + yy: 0 in plane stress, Poisson's ratio in plane strain"},
+      {"model/block_young", "Pa", "Young's modulus"},
+      {"model/block_poisson", "1", "Poisson's ratio"},
+      {"model/block_excavations", "1",
+       "entries [block_excavations[b], block_excavations[b + 1]) of excavation belong to block b"},
+      {"model/excavation", "1", "numbers of excavations"}};
 }
 
 std::vector<Meaning> of_frames() {
@@ -92,6 +146,7 @@ std::vector<Meaning> of_contacts() {
       {"contacts/stage", "1", "stage, from 0"},
       {"contacts/step", "1", "step of the run"},
       {"contacts/end", "1", "contacts of snapshot k are the rows [end[k - 1], end[k]), from 0 for the first"},
+      {"contacts/contact", "1", "number of the row"},
       {"contacts/block_a", "1", "block with the vertex"},
       {"contacts/block_b", "1", "block with the edge"},
       {"contacts/state",
@@ -103,7 +158,9 @@ std::vector<Meaning> of_contacts() {
       {"contacts/normal", "1", "unit vector out of block_b", {"x", "y"}},
       {"contacts/length", "m", "of joint that belongs to the contact"},
       {"contacts/gap", "m", "as the law of the joint has it, negative where it is pressed"},
-      {"contacts/slip", "m", "shear displacement of block_a against block_b since the excavation"},
+      {"contacts/slip", "m", "magnitude of shear_displacement"},
+      {"contacts/shear_displacement", "m",
+       "of block_a against block_b along (-normal_y, normal_x) since the excavation"},
       {"contacts/normal_force", "N/m", "per metre of thickness, compression positive"},
       {"contacts/shear_force", "N/m", "per metre of thickness; on block_a along (normal_y, -normal_x)"},
       {"contacts/edge_kind",
@@ -138,18 +195,37 @@ std::vector<Meaning> of_rows() {
       {"summary", "", "the text of summary.json, bytes"}};
 }
 
+std::vector<Meaning> all_meanings() {
+  std::vector<Meaning> all;
+  for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows()})
+    all.insert(all.end(), meanings.begin(), meanings.end());
+  return all;
+}
+
 }  // namespace
 
-void describe_datasets(hid_t file) {
-  for (const auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows()}) {
-    for (const Meaning& meaning : meanings) {
-      const hdf5::Handle dataset = hdf5::open_dataset(file, meaning.dataset);
-      hdf5::write_attribute(dataset, "unit", meaning.unit);
-      hdf5::write_attribute(dataset, "description", std::string(meaning.description));
-      if (!meaning.columns.empty()) hdf5::write_attribute(dataset, "columns", meaning.columns);
-      if (!meaning.values.empty()) hdf5::write_attribute(dataset, "values", meaning.values);
-    }
+nlohmann::ordered_json dataset_names() {
+  nlohmann::ordered_json names = nlohmann::ordered_json::object();
+  for (const Meaning& meaning : all_meanings()) {
+    if (!meaning.columns.empty()) names[meaning.dataset]["columns"] = meaning.columns;
+    if (!meaning.values.empty()) names[meaning.dataset]["values"] = meaning.values;
   }
+  return names;
+}
+
+void describe_datasets(hid_t file) {
+  for (const Meaning& meaning : all_meanings()) {
+    const hdf5::Handle dataset = hdf5::open_dataset(file, meaning.dataset);
+    if (!meaning.unit.empty()) hdf5::write_attribute(dataset, "units", meaning.unit);
+    hdf5::write_attribute(dataset, "description", std::string(meaning.description));
+    if (!meaning.columns.empty()) hdf5::write_attribute(dataset, "columns", meaning.columns);
+    if (!meaning.values.empty()) hdf5::write_attribute(dataset, "values", meaning.values);
+  }
+  for (const char* group : {"frames", "contacts", "histories", "steps"})
+    hdf5::make_scale(hdf5::open_dataset(file, std::string(group) + "/time"), "time");
+  hdf5::make_scale(hdf5::open_dataset(file, "contacts/contact"), "contact");
+  for (const Dimensions& of : dimensions())
+    hdf5::attach_scales(file, hdf5::open_dataset(file, of.dataset), of.scales);
 }
 
 }  // namespace keyblock::results

@@ -41,8 +41,7 @@ hsize_t product(const std::vector<hsize_t>& shape) {
   return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
 }
 
-// Texts of up to `size` bytes, padded by zeros. Those of variable length lie in a heap without a checksum, where one wrong byte
-// lets the library fall.
+// Texts of up to `size` bytes, padded by zeros.
 Handle string_type(std::size_t size) {
   Handle type(check_id(H5Tcopy(H5T_C_S1), "string type"), H5Tclose);
   check(H5Tset_size(type, std::max<std::size_t>(size, 1)), "string type");
@@ -51,21 +50,28 @@ Handle string_type(std::size_t size) {
   return type;
 }
 
-std::size_t longest_of(const std::vector<std::string>& values) {
-  std::size_t longest = 1;
-  for (const std::string& value : values) longest = std::max(longest, value.size());
-  return longest;
+Handle type_of_any_length() {
+  Handle type(check_id(H5Tcopy(H5T_C_S1), "string type"), H5Tclose);
+  check(H5Tset_size(type, H5T_VARIABLE), "string type");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
+  return type;
 }
 
-// All texts one after the other, as long as the longest.
-std::string padded(const std::vector<std::string>& values) {
-  const std::size_t longest = longest_of(values);
-  std::string texts;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    texts += values[k];
-    texts.resize((k + 1) * longest, '\0');
-  }
-  return texts;
+std::vector<const char*> pointers_to(const std::vector<std::string>& values) {
+  std::vector<const char*> pointers;
+  for (const std::string& value : values) pointers.push_back(value.c_str());
+  return pointers;
+}
+
+// A text that ends with a zero, as the specification of dimension scales asks for.
+void write_plain_text(hid_t object, const char* name, const std::string& value) {
+  const Handle type(check_id(H5Tcopy(H5T_C_S1), name), H5Tclose);
+  check(H5Tset_size(type, value.size() + 1), name);
+  check(H5Tset_strpad(type, H5T_STR_NULLTERM), name);
+  const Handle space(check_id(H5Screate(H5S_SCALAR), name), H5Sclose);
+  const Handle attribute(check_id(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), name),
+                         H5Aclose);
+  check(H5Awrite(attribute, type, value.c_str()), name);
 }
 
 // "unable to lock file, errno = 37, …", except for a file that is in use.
@@ -220,12 +226,12 @@ void write_attribute(hid_t object, const std::string& name, const std::string& v
 }
 
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& values) {
-  const Handle type = string_type(longest_of(values));
+  const Handle type = type_of_any_length();
   const hsize_t count = values.size();
   const Handle space(check_id(H5Screate_simple(1, &count, nullptr), name), H5Sclose);
   const Handle attribute(
       check_id(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), name), H5Aclose);
-  check(H5Awrite(attribute, type, padded(values).data()), name);
+  check(H5Awrite(attribute, type, pointers_to(values).data()), name);
 }
 
 template <class T>
@@ -274,15 +280,37 @@ void write_array(hid_t group, const std::string& name, const std::vector<hsize_t
 
 void write_strings(hid_t group, const std::string& name, const std::vector<std::string>& values) {
   const hsize_t count = values.size();
-  const std::size_t longest = longest_of(values);
-  const Handle type = string_type(longest);
+  const Handle type = type_of_any_length();
   const Handle space(check_id(H5Screate_simple(1, &count, nullptr), name), H5Sclose);
   const Handle properties = dataset_properties();
-  if (count > 0) set_chunks(properties, {std::clamp<hsize_t>(chunk_bytes / longest, 1, count)}, true);
   const Handle dataset(
       check_id(H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), name),
       H5Dclose);
-  if (count > 0) check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, padded(values).data()), name);
+  if (count > 0)
+    check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers_to(values).data()), name);
+}
+
+void make_scale(hid_t dataset, const std::string& name) {
+  write_plain_text(dataset, "CLASS", "DIMENSION_SCALE");
+  write_plain_text(dataset, "NAME", name);
+}
+
+void attach_scales(hid_t file, hid_t dataset, const std::vector<std::string>& scales) {
+  const char* const what = "DIMENSION_LIST";
+  std::vector<hobj_ref_t> references(scales.size());
+  std::vector<hvl_t> lists(scales.size());
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    lists[k] = {0, nullptr};
+    if (scales[k].empty()) continue;
+    check(H5Rcreate(&references[k], file, scales[k].c_str(), H5R_OBJECT, -1), what);
+    lists[k] = {1, &references[k]};
+  }
+  const Handle type(check_id(H5Tvlen_create(H5T_STD_REF_OBJ), what), H5Tclose);
+  const hsize_t rank = scales.size();
+  const Handle space(check_id(H5Screate_simple(1, &rank, nullptr), what), H5Sclose);
+  const Handle attribute(check_id(H5Acreate2(dataset, what, type, space, H5P_DEFAULT, H5P_DEFAULT), what),
+                         H5Aclose);
+  check(H5Awrite(attribute, type, lists.data()), what);
 }
 
 template <class T>

@@ -81,7 +81,7 @@ Handle open_dataset(hid_t parent, const std::string& name);
 /// understands ENOSYS, where others say ENOLCK or EOPNOTSUPP.
 Handle open_with_or_without_locks(const std::function<hid_t(hid_t)>& open);
 
-/// Attributes of a group, UTF-8 strings and scalars.
+/// Attributes of a group, UTF-8 strings and scalars. Lists of strings are as write_strings has them.
 void write_attribute(hid_t object, const std::string& name, const std::string& value);
 void write_attribute(hid_t object, const std::string& name, const std::vector<std::string>& values);
 template <class T>
@@ -90,11 +90,18 @@ std::string read_text_attribute(hid_t object, const std::string& name);
 template <class T>
 T read_attribute(hid_t object, const std::string& name);
 
-/// Datasets written once, with checksums. `shape` includes the number of rows. Texts take the room of the longest.
+/// Datasets written once, with checksums. `shape` includes the number of rows.
 template <class T>
 void write_array(hid_t group, const std::string& name, const std::vector<hsize_t>& shape,
                  std::span<const T> values);
+/// Texts of any length each, for programs of others: netCDF falls over arrays of texts of one length. They lie in a heap without a checksum,
+/// where one wrong byte lets the library fall: keyblock does not read them.
 void write_strings(hid_t group, const std::string& name, const std::vector<std::string>& values);
+
+/// Makes a dataset of one dimension a scale that others can have (HDF5 Dimension Scale Specification), by the name that netCDF shows.
+void make_scale(hid_t dataset, const std::string& name);
+/// Gives a dataset its scales, one for each dimension; empty paths: none for that one.
+void attach_scales(hid_t file, hid_t dataset, const std::vector<std::string>& scales);
 
 template <class T>
 struct Array {

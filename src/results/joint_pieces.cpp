@@ -143,9 +143,8 @@ void JointLocator::locate(std::span<const ContactRecord> contacts, Displacement 
       const double to = std::min(found.end, arc[k + 1]);
       if (!(to > from)) continue;
       pieces.push_back({vertices[k], static_cast<float>((from - arc[k]) / length),
-                        static_cast<float>((to - arc[k]) / length),
-                        static_cast<float>(std::abs(contact.slip)), static_cast<float>(contact.gap),
-                        contact.state});
+                        static_cast<float>((to - arc[k]) / length), static_cast<float>(contact.slip()),
+                        static_cast<float>(contact.gap), contact.state});
     }
   }
 }

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
+#include "core/checked_json.h"
 #include "core/error.h"
+#include "results/record_fields.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
 
@@ -84,6 +87,70 @@ void check_places(const simulation::ModelRecord& model) {
 
 }  // namespace
 
+namespace {
+
+// All texts, for the readers of keyblock: with a checksum.
+void write_texts(hid_t file, const simulation::ModelRecord& model) {
+  nlohmann::ordered_json texts{{"scenario", model.scenario}, {"record", model_json(model)}};
+  for (const auto& block : model.blocks) texts["block_names"].push_back(block.name);
+  texts["history_names"] = model.history_names;
+  for (const auto& [name, member] : energy_fields) texts["energy_names"].push_back(name);
+  texts["meanings"] = dataset_names();
+  TextColumn column(file, "texts");
+  column.append(texts.dump());
+  column.flush();
+}
+
+// Dimensions that several groups have.
+void write_scales(hid_t file, const simulation::ModelRecord& model) {
+  const auto numbered = [&](const char* name, std::size_t count) {
+    std::vector<std::int32_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    write_column(file, name, numbers);
+    hdf5::make_scale(hdf5::open_dataset(file, name), name);
+  };
+  numbered("block", model.blocks.size());
+  numbered("vertex", model.vertices.size());
+  numbered("point", model.history_names.size());
+  const auto named = [&](const char* name, const std::vector<std::string>& names) {
+    hdf5::write_strings(file, name, names);
+    hdf5::make_scale(hdf5::open_dataset(file, name), name);
+  };
+  named("component", {"x", "y"});
+  named("stress_component", {"xx", "yy", "xy"});
+  named("quantity", {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"});
+  std::vector<std::string> energies;
+  for (const auto& [name, member] : energy_fields) energies.emplace_back(name);
+  named("energy_term", energies);
+}
+
+struct Texts {
+  std::string scenario, record;
+  std::vector<std::string> block_names;
+};
+
+Texts read_texts(hid_t file, hid_t group) {
+  Texts texts;
+  if (H5Lexists(file, "texts", H5P_DEFAULT) > 0) {
+    try {
+      const auto json = nlohmann::json::parse(TextColumn::read(file, "texts"));
+      texts.scenario = json.at("scenario").get<std::string>();
+      texts.record = json.at("record").get<std::string>();
+      if (json.contains("block_names"))
+        texts.block_names = json.at("block_names").get<std::vector<std::string>>();
+    } catch (const nlohmann::json::exception& error) {
+      throw RunError(fmt::format("texts is no JSON of keyblock: {}", error.what()));
+    }
+    return texts;
+  }
+  // Of earlier versions.
+  const auto scenario = hdf5::read_strings(file, "scenario"), record = hdf5::read_strings(group, "record");
+  if (scenario.size() != 1 || record.size() != 1) throw RunError("scenario or model/record is not one text");
+  return {scenario[0], record[0], hdf5::read_strings(group, "block_name")};
+}
+
+}  // namespace
+
 void write_model(hid_t file, const simulation::ModelRecord& model) {
   hdf5::write_attribute(file, "format", std::string(result_format));
   hdf5::write_attribute<std::int32_t>(file, "format_version", result_format_version);
@@ -91,6 +158,8 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   hdf5::write_attribute(file, "version", model.version);
   hdf5::write_attribute<std::uint64_t>(file, "seed", model.seed);
   hdf5::write_attribute<std::int32_t>(file, "realization", model.realization);
+  write_texts(file, model);
+  write_scales(file, model);
   hdf5::write_strings(file, "scenario", {model.scenario});
   const hdf5::Handle group = hdf5::create_group(file, "model");
   hdf5::write_strings(group, "record", {model_json(model)});
@@ -140,11 +209,10 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
 simulation::ModelRecord read_model(hid_t file) {
   simulation::ModelRecord model;
   const hdf5::Handle group = hdf5::open_group(file, "model");
-  const auto scenario = hdf5::read_strings(file, "scenario"), record = hdf5::read_strings(group, "record");
-  if (scenario.size() != 1 || record.size() != 1) throw RunError("scenario or model/record is not one text");
-  read_model_json(record[0], model);
-  model.scenario = scenario[0];
-  const auto name = hdf5::read_strings(group, "block_name");
+  const Texts texts = read_texts(file, group);
+  read_model_json(texts.record, model);
+  model.scenario = texts.scenario;
+  const std::vector<std::string>& name = texts.block_names;
   const auto order = read_column<std::int32_t>(group, "block_order");
   const auto fixed = read_column<std::uint8_t>(group, "block_fixed");
   const auto area = read_column<double>(group, "block_area"),

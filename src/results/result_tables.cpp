@@ -151,15 +151,18 @@ ContactTable::ContactTable(hid_t file)
       length_(group_, "length", {}),
       gap_(group_, "gap", {}),
       slip_(group_, "slip", {}),
+      shear_displacement_(group_, "shear_displacement", {}),
       normal_force_(group_, "normal_force", {}),
       shear_force_(group_, "shear_force", {}),
       stage_(group_, "stage", {}),
       step_(group_, "step", {}),
       end_(group_, "end", {}),
+      contact_(group_, "contact", {}),
       time_(group_, "time", {}) {}
 
 void ContactTable::append(const simulation::ContactFrame& frame) {
   for (const simulation::ContactRecord& c : frame.contacts) {
+    contact_.append(static_cast<std::int64_t>(contact_.rows()));
     block_a_.append(c.block_a);
     block_b_.append(c.block_b);
     state_.append(static_cast<std::uint8_t>(c.state));
@@ -169,7 +172,8 @@ void ContactTable::append(const simulation::ContactFrame& frame) {
     normal_.append(flat(&c.normal.x, 2));
     length_.append(c.length);
     gap_.append(c.gap);
-    slip_.append(c.slip);
+    slip_.append(c.slip());
+    shear_displacement_.append(c.shear_displacement);
     normal_force_.append(c.normal_force);
     shear_force_.append(c.shear_force);
   }
@@ -183,9 +187,10 @@ void ContactTable::flush() {
   for (auto* column : {&block_a_, &block_b_, &stage_}) column->flush();
   for (auto* column : {&state_, &edge_kind_}) column->flush();
   edge_index_.flush();
-  for (auto* column : {&position_, &normal_, &length_, &gap_, &slip_, &normal_force_, &shear_force_})
+  for (auto* column :
+       {&position_, &normal_, &length_, &gap_, &slip_, &shear_displacement_, &normal_force_, &shear_force_})
     column->flush();
-  for (auto* column : {&step_, &end_}) column->flush();
+  for (auto* column : {&step_, &end_, &contact_}) column->flush();
   time_.flush();
 }
 
@@ -201,7 +206,10 @@ std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
   const auto edge_index = read_column<std::int16_t>(group, "edge_index");
   const auto position = read_array<double>(group, "position"), normal = read_array<double>(group, "normal");
   const auto length = read_column<double>(group, "length"), gap = read_column<double>(group, "gap");
-  const auto slip = read_column<double>(group, "slip"),
+  // Earlier files have it under the name of its magnitude.
+  const char* const signed_slip =
+      H5Lexists(group, "shear_displacement", H5P_DEFAULT) > 0 ? "shear_displacement" : "slip";
+  const auto slip = read_column<double>(group, signed_slip),
              normal_force = read_column<double>(group, "normal_force");
   const auto shear_force = read_column<double>(group, "shear_force");
   require(position.width() == 2, "contacts/position");

@@ -1,4 +1,5 @@
 #pragma once
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -15,9 +16,11 @@ inline constexpr int result_format_version = 2;
 void write_model(hid_t file, const simulation::ModelRecord& model);
 simulation::ModelRecord read_model(hid_t file);
 
-/// Gives every dataset of a new file its attributes: what it is, its unit, and the names of its columns and of its values where
-/// these are numbers that stand for words.
+/// Gives every dataset of a new file its attributes: what it is, its unit, the names of its columns and of its values where these are numbers
+/// that stand for words; and its dimensions, by which netCDF knows them.
 void describe_datasets(hid_t file);
+/// The names of columns and values, by dataset: {"frames/status": {"values": […]}}.
+nlohmann::ordered_json dataset_names();
 
 class FrameTable {
  public:
@@ -49,9 +52,10 @@ class ContactTable {
   hdf5::Column<std::int32_t> block_a_, block_b_;
   hdf5::Column<std::uint8_t> state_, edge_kind_;
   hdf5::Column<std::int16_t> edge_index_;
-  hdf5::Column<double> position_, normal_, length_, gap_, slip_, normal_force_, shear_force_;
+  hdf5::Column<double> position_, normal_, length_, gap_, slip_, shear_displacement_, normal_force_,
+      shear_force_;
   hdf5::Column<std::int32_t> stage_;
-  hdf5::Column<std::int64_t> step_, end_;
+  hdf5::Column<std::int64_t> step_, end_, contact_;
   hdf5::Column<double> time_;
 };
 

@@ -130,7 +130,7 @@ void ResultWriter::State::copy_earlier() {
     diagnostic.where.file = path().string();
     diagnostic.found = std::move(found);
     diagnostic.expected = std::move(expected);
-    diagnostic.hint = "run without --resume, or into another folder";
+    diagnostic.hint = "to begin anew, run into another folder";
     throw InputError(std::move(diagnostic));
   };
   const RunData data = read_run(directory);
@@ -183,7 +183,12 @@ ResultWriter::ResultWriter(std::filesystem::path directory, double flush_interva
 }
 
 ResultWriter::~ResultWriter() {
+  close();
+}
+
+void ResultWriter::close() {
   if (state_->file && !state_->published) state_->abandon();
+  state_->file.reset();
 }
 
 void ResultWriter::before_publishing(std::function<void()> call) {

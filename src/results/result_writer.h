@@ -29,6 +29,9 @@ class ResultWriter : public simulation::RunObserver {
   /// until then, nothing in the folder has changed.
   void before_publishing(std::function<void()> call);
 
+  /// Lets the file go, with what was flushed. No event may follow.
+  void close();
+
   void begin(const simulation::ModelRecord& model) override;
   void resume(const simulation::Reported& reported) override;
   void stage_begin(int index, const simulation::StageRecord& stage) override;

@@ -21,7 +21,8 @@ class ContactArrays {
  public:
   void add_contact(const simulation::ContactRecord& c) {
     state_.push_back(static_cast<std::uint8_t>(c.state));
-    slip_.push_back(c.slip);
+    slip_.push_back(c.slip());
+    shear_displacement_.push_back(c.shear_displacement);
     gap_.push_back(c.gap);
     normal_force_.push_back(c.normal_force);
     shear_force_.push_back(c.shear_force);
@@ -36,6 +37,7 @@ class ContactArrays {
   void write(VtkFile& file) const {
     file.array("state", view(state_));
     file.array("slip", view(slip_));
+    file.array("shear_displacement", view(shear_displacement_));
     file.array("gap", view(gap_));
     file.array("force", view(force_), 3);
     file.array("normal", view(normal_), 3);
@@ -48,7 +50,7 @@ class ContactArrays {
   }
 
  private:
-  std::vector<double> slip_, gap_, normal_force_, shear_force_, normal_, force_;
+  std::vector<double> slip_, shear_displacement_, gap_, normal_force_, shear_force_, normal_, force_;
   std::vector<std::uint8_t> state_, edge_kind_;
   std::vector<std::int32_t> edge_index_, block_a_, block_b_;
 };

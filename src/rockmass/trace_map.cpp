@@ -90,9 +90,9 @@ std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_ind
   return map.finish();
 }
 
-std::vector<Trace> traces_of(const std::vector<Vec2>& vertices, int map_index) {
+std::vector<Trace> traces_of(const std::vector<std::vector<Vec2>>& lines, int map_index) {
   MapReader map("", map_index);
-  map.add(vertices);
+  for (const std::vector<Vec2>& vertices : lines) map.add(vertices);
   return map.finish();
 }
 

@@ -18,7 +18,9 @@ namespace keyblock::rockmass {
 ///   With a header of the columns trace, x, y in any order, further ones ignored: one row per vertex. Rows with the same
 ///   text in `trace` are one trace, in their order; they follow each other.
 ///   With a column `wkt` (`wkt_geom`, `geometry`, `geom`, `the_geom`): a geometry as above in each row.
-///   With no header, or with x1, y1, x2, y2, …: a trace in each row, x y x y ….
+///   With columns of the ends, or of all vertices, of a line (x1, y1, x2, y2, …; START_X, START_Y, END_X, END_Y and the like), whatever
+///   else stands beside them: a trace in each row.
+///   With no header: a trace in each row, x y x y …. Rows that begin with their number are refused.
 ///
 /// Throws InputError with every mistake of the file (at most 20): unreadable file, a file of another kind, which is named,
 /// syntax, missing columns, other geometry, lists and objects nested too deeply, numbers missing or not finite, traces of
@@ -26,7 +28,7 @@ namespace keyblock::rockmass {
 /// or they lie as only degrees do.
 std::vector<Trace> read_trace_map(const std::filesystem::path& path, int map_index);
 
-/// One trace through these vertices, of which two differ.
-std::vector<Trace> traces_of(const std::vector<Vec2>& vertices, int map_index);
+/// A trace through the vertices of each line, of which two differ.
+std::vector<Trace> traces_of(const std::vector<std::vector<Vec2>>& lines, int map_index);
 
 }  // namespace keyblock::rockmass

@@ -97,6 +97,78 @@ bool is_header_of_points(const std::vector<std::string>& names) {
   return names.size() >= 4 && names.size() % 2 == 0;
 }
 
+/// Without signs that part words: `START_X` and `start x` are `startx`.
+std::string plain_name(std::string name) {
+  std::erase_if(name, [](char c) { return std::string_view("_ .-()[]").find(c) != std::string_view::npos; });
+  if (name.size() > 2 && name.ends_with('m') &&
+      std::isdigit(static_cast<unsigned char>(name[name.size() - 2])) != 0)
+    name.pop_back();  // `x1 (m)`
+  return name;
+}
+
+using VertexPlaces = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// Columns of these names, if there are both.
+std::optional<std::pair<std::size_t, std::size_t>> pair_of(const std::vector<std::string>& names,
+                                                           const std::string& x, const std::string& y) {
+  const auto at_x = std::find(names.begin(), names.end(), x), at_y = std::find(names.begin(), names.end(), y);
+  if (at_x == names.end() || at_y == names.end()) return {};
+  return std::pair(static_cast<std::size_t>(at_x - names.begin()),
+                   static_cast<std::size_t>(at_y - names.begin()));
+}
+
+/// `x1 y1 x2 y2 …`, counted from 1 or 0.
+VertexPlaces numbered_vertices(const std::vector<std::string>& names) {
+  for (const auto& [x, y] : {std::pair("x", "y"), std::pair("easting", "northing"), std::pair("e", "n")}) {
+    for (const int first : {1, 0}) {
+      VertexPlaces places;
+      for (int k = first; const auto vertex = pair_of(names, x + std::to_string(k), y + std::to_string(k));
+           ++k)
+        places.push_back(*vertex);
+      if (places.size() >= 2) return places;
+    }
+  }
+  return {};
+}
+
+/// `xstart ystart xend yend`, `START_X …` and the like.
+VertexPlaces named_ends(const std::vector<std::string>& names) {
+  constexpr std::pair<const char*, const char*> ends[] = {
+      {"start", "end"},  {"from", "to"}, {"begin", "end"}, {"beg", "end"},
+      {"first", "last"}, {"ini", "fin"}, {"i", "f"},       {"s", "e"},
+      {"a", "b"},        {"p1", "p2"},   {"pt1", "pt2"},   {"start", "stop"}};
+  for (const auto& [from, to] : ends) {
+    const std::string a = from, b = to;
+    const auto x_first = pair_of(names, "x" + a, "y" + a), x_last = pair_of(names, "x" + b, "y" + b);
+    if (x_first && x_last) return {*x_first, *x_last};
+    const auto first = pair_of(names, a + "x", a + "y"), last = pair_of(names, b + "x", b + "y");
+    if (first && last) return {*first, *last};
+  }
+  return {};
+}
+
+/// `id x y x y`
+VertexPlaces repeated_vertices(const std::vector<std::string>& names) {
+  std::vector<std::size_t> x, y;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == "x") x.push_back(k);
+    if (names[k] == "y") y.push_back(k);
+  }
+  VertexPlaces places;
+  for (std::size_t k = 0; x.size() >= 2 && x.size() == y.size() && k < x.size(); ++k)
+    places.emplace_back(x[k], y[k]);
+  return places;
+}
+
+/// Columns of the x and y of each vertex of a line, whatever else stands beside them; empty when there are no two vertices.
+VertexPlaces places_of_vertices(const std::vector<std::string>& names) {
+  std::vector<std::string> plain;
+  for (const std::string& name : names) plain.push_back(plain_name(name));
+  VertexPlaces places = numbered_vertices(plain);
+  if (places.empty()) places = named_ends(plain);
+  return places.empty() ? repeated_vertices(plain) : places;
+}
+
 bool are_points(std::vector<Cell> cells, char separator) {
   while (!cells.empty() && cells.back().text.empty()) cells.pop_back();
   return cells.size() >= 4 && cells.size() % 2 == 0 &&
@@ -126,7 +198,7 @@ class TableReader {
   }
 
  private:
-  enum class Kind { unknown, vertices, points, wkt };
+  enum class Kind { unknown, vertices, points, ends, wkt };
 
   struct Polyline {
     std::string name;
@@ -158,6 +230,10 @@ class TableReader {
       }
       if (is_header_of_points(names)) {
         kind_ = Kind::points;
+        return true;
+      }
+      if (vertex_places_ = places_of_vertices(names); !vertex_places_.empty()) {
+        kind_ = Kind::ends;
         return true;
       }
       if (!are_points(cells, separator)) continue;
@@ -201,6 +277,7 @@ class TableReader {
   void row(std::string_view line, int number) {
     const std::vector<Cell> cells = cells_of(line, separator_);
     if (kind_ == Kind::points) return row_of_points(cells, number);
+    if (kind_ == Kind::ends) return row_of_ends(cells, number);
     const std::size_t needed = *std::max_element(places_.begin(), places_.end()) + 1;
     if (cells.size() < needed) {
       map_.mistake(number, 1, "", fmt::format("{} cells", cells.size()), fmt::format("{} or more", needed));
@@ -241,6 +318,27 @@ class TableReader {
                                   y = coordinate(cells[k + 1], "y", number);
       traces_.back().complete = traces_.back().complete && x && y;
       if (x && y) traces_.back().vertices.push_back({*x, *y});
+    }
+  }
+
+  /// Of vertices after the second one both cells may be empty.
+  void row_of_ends(const std::vector<Cell>& cells, int number) {
+    traces_.push_back({"", number, number, true, {}});
+    Polyline& trace = traces_.back();
+    for (std::size_t k = 0; k < vertex_places_.size(); ++k) {
+      const auto [at_x, at_y] = vertex_places_[k];
+      const bool there = at_x < cells.size() && at_y < cells.size();
+      if (k >= 2 && (!there || (cells[at_x].text.empty() && cells[at_y].text.empty()))) return;
+      if (!there) {
+        map_.mistake(number, 1, "", fmt::format("{} cells", cells.size()),
+                     fmt::format("{} or more", std::max(at_x, at_y) + 1));
+        trace.complete = false;
+        return;
+      }
+      const std::optional<double> x = coordinate(cells[at_x], "x", number),
+                                  y = coordinate(cells[at_y], "y", number);
+      trace.complete = trace.complete && x && y;
+      if (x && y) trace.vertices.push_back({*x, *y});
     }
   }
 
@@ -286,7 +384,23 @@ class TableReader {
     return repeated > 0 && traces_.front().vertices[0].x != traces_.back().vertices[0].x;
   }
 
+  /// Rows `id x1 y1 x2 y2 set` without a header look like traces of three vertices: their first values count the rows.
+  [[nodiscard]] bool seem_counted() const {
+    if (traces_.size() < 2) return false;
+    for (std::size_t k = 0; k < traces_.size(); ++k) {
+      const std::vector<Vec2>& vertices = traces_[k].vertices;
+      if (vertices.size() < 3 || vertices[0].x != std::floor(vertices[0].x)) return false;
+      if (k > 0 && vertices[0].x != traces_[k - 1].vertices[0].x + 1.0) return false;
+    }
+    return true;
+  }
+
   void finish() {
+    if (kind_ == Kind::points && headerless_ && seem_counted()) {
+      map_.mistake(traces_.front().line, 1, "", "rows without a header whose first numbers count them",
+                   "a header with the names of the columns, such as id x1 y1 x2 y2 set",
+                   "if they are traces of three vertices or more, begin with the line: x1 y1 x2 y2 x3 y3");
+    }
     if (kind_ == Kind::points && headerless_ && seem_numbered()) {
       map_.mistake(traces_.front().line, 1, "",
                    "rows without a header that begin with the number of their trace", header_expected,
@@ -301,13 +415,14 @@ class TableReader {
     }
   }
 
-  static constexpr const char* header_expected = "a header with the columns trace, x, y";
+  static constexpr const char* header_expected = "a header with the columns trace, x, y, or x1, y1, x2, y2";
   MapReader& map_;
   Kind kind_ = Kind::unknown;
   bool headerless_ = false;
   char separator_ = ',';
-  std::array<std::size_t, 3> places_{};  ///< of trace, x, y; of the geometry
-  std::size_t columns_ = 0;              ///< of the header
+  std::array<std::size_t, 3> places_{};                             ///< of trace, x, y; of the geometry
+  std::size_t columns_ = 0;                                         ///< of the header
+  std::vector<std::pair<std::size_t, std::size_t>> vertex_places_;  ///< x and y of each vertex of a row
   std::vector<Polyline> traces_;
   std::size_t current_ = 0;  ///< the trace of the last row
   std::map<std::string, std::size_t> by_name_;

@@ -197,7 +197,7 @@ std::vector<rockmass::Trace> read_trace_maps(const Scenario& scenario) {
     try {
       const TraceMapSpec& spec = scenario.trace_maps[k];
       const int index = static_cast<int>(k);
-      const auto map = spec.file.empty() ? rockmass::traces_of(spec.points, index)
+      const auto map = spec.file.empty() ? rockmass::traces_of(spec.lines, index)
                                          : rockmass::read_trace_map(spec.file, index);
       traces.insert(traces.end(), map.begin(), map.end());
     } catch (const InputError& error) {

@@ -17,6 +17,7 @@ enum class KeyKind {
   interval,    ///< [from, to]
   points,      ///< [[x, y], …]
   rings,       ///< [[[x, y], …], …]
+  lines,       ///< likewise, of two points or more
   rows,        ///< [[time, value], …]
   references,  ///< names of other elements
   table,

@@ -11,6 +11,16 @@ namespace keyblock::scenario {
 namespace {
 
 constexpr std::size_t longest_shown = 40;  // characters of a path that is deeper
+// Bytes of an override in positions, which each of its values has.
+constexpr std::size_t longest_place = 120;
+
+// The beginning of a text in UTF-8, cut between characters.
+std::string beginning(const std::string& text) {
+  if (text.size() <= longest_place) return text;
+  std::size_t end = longest_place;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return text.substr(0, end) + "…";
+}
 
 void move_to(Value& value, const SourcePosition& where) {
   value.where = where;
@@ -106,7 +116,7 @@ void replace(Value& slot, const Value& value) {
 }  // namespace
 
 Override parse_override(const std::string& text) {
-  const SourcePosition where{"--set " + text, 0, 0};
+  const SourcePosition where{"--set " + beginning(text), 0, 0};
   if (const std::size_t at = find_invalid_utf8(text); at != std::string::npos) {
     Diagnostic diagnostic;
     diagnostic.where = where;
@@ -196,6 +206,21 @@ const Value* find_value(const std::vector<PathSegment>& path, const Value& docum
     node = child(*node, segment);
   }
   return node;
+}
+
+Value* find_value(const std::vector<PathSegment>& path, Value& document) {
+  return const_cast<Value*>(find_value(path, static_cast<const Value&>(document)));
+}
+
+bool remove_value(std::vector<PathSegment> path, Value& document) {
+  if (path.empty()) return false;
+  const PathSegment last = std::move(path.back());
+  path.pop_back();
+  Value* of = find_value(path, document);
+  const Value* found = of == nullptr ? nullptr : child(*of, last);
+  if (found == nullptr) return false;
+  of->items.erase(of->items.begin() + (found - of->items.data()));
+  return true;
 }
 
 std::vector<std::string> resolved_path(const std::vector<PathSegment>& path, const Value& document) {

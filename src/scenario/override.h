@@ -15,7 +15,7 @@ struct Override {
 };
 
 /// Parses `key=value` as given to --set. The value is TOML; what is no TOML value is taken as a string, so that
-/// words need no quotes. Positions name `--set key=value` as the file. Throws InputError.
+/// words need no quotes. Positions name `--set key=value` as the file, its beginning where it is long. Throws InputError.
 Override parse_override(const std::string& text);
 
 /// The same from a key path and a value at hand. Throws InputError, at the position of the value, when `path` is no
@@ -32,6 +32,10 @@ bool begins_with(const std::vector<PathSegment>& path, const std::vector<PathSeg
 
 /// The value that a key path leads to, or null.
 const Value* find_value(const std::vector<PathSegment>& path, const Value& document);
+Value* find_value(const std::vector<PathSegment>& path, Value& document);
+
+/// Takes out what a key path leads to; false where there is nothing.
+bool remove_value(std::vector<PathSegment> path, Value& document);
 
 /// Where a key path leads in the document: its keys, and for elements of lists their places in brackets. Paths to the same value
 /// are equal here, however they are written.

@@ -134,6 +134,7 @@ void remove_study(Value& document) {
 
 // Tries every value of [[study.vary]] alone.
 void check_study(const Value& document, const std::filesystem::path& file, Mistakes& mistakes) {
+  if (document.find("study") == nullptr) return;
   Value without_study = document;
   remove_study(without_study);
   VariedKeys varied_keys(without_study, mistakes);
@@ -266,11 +267,17 @@ Value overridden(std::string_view text, const std::filesystem::path& file,
 
 }  // namespace
 
-Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
-                             const std::vector<std::string>& overrides, StudyTable study) {
-  Mistakes mistakes;
-  Value document = overridden(text, file, overrides, mistakes);
-  if (study == StudyTable::leave_out) remove_study(document);
+std::string with_overrides(std::string text, const std::vector<std::string>& overrides) {
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  for (const std::string& override_ : overrides)
+    text += "# --set " + printable(override_, std::string::npos) + "\n";
+  return text;
+}
+
+namespace {
+
+/// `mistakes` were found before.
+Scenario read_checked(const Value& document, const std::filesystem::path& file, Mistakes mistakes) {
   Reading reading = read_document(document, file);
   mistakes.add(reading.mistakes);
   check_study(document, file, mistakes);
@@ -279,12 +286,24 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
     mistakes.sort(file.string());
     throw mistakes.error();
   }
-  Scenario scenario = std::move(reading.scenario);
-  scenario.text = text;
-  if (!scenario.text.empty() && scenario.text.back() != '\n') scenario.text += '\n';
-  for (const std::string& override_ : overrides) {
-    scenario.text += "# --set " + printable(override_, std::string::npos) + "\n";
-  }
+  return std::move(reading.scenario);
+}
+
+}  // namespace
+
+Scenario parse_scenario_text(std::string_view text, const std::filesystem::path& file,
+                             const std::vector<std::string>& overrides, StudyTable study) {
+  Mistakes mistakes;
+  Value document = overridden(text, file, overrides, mistakes);
+  if (study == StudyTable::leave_out) remove_study(document);
+  Scenario scenario = read_checked(document, file, std::move(mistakes));
+  scenario.text = with_overrides(std::string(text), overrides);
+  return scenario;
+}
+
+Scenario parse_document(const Value& document, const std::filesystem::path& file, std::string text) {
+  Scenario scenario = read_checked(document, file, {});
+  scenario.text = with_overrides(std::move(text), {});
   return scenario;
 }
 

@@ -28,6 +28,12 @@ Scenario parse_scenario_text(std::string_view text, const std::filesystem::path&
                              const std::vector<std::string>& overrides = {},
                              StudyTable study = StudyTable::check);
 
+/// The same of a document at hand. `text` is what results keep of it.
+Scenario parse_document(const Value& document, const std::filesystem::path& file, std::string text);
+
+/// The text of a scenario with its overrides as comments at its end.
+std::string with_overrides(std::string text, const std::vector<std::string>& overrides);
+
 /// Every combination of the values of [[study.vary]], the last axis changing fastest, as its run reads it: `each` is called for
 /// those that are right. Without axes that is the scenario itself. The study must have been read before.
 ///

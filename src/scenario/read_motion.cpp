@@ -68,7 +68,7 @@ void read_reading(TableReader& t, MotionComponentSpec& component, bool given,
 
 constexpr std::string_view file_meaning =
     "Record. The format is recognized by the content: USGS SMC, CSMIP, COSMOS, PEER AT2, K-NET and KiK-net, "
-    "ESM, GeoNet, AFAD, or a "
+    "ESM, GeoNet, AFAD, CWA, USC, BHRC, UNAM, or a "
     "table (see the user guide).";
 
 void read_component(TableReader& t, MotionComponentSpec& component) {

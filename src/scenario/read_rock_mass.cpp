@@ -216,22 +216,33 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
 
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
   map.path = t.path();
-  const bool has_points = t.find("points") != nullptr, has_file = t.find("file") != nullptr;
+  std::vector<std::string_view> given;
+  for (const std::string_view key : {"file", "points", "lines"}) {
+    if (t.find(key) != nullptr) given.push_back(key);
+  }
+  const bool has_file = t.find("file") != nullptr;
   t.file("file", map.file,
          {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](user-guide.md#trace-maps), in the "
-                     "coordinates of the domain. `file` or `points` is required.",
-          .required = !t.documenting() && !has_points,
+                     "coordinates of the domain. `file`, `points` or `lines` is required.",
+          .required = !t.documenting() && given.empty(),
           .fallback = "points"});
-  t.points("points", map.points,
+  std::vector<Vec2> points;
+  t.points("points", points,
            {.meaning = "The vertices of one trace, in place of a file.", .unit = "m", .fallback = "file"});
-  if (has_points && has_file) t.fail("points", "points and a file", "one of the two");
-  if (!map.points.empty() &&
-      std::all_of(map.points.begin(), map.points.end(), [&](Vec2 p) { return p == map.points.front(); }))
-    t.fail("points", fmt::format("{} points, all the same", map.points.size()),
-           "two or more different points");
+  t.lines("lines", map.lines,
+          {.meaning = "Several traces, each by its vertices, in place of a file.",
+           .unit = "m",
+           .fallback = "file"});
+  if (given.size() > 1)
+    t.fail(given[1], fmt::format("{} and {}", given[1], given[0] == "file" ? "a file" : given[0]),
+           "one of the two");
+  if (!points.empty() &&
+      std::all_of(points.begin(), points.end(), [&](Vec2 p) { return p == points.front(); }))
+    t.fail("points", fmt::format("{} points, all the same", points.size()), "two or more different points");
+  if (!points.empty()) map.lines = {std::move(points)};
   t.name("name", map.name, "trace_map",
-         {.meaning = "Name in results. Required with `points`.",
-          .required = !t.documenting() && has_points,
+         {.meaning = "Name in results. Required with `points` and `lines`.",
+          .required = !t.documenting() && !given.empty() && !has_file,
           .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
   read_joint_keys(t, map.joints, set_defaults);

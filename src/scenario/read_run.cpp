@@ -254,14 +254,13 @@ void read_contact_method(TableReader& t, dynamics::SolverOptions& solver) {
       "contact", solver.contact, contact_methods,
       {.meaning = "How contacts keep blocks apart: springs that are penetrated a little, or multipliers that "
                   "leave no penetration and no drift of contacts that hold."});
-  t.integer(
-      "face_contacts", solver.face_contacts,
-      {.meaning =
-           "Contacts along a face that blocks share, at the least: 2 are at its ends. With 3, another in its "
-           "middle, joints between blocks of order 1 have their bending stiffness and strength, too; blocks "
-           "of order n have n + 1 in any case.",
-       .at_least = 2.0,
-       .at_most = 25.0});
+  t.integer("face_contacts", solver.face_contacts,
+            {.meaning =
+                 "Contacts along a face that blocks share, at the least: 2 are at its ends. Joints of given "
+                 "stiffness bend and open alike with any number. Others, between blocks of order 1, have the "
+                 "bending stiffness of a joint with 3; blocks of order n have n + 1 in any case.",
+             .at_least = 2.0,
+             .at_most = 25.0});
   t.number(
       "penalty", solver.penalty,
       {.meaning = "Normal stiffness of joints that give none, as a multiple of Young's modulus of the softer "

@@ -58,8 +58,8 @@ struct JointSetSpec {
 
 struct TraceMapSpec {
   std::string name;
-  std::filesystem::path file;  ///< empty: points
-  std::vector<Vec2> points;    ///< of one trace
+  std::filesystem::path file;            ///< empty: lines
+  std::vector<std::vector<Vec2>> lines;  ///< one trace each
   JointKeys joints;
   std::string path;
 };

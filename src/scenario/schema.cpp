@@ -56,6 +56,8 @@ ordered_json of_type(const KeyType& type) {
       return list_of(two_numbers(), 1);
     case KeyKind::rings:
       return list_of(list_of(two_numbers(), 3));
+    case KeyKind::lines:
+      return list_of(list_of(two_numbers(), 2), 1);
     case KeyKind::references:
       return list_of({{"type", "string"}});
     case KeyKind::table:

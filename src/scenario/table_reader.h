@@ -94,6 +94,8 @@ class TableReader {
   /// A ring of at least three vertices; a last vertex that repeats the first is dropped.
   bool ring(std::string_view key, Ring& value, const Rule& rule);
   bool rings(std::string_view key, std::vector<Ring>& value, const Rule& rule);
+  /// Polylines, each of two different points or more.
+  bool lines(std::string_view key, std::vector<std::vector<Vec2>>& value, const Rule& rule);
   /// [[t, value], …] with ascending times; equal times only when `jumps`.
   bool time_rows(std::string_view key, TimeRows& rows, bool jumps, const Rule& rule);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "scenario/key_path.h"
 #include "scenario/table_reader.h"
@@ -23,19 +24,34 @@ std::optional<std::pair<double, double>> to_pair(const Value& value) {
   return std::pair(a.number, b.number);
 }
 
+bool is_one_point(const std::vector<Vec2>& line) {
+  return std::all_of(line.begin(), line.end(), [&](Vec2 p) { return p == line.front(); });
+}
+
 std::string range_of_rows(const std::pair<double, double>& from, const std::pair<double, double>& to) {
   return fmt::format("time {} after time {}", to.first, from.first);
 }
 
-// How an element of a list is called in a key path: by its name where only it has that name.
-std::string element_path(const Value& list, std::size_t index, const std::string& path) {
-  const std::string* name = list.items[index].name();
-  if (name == nullptr || name->empty()) return join_index(path, index);
-  const auto same = std::count_if(list.items.begin(), list.items.end(), [&](const Value& item) {
-    return item.name() != nullptr && *item.name() == *name;
-  });
-  return same == 1 ? join_path(path, *name) : join_index(path, index);
-}
+// How elements of a list are called in key paths: by their name where only they have it.
+class ElementPaths {
+ public:
+  ElementPaths(const Value& list, std::string path) : list_(list), path_(std::move(path)) {
+    for (const Value& item : list.items) {
+      if (item.name() != nullptr) ++count_[*item.name()];
+    }
+  }
+
+  [[nodiscard]] std::string of(std::size_t index) const {
+    const std::string* name = list_.items[index].name();
+    const bool named = name != nullptr && !name->empty() && count_.at(*name) == 1;
+    return named ? join_path(path_, *name) : join_index(path_, index);
+  }
+
+ private:
+  const Value& list_;
+  std::string path_;
+  std::map<std::string_view, int> count_;
+};
 
 }  // namespace
 
@@ -146,6 +162,30 @@ bool TableReader::rings(std::string_view key, std::vector<Ring>& value, const Ru
     if (ring) rings.push_back(std::move(*ring));
   }
   if (valid) value = std::move(rings);
+  return valid;
+}
+
+bool TableReader::lines(std::string_view key, std::vector<std::vector<Vec2>>& value, const Rule& rule) {
+  const Value* found = take(key, rule, {KeyKind::lines}, "array of lines [[[x, y], …], …]", "");
+  if (found == nullptr) return false;
+  if (!found->is(Value::Type::array) || found->items.empty()) {
+    fail(key, describe(*found), "lines [[[x, y], …], …]");
+    return false;
+  }
+  bool valid = true;
+  std::vector<std::vector<Vec2>> lines;
+  for (std::size_t k = 0; k < found->items.size(); ++k) {
+    const std::string path = join_index(path_of(key), k);
+    auto line = to_points(found->items[k], path, 2);
+    if (line && is_one_point(*line)) {
+      fail_at(found->items[k], path, fmt::format("{} points, all the same", line->size()),
+              "two or more different points");
+      line.reset();
+    }
+    valid = valid && line;
+    if (line) lines.push_back(std::move(*line));
+  }
+  if (valid) value = std::move(lines);
   return valid;
 }
 
@@ -323,10 +363,10 @@ bool TableReader::each_table(std::string_view key, const Rule& rule,
          found->is(Value::Type::table) ? fmt::format("write [[{}]] with double brackets", path_of(key)) : "");
     return false;
   }
-  const std::string path = path_of(key);
+  const ElementPaths paths(*found, path_of(key));
   for (std::size_t k = 0; k < found->items.size(); ++k) {
     const Value& item = found->items[k];
-    const std::string item_path = element_path(*found, k, path);
+    const std::string item_path = paths.of(k);
     // Whatever its name is worth, every element has its place in the list of names.
     const bool named = path_.empty();
     if (!item.is(Value::Type::table)) fail_at(item, item_path, describe(item), "a table");

@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0013;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0014;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -158,6 +158,8 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.control.strengths);
   archive(s.control.load_scale);
   archive(s.control.motion_scale);
+  archive(s.control.forces);
+  archive(s.control.spring_stiffness);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);
@@ -214,7 +216,7 @@ void refuse_checkpoint(const std::filesystem::path& directory, std::string found
   diagnostic.where.file = checkpoint_path(directory).string();
   diagnostic.found = std::move(found);
   diagnostic.expected = std::move(expected);
-  diagnostic.hint = "run without --resume to begin anew";
+  diagnostic.hint = "to begin anew, run into another folder";
   throw InputError(std::move(diagnostic));
 }
 

@@ -69,13 +69,13 @@ void Control::set_strength(std::string_view name, const Strength& strength) {
 }
 
 void Control::set_load_scale(std::size_t load, double factor) {
-  if (load >= model_.loads.size())
+  if (load >= setup_.loads.size())
     refuse("load", std::to_string(load),
-           "the number of a load, less than " + std::to_string(model_.loads.size()));
+           "the number of a load, less than " + std::to_string(setup_.loads.size()));
   check_factor("load", factor);
-  memory_.load_scale.resize(model_.loads.size(), 1.0);
+  memory_.load_scale.resize(setup_.loads.size(), 1.0);
   memory_.load_scale[load] = factor;
-  model_.load_scale = memory_.load_scale;
+  put_loads(memory_, setup_, model_);
 }
 
 void Control::set_motion_scale(double factor) {
@@ -106,9 +106,10 @@ void Control::set_velocity(std::span<const double> velocity) {
   stepper_.forget_history();
 }
 
-void restore(const ControlMemory& memory, dynamics::Model& model) {
+void restore(const ControlMemory& memory, const RunSetup& setup, dynamics::Model& model) {
   for (std::size_t k = 0; k < memory.strengths.size(); ++k) put(memory.strengths[k], model.laws[k]);
-  model.load_scale = memory.load_scale;
+  put_loads(memory, setup, model);
+  model.spring_stiffness = memory.spring_stiffness;
 }
 
 std::string mistake_in_control(const ControlMemory& memory, const dynamics::Model& model) {
@@ -116,9 +117,20 @@ std::string mistake_in_control(const ControlMemory& memory, const dynamics::Mode
   const auto is_strength = [](const Strength& s) {
     return std::isfinite(s.friction_coefficient) && std::isfinite(s.cohesion) && std::isfinite(s.tension);
   };
+  const auto is_force = [](const AppliedForce& f, const dynamics::Model& of) {
+    return f.block >= 0 && f.block < std::ssize(of.blocks) &&
+           !of.blocks[static_cast<std::size_t>(f.block)].fixed && std::isfinite(norm(f.point)) &&
+           std::isfinite(norm(f.force));
+  };
   const bool known = std::all_of(memory.strengths.begin(), memory.strengths.end(), is_strength) &&
                      fits(memory.strengths.size(), model.laws.size()) &&
-                     fits(memory.load_scale.size(), model.loads.size()) && std::isfinite(memory.motion_scale);
+                     fits(memory.load_scale.size(), model.loads.size()) &&
+                     fits(memory.spring_stiffness.size(), spring_count(model)) &&
+                     std::all_of(memory.spring_stiffness.begin(), memory.spring_stiffness.end(),
+                                 [](double k) { return std::isfinite(k) && k >= 0.0; }) &&
+                     std::all_of(memory.forces.begin(), memory.forces.end(),
+                                 [&](const AppliedForce& f) { return is_force(f, model); }) &&
+                     std::isfinite(memory.motion_scale);
   return known ? "" : "changes of another model";
 }
 

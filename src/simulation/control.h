@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -6,6 +8,7 @@
 
 #include "contact/surface.h"
 #include "dynamics/step.h"
+#include "geometry/vec2.h"
 #include "model/model.h"
 #include "model/state.h"
 
@@ -19,11 +22,31 @@ struct Strength {
   double cohesion = 0.0, tension = 0.0;  ///< Pa
 };
 
+/// A force on a block at a material point, which goes with the block.
+struct AppliedForce {
+  std::int64_t block = 0, slot = 0;  ///< slot: its name among those on the block
+  Vec2 point;                        ///< m, in reference position
+  Vec2 force;                        ///< N per thickness
+};
+
+/// A spring between points of blocks, as it is.
+struct SpringNow {
+  std::string name;
+  Vec2 from, to;           ///< m
+  double length = 0.0;     ///< m
+  double stiffness = 0.0;  ///< N/m per thickness
+  double force = 0.0;      ///< N per thickness, tension positive
+  double yield = 0.0;      ///< N per thickness, infinite where it never yields
+  bool is_there = false;   ///< installed, and both its blocks are there
+};
+
 /// What was changed of a running model; in checkpoints, so that a resumed run goes on with it. Empty: as the setup has it.
 struct ControlMemory {
   std::vector<Strength> strengths;  ///< of all Model::laws
   std::vector<double> load_scale;   ///< factor on each load
   double motion_scale = 1.0;        ///< factor on ground motions, beside that of the stage
+  std::vector<AppliedForce> forces;
+  std::vector<double> spring_stiffness;  ///< N/m per thickness, of all springs
 };
 
 /// Changes a running model between two of its steps, for programs that steer a run: servo control, weakening by slip, staged support. All
@@ -44,11 +67,28 @@ class Control {
   /// Factor on ground motions; the records of stages keep the motion as it was planned. Throws InputError for what is no number, where a
   /// seismic boundary has waves under way, and where histories are absolute: both integrate the motion as it was planned.
   void set_motion_scale(double factor);
+  /// A force on a block, in the place of the one of this slot before; zero takes it away. `place`: where it acts, as the block lies now, m;
+  /// none: its mass centre. It acts until it is changed, and goes with the block without turning; its work is Energy::input. Throws InputError
+  /// for a block that is fixed, gone or unknown, a place outside of it, and what is no number.
+  void set_force(std::size_t block, std::int64_t slot, std::optional<Vec2> place, Vec2 force);
+  [[nodiscard]] const std::vector<AppliedForce>& forces() const { return memory_.forces; }
+  /// Those of the scenario, in its order.
+  [[nodiscard]] std::vector<SpringNow> springs() const;
+  /// N/m per thickness. The spring keeps its elongation; what that changes of its energy is Energy::input. Throws InputError for an unknown
+  /// spring, and for a stiffness that is negative or no number.
+  void set_spring_stiffness(std::size_t spring, double stiffness);
+  /// N per thickness, tension positive: the spring is made as long as that takes. Its energy as above. Throws InputError for an unknown
+  /// spring, one without stiffness, one that is not there, and a force beyond its yield.
+  void set_spring_force(std::size_t spring, double force);
   /// m/s, of all coefficients, by Block::first. Velocities of fixed blocks stay as they are. Throws InputError for another number of
   /// coefficients and for what is no number.
   void set_velocity(std::span<const double> velocity);
 
  private:
+  /// Calls change() and counts what it changes of the stored energy as input.
+  template <class Change>
+  void with_input(const Change& change);
+  void check_spring(std::size_t spring) const;
   [[nodiscard]] std::size_t law_index(std::string_view name) const;
 
   const RunSetup& setup_;
@@ -59,7 +99,11 @@ class Control {
 };
 
 /// Puts what a checkpoint holds into a model that was just built.
-void restore(const ControlMemory& memory, dynamics::Model& model);
+void restore(const ControlMemory& memory, const RunSetup& setup, dynamics::Model& model);
+/// Forces and factors of loads, after the model has got other loads.
+void put_loads(const ControlMemory& memory, const RunSetup& setup, dynamics::Model& model);
+/// Number of the springs between points.
+std::size_t spring_count(const dynamics::Model& model);
 /// What is wrong with what a checkpoint holds, or empty.
 std::string mistake_in_control(const ControlMemory& memory, const dynamics::Model& model);
 

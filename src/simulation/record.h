@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -97,14 +98,16 @@ struct ContactRecord {
   int block_a = 0;  ///< the block with the vertex
   int block_b = 0;  ///< the block with the edge
   ContactState state = ContactState::open;
-  Vec2 position;              ///< m
-  Vec2 normal;                ///< unit, out of block_b
-  double length = 0.0;        ///< m of joint that belongs to it
-  double gap = 0.0;           ///< m, as the joint law has it then: negative where the contact is pressed
-  double slip = 0.0;          ///< m, of block_a along perpendicular(normal), since the excavation
-  double normal_force = 0.0;  ///< N per metre thickness, compression positive
-  double shear_force = 0.0;   ///< the same; against perpendicular(normal) on block_a
-  cutting::EdgeLabel label;   ///< of the edge
+  Vec2 position;        ///< m
+  Vec2 normal;          ///< unit, out of block_b
+  double length = 0.0;  ///< m of joint that belongs to it
+  double gap = 0.0;     ///< m, as the joint law has it then: negative where the contact is pressed
+  double shear_displacement = 0.0;  ///< m, of block_a along perpendicular(normal), since the excavation
+  double normal_force = 0.0;        ///< N per metre thickness, compression positive
+  double shear_force = 0.0;         ///< the same; against perpendicular(normal) on block_a
+  cutting::EdgeLabel label;         ///< of the edge
+
+  [[nodiscard]] double slip() const { return std::abs(shear_displacement); }  ///< m
 };
 
 struct ContactFrame {

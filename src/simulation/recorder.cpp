@@ -184,7 +184,7 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
     row.normal = c.normal;
     row.length = c.length;
     row.gap = forces[k].gap;
-    row.slip = gauge_.joints().slip(c.vertex, c.edge);
+    row.shear_displacement = gauge_.joints().slip(c.vertex, c.edge);
     row.normal_force = forces[k].normal;
     row.shear_force = forces[k].shear;
     row.label = labels_[at(c.edge)];

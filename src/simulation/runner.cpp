@@ -104,7 +104,7 @@ void Runner::resume() {
   orders_.restore(model_);
   check(mistake_in_state(now_, setup_, model_));
   model_.surface.present = now_.present;
-  restore(now_.control, model_);
+  restore(now_.control, setup_, model_);
   orders_changed();
   gauge_.restore(std::move(now_.damage));
   opening_.memory() = now_.opening;
@@ -180,6 +180,7 @@ ContactFrame Runner::contacts() const {
 }
 
 void Runner::orders_changed() {
+  put_loads(now_.control, setup_, model_);
   stepper_.emplace(model_, team_, profile_, options_.stop);
   stepper_->resume(now_.mechanics);
   reporter_.orders_changed();

@@ -60,6 +60,11 @@ class Runner {
   /// orders of blocks.
   [[nodiscard]] ContactFrame contacts() const;
   [[nodiscard]] Energy energy() const;
+  /// Measures of damage so far, without a look of the run's own; none before the first excavation.
+  [[nodiscard]] std::optional<Damage> damage() const;
+  [[nodiscard]] std::vector<BlockStatus> status() const;
+  /// m/s², of the ground at the time of the state; zero outside of shaking stages.
+  [[nodiscard]] Vec2 ground_acceleration() const;
   /// Changes the running model: between two steps, or in RunOptions::after_step.
   [[nodiscard]] Control control() { return {setup_, model_, now_.mechanics, *stepper_, now_.control}; }
   /// Index of the stage at hand, or of the one that comes next.

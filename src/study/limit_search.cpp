@@ -211,11 +211,10 @@ LimitResult empty_limit(const Plan& plan, const LimitRequest& request) {
 
 }  // namespace
 
-Plan plan_limit(const fs::path& scenario, const std::vector<std::string>& overrides,
-                const std::string& version, LimitRequest& request, const std::string& until,
-                std::optional<double> above, std::vector<std::string>* warnings) {
+Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitRequest& request,
+                const std::string& until, std::optional<double> above, std::vector<std::string>* warnings) {
   check_request(request);
-  Plan plan = make_plan(scenario, overrides, version, warnings);
+  Plan plan = make_plan(scenario, version, warnings);
   const scenario::Scenario read = scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides,
                                                                 scenario::StudyTable::leave_out);
   request.criterion = limit_criterion(until, above, read.damage.loosened_distance);

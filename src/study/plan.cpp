@@ -258,11 +258,20 @@ std::vector<DamageLevel> damage_levels(const Scenario& scenario) {
           {"severe", "fallen_area_m2", 0.1 * area}};
 }
 
+ScenarioText read_scenario_text(const fs::path& file, std::vector<std::string> overrides) {
+  return {read_file(file, scenario::largest_scenario), file, std::move(overrides)};
+}
+
 Plan make_plan(const fs::path& file, const std::vector<std::string>& overrides, const std::string& version,
                std::vector<std::string>* warnings) {
+  return make_plan(read_scenario_text(file, overrides), version, warnings);
+}
+
+Plan make_plan(const ScenarioText& source, const std::string& version, std::vector<std::string>* warnings) {
+  const auto& [text, file, overrides] = source;
   Plan plan;
   plan.scenario = file;
-  plan.text = read_file(file, scenario::largest_scenario);
+  plan.text = text;
   plan.overrides = overrides;
   plan.version = version;
   const Scenario scenario = scenario::parse_scenario_text(plan.text, file, overrides);

@@ -25,6 +25,15 @@ struct PlannedRun {
   bool wanted = true;
 };
 
+/// A scenario as it is written.
+struct ScenarioText {
+  std::string text;
+  std::filesystem::path file;
+  std::vector<std::string> overrides;
+};
+/// Reads the file. Throws InputError.
+ScenarioText read_scenario_text(const std::filesystem::path& file, std::vector<std::string> overrides);
+
 /// A file that a scenario reads, as it was when the study was planned.
 struct InputFile {
   std::string name;  ///< path from the folder of the scenario
@@ -70,6 +79,9 @@ struct Plan {
 /// combinations and of their files, and for more than a million runs.
 Plan make_plan(const std::filesystem::path& scenario, const std::vector<std::string>& overrides,
                const std::string& version, std::vector<std::string>* warnings = nullptr);
+/// The same of a scenario at hand: its text, and the file from whose folder its paths count, which need not be there.
+Plan make_plan(const ScenarioText& scenario, const std::string& version,
+               std::vector<std::string>* warnings = nullptr);
 
 /// The name of a run and of its folder: `r0007-5d2c81a0f3`, the realization and a hash (FNV-1a, 64 bit, its first ten
 /// digits) of the overrides `key=value` in the order of their text, keys and values written in one way, and of the variant. It

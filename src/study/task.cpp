@@ -80,6 +80,7 @@ class Task {
     simulation::FanOut fan(observers);
     simulation::RunOptions run_options;
     run_options.stop = options.stop;
+    run_options.after_step = options.after_step;
     const simulation::RunRecord record = simulation::run(setup, run_options, fan);
     writer.reset();
     if (record.interrupted) return TaskOutcome::interrupted;
@@ -135,7 +136,9 @@ TaskOutcome run_task(const fs::path& directory, const Plan& plan, std::size_t in
     write_failure(directory, plan, task.result());
   };
   try {
-    const TaskOutcome outcome = task.run(run_setup(plan, run), options);
+    simulation::RunSetup setup = run_setup(plan, run);
+    setup.hooks = options.hooks;
+    const TaskOutcome outcome = task.run(setup, options);
     if (outcome == TaskOutcome::interrupted) {
       clean_run_folder(folder);
     } else {

@@ -4,9 +4,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/record.h"
+#include "simulation/run_options.h"
 #include "simulation/setup.h"
 #include "study/plan.h"
 
@@ -23,6 +25,9 @@ struct TaskOptions {
   const std::atomic<bool>* stop = nullptr;
   /// Makes those that are told of the run as it goes on, when it begins; may be empty.
   std::function<std::vector<std::unique_ptr<simulation::RunObserver>>(const simulation::RunSetup&)> observers;
+  /// Programs that steer the run, with their hashes; and what is called after each step (RunOptions::after_step).
+  std::vector<std::pair<std::string, std::string>> hooks;
+  std::function<void(simulation::Runner&, const dynamics::StepReport&)> after_step;
 };
 
 /// Does one run of the plan in DIR, in this process with one thread, and leaves its folder as `keep` says, run.json last. An

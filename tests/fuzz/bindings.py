@@ -27,6 +27,7 @@ def falling_block(kb, chance):
         time = { step = 0.002 }
         block = [ { name = "floor", outer = [[0, -1], [2, -1], [2, 0], [0, 0]], fixed = true },
                   { name = "stone", outer = [[0.5, 0.02], [1.5, 0.02], [1.5, 1.1], [0.5, 1.1]] } ]
+        spring = [ { name = "rope", from = [1.0, 0.0], to = [1.0, 0.15], stiffness = 1e4 } ]
         load = [ { block = "stone", point = [1.0, 0.6], force = [1e3, 0.0] } ]
         stage = [ { name = "settled", kind = "settle" }, { name = "a", kind = "rest", duration = 0.05 }, { name = "b", kind = "rest", duration = 0.05 } ]
         """
@@ -61,7 +62,7 @@ def poke(chance, things, kept):
     value = getattr(thing, name)
     if callable(value) and chance.random() < 0.8:
         arguments = [anything(chance) if chance.random() < 0.7 else chance.choice(things + kept) for _ in range(chance.randint(0, 4))]
-        if name in ("load", "save", "simulate", "run"):
+        if name in ("load", "_load", "save", "simulate", "run"):
             arguments = [argument for argument in arguments if not isinstance(argument, str)]
         value = value(*arguments)
     elif chance.random() < 0.3:
@@ -95,7 +96,8 @@ def one(seed):
     scenario = falling_block(kb, chance)
     sim = scenario.simulate(controllers=[controller] if chance.random() < 0.5 else [])
     views = [sim.vertices, sim.velocity, sim.contacts]
-    things = [scenario, sim, scenario._core, sim._core, core.Scenario, core.Simulation, core.Block, core.InputError, kb.Motion, kb.TraceMap, kb.Controller, *scenario._core.cut()]
+    things = [sim.blocks, sim.blocks[1], sim.springs, sim.strength["joints"], scenario.rock, scenario.stage, scenario.stage[0], scenario.load]
+    things += [*sim.springs, scenario, sim, scenario._core, sim._core, core.Scenario, core.Simulation, core.Block, core.InputError, kb.Motion, kb.TraceMap, kb.Controller, *scenario._core.cut()]
     threads = []
     if chance.random() < 0.5:
         threads = [threading.Thread(target=lambda: [safely(lambda: poke(chance, [sim, sim._core], kept)) for _ in range(100)]) for _ in range(2)]

@@ -122,8 +122,8 @@ class Support(Scenario):
         self.assertEqual(wrong["mistakes"][0]["key"], "rock.young")
 
     def test_motion_for_other_programs(self):
-        self.write("a.csv", "time,N-S\n0,0\n0.01,1.5\n0.03,0\n")
-        self.write("b.csv", "time,N-S\n0,0\n0.01,strong\n")
+        self.write("a.csv", "time,N-S (m/s2)\n0,0\n0.01,1.5\n0.03,0\n")
+        self.write("b.csv", "time,N-S (m/s2)\n0,0\n0.01,strong\n")
         right = json.loads(self.keyblock("motion", "a.csv", "--json", "--plot", "-o", "a.svg").stdout)
         self.assertEqual((right["ok"], right["mistakes"], right["plot"]), (True, [], "a.svg"))
         (component,) = right["components"]
@@ -202,7 +202,7 @@ class Cut(Scenario):
 
 class FullDisk(Scenario):
     def test_output_that_is_lost_is_a_failure(self):
-        self.write("a.csv", "time,acceleration\n0,0\n0.01,1.5\n")
+        self.write("a.csv", "time,acceleration (m/s2)\n0,0\n0.01,1.5\n")
         for words in (["check", "incline.toml"], ["motion", "a.csv"], ["--help"]):
             with open("/dev/full", "w") as full:
                 ended = subprocess.run([PROGRAM, *words], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
@@ -212,14 +212,14 @@ class FullDisk(Scenario):
 
 class Motion(Scenario):
     def test_says_what_a_record_holds(self):
-        self.write("a.csv", "time,acceleration\n0,0\n0.01,1.5\n0.02,-2.5\n")
+        self.write("a.csv", "time,acceleration (m/s2)\n0,0\n0.01,1.5\n0.02,-2.5\n")
         text = self.keyblock("motion", "a.csv", "--plot", "-o", "a.svg").stdout
         self.assertRegex(text, r"2\.5\b")
         self.assertIn("0.01", text)
         self.assertIn("<svg", (self.folder / "a.svg").read_text())
 
     def test_a_plot_takes_the_place_of_nothing_but_a_plot(self):
-        record = self.write("a.csv", "time,acceleration\n0,0\n0.01,1.5\n0.02,-2.5\n")
+        record = self.write("a.csv", "time,acceleration (m/s2)\n0,0\n0.01,1.5\n0.02,-2.5\n")
         text = record.read_text()
         (self.folder / "link.svg").symlink_to("a.csv")
         for output in ("a.csv", "link.svg"):

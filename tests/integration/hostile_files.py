@@ -118,7 +118,7 @@ class FilesOfARunThatHasEnded(Scenario):
             file.truncate(5000)
         error = self.keyblock("run", "incline.toml", "-o", "out", "--resume", expect=1).stderr
         self.assertIn("result.h5", error)
-        self.assertIn("run without --resume to begin anew", error)
+        self.assertIn("to begin anew, run into another folder", error)
         self.keyblock("run", "incline.toml", "-o", "out")
         self.assertIn("has ended", self.keyblock("run", "incline.toml", "-o", "out", "--resume").stdout)
 

@@ -43,9 +43,10 @@ class Library(unittest.TestCase):
 
     def test_by_pkg_config(self):
         description = next(self.prefix.rglob("keyblock.pc"))
-        # It names the place of the package; here it is another one.
-        text = description.read_text()
-        description.write_text("\n".join([f"prefix={self.prefix}", *text.splitlines()[1:]]))
+        # It goes by its own place: the tree may be moved.
+        moved = self.prefix.rename(self.folder / "moved")
+        description = moved / description.relative_to(self.prefix)
+        self.prefix = moved
         flags = self.call("pkg-config", "--cflags", "--libs", "keyblock", env={**os.environ, "PKG_CONFIG_PATH": str(description.parent)})
         program = self.folder / "by-pkg-config"
         self.call(shutil.which("g++"), "-std=c++20", EXAMPLE / "main.cpp", "-o", program, *flags.split())

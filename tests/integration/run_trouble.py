@@ -51,7 +51,7 @@ class Trouble(LittleRoom):
 
     def test_places_that_cannot_be_read_or_written(self):
         (self.folder / "loop").symlink_to("loop")
-        self.write("q.csv", "time,acceleration\n0.0,0.0\n0.1,1.0\n0.2,0.0\n")
+        self.write("q.csv", "time,acceleration (m/s2)\n0.0,0.0\n0.1,1.0\n0.2,0.0\n")
         for words in (
             "run incline.toml -o loop", "run incline.toml -o incline.toml/out", "cut incline.toml -o loop", "report loop",
             "export loop --format csv", "study run incline.toml -o loop", "study collect loop",

@@ -255,10 +255,10 @@ class OtherFiles(Scenario):
         motion = self.scenario.read_text().replace('kind = "rest"', 'kind = "shake"\nmotion = "q"')
         motion += '[section]\nazimuth = 0.0\n[[motion]]\nname = "q"\ncomponents = [{ file = "q.csv", azimuth = 0.0 }]\n'
         self.write("incline.toml", motion)
-        self.write("q.csv", "time,acceleration\n0.0,0.0\n0.1,1.0\n0.2,0.0\n0.5,0.0\n")
+        self.write("q.csv", "time,acceleration (m/s2)\n0.0,0.0\n0.1,1.0\n0.2,0.0\n0.5,0.0\n")
         self.keyblock("run", "incline.toml", "-o", "out")
         self.keyblock("run", "incline.toml", "-o", "out")
-        self.write("q.csv", "time,acceleration\n0.0,0.0\n0.1,-1.0\n0.2,0.0\n0.5,0.0\n")
+        self.write("q.csv", "time,acceleration (m/s2)\n0.0,0.0\n0.1,-1.0\n0.2,0.0\n0.5,0.0\n")
         self.assertIn("results of other input", self.refused("out"))
         self.assertIn("the same files", self.refused("out", "--resume"))
         self.keyblock("run", "incline.toml", "-o", "out", "--force")
@@ -266,7 +266,7 @@ class OtherFiles(Scenario):
     def test_results_that_are_gone_are_not_resumed(self):
         self.keyblock("run", "incline.toml", "-o", "out")
         (self.folder / "out/result.h5").unlink()
-        self.assertIn("run without --resume to begin anew", self.refused("out", "--resume"))
+        self.assertIn("to begin anew, run into another folder", self.refused("out", "--resume"))
         self.keyblock("run", "incline.toml", "-o", "out")
 
 

@@ -113,13 +113,107 @@ TEST(Api, WhatACallerThrowsComesBack) {
   EXPECT_NE(results.summary().find("\"interrupted\": true"), std::string::npos);
 }
 
+TEST(Api, ValuesGoInAsTheyAre) {
+  Scenario by_text = Scenario::parse(falling), by_value = by_text;
+  by_text.set("rock.young", "2e9");
+  by_value.set("rock.young", 2e9);
+  by_text.set("block[1].outer", "[[0.5, 0.2], [1.5, 0.2], [1.5, 1.2], [0.5, 1.2]]");
+  const std::vector<double> outer{0.5, 0.2, 1.5, 0.2, 1.5, 1.2, 0.5, 1.2};
+  by_value.set("block[1].outer", Value::rows(outer, 2));
+  by_text.set("block[0].fixed", "true");
+  by_value.set("block[0].fixed", true);
+  by_text.append("stage", "{ name = \"more\", kind = \"rest\", duration = 0.1 }");
+  by_value.append(
+      "stage", Value::Table{{"name", Value::text("more")}, {"kind", Value::text("rest")}, {"duration", 0.1}});
+  EXPECT_EQ(by_value.toml(), by_text.toml());
+  EXPECT_EQ(by_value.changes(), by_text.changes());
+  EXPECT_EQ(std::get<double>(by_value.value("rock.young")->is), 2e9);
+  EXPECT_FALSE(by_value.value("rock.colour"));
+  EXPECT_EQ(by_value.keys("stage"), (std::vector<std::string>{"fall", "more"}));
+  by_value.remove("stage.more");
+  EXPECT_EQ(by_value.keys("stage"), std::vector<std::string>{"fall"});
+  EXPECT_TRUE(by_value.is_made());
+  EXPECT_THROW(by_value.remove("stage.more"), InputError);
+  EXPECT_TRUE(by_text.has("stage.more"));
+  bool knows_order = false;
+  for (const KeyMeaning& key : Scenario::known_keys("rock"))
+    knows_order = knows_order || (key.key == "order" && !key.meaning.empty());
+  EXPECT_TRUE(knows_order);
+}
+
+TEST(Api, ASimulationWithinAStepIsNotSteppedAgain) {
+  Simulation run(Scenario::parse(falling));
+  run.after_step([&] { run.advance(); });
+  EXPECT_THROW(run.advance(), std::logic_error);
+  Simulation other(Scenario::parse(falling));
+  other.after_step([&] { static_cast<void>(other.finish()); });
+  EXPECT_THROW(other.advance(), std::logic_error);
+}
+
+TEST(Api, AFolderIsLetGo) {
+  const FreshFolder folder;
+  RunOptions options;
+  options.folder = folder / "out";
+  Simulation first(Scenario::parse(falling), options);
+  first.advance();
+  EXPECT_THROW(Simulation(Scenario::parse(falling), options), InputError);
+  first.close();
+  EXPECT_EQ(first.step(), 1);
+  EXPECT_THROW(first.advance(), std::logic_error);
+  Simulation second(Scenario::parse(falling), options);
+  while (second.advance()) {
+  }
+  second.finish();
+  Simulation third(Scenario::parse(falling), options);
+  while (third.advance()) {
+  }
+  EXPECT_EQ(third.state_hash(), second.state_hash());
+}
+
+TEST(Api, ForcesCarryBlocks) {
+  Simulation run(Scenario::parse(falling));
+  ASSERT_EQ(run.block_facts()[1].name, "stone");
+  EXPECT_DOUBLE_EQ(run.block_facts()[1].density, 2500.0);
+  run.set_force(1, {0.0, 2.0 * 2500.0 * 9.81});
+  while (run.advance()) {
+  }
+  EXPECT_NEAR(run.block_velocities()[3], 9.81 * 0.1, 1e-6);
+  EXPECT_EQ(run.forces().size(), 1U);
+  EXPECT_THROW(run.set_force(0, {0.0, 1.0}), InputError);
+  EXPECT_THROW(run.set_force(1, {0.0, 1.0}, std::array<double, 2>{30.0, 0.0}), InputError);
+  EXPECT_EQ(run.stress().size(), 6U);
+  EXPECT_TRUE(run.springs().empty());
+}
+
+TEST(Api, ResultsHaveContactsHistoriesAndEnergies) {
+  const FreshFolder folder;
+  RunOptions options;
+  options.folder = folder / "out";
+  Scenario scenario = Scenario::parse(falling);
+  scenario.append("history", "{ name = \"top\", block = \"stone\", point = [1.0, 1.0] }");
+  Simulation run(scenario, options);
+  while (run.advance()) {
+  }
+  run.finish();
+  const Results results(options.folder);
+  ASSERT_EQ(results.histories().size(), 1U);
+  EXPECT_EQ(results.histories()[0].velocity.size(), results.history_times().size());
+  EXPECT_NEAR(results.histories()[0].velocity.back()[1], -9.81 * 0.1, 0.05);
+  EXPECT_NEAR(results.frame(results.frames() - 1).velocity[1][1], -9.81F * 0.1F, 0.05F);
+  EXPECT_GT(results.contact_snapshots(), 0U);
+  EXPECT_EQ(results.contacts(0).contacts.slip.size(), results.contacts(0).contacts.block_a.size());
+  ASSERT_FALSE(results.energies().empty());
+  EXPECT_EQ(results.energies().back().energy.front().first, "kinetic");
+  EXPECT_FALSE(results.export_to(folder / "csv", "csv").empty());
+  EXPECT_THROW(results.export_to(folder / "xls", "xls"), InputError);
+}
+
 TEST(Api, StudiesArePlannedRunAndCollected) {
   const FreshFolder folder;
   std::ofstream(folder / "study.toml")
       << falling
       << "[study]\nrealizations = 1\n[[study.vary]]\nkey = \"rock.density\"\nvalues = [2000.0, 3000.0]\n";
   const Scenario scenario = Scenario::load(folder / "study.toml");
-  EXPECT_THROW(plan_study(Scenario::parse(falling), folder / "out"), InputError);
   plan_study(scenario, folder / "out");
   EXPECT_EQ(study_state(folder / "out").missing, (std::vector<std::size_t>{0, 1}));
   run_of_study(folder / "out", 1);

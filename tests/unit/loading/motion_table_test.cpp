@@ -45,11 +45,13 @@ TEST(MotionTable, ThreeComponentsWithDirectionsAndUnits) {
 }
 
 TEST(MotionTable, WithoutNamesThereAreNoDirections) {
-  const auto components = read_text("0 1 2 3\n0.5 -1 -2 -3\n");
+  MotionReading stated;
+  stated.unit = "m/s2";
+  const auto components = read_text("0 1 2 3\n0.5 -1 -2 -3\n", stated);
   ASSERT_EQ(components.size(), 3U);
   EXPECT_FALSE(components[1].azimuth);
   EXPECT_FALSE(components[2].vertical);
-  EXPECT_THAT(components[0].notes, ElementsAre(HasSubstr("m/s2 is assumed")));
+  EXPECT_THAT(error_of("0 1 2 3\n0.5 -1 -2 -3\n").hint, HasSubstr("unit = \"m/s2\""));
   EXPECT_THAT(error_of("0 1 2 3 4\n0.5 -1 -2 -3 4\n").expected,
               HasSubstr("a table of time and accelerations"));
 }

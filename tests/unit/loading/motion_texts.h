@@ -35,6 +35,14 @@ std::string esm_text();
 /// Three components of 12 samples: N28W, Up, S62W; with `corrected`, velocity and displacement too.
 std::string geonet_text(bool corrected);
 std::string afad_text();
+/// Three components of 4 samples.
+std::string cwa_text();
+/// Two channels of 12 samples: 90°, and positive downwards.
+std::string usc_text();
+/// Two channels of 21 samples: 35°, and upwards.
+std::string bhrc_text();
+/// Three components of 6 samples: S00E, up, N90W.
+std::string unam_text();
 /// Volume 1: with a line that begins the samples, or as pairs of time and acceleration.
 std::string csmip_1_text(const std::string& title, const std::string& unit_line, const std::string& samples);
 std::string csmip_1_pairs();

@@ -41,7 +41,10 @@ class ChangedDataset {
     const std::size_t size = H5Tget_size(type),
                       count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
     std::string bytes(count * size, '\0');
-    if (!bytes.empty()) {
+    if (H5Tis_variable_str(type) > 0) {
+      const std::vector<const char*> odd(count, mutations.below(2) == 0 ? "" : "odd \xff");
+      H5Dwrite(id_, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, odd.data());
+    } else if (!bytes.empty()) {
       H5Dread(id_, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
       if (H5Tget_class(type) == H5T_FLOAT) {
         put(bytes, size, count, mutations.odd_number(), mutations);

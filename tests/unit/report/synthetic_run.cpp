@@ -284,11 +284,12 @@ class Wall {
     record.length = 0.5 * overlap;
     const double shaken = frame.stage >= 2 ? std::min(1.0, frame.time / options_.shake_duration) : 0.02;
     const Vec2 from_opening = record.position - 0.5 * (opening_.min + opening_.max);
-    record.slip = 0.02 * shaken * std::exp(-squared_norm(from_opening) / 9.0) * (a % 2 == 0 ? 1.0 : -1.0);
+    record.shear_displacement =
+        0.02 * shaken * std::exp(-squared_norm(from_opening) / 9.0) * (a % 2 == 0 ? 1.0 : -1.0);
     const bool apart = frame.status[a] == BlockStatus::fallen || frame.status[b] == BlockStatus::fallen;
-    record.state = apart                           ? ContactState::open
-                   : std::abs(record.slip) > 0.002 ? ContactState::sliding
-                                                   : ContactState::locked;
+    record.state = apart                   ? ContactState::open
+                   : record.slip() > 0.002 ? ContactState::sliding
+                                           : ContactState::locked;
     record.gap = apart ? 0.3 : -2e-5;
     record.normal_force = apart ? 0.0 : 2.0e4;
     record.label = {EdgeKind::joint_set, 0};

@@ -377,17 +377,17 @@ f = h5py.File(sys.argv[1] + "/result.h5", "r")
 def look(name, item):
     if not isinstance(item, h5py.Dataset): return
     a = item.attrs
-    number = item.dtype.kind != "S" and not name in ("stages", "run", "summary")
-    if "description" not in a or "unit" not in a or (len(a["unit"]) > 0) != number: print("missing at", name)
+    number = item.dtype.kind not in "SO" and not name in ("stages", "run", "summary", "texts")
+    if "description" not in a or ("units" in a) != number: print("missing at", name)
     if "columns" in a and len(a["columns"]) != item.shape[-1]: print("columns of", name)
-    units = len(a["unit"].split(b", ")) if number else 1
+    units = len(a["units"].split(b", ")) if number else 1
     if units > 1 and units != item.shape[-1]: print("units of", name)
 f.visititems(look)
 for name in ("frames/status", "contacts/state", "model/edge_kind", "contacts/edge_kind", "model/block_fixed"):
     print(name, ", ".join(f[name].attrs["values"].astype("U")))
 for name in ("frames/stress", "frames/velocity", "contacts/shear_force", "histories/values", "model/block_young",
              "steps/energy"):
-    print(name, f[name].attrs["unit"].decode())
+    print(name, f[name].attrs["units"].decode())
 print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["steps/energy_names"][:]).decode())
 )",
                                      folder.string());

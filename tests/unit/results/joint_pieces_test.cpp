@@ -36,7 +36,7 @@ ContactRecord on_top(double x, double length) {
   contact.position = {x, 4.0};
   contact.normal = {0.0, 1.0};
   contact.length = length;
-  contact.slip = -0.02;
+  contact.shear_displacement = -0.02;
   return contact;
 }
 

@@ -120,7 +120,8 @@ void expect_equal(const simulation::ContactFrame& a, const simulation::ContactFr
     EXPECT_EQ(p.block_b, q.block_b);
     EXPECT_EQ(p.state, q.state);
     EXPECT_TRUE(same(p.position, q.position) && same(p.normal, q.normal));
-    EXPECT_TRUE(same(p.length, q.length) && same(p.gap, q.gap) && same(p.slip, q.slip));
+    EXPECT_TRUE(same(p.length, q.length) && same(p.gap, q.gap) &&
+                same(p.shear_displacement, q.shear_displacement));
     EXPECT_TRUE(same(p.normal_force, q.normal_force) && same(p.shear_force, q.shear_force));
     EXPECT_EQ(p.label, q.label);
   }

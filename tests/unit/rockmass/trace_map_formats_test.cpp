@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/error.h"
@@ -52,6 +54,35 @@ class TraceMapFormats : public testing::Test {
  private:
   std::filesystem::path path_;
 };
+
+TEST_F(TraceMapFormats, TablesOfTwoEnds) {
+  struct Case {
+    const char *header, *before, *after;
+    char parting;
+  };
+  for (const Case& c :
+       {Case{"x1,y1,x2,y2", "", "", ','}, Case{"FID,START_X,START_Y,END_X,END_Y", "3,", "", ','},
+        Case{"id,x1,y1,x2,y2,set", "3,", ",1", ','}, Case{"X_Start;Y_Start;X_End;Y_End;Len", "", ";7", ';'},
+        Case{"set\tFromX\tFromY\tToX\tToY", "J1\t", "", '\t'}, Case{"id,x,y,x,y", "3,", "", ','},
+        Case{"no,xa,ya,xb,yb", "3,", "", ','}, Case{"E1,N1,E2,N2", "", "", ','},
+        Case{"x0,y0,x1,y1", "", "", ','}, Case{"id;x1 (m);y1 (m);x2 (m);y2 (m)", "a;", "", ';'}}) {
+    std::string text = std::string(c.header) + "\n";
+    for (const auto& [a, b] : cross) {
+      std::string row = fmt::format("{0},{1},{2},{3}", a.x, a.y, b.x, b.y);
+      std::replace(row.begin(), row.end(), ',', c.parting);
+      text += c.before + row + c.after + "\n";
+    }
+    EXPECT_EQ(ends(read(text)), cross) << c.header;
+  }
+  EXPECT_THAT(mistake("id,x1,y1,x2,y2\n1,0,0,5\n").found, HasSubstr("4 cells"));
+  EXPECT_THAT(mistake("id,x1,y1,x2,y2\n1,0,0,five,1\n").found, HasSubstr("five"));
+}
+
+TEST_F(TraceMapFormats, RowsThatBeginWithTheirNumberAreRefused) {
+  EXPECT_THAT(mistake("1,0,5,10,5,1\n2,3,0,3,10,2\n").expected, HasSubstr("names of the columns"));
+  EXPECT_THROW(read("1,0,5,10,5\n2,3,0,3,10\n"), InputError);
+  EXPECT_EQ(read("0,5,10,5\n3,0,3,10\n").size(), 2U);
+}
 
 TEST_F(TraceMapFormats, TablesOfSpreadsheets) {
   EXPECT_EQ(ends(read_trace_map(samples / "tabs.csv", 0)), cross);
@@ -183,7 +214,7 @@ TEST_F(TraceMapFormats, MetresAreNotTakenForDegrees) {
 }
 
 TEST_F(TraceMapFormats, PointsAreOneTrace) {
-  const auto traces = traces_of({{0, 0}, {1, 0}, {1, 0}, {2, 1}}, 3);
+  const auto traces = traces_of({{{0, 0}, {1, 0}, {1, 0}, {2, 1}}}, 3);
   ASSERT_EQ(traces.size(), 2U);
   EXPECT_EQ(traces[1].b, (Vec2{2, 1}));
   EXPECT_EQ(traces[0].source, (TraceSource{TraceSource::Kind::trace_map, 3}));

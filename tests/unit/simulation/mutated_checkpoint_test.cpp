@@ -62,7 +62,7 @@ class MutatedCheckpoint : public ::testing::Test {
     try {
       run(setup, options(observer, true), observer);
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("run without --resume to begin anew"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("to begin anew, run into another folder"));
       return "refused";
     } catch (const RunError&) {
       return "given up";

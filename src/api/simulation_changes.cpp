@@ -1,0 +1,61 @@
+#include <cmath>
+#include <numbers>
+
+#include "api/simulation_parts.h"
+#include "simulation/refuse.h"
+
+// What can be changed of a simulation between its steps.
+namespace keyblock {
+namespace {
+
+using simulation::refuse;
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+}  // namespace
+
+void Simulation::set_velocity(std::span<const double> velocity) {
+  parts_->runner().control().set_velocity(velocity);
+}
+
+JointStrength Simulation::strength(const std::string& joint) const {
+  const contact::JointLaw* law = parts_->runner().control().law(joint);
+  if (law == nullptr)
+    refuse("joint", "\"" + joint + "\"",
+           "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
+  return {std::atan(law->friction_coefficient) * degrees, law->cohesion, law->tension};
+}
+
+void Simulation::set_strength(const std::string& joint, const JointStrength& strength) {
+  if (!(strength.friction >= 0.0 && strength.friction < 90.0))
+    refuse("friction", std::to_string(strength.friction), "degrees, from 0 to less than 90");
+  // What was read and is set again changes no bit.
+  const bool same = strength.friction == this->strength(joint).friction;
+  const double coefficient = same ? parts_->runner().control().law(joint)->friction_coefficient
+                                  : std::tan(strength.friction / degrees);
+  parts_->runner().control().set_strength(joint, {coefficient, strength.cohesion, strength.tension});
+}
+
+void Simulation::set_load_factor(std::size_t load, double factor) {
+  parts_->runner().control().set_load_scale(load, factor);
+}
+
+void Simulation::set_force(std::size_t block, const std::array<double, 2>& force,
+                           const std::optional<std::array<double, 2>>& place, std::int64_t slot) {
+  const auto at = place ? std::optional(Vec2{(*place)[0], (*place)[1]}) : std::nullopt;
+  parts_->runner().control().set_force(block, slot, at, {force[0], force[1]});
+}
+
+void Simulation::set_spring_stiffness(std::size_t spring, double stiffness) {
+  parts_->runner().control().set_spring_stiffness(spring, stiffness);
+}
+
+void Simulation::set_spring_force(std::size_t spring, double force) {
+  parts_->runner().control().set_spring_force(spring, force);
+}
+
+void Simulation::set_motion_scale(double factor) {
+  parts_->runner().control().set_motion_scale(factor);
+}
+
+}  // namespace keyblock
