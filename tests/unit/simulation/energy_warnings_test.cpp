@@ -60,7 +60,8 @@ TEST(EnergyWarnings, SayWhatTheTimeIntegrationHasMade) {
 
 TEST(EnergyWarnings, ARunThatMissesTooMuchHasFailed) {
   EXPECT_EQ(balance_failure_of(0.05), "");
-  EXPECT_THAT(balance_failure_of(0.0501), AllOf(HasSubstr("misses 5.01 %"), HasSubstr("the results are kept")));
+  EXPECT_THAT(balance_failure_of(0.0501),
+              AllOf(HasSubstr("misses 5.01 %"), HasSubstr("the results are kept")));
   EXPECT_THAT(balance_failure_of(std::numeric_limits<double>::quiet_NaN()), HasSubstr("more than 5 %"));
   EXPECT_EQ(balance_failure_of(2.22, true), "");
 }
