@@ -169,14 +169,16 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
   for (std::size_t k = 0; k < updated_.size(); ++k) {
     const auto [c, normal] = updated_[k];
     const Force constant = springs.force_on(c, matrix.branch(c), 0.0, 0.0);
-    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D is right.
+    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D is right. One that is none any more, as
+    // its contact has become one of a face of a joint, has no force.
     const double in_matrix = normal ? matrix.normal_stiffness(c) : matrix.shear_stiffness(c);
     const double now = normal ? springs.kn[c] : springs.ks[c];
-    const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
+    const double stiffness = in_matrix > 0.0 ? in_matrix : now > 0.0 ? now : 1.0, scale = now / stiffness;
     stretch_.push_back(scale * (normal ? springs.y[c] : springs.w[c]));
     Corrections::Law& law = laws_.emplace_back();
     law.spring = normal ? springs.normal_law(c) : springs.shear_law(c);
     law.spring.stiffness = stiffness;
+    if (now == 0.0) law.spring.low = law.spring.high = 0.0;
     law.line_stiffness = in_matrix;
     law.line_force = normal ? constant.normal : constant.shear;
     const bool is_fresh = k + fresh >= updated_.size();

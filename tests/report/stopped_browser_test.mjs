@@ -87,7 +87,7 @@ const tests = {
     const checks = await page.$$eval("#quality tbody tr", (rows) =>
       rows.map((r) => [...r.children].map((c) => c.innerText)),
     );
-    assert.equal(checks.filter((c) => c[1] === "not known").length, 3);
+    assert.equal(checks.filter((c) => c[1] === "not known").length, 5);
     for (const check of checks)
       assert.equal(check[3], check[1] === "not known" ? "–" : "✓ passed");
     assert.match(
