@@ -117,12 +117,13 @@ struct ContactFrame {
   long step = 0;  ///< of the run, over all stages
 };
 
-/// One row of DIR/histories.csv: displacement, velocity and Cauchy stress at the chosen points; NaN once the block is excavated. Rock far
-/// away has no stress.
+/// One row of DIR/histories.csv: displacement, velocity, Cauchy stress and acceleration at the chosen points; NaN once the block is
+/// excavated. Rock far away has no stress. The acceleration is the mean over the last step, (v′ − v)/Δt; 0 in static stages.
 struct HistoryRow {
   double time = 0.0;
   struct Point {
     double ux, uy, vx, vy, sxx, syy, sxy;
+    double ax = 0.0, ay = 0.0;
   };
   std::vector<Point> points;
   long step = 0;  ///< of the run, over all stages

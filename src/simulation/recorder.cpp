@@ -193,12 +193,13 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   return frame;
 }
 
-HistoryRow::Point Recorder::at_point(const Point& point, const dynamics::State& state,
-                                     const dynamics::GroundMove& frame) const {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (point.block && !model_.surface.present[*point.block]) return {none, none, none, none, none, none, none};
+bool Recorder::is_there(const Point& point) const {
+  return !point.block || model_.surface.present[*point.block] != 0;
+}
+
+dynamics::GroundMove Recorder::move_of(const Point& point, const dynamics::State& state,
+                                       const dynamics::GroundMove& frame) const {
   dynamics::GroundMove move;
-  block::Stress s{none, none, none};
   if (!point.block) {
     move = far_ground(model_, state, point.reference);
   } else {
@@ -209,20 +210,42 @@ HistoryRow::Point Recorder::at_point(const Point& point, const dynamics::State& 
       v += point.phi[k] * Vec2{state.velocity[block.first + 2 * k], state.velocity[block.first + 2 * k + 1]};
     }
     move = {x - point.reference, v};
-    s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
   }
   if (point.absolute) {
     move.displacement += frame.displacement;
     move.velocity += frame.velocity;
   }
-  return {move.displacement.x, move.displacement.y, move.velocity.x, move.velocity.y, s.xx, s.yy, s.xy};
+  return move;
 }
 
-HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame) const {
+std::vector<Vec2> Recorder::velocities(const dynamics::State& state,
+                                       const dynamics::GroundMove& frame) const {
+  std::vector<Vec2> velocities;
+  for (const Point& point : points_) velocities.push_back(move_of(point, state, frame).velocity);
+  return velocities;
+}
+
+HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame,
+                             std::span<const Vec2> before) const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   HistoryRow row;
   row.time = state.time;
   row.step = state.step;
-  for (const Point& point : points_) row.points.push_back(at_point(point, state, frame));
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Point& point = points_[k];
+    if (!is_there(point)) {
+      row.points.push_back({none, none, none, none, none, none, none, none, none});
+      continue;
+    }
+    const auto [u, v] = move_of(point, state, frame);
+    block::Stress s{none, none, none};
+    if (point.block) {
+      const dynamics::Block& block = model_.blocks[*point.block];
+      s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
+    }
+    const Vec2 a = before.empty() ? Vec2{} : (v - before[k]) / setup_.time_step;
+    row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy, a.x, a.y});
+  }
   return row;
 }
 

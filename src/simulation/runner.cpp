@@ -286,6 +286,7 @@ StageOutlook Runner::static_step(dynamics::StepReport& report) {
 }
 
 StageOutlook Runner::dynamic_step(dynamics::StepReport& report) {
+  reporter_.before_step(now_);
   report = stepper_->advance(now_.mechanics, setup_.time_step, stage_->motion ? &*stage_->motion : nullptr);
   const auto taken = static_cast<double>(now_.stage_step + 1);
   stage_->is_still =
