@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -11,15 +12,23 @@
 namespace keyblock::simulation {
 
 void JointGauge::start(std::span<const contact::Contact> contacts) {
-  pieces_.clear();
+  std::vector<Piece> pieces;
   const auto is_frame = [&](int b) { return at(b) >= setup_.properties.size(); };
   for (const contact::Contact& c : contacts) {
     if (c.length <= 0.0 || is_frame(c.block_a) || is_frame(c.block_b)) continue;
-    pieces_.push_back({c.vertex, c.edge, c.position, c.length});
+    pieces.push_back({c.vertex, c.edge, c.position, c.length});
   }
-  std::sort(pieces_.begin(), pieces_.end(), [](const Piece& x, const Piece& y) {
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& x, const Piece& y) {
     return std::tie(x.vertex, x.edge) < std::tie(y.vertex, y.edge);
   });
+  restore(std::move(pieces));
+}
+
+void JointGauge::restore(std::vector<Piece> pieces) {
+  pieces_ = std::move(pieces);
+  of_vertex_.assign(model_.surface.position.size() + 1, 0);
+  for (const Piece& piece : pieces_) ++of_vertex_[at(piece.vertex) + 1];
+  std::partial_sum(of_vertex_.begin(), of_vertex_.end(), of_vertex_.begin());
 }
 
 JointGauge::Offset JointGauge::offset(const Piece& piece) const {
@@ -84,11 +93,10 @@ void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) co
 }
 
 double JointGauge::slip(int vertex, int edge) const {
-  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), std::pair{vertex, edge},
-                                      [](const Piece& p, const auto& key) {
-                                        return std::pair{p.vertex, p.edge} < key;
-                                      });
-  return piece != pieces_.end() && piece->vertex == vertex && piece->edge == edge ? offset(*piece).slip : 0.0;
+  if (of_vertex_.empty()) return 0.0;
+  for (int k = of_vertex_[at(vertex)]; k < of_vertex_[at(vertex) + 1]; ++k)
+    if (pieces_[at(k)].edge == edge) return offset(pieces_[at(k)]).slip;
+  return 0.0;
 }
 
 }  // namespace keyblock::simulation

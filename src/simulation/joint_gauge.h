@@ -31,11 +31,12 @@ class JointGauge {
   void watch(std::span<const BlockStatus> status);
   /// Adds slip, opening and hinges to `damage`: in place now, and ever up to the last look.
   void measure(std::span<const BlockStatus> status, Damage& damage) const;
-  /// Slip of the piece at a contact, by its vertex and edge; 0 for contacts made later.
+  /// m. Slip of the piece at a contact, by its vertex and edge; 0 for contacts made later.
   [[nodiscard]] double slip(int vertex, int edge) const;
 
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  void restore(std::vector<Piece> pieces) { pieces_ = std::move(pieces); }
+  /// Takes pieces that ascend by vertex, then edge.
+  void restore(std::vector<Piece> pieces);
 
  private:
   struct Offset {
@@ -48,7 +49,8 @@ class JointGauge {
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
-  std::vector<Piece> pieces_;  ///< ascending by vertex, then edge
+  std::vector<Piece> pieces_;   ///< ascending by vertex, then edge
+  std::vector<int> of_vertex_;  ///< where the pieces of each vertex begin; empty before there are pieces
 };
 
 }  // namespace keyblock::simulation
