@@ -1,6 +1,7 @@
 #include "simulation/joint_gauge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "core/lanes.h"
 
 namespace keyblock::simulation {
 
@@ -92,11 +94,36 @@ void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) co
   damage.slip_mean = length > 0.0 ? slip_length / length : 0.0;
 }
 
-double JointGauge::slip(int vertex, int edge) const {
-  if (of_vertex_.empty()) return 0.0;
+const JointGauge::Piece* JointGauge::piece_at(int vertex, int edge) const {
   for (int k = of_vertex_[at(vertex)]; k < of_vertex_[at(vertex) + 1]; ++k)
-    if (pieces_[at(k)].edge == edge) return offset(pieces_[at(k)]).slip;
-  return 0.0;
+    if (pieces_[at(k)].edge == edge) return &pieces_[at(k)];
+  return nullptr;
+}
+
+void JointGauge::slips(std::span<const contact::Contact> contacts, std::span<double> slips) const {
+  std::fill(slips.begin(), slips.end(), 0.0);
+  if (of_vertex_.empty()) return;
+  const std::span<const Vec2> position = model_.surface.position;
+  in_lanes(static_cast<int>(contacts.size()), [&](int first, int count) {
+    std::array<double, lane_count> along_x, along_y, apart_x{}, apart_y{};
+    along_x.fill(1.0);
+    along_y.fill(0.0);
+    for (int k = 0; k < count; ++k) {
+      const contact::Contact& c = contacts[at(first + k)];
+      const Piece* piece = piece_at(c.vertex, c.edge);
+      if (piece == nullptr) continue;
+      const Vec2 a = position[at(c.edge)], b = position[at(model_.surface.next[at(c.edge)])],
+                 apart = position[at(c.vertex)] - lerp(a, b, piece->along);
+      along_x[at(k)] = b.x - a.x;
+      along_y[at(k)] = b.y - a.y;
+      apart_x[at(k)] = apart.x;
+      apart_y[at(k)] = apart.y;
+    }
+    // As in offset(), to the same bits.
+    const Lanes x = load(along_x.data()), y = load(along_y.data()), length = square_root(x * x + y * y);
+    store_first(&slips[at(first)], x / length * load(apart_x.data()) + y / length * load(apart_y.data()),
+                count);
+  });
 }
 
 }  // namespace keyblock::simulation

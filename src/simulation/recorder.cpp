@@ -182,11 +182,13 @@ void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts
   constexpr std::size_t at_a_time = 64;
   std::array<dynamics::ContactForce, at_a_time> forces;
   std::array<ContactRecord, at_a_time> records;
+  std::array<double, at_a_time> slips;
   const auto contacts = stepper.contacts();
   const contact::Surface& surface = model_.surface;
   for (std::size_t first = 0; first < stepper.force_count(); first += at_a_time) {
     const std::size_t count = std::min(at_a_time, stepper.force_count() - first);
     stepper.forces(first, std::span(forces).first(count));
+    gauge_.joints().slips(contacts.subspan(first, count), std::span(slips).first(count));
     for (std::size_t k = 0; k < count; ++k) {
       const contact::Contact& c = contacts[first + k];
       ContactRecord& row = records[k];
@@ -197,7 +199,7 @@ void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts
       row.normal = c.normal;
       row.length = c.length;
       row.gap = forces[k].gap;
-      row.shear_displacement = gauge_.joints().slip(c.vertex, c.edge);
+      row.shear_displacement = slips[k];
       row.normal_force = forces[k].normal;
       row.shear_force = forces[k].shear;
       row.label = labels_[at(c.edge)];
