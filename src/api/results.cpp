@@ -50,7 +50,9 @@ std::size_t Results::contact_snapshots() const {
 
 ContactSnapshot Results::contacts(std::size_t k) const {
   const simulation::ContactFrame& of = parts_->data.contacts.at(k);
-  return {of.time, of.stage, of.step, api::contact_columns(of, parts_->data.model)};
+  api::ContactColumns columns(parts_->data.model, of.contacts.size());
+  columns.add(of.contacts);
+  return {of.time, of.stage, of.step, columns.take()};
 }
 
 std::vector<double> Results::history_times() const {

@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -109,6 +111,9 @@ struct ContactRecord {
 
   [[nodiscard]] double slip() const { return std::abs(shear_displacement); }  ///< m
 };
+
+/// Receives contacts, some at a time.
+using TakeContacts = std::function<void(std::span<const ContactRecord>)>;
 
 struct ContactFrame {
   double time = 0.0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -170,27 +171,41 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   frame.time = state.time;
   frame.stage = stage;
   frame.step = state.step;
+  frame.contacts.reserve(stepper.force_count());
+  each_contact(stepper, [&](std::span<const ContactRecord> some) {
+    frame.contacts.insert(frame.contacts.end(), some.begin(), some.end());
+  });
+  return frame;
+}
+
+void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts& take) const {
+  constexpr std::size_t at_a_time = 64;
+  std::array<dynamics::ContactForce, at_a_time> forces;
+  std::array<ContactRecord, at_a_time> records;
+  std::array<double, at_a_time> slips;
   const auto contacts = stepper.contacts();
   const contact::Surface& surface = model_.surface;
-  const std::vector<dynamics::ContactForce> forces = stepper.forces();
-  frame.contacts.reserve(forces.size());
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    const contact::Contact& c = contacts[k];
-    ContactRecord row;
-    row.block_a = c.block_a;
-    row.block_b = c.block_b;
-    row.state = static_cast<ContactState>(forces[k].state);
-    row.position = surface.position[at(c.vertex)];
-    row.normal = c.normal;
-    row.length = c.length;
-    row.gap = forces[k].gap;
-    row.shear_displacement = gauge_.joints().slip(c.vertex, c.edge);
-    row.normal_force = forces[k].normal;
-    row.shear_force = forces[k].shear;
-    row.label = labels_[at(c.edge)];
-    frame.contacts.push_back(row);
+  for (std::size_t first = 0; first < stepper.force_count(); first += at_a_time) {
+    const std::size_t count = std::min(at_a_time, stepper.force_count() - first);
+    stepper.forces(first, std::span(forces).first(count));
+    gauge_.joints().slips(contacts.subspan(first, count), std::span(slips).first(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const contact::Contact& c = contacts[first + k];
+      ContactRecord& row = records[k];
+      row.block_a = c.block_a;
+      row.block_b = c.block_b;
+      row.state = static_cast<ContactState>(forces[k].state);
+      row.position = surface.position[at(c.vertex)];
+      row.normal = c.normal;
+      row.length = c.length;
+      row.gap = forces[k].gap;
+      row.shear_displacement = slips[k];
+      row.normal_force = forces[k].normal;
+      row.shear_force = forces[k].shear;
+      row.label = labels_[at(c.edge)];
+    }
+    take(std::span(records).first(count));
   }
-  return frame;
 }
 
 bool Recorder::is_there(const Point& point) const {

@@ -21,6 +21,8 @@ class Recorder {
   [[nodiscard]] Frame frame(const dynamics::State& state, int stage) const;
   [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
                                       int stage) const;
+  /// Gives the contacts of the last step in their order, some at a time: so few that they stay in the nearest cache.
+  void each_contact(const dynamics::Stepper& stepper, const TakeContacts& take) const;
   /// Velocities of the history points, m/s. frame: how what displacements are relative to has moved (frame_motion()).
   [[nodiscard]] std::vector<Vec2> velocities(const dynamics::State& state,
                                              const dynamics::GroundMove& frame) const;

@@ -175,10 +175,6 @@ Energy Runner::energy() const {
   return energy_audit(model_, now_.mechanics, now_.initial_energy);
 }
 
-ContactFrame Runner::contacts() const {
-  return reporter_.recorder().contacts(now_.mechanics, *stepper_, now_.stage);
-}
-
 void Runner::orders_changed() {
   put_loads(now_.control, setup_, model_);
   stepper_.emplace(model_, team_, profile_, options_.stop);

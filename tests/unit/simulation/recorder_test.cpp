@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../scene.h"
+#include "simulation/runner.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -86,6 +87,42 @@ TEST(Recorder, ForcesOfContactsOnBlockA) {
   const double weight = 0.5 * 2600.0 * g;
   EXPECT_NEAR(on_block.x, 0.0, 0.02 * weight);
   EXPECT_NEAR(on_block.y, weight, 0.02 * weight);
+}
+
+// A wall that slides on its courses has more contacts than are handed over at once: none is lost or taken twice, and each has the slip of
+// its own piece of joint.
+TEST(Recorder, ContactsThatAreGivenSomeAtATimeAreThoseOfTheFrame) {
+  Scene scene(3e9, 10.0);
+  scene.rectangle({-1.0, -1.0}, 12.0, 1.0, 0.0, true);
+  for (int row = 0; row < 6; ++row)
+    for (int k = 0; k < 6; ++k) scene.rectangle({1.0 * k + 0.3 * (row % 2), 0.5 * row}, 1.0, 0.5);
+  scene.setup.motions = {loading::GroundMotion("m", {0.0, 0.1}, {{4.0, 0.0}, {4.0, 0.0}})};
+  scene.setup.time_step = scene.setup.output.contact_interval = 0.002;
+  scene.setup.stages = {stage("settle", StageKind::settle), stage("shaking", StageKind::shake)};
+  AllContacts observer;
+  std::vector<ContactRecord> given;
+  RunOptions options;
+  options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
+    given.clear();
+    runner.each_contact(
+        [&](std::span<const ContactRecord> some) { given.insert(given.end(), some.begin(), some.end()); });
+    EXPECT_EQ(given.size(), runner.contact_count());
+  };
+  run(scene.setup, options, observer);
+  const std::vector<ContactRecord>& kept = observer.frames.back().contacts;
+  ASSERT_GT(kept.size(), 64U);
+  ASSERT_EQ(given.size(), kept.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    EXPECT_EQ(given[k].block_a, kept[k].block_a);
+    EXPECT_EQ(given[k].normal_force, kept[k].normal_force);
+    EXPECT_EQ(given[k].position, kept[k].position);
+    EXPECT_EQ(given[k].shear_displacement, kept[k].shear_displacement);
+    // The first course slides on the floor: its vertices have gone as far as its blocks have, along x.
+    if (kept[k].block_b == 0) largest = std::max(largest, kept[k].slip());
+  }
+  // At 4 m/s² the base goes away under a friction of 10°: ½ (4 − g tan 10°) t².
+  EXPECT_NEAR(largest, 0.5 * (4.0 - g * std::tan(10.0 * degree)) * 0.01, 0.1 * 0.0113);
 }
 
 struct AllHistories final : RunObserver {
