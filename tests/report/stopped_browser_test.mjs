@@ -92,7 +92,7 @@ const tests = {
       assert.equal(check[3], check[1] === "not known" ? "–" : "✓ passed");
     assert.match(
       await text(page, "#quality .finding"),
-      /4 of 7 checks cannot be made/,
+      /5 of 8 checks cannot be made/,
     );
     assert.match(await text(page, "#quality .facts"), /not known/);
     assert.equal(await page.locator(".aside .plot").count(), 3); // with the ground motion
