@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/index.h"
 #include "dynamics/block_depth.h"
@@ -31,7 +30,7 @@ void Intrusions::measure(const Step& step) {
 bool Intrusions::comes_in(const Step& step, int vertex, int block, double deepest) const {
   const Vec2 end = step.at_end(at(vertex));
   const double now = depth_in(step.surface, block, end, step.at_end);
-  if (now <= deepest || now <= deepest + step.explained(vertex, block)) return false;
+  if (now <= deepest || step.is_held(vertex, block)) return false;
   const double before = depth_in(step.surface, block, step.surface.position[at(vertex)],
                                  [&](std::size_t v) { return step.surface.position[v]; });
   return now - before > least_added * deepest;
@@ -67,22 +66,17 @@ bool Intrusions::any(const Step& step, const contact::CandidateList& candidates)
 
 bool comes_inside(const Attempt& attempt, const RotationCorrection& rotation, Intrusions& intrusions) {
   const std::function<Vec2(std::size_t)> end = [&](std::size_t v) { return rotation.at_end(attempt, v); };
-  const std::function<double(int, int)> explained = [&](int vertex, int block) {
-    const int own = attempt.model.surface.block[at(vertex)];
-    double closure = 0.0;
+  const std::function<bool(int, int)> is_held = [&](int vertex, int block) {
     for (std::size_t c = 0; c < attempt.contacts.size(); ++c) {
       const contact::Contact& contact = attempt.contacts[c];
-      const bool is_there = contact.block_a == own && contact.block_b == block,
-                 is_back = contact.block_a == block && contact.block_b == own;
-      if (!(is_there || is_back) || !(attempt.problem.springs().force(c).normal > 0.0)) continue;
-      if (is_there && contact.vertex == vertex) return std::numeric_limits<double>::infinity();
-      closure = std::max(closure, contact.depth - dot(contact.normal, attempt.relative[c]));
+      if (contact.vertex == vertex && contact.block_b == block &&
+          attempt.problem.springs().force(c).normal > 0.0)
+        return true;
     }
-    return closure;
+    return false;
   };
-  return intrusions.any(
-      {attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, explained},
-      attempt.state.contacts);
+  return intrusions.any({attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, is_held},
+                        attempt.state.contacts);
 }
 
 }  // namespace keyblock::dynamics
