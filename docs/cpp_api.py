@@ -54,6 +54,10 @@ class _Reader:
                 private = line == "private:"
             elif line.startswith("namespace "):
                 self._scope("}")
+            elif line.startswith("// NOLINT"):
+                continue
+            elif line.startswith("template "):
+                entries += [] if private else [Entry("function", self._template(line), comment)]
             elif line:
                 found = self._declaration(line, comment)
                 entries += [] if private else found
@@ -70,9 +74,25 @@ class _Reader:
             return [Entry(head["kind"], declaration, comment, members)]
         if re.match(r"(class|struct) \w+;|using ", words):
             return []
+        if words.startswith("std::function<"):
+            return [Entry("member", words.rstrip(";"), comment)]
         if "(" in words.split("=")[0] or "operator" in words:
             return [] if NOT_SHOWN.match(words) else [Entry("function", _signature(words), comment)]
         return [Entry("member", member, comment) for member in _members(words)]
+
+    def _skip_body(self, text):
+        """The rest of the body of a function."""
+        while text.count("{") != text.count("}"):
+            text += next(self._lines)
+
+    def _template(self, line):
+        """A function template, with its body behind it: what it is shown as. Conditions on its parameters are left to the comment."""
+        text = line
+        while not (text.endswith((";", "}")) and text.count("{") == text.count("}")):
+            line = next(self._lines).strip()
+            text += "" if line.startswith("// NOLINT") else " " + line
+        head, declaration = re.match(r"template <(.*?)(?:, std::enable_if_t<.*?> = 0)?> (?=\S+[ (])(.*)", text).groups()
+        return f"template <{head}> {_signature(declaration)}"
 
     def _whole(self, line):
         """A declaration may go over several lines; its comment may follow each of them."""
@@ -82,6 +102,9 @@ class _Reader:
             said += [after] if after else []
             parts.append(code.strip())
             joined = " ".join(parts)
+            if joined.endswith("{") and "(" in joined and joined.count("(") == joined.count(")"):
+                self._skip_body(joined)
+                return joined + " }", said
             if joined.endswith((";", "{", "}")) and (joined.count("(") == joined.count(")")):
                 return joined, said
             line = next(self._lines)

@@ -37,6 +37,7 @@ struct HistoryOfPoint {
   std::vector<std::array<double, 2>> displacement;  ///< m, since the start
   std::vector<std::array<double, 2>> velocity;      ///< m/s
   std::vector<std::array<double, 3>> stress;        ///< Pa: xx, yy, xy; tension positive
+  std::vector<std::array<double, 2>> acceleration;  ///< m/s², mean over the step before; 0 in static stages
 };
 
 /// A step of which a row was kept.

@@ -96,7 +96,7 @@ class Result:
 
     @cached_property
     def histories(self) -> Any:
-        """Displacement, velocity and stress of the chosen points: a table over time with columns (point, quantity)."""
+        """Displacement, velocity, stress and acceleration of the chosen points: a table over time with columns (point, quantity)."""
         return tables.histories(self._file)
 
     @cached_property

@@ -10,7 +10,7 @@ import numpy as np
 from . import _optional
 from ._hdf5 import ResultFile
 
-HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]
+HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]  # of results that do not name them
 RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
 
 
@@ -31,7 +31,7 @@ def data_frame(rows: Sequence[Mapping[str, Any]], what: str, columns: list[str] 
 
 
 def histories(file: ResultFile) -> Any:
-    """Displacement, velocity and stress of the chosen points; columns (point, quantity)."""
+    """Displacement, velocity, stress and acceleration of the chosen points; columns (point, quantity)."""
     time = file.complete_times("histories")
     values = file.read("histories/values", slice(0, len(time)))
     quantities, units = file.columns("histories/values", HISTORY_COLUMNS), file.units("histories/values")

@@ -44,7 +44,7 @@ print(run.summary.blocks, run.frames.at(0.3).vertices.shape == run.blocks.vertic
 print(sorted(kb.open({str(heading_folder)!r}).release))
 """)  # fmt: skip
     assert said.splitlines() == [
-        "dict ('crown', 'sxx')",
+        "dict ('crown', 'ax')",
         "True",
         "['contact', 'damping'] True",
         "True",

@@ -108,10 +108,11 @@ def test_histories_are_those_of_the_csv(tunnel, tunnel_folder):
     table = pandas.read_csv(tunnel_folder / "histories.csv", index_col="time")
     histories = tunnel.histories
     assert histories.columns.names == ["point", "quantity"]
-    for quantity in ("ux", "uy", "vx", "vy", "sxx", "syy", "sxy"):
+    for quantity in ("ux", "uy", "vx", "vy", "sxx", "syy", "sxy", "ax", "ay"):
         np.testing.assert_allclose(histories["crown", quantity], table[f"crown.{quantity}"], rtol=1e-12)
     assert histories["crown"].ux.name == "ux"
     assert histories.attrs["units"]["vx"] == "m/s"
+    assert histories.attrs["units"]["ax"] == "m/s2"
 
 
 def test_a_run_without_points_has_an_empty_table(heading_folder):

@@ -1,35 +1,48 @@
 #include "api/contact_columns.h"
 
-#include "api/edge_names.h"
+#include <stdexcept>
 
 namespace keyblock::api {
 
-Contacts contact_columns(const simulation::ContactFrame& frame, const simulation::ModelRecord& model) {
-  Contacts contacts;
-  const EdgeNames names{model.joint_set_names, model.trace_map_names, model.excavation_names};
-  contacts.joint_names = names.all();
-  const std::size_t count = frame.contacts.size();
-  for (auto* column : {&contacts.block_a, &contacts.block_b, &contacts.joint}) column->reserve(count);
-  for (auto* column : {&contacts.position, &contacts.normal}) column->reserve(2 * count);
-  for (auto* column : {&contacts.length, &contacts.gap, &contacts.slip, &contacts.shear_displacement,
-                       &contacts.normal_force, &contacts.shear_force})
-    column->reserve(count);
-  contacts.state.reserve(count);
-  for (const simulation::ContactRecord& c : frame.contacts) {
-    contacts.block_a.push_back(c.block_a);
-    contacts.block_b.push_back(c.block_b);
-    contacts.state.push_back(static_cast<std::uint8_t>(c.state));
-    contacts.position.insert(contacts.position.end(), {c.position.x, c.position.y});
-    contacts.normal.insert(contacts.normal.end(), {c.normal.x, c.normal.y});
-    contacts.length.push_back(c.length);
-    contacts.gap.push_back(c.gap);
-    contacts.slip.push_back(c.slip());
-    contacts.shear_displacement.push_back(c.shear_displacement);
-    contacts.normal_force.push_back(c.normal_force);
-    contacts.shear_force.push_back(c.shear_force);
-    contacts.joint.push_back(names.code_of(c.label));
-  }
-  return contacts;
+ContactColumns::ContactColumns(const simulation::ModelRecord& model, std::size_t count)
+    : names_{model.joint_set_names, model.trace_map_names, model.excavation_names} {
+  contacts_.joint_names = names_.all();
+  for (auto* column : {&contacts_.block_a, &contacts_.block_b, &contacts_.joint}) column->resize(count);
+  for (auto* column : {&contacts_.position, &contacts_.normal}) column->resize(2 * count);
+  for (auto* column : {&contacts_.length, &contacts_.gap, &contacts_.slip, &contacts_.shear_displacement,
+                       &contacts_.normal_force, &contacts_.shear_force})
+    column->resize(count);
+  contacts_.state.resize(count);
+}
+
+void ContactColumns::add(std::span<const simulation::ContactRecord> some) {
+  if (count_ + some.size() > contacts_.state.size()) throw std::out_of_range("more contacts than announced");
+  // A column at a time, so that each is written in one go.
+  const auto fill = [&](auto& column, const auto& value) {
+    auto* to = column.data() + count_;
+    for (const simulation::ContactRecord& c : some) *to++ = value(c);
+  };
+  const auto fill_points = [&](std::vector<double>& column, Vec2 simulation::ContactRecord::*value) {
+    double* to = column.data() + 2 * count_;
+    for (const simulation::ContactRecord& c : some) {
+      *to++ = (c.*value).x;
+      *to++ = (c.*value).y;
+    }
+  };
+  using Record = simulation::ContactRecord;
+  fill(contacts_.block_a, [](const Record& c) { return c.block_a; });
+  fill(contacts_.block_b, [](const Record& c) { return c.block_b; });
+  fill(contacts_.state, [](const Record& c) { return static_cast<std::uint8_t>(c.state); });
+  fill_points(contacts_.position, &Record::position);
+  fill_points(contacts_.normal, &Record::normal);
+  fill(contacts_.length, [](const Record& c) { return c.length; });
+  fill(contacts_.gap, [](const Record& c) { return c.gap; });
+  fill(contacts_.slip, [](const Record& c) { return c.slip(); });
+  fill(contacts_.shear_displacement, [](const Record& c) { return c.shear_displacement; });
+  fill(contacts_.normal_force, [](const Record& c) { return c.normal_force; });
+  fill(contacts_.shear_force, [](const Record& c) { return c.shear_force; });
+  fill(contacts_.joint, [&](const Record& c) { return names_.code_of(c.label); });
+  count_ += some.size();
 }
 
 }  // namespace keyblock::api

@@ -50,7 +50,9 @@ std::size_t Results::contact_snapshots() const {
 
 ContactSnapshot Results::contacts(std::size_t k) const {
   const simulation::ContactFrame& of = parts_->data.contacts.at(k);
-  return {of.time, of.stage, of.step, api::contact_columns(of, parts_->data.model)};
+  api::ContactColumns columns(parts_->data.model, of.contacts.size());
+  columns.add(of.contacts);
+  return {of.time, of.stage, of.step, columns.take()};
 }
 
 std::vector<double> Results::history_times() const {
@@ -63,12 +65,13 @@ std::vector<HistoryOfPoint> Results::histories() const {
   std::vector<HistoryOfPoint> histories;
   const std::vector<std::string>& names = parts_->data.model.history_names;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    HistoryOfPoint& of = histories.emplace_back(HistoryOfPoint{names[k], {}, {}, {}});
+    HistoryOfPoint& of = histories.emplace_back(HistoryOfPoint{names[k], {}, {}, {}, {}});
     for (const simulation::HistoryRow& row : parts_->data.histories) {
       const simulation::HistoryRow::Point& p = row.points.at(k);
       of.displacement.push_back({p.ux, p.uy});
       of.velocity.push_back({p.vx, p.vy});
       of.stress.push_back({p.sxx, p.syy, p.sxy});
+      of.acceleration.push_back({p.ax, p.ay});
     }
   }
   return histories;

@@ -156,7 +156,10 @@ std::vector<AppliedForce> Simulation::forces() const {
 
 Contacts Simulation::contacts() const {
   if (parts_->runner().state().step == 0) return {};
-  return api::contact_columns(parts_->runner().contacts(), parts_->listener.model);
+  const simulation::Runner& runner = parts_->runner();
+  api::ContactColumns columns(parts_->listener.model, runner.contact_count());
+  runner.each_contact([&](std::span<const simulation::ContactRecord> some) { columns.add(some); });
+  return columns.take();
 }
 
 std::vector<std::pair<std::string, double>> Simulation::energy() const {

@@ -92,15 +92,14 @@ void JointFaces::add_half(const View& view, std::size_t c, int line, int side) {
   if (shared <= view.tolerances.rounding) return;
   shared_[c] += shared;
   const JointLaw& law = view.laws[at(surface.joint[at(line)])];
-  if (!(law.normal_stiffness > 0.0)) return;
+  const double penalty = std::min(view.penalty[at(contact.block_a)], view.penalty[at(contact.block_b)]);
+  if (!(law.normal_stiffness > 0.0) || law.normal_stiffness >= penalty) return;
   Half half{.low = std::min(line, side), .high = std::max(line, side), .contact = c};
   const Vec2 start = start_of(surface, half.low);
   half.along = dot(end_of(surface, half.low) - start, surface.position[at(contact.vertex)] - start);
   half.shared = shared;
   half.stiffness = law.normal_stiffness;
-  if (contact.fused)
-    half.stiffness = std::max(half.stiffness,
-                              std::min(view.penalty[at(contact.block_a)], view.penalty[at(contact.block_b)]));
+  if (contact.fused) half.stiffness = std::max(half.stiffness, penalty);
   stiffness_[c] += half.stiffness * shared;
   halves_.push_back(half);
 }

@@ -18,7 +18,8 @@ struct JointFace {
 };
 
 /// The faces of joints whose stiffness is given. Without these, two contacts at the ends of a face are point springs: three times too stiff
-/// against rotation. Where no stiffness is given springs only keep blocks apart, and each contact has its own.
+/// against rotation. Where no stiffness is given, or one as large as that which is taken then, springs only keep blocks apart, and each contact
+/// has its own.
 class JointFaces {
  public:
   /// Whether a joint has a stiffness of its own, so that there may be faces.

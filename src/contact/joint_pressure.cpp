@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "geometry/quadrature.h"
 
@@ -30,20 +31,26 @@ double closure_at(const EdgeDivision& division, std::span<const double> y, doubl
   return sum;
 }
 
-/// Between two places where the closure has different signs: where it is zero.
+/// Between two places where the closure has different signs: where it is zero. Regula falsi, where the end that stays loses half of its weight
+/// each time (Illinois algorithm): some six values of a polynomial that is nearly straight there.
 double find_zero(const EdgeDivision& division, std::span<const double> y, double from, double to,
                  double at_from, double at_to) {
+  const double enough = 1e-14 * std::max(std::abs(at_from), std::abs(at_to));
   double zero = from + (to - from) * at_from / (at_from - at_to);
   if (y.size() == 2) return zero;  // it is linear
-  constexpr int halvings = 60;
-  for (int k = 0; k < halvings && to - from > 1e-16; ++k) {
-    zero = 0.5 * (from + to);
+  constexpr int most_values = 60;
+  for (int k = 0; k < most_values; ++k) {
     const double at_zero = closure_at(division, y, zero);
-    if ((at_zero > 0.0) == (at_from > 0.0)) {
-      from = zero;
+    if (std::abs(at_zero) <= enough) break;
+    if ((at_zero > 0.0) == (at_to > 0.0)) {
+      at_from *= 0.5;
     } else {
-      to = zero;
+      from = to;
+      at_from = at_to;
     }
+    to = zero;
+    at_to = at_zero;
+    zero = from + (to - from) * at_from / (at_from - at_to);
   }
   return zero;
 }

@@ -149,6 +149,27 @@ RowFacts ContactCoupling::build(const Model& model, const State& state, const Dr
   return {may_break, lacks_room, has_distant};
 }
 
+/// Of each contact, dashpot over stiffness: the same for all contacts of two blocks, by the stiffest of them.
+std::vector<double> ContactCoupling::dashpots_of_faces(const Model& model, const Drive& drive,
+                                                       const Points& points) const {
+  std::vector<double> dashpot(contacts_.size(), 0.0);
+  if (drive.is_static) return dashpot;
+  const double damping = 2.0 * model.solver.contact_damping / drive.step,
+               viscous = stiffness_damping(model) / drive.step;
+  const auto are_of_same_blocks = [&](const contact::Contact& a, const contact::Contact& b) {
+    return std::minmax(a.block_a, a.block_b) == std::minmax(b.block_a, b.block_b);
+  };
+  for (std::size_t c = 0; c < contacts_.size();) {
+    std::size_t end = c;
+    double stiffest = 0.0;
+    for (; end < contacts_.size() && are_of_same_blocks(contacts_[c], contacts_[end]); ++end)
+      stiffest = std::max(stiffest, contacts_[end].normal_stiffness);
+    const double of_pair = damping * std::sqrt(reduced_mass(points, contacts_[c]) / stiffest) + viscous;
+    for (; c < end; ++c) dashpot[c] = of_pair;
+  }
+  return dashpot;
+}
+
 /// Normal springs of contacts that share the pressure of faces have what is left of their stiffness. Spring and dashpot of a face are one spring
 /// about a shifted origin, as those of a contact. All contacts of two blocks have the same dashpot for their stiffness then. Where a face is
 /// closed is a matter of all its contacts: those that are open are shifted with those that press.
@@ -157,43 +178,37 @@ void ContactCoupling::build_faces(const Model& model, const Drive& drive, const 
   if (faces.empty()) return;
   SpringArray& springs = out.springs;
   springs.faces.begin(springs.size());
-  const double damping = drive.is_static ? 0.0 : 2.0 * model.solver.contact_damping / drive.step,
-               viscous = drive.is_static ? 0.0 : stiffness_damping(model) / drive.step;
-  std::vector<double> more(contacts_.size(), 0.0);  // dashpot over stiffness
-  const auto blocks = [&](std::size_t c) { return std::minmax(contacts_[c].block_a, contacts_[c].block_b); };
-  for (std::size_t c = 0; c < contacts_.size();) {
-    std::size_t end = c;
-    double stiffest = 0.0;
-    const std::pair<int, int> of_first = blocks(c);
-    for (; end < contacts_.size() && std::pair<int, int>(blocks(end)) == of_first; ++end)
-      stiffest = std::max(stiffest, contacts_[end].normal_stiffness);
-    const double mass = reduced_mass(out.points, contacts_[c]);
-    std::fill(more.begin() + static_cast<std::ptrdiff_t>(c), more.begin() + static_cast<std::ptrdiff_t>(end),
-              damping * std::sqrt(mass / stiffest) + viscous);
-    c = end;
-  }
+  const std::vector<double> dashpot = dashpots_of_faces(model, drive, out.points);
   std::vector<std::size_t> rows;
   std::vector<std::uint8_t> presses(contacts_.size(), 0);
   for (const contact::JointFace& face : faces.all()) {
-    rows.clear();
     const std::span<const std::size_t> of_face = faces.contacts_of(face);
-    for (const std::size_t c : of_face) rows.push_back(out.first + c);
-    if (face.pressure.pulls() ||
-        std::ranges::any_of(of_face, [&](std::size_t c) { return contacts_[c].depth > 0.0; })) {
-      for (const std::size_t c : of_face) presses[c] = 1;
+    const auto is_pressed = [&](std::size_t c) { return contacts_[c].depth > 0.0; };
+    const bool shifts = face.pressure.pulls() || std::ranges::any_of(of_face, is_pressed);
+    rows.clear();
+    for (const std::size_t c : of_face) {
+      rows.push_back(out.first + c);
+      presses[c] |= static_cast<std::uint8_t>(shifts);
     }
-    springs.faces.add(face.pressure, more[faces.contacts_of(face).front()], rows);
+    springs.faces.add(face.pressure, dashpot[of_face.front()], rows);
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const std::size_t k = out.first + c;
-    if (!springs.faces.has(k)) continue;
-    const double moved = drive.moves_contacts() ? dot(out.rows[c].normal, out.rows[c].moved) : 0.0;
-    springs.kn[k] = faces.left()[c] * (1.0 + more[c]);
-    springs.y0[k] = springs.y[k] = contacts_[c].depth / (presses[c] != 0 ? 1.0 + more[c] : 1.0) - moved;
-    if (springs.kn[k] == 0.0) springs.low[k] = 0.0;  // there is no spring that could pull
-    springs.set_branch(k, springs.branch[k]);
+    if (springs.faces.has(out.first + c))
+      set_row_of_face(c, faces.left()[c], dashpot[c], presses[c] != 0, drive, out);
   }
   springs.press_faces();
+}
+
+/// Its own normal spring, of the stiffness that no face has. shifts: with those that press.
+void ContactCoupling::set_row_of_face(std::size_t c, double stiffness, double dashpot, bool shifts,
+                                      const Drive& drive, const CouplingRows& out) const {
+  SpringArray& springs = out.springs;
+  const std::size_t k = out.first + c;
+  const double moved = drive.moves_contacts() ? dot(out.rows[c].normal, out.rows[c].moved) : 0.0;
+  springs.kn[k] = stiffness * (1.0 + dashpot);
+  springs.y0[k] = springs.y[k] = contacts_[c].depth / (shifts ? 1.0 + dashpot : 1.0) - moved;
+  if (springs.kn[k] == 0.0) springs.low[k] = 0.0;  // there is no spring that could pull
+  springs.set_branch(k, springs.branch[k]);
 }
 
 RowFacts ContactCoupling::build_row(const Drive& drive, std::size_t c, const CouplingRows& out) const {

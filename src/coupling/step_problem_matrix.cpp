@@ -119,51 +119,61 @@ void StepProblem::add_spring(const Row& row, const Place& place, double kn, doub
   });
 }
 
+namespace {
+
+using Vectors = std::vector<std::vector<double>>;
+
+/// φ n, the derivative of a displacement along the normal by the coefficients of a block.
+std::vector<double> along_normal(const double* phi, int size, Vec2 normal) {
+  std::vector<double> out;
+  for (int k = 0; k < size; ++k) {
+    out.push_back(phi[k] * normal.x);
+    out.push_back(phi[k] * normal.y);
+  }
+  return out;
+}
+
+/// values += Σ h_ij r_i c_jᵀ
+void add_products(std::span<const double> h, double scale, const Vectors& rows, const Vectors& columns,
+                  double* values, int stride) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      const double share = scale * h[i * columns.size() + j];
+      for (std::size_t l = 0; l < columns[j].size(); ++l) {
+        double* column = values + static_cast<std::ptrdiff_t>(l) * stride;
+        for (std::size_t k = 0; k < rows[i].size(); ++k) column[k] += share * rows[i][k] * columns[j][l];
+      }
+    }
+  }
+}
+
+}  // namespace
+
 /// −∂(n·r)/∂D of the rows, by the two bodies of the first: all rows of a face are between the same two.
 void StepProblem::add_face(std::span<const std::size_t> rows, std::span<const Place> places,
                            std::span<const double> h, double scale, linalg::BlockSolver& solver) const {
   const Row& first = rows_[rows.front()];
   const std::array<int, 2> unknown{first.unknown_a, first.unknown_b};
-  const std::size_t n = rows.size();
-  std::array<std::vector<std::vector<double>>, 2> g;
-  for (auto& of_body : g) of_body.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
+  std::array<Vectors, 2> g;
+  for (Vectors& of_body : g) of_body.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows_[rows[i]];
-    const Vec2 normal = places[i].normal;
-    const auto take = [&](int body, const double* phi, int size, double sign) {
-      std::vector<double>& out = g[body == unknown[0] ? 0 : 1][i];
-      out.clear();
-      for (int k = 0; k < size; ++k) {
-        out.push_back(sign * phi[k] * normal.x);
-        out.push_back(sign * phi[k] * normal.y);
-      }
-    };
-    take(row.unknown_a, points_.phi_of(row.vertex), points_.body_of(row.vertex).size, -1.0);
+    const std::size_t a = row.unknown_a == unknown[0] ? 0 : 1;
+    g[a][i] =
+        along_normal(points_.phi_of(row.vertex), points_.body_of(row.vertex).size, -1.0 * places[i].normal);
     points_.with_phi(row, places[i].position, [&](const double* phi) {
-      take(row.unknown_b, phi, points_.body_of(row.from).size, 1.0);
+      g[1 - a][i] = along_normal(phi, points_.body_of(row.from).size, places[i].normal);
     });
   }
-  const auto add = [&](std::size_t of_rows, std::size_t of_columns, double* values, int stride) {
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) {
-        const double share = scale * h[i * n + j];
-        const std::vector<double>&r = g[of_rows][i], &c = g[of_columns][j];
-        for (std::size_t l = 0; l < c.size(); ++l) {
-          double* column = values + static_cast<std::ptrdiff_t>(l) * stride;
-          for (std::size_t k = 0; k < r.size(); ++k) column[k] += share * r[k] * c[l];
-        }
-      }
-    }
-  };
   for (const std::size_t body : {0U, 1U}) {
-    if (unknown[body] >= 0 && !g[body][0].empty())
-      add(body, body, solver.diagonal(unknown[body]),
-          linalg::padded_rows(static_cast<int>(g[body][0].size())));
+    if (unknown[body] >= 0)
+      add_products(h, scale, g[body], g[body], solver.diagonal(unknown[body]),
+                   linalg::padded_rows(static_cast<int>(g[body][0].size())));
   }
   if (first.pair < 0) return;
   const linalg::BlockSlot slot = solver.slot(first.pair);
-  const bool in_order = slot.row == unknown[0];
-  add(in_order ? 0 : 1, in_order ? 1 : 0, slot.values, slot.stride);
+  const std::size_t of_rows = slot.row == unknown[0] ? 0 : 1;
+  add_products(h, scale, g[of_rows], g[1 - of_rows], slot.values, slot.stride);
 }
 
 }  // namespace keyblock::dynamics

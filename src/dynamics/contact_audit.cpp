@@ -50,13 +50,18 @@ class Audit {
       take_farther(found_.unexplained, {std::min(depth, offset), c.block_a, c.block_b, where});
       return;
     }
-    const double reach = step_.reach[at(c.block_a)] + step_.reach[at(c.block_b)],
-                 near = step_.end_zone + reach + norm(step_.relative[k]) + std::max(0.0, -offset);
+    const double near = near_enough(k);
     if (-depth <= near || -depth <= near + depth_in_others(c, where) || shares_pressure(k)) return;
     ++found_.across_gaps;
     take_farther(found_.farthest, {-depth, c.block_a, c.block_b, where});
   }
 
+  /// m, that the vertex of a contact that presses may be outside.
+  [[nodiscard]] double near_enough(std::size_t k) const {
+    const contact::Candidate& c = step_.contacts.pairs[at(step_.contacts.tracked[k])];
+    return step_.end_zone + step_.reach[at(c.block_a)] + step_.reach[at(c.block_b)] +
+           norm(step_.relative[k]) + std::max(0.0, -step_.contacts.memory[k].offset);
+  }
   [[nodiscard]] double depth_of(Vec2 where, int block) const {
     return depth_in(step_.surface, block, where, [&](std::size_t v) { return step_.surface.position[v]; });
   }
@@ -72,7 +77,7 @@ class Audit {
     const auto is_closed = [&](std::size_t i) {
       const contact::Candidate& c = list.pairs[at(list.tracked[i])];
       return i != k && list.memory[i].in_face && list.memory[i].normal_force > 0.0 &&
-             depth_of(step_.surface.position[at(c.vertex)], c.block_b) >= -step_.end_zone;
+             depth_of(step_.surface.position[at(c.vertex)], c.block_b) >= -near_enough(i);
     };
     std::size_t first = k, end = k + 1;
     while (first > 0 && blocks(first - 1) == blocks(k)) --first;

@@ -120,25 +120,35 @@ void Stepper::measure_stored_energy(State& state) {
   sum_stored_energy(state);
 }
 
+std::size_t Stepper::force_count() const {
+  return std::min(finder_.contacts().size(), problem_.springs().size());
+}
+
 std::vector<ContactForce> Stepper::forces() const {
+  std::vector<ContactForce> all(force_count());
+  forces(0, all);
+  return all;
+}
+
+void Stepper::forces(std::size_t first, std::span<ContactForce> to) const {
+  if (first + to.size() > force_count()) throw std::out_of_range("forces of contacts that there are not");
   const SpringArray& springs = problem_.springs();
   const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
-  const std::size_t count = std::min(finder_.contacts().size(), springs.size());
-  std::vector<ContactForce> forces(count);
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const std::size_t k = first + i;
     const contact::Contact& c = finder_.contacts()[k];
     const Row& row = problem_.rows()[k];
     // n·r; what multipliers have added is in both y₀ and y.
     const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
-    ContactForce& force = forces[k];
+    ContactForce& force = to[i] = {};
     force.gap = c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
-    force.normal = springs.force(k).normal;
+    const SpringArray::Force of_springs = springs.force(k);
+    force.normal = of_springs.normal;
     if (springs.is_open(k)) continue;
-    force.shear = springs.force(k).shear;
+    force.shear = of_springs.shear;
     const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
     force.state = holds ? contact::State::locked : contact::State::sliding;
   }
-  return forces;
 }
 
 void Stepper::set_laws(std::vector<contact::JointLaw> laws) {

@@ -135,6 +135,9 @@ class Stepper {
   [[nodiscard]] std::span<const contact::Contact> contacts() const { return finder_.contacts(); }
   /// Of every contact at the end of the last step; of none where no step was taken.
   [[nodiscard]] std::vector<ContactForce> forces() const;
+  /// The same from contact `first` on, as many as there is room for. Throws std::out_of_range beyond force_count().
+  void forces(std::size_t first, std::span<ContactForce> to) const;
+  [[nodiscard]] std::size_t force_count() const;
 
  private:
   void predict(const State& state, Drive& drive);

@@ -26,9 +26,11 @@ std::optional<CountedSize> counted_size(const MotionText& text) {
     if (is_comment(line) || !row_separator(line)) continue;
     const auto fields = split_fields(line, *row_separator(line));
     if (fields.size() != 2) return {};
-    double count = *parse_number(fields[0]), dt = *parse_number(fields[1]);
-    if (count < dt) std::swap(count, dt);
-    const auto points = text.count(count, 2);
+    // A row may have decimal commas, which such records never do.
+    const auto first = parse_number(fields[0]), second = parse_number(fields[1]);
+    if (!first || !second) return {};
+    const auto points = text.count(std::max(*first, *second), 2);
+    const double dt = std::min(*first, *second);
     if (!points || !is_time_step(dt) || dt >= longest_step) return {};
     return CountedSize{k, *points, dt};
   }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view usc_title = "of uncorrected accelerogram data of";
 constexpr std::size_t usc_text_lines = 13, usc_real_lines = 7, usc_station_line = 5;
 constexpr std::size_t usc_direction = 26, usc_points = 27, usc_unit = 4;
-constexpr std::size_t first_width = 8, other_width = 7, real_width = 10, reals_per_line = 8;
+constexpr std::size_t first_width = 8, other_width = 7, usc_real_width = 10, reals_per_line = 8;
 
 /// How integers and pairs are laid out.
 struct UscLayout {
@@ -63,8 +63,9 @@ MotionComponent read_usc_channel(const MotionText& text, std::size_t first, std:
   };
   const auto points = text.count(integer(usc_points), 2);
   if (!points) text.fail(integers + 1, "the number of points, which the file must hold");
-  const double fraction =
-      FixedColumns{real_width, real_width}.number(text, reals, usc_unit % reals_per_line).value_or(0.0);
+  const double fraction = FixedColumns{usc_real_width, usc_real_width}
+                              .number(text, reals, usc_unit % reals_per_line)
+                              .value_or(0.0);
   const AccelerationUnit unit = usc_unit_of(text, first, fraction);
   const MotionDirection direction = usc_direction_of(text, integers + 1, integer(usc_direction));
   component.label = direction.azimuth    ? fmt::format("{}", *direction.azimuth)

@@ -6,6 +6,7 @@
 #include "report/page_data.h"
 #include "report/thinning.h"
 #include "results/joint_pieces.h"
+#include "results/record_fields.h"
 
 namespace keyblock::report {
 
@@ -143,14 +144,15 @@ void add_curves(std::string_view x_name, std::string_view values_name, const Cur
 
 void add_histories(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
-  curves.columns.resize(1 + 7 * run.model.history_names.size());
+  constexpr std::size_t quantities = std::size(results::history_fields);
+  curves.columns.resize(1 + quantities * run.model.history_names.size());
   for (const simulation::HistoryRow& row : run.histories) {
     curves.x.push_back(row.time);
     curves.columns[0].push_back(static_cast<double>(row.step));
     for (std::size_t p = 0; p < run.model.history_names.size(); ++p) {
       const auto& q = row.points[p];
-      const double values[] = {q.ux, q.uy, q.vx, q.vy, q.sxx, q.syy, q.sxy};
-      for (std::size_t c = 0; c < 7; ++c) curves.columns[1 + 7 * p + c].push_back(values[c]);
+      for (std::size_t c = 0; c < quantities; ++c)
+        curves.columns[1 + quantities * p + c].push_back(q.*results::history_fields[c].member);
     }
   }
   add_curves("history.time", "history.values", curves, pack);

@@ -36,7 +36,7 @@ PageData make_page_data(const results::RunData& run);
 /// | piece.state | u8 | n(pieces) | ContactState |
 /// | piece.slip, piece.gap | f32 | n(pieces) | m |
 /// | history.time | f64 | rows | s |
-/// | history.values | f32 | (1 + 7 n(points)) rows | by column: step; ux, uy, vx, vy, sxx, syy, sxy … |
+/// | history.values | f32 | (1 + 9 n(points)) rows | by column: step; results::history_fields of each point |
 /// | step.step | f64 | rows | steps since the start of the run |
 /// | step.values | f32 | n(step_columns) rows | by column, as step_columns in the header names them |
 /// | motion.K.time, .x, .y | f64, f32, f32 | samples | of stage K; s since the start of the run, m/s² |

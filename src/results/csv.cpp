@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/atomic_file.h"
+#include "results/record_fields.h"
 
 namespace keyblock::results {
 
@@ -53,9 +54,8 @@ std::string csv_field(std::string_view text) {
 std::vector<std::string> history_columns(const std::vector<std::string>& names) {
   std::vector<std::string> columns{"time"};
   for (const std::string& name : names) {
-    for (const char* quantity : {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"}) {
-      columns.push_back(fmt::format("{}.{}", name, quantity));
-    }
+    for (const HistoryField& field : history_fields)
+      columns.push_back(fmt::format("{}.{}", name, field.name));
   }
   return columns;
 }
@@ -70,10 +70,10 @@ std::string histories_csv(const std::vector<std::string>& names,
     auto out = std::back_inserter(text);
     fmt::format_to(out, "{}", row.time);
     for (const auto& p : row.points) {
-      if (std::isnan(p.ux)) {
-        text += ",,,,,,,";
-      } else {
-        fmt::format_to(out, ",{},{},{},{},{},{},{}", p.ux, p.uy, p.vx, p.vy, p.sxx, p.syy, p.sxy);
+      const bool is_there = !std::isnan(p.ux);
+      for (const HistoryField& field : history_fields) {
+        text += ',';
+        if (is_there) fmt::format_to(out, "{}", p.*field.member);
       }
     }
     text += "\n";

@@ -12,12 +12,12 @@ namespace keyblock::results {
 /// spreadsheet would run as a formula (from =, +, -, @, a tab or a carriage return on) gets an apostrophe before it; numbers do not.
 std::string csv_field(std::string_view text);
 
-/// Names of the columns: `time`, then seven per history, as below.
+/// Names of the columns: `time`, then those of history_fields per history, as below.
 std::vector<std::string> history_columns(const std::vector<std::string>& names);
 
 /// One row per recorded step: `time`, then per history `NAME.ux, NAME.uy, NAME.vx, NAME.vy, NAME.sxx, NAME.syy,
-/// NAME.sxy` (displacement since the start, m; velocity, m/s; Cauchy stress, Pa). Every number can be read back to its
-/// last bit.
+/// NAME.sxy, NAME.ax, NAME.ay` (displacement since the start, m; velocity, m/s; Cauchy stress, Pa; acceleration, m/s²). Every number can be
+/// read back to its last bit.
 std::string histories_csv(const std::vector<std::string>& names,
                           const std::vector<simulation::HistoryRow>& rows);
 

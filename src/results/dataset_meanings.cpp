@@ -77,6 +77,13 @@ Names energy_names() {
   return names;
 }
 
+std::string history_units() {
+  std::string units;
+  for (const HistoryField& field : history_fields)
+    units += (units.empty() ? "" : ", ") + std::string(field.unit);
+  return units;
+}
+
 std::string energy_units() {
   std::string units;
   for (const auto& [name, member] : energy_fields) {
@@ -176,10 +183,10 @@ std::vector<Meaning> of_rows() {
       {"histories/names", "", "names of the chosen points"},
       {"histories/time", "s", "simulated time"},
       {"histories/step", "1", "step of the run"},
-      {"histories/values",
-       "m, m, m/s, m/s, Pa, Pa, Pa",
-       "of every chosen point",
-       {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"}},
+      {"histories/values", history_units(),
+       "of every chosen point: displacement, velocity, stress, and acceleration as its mean over the last "
+       "step",
+       history_quantities()},
       {"steps/time", "s", "simulated time"},
       {"steps/stage", "1", "stage, from 0"},
       {"steps/step", "1", "step of the run"},

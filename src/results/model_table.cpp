@@ -118,7 +118,7 @@ void write_scales(hid_t file, const simulation::ModelRecord& model) {
   };
   named("component", {"x", "y"});
   named("stress_component", {"xx", "yy", "xy"});
-  named("quantity", {"ux", "uy", "vx", "vy", "sxx", "syy", "sxy"});
+  named("quantity", history_quantities());
   std::vector<std::string> energies;
   for (const auto& [name, member] : energy_fields) energies.emplace_back(name);
   named("energy_term", energies);

@@ -19,9 +19,9 @@ using hdf5::read_column;
 
 constexpr std::size_t energy_terms = std::size(energy_fields);
 constexpr std::size_t first_energy_terms = 9;  // of results of the first version
-constexpr std::size_t history_values = 7;
+constexpr std::size_t history_values = std::size(history_fields);
+constexpr std::size_t first_history_values = 7;  // of results of earlier versions
 
-static_assert(sizeof(simulation::HistoryRow::Point) == history_values * sizeof(double));
 static_assert(sizeof(Vec2) == 2 * sizeof(double));
 
 template <class T>
@@ -269,15 +269,18 @@ std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "histories");
   const auto time = read_column<double>(group, "time"), values = read_array<double>(group, "values");
   const auto step = read_column<std::int64_t>(group, "step");
-  require(values.width() % history_values == 0, "histories/values");
-  const std::size_t points = values.width() / history_values;
+  const std::size_t quantities = values.shape.size() == 3 ? values.shape[2] : 0;
+  require(quantities == history_values || quantities == first_history_values, "histories/values");
+  const std::size_t points = values.shape[1];
   std::vector<simulation::HistoryRow> rows(common_rows(time, {values.rows(), step.rows()}));
   const double* next = values.values.data();
   for (std::size_t k = 0; k < rows.size(); ++k) {
     rows[k].time = time.values[k];
     rows[k].step = step.values[k];
-    for (std::size_t p = 0; p < points; ++p, next += history_values) {
-      rows[k].points.push_back({next[0], next[1], next[2], next[3], next[4], next[5], next[6]});
+    for (std::size_t p = 0; p < points; ++p) {
+      simulation::HistoryRow::Point& point = rows[k].points.emplace_back();
+      for (std::size_t q = 0; q < history_values; ++q)
+        point.*history_fields[q].member = q < quantities ? *next++ : std::nan("");
     }
   }
   return rows;

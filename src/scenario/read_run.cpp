@@ -200,7 +200,7 @@ void read_history(TableReader& t, simulation::History& history, const Scenario& 
     check_history(t, history, scenario);
   }
   t.word("frame", history.absolute, history_frames,
-         {.meaning = "`relative`: displacement and velocity against the base, or against the outcrop over a "
+         {.meaning = "`relative`: motion against the base, or against the outcrop over a "
                      "compliant base. `absolute`: with the motion of these, the integrals of the record."});
 }
 
@@ -357,11 +357,10 @@ void read_run(TableReader& root, Scenario& scenario) {
               .at_most = 1e6});
     check_step_count(t, scenario);
   });
-  root.tables(
-      "history", scenario.histories,
-      {.meaning = "A point whose displacement, velocity and stress are recorded in histories.csv, until a "
-                  "stage excavates its block."},
-      [&](TableReader& t, simulation::History& history) { read_history(t, history, scenario); });
+  root.tables("history", scenario.histories,
+              {.meaning = "A point whose displacement, velocity, stress and acceleration are recorded in "
+                          "histories.csv, until a stage excavates its block."},
+              [&](TableReader& t, simulation::History& history) { read_history(t, history, scenario); });
   root.table("damage", {.meaning = "Limits of the damage measures."},
              [&](TableReader& t) { read_damage(t, scenario.damage); });
   root.table("output", {.meaning = "How often results are recorded."},

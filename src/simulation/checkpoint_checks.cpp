@@ -1,6 +1,7 @@
 #include "simulation/checkpoint_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
@@ -227,6 +228,15 @@ bool are_records(const RunState& state, const RunSetup& setup, std::size_t block
   return true;
 }
 
+/// Places where blocks overlap, or press across a gap.
+bool are_overlaps(const RunRecord& record, std::size_t blocks) {
+  const ContactChecks& vertices = record.contact_checks;
+  const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
+  return std::ranges::all_of(
+      std::array{&record.max_overlap, &vertices.farthest, &vertices.deepest, &vertices.unexplained},
+      [&](const OverlapRecord* o) { return is_known(o->block_a) && is_known(o->block_b); });
+}
+
 /// Of each support that a stage installs, whether it is there.
 bool are_supports(std::span<const std::uint8_t> installed, const RunSetup& setup) {
   return installed.size() == setup.staged_supports.size() && are_flags(installed);
@@ -266,13 +276,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!is_still(state.still, model)) return "places of other vertices";
   if (const std::string mistake = mistake_in_control(state.control, model); !mistake.empty()) return mistake;
   if (!are_records(state, setup, blocks)) return "stages that are not of this run";
-  const ContactChecks& vertices = state.record.contact_checks;
-  const auto is_known = [&](int b) { return b == -1 || is_place(b, blocks); };
-  for (const OverlapRecord* overlap :
-       {&state.record.max_overlap, &vertices.farthest, &vertices.deepest, &vertices.unexplained}) {
-    if (!is_known(overlap->block_a) || !is_known(overlap->block_b)) return "an overlap of unknown blocks";
-  }
-  return "";
+  return are_overlaps(state.record, blocks) ? "" : "an overlap of unknown blocks";
 }
 
 }  // namespace keyblock::simulation

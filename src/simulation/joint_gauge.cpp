@@ -1,25 +1,36 @@
 #include "simulation/joint_gauge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "core/index.h"
+#include "core/lanes.h"
 
 namespace keyblock::simulation {
 
 void JointGauge::start(std::span<const contact::Contact> contacts) {
-  pieces_.clear();
+  std::vector<Piece> pieces;
   const auto is_frame = [&](int b) { return at(b) >= setup_.properties.size(); };
   for (const contact::Contact& c : contacts) {
     if (c.length <= 0.0 || is_frame(c.block_a) || is_frame(c.block_b)) continue;
-    pieces_.push_back({c.vertex, c.edge, c.position, c.length});
+    pieces.push_back({c.vertex, c.edge, c.position, c.length});
   }
-  std::sort(pieces_.begin(), pieces_.end(), [](const Piece& x, const Piece& y) {
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& x, const Piece& y) {
     return std::tie(x.vertex, x.edge) < std::tie(y.vertex, y.edge);
   });
+  restore(std::move(pieces));
+}
+
+void JointGauge::restore(std::vector<Piece> pieces) {
+  pieces_ = std::move(pieces);
+  of_vertex_.assign(model_.surface.position.size() + 1, 0);
+  for (const Piece& piece : pieces_) ++of_vertex_[at(piece.vertex) + 1];
+  std::partial_sum(of_vertex_.begin(), of_vertex_.end(), of_vertex_.begin());
 }
 
 JointGauge::Offset JointGauge::offset(const Piece& piece) const {
@@ -83,12 +94,36 @@ void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) co
   damage.slip_mean = length > 0.0 ? slip_length / length : 0.0;
 }
 
-double JointGauge::slip(int vertex, int edge) const {
-  const auto piece = std::lower_bound(pieces_.begin(), pieces_.end(), std::pair{vertex, edge},
-                                      [](const Piece& p, const auto& key) {
-                                        return std::pair{p.vertex, p.edge} < key;
-                                      });
-  return piece != pieces_.end() && piece->vertex == vertex && piece->edge == edge ? offset(*piece).slip : 0.0;
+const JointGauge::Piece* JointGauge::piece_at(int vertex, int edge) const {
+  for (int k = of_vertex_[at(vertex)]; k < of_vertex_[at(vertex) + 1]; ++k)
+    if (pieces_[at(k)].edge == edge) return &pieces_[at(k)];
+  return nullptr;
+}
+
+void JointGauge::slips(std::span<const contact::Contact> contacts, std::span<double> slips) const {
+  std::fill(slips.begin(), slips.end(), 0.0);
+  if (of_vertex_.empty()) return;
+  const std::span<const Vec2> position = model_.surface.position;
+  in_lanes(static_cast<int>(contacts.size()), [&](int first, int count) {
+    std::array<double, lane_count> along_x, along_y, apart_x{}, apart_y{};
+    along_x.fill(1.0);
+    along_y.fill(0.0);
+    for (int k = 0; k < count; ++k) {
+      const contact::Contact& c = contacts[at(first + k)];
+      const Piece* piece = piece_at(c.vertex, c.edge);
+      if (piece == nullptr) continue;
+      const Vec2 a = position[at(c.edge)], b = position[at(model_.surface.next[at(c.edge)])],
+                 apart = position[at(c.vertex)] - lerp(a, b, piece->along);
+      along_x[at(k)] = b.x - a.x;
+      along_y[at(k)] = b.y - a.y;
+      apart_x[at(k)] = apart.x;
+      apart_y[at(k)] = apart.y;
+    }
+    // As in offset(), to the same bits.
+    const Lanes x = load(along_x.data()), y = load(along_y.data()), length = square_root(x * x + y * y);
+    store_first(&slips[at(first)], x / length * load(apart_x.data()) + y / length * load(apart_y.data()),
+                count);
+  });
 }
 
 }  // namespace keyblock::simulation

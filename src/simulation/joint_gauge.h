@@ -31,11 +31,12 @@ class JointGauge {
   void watch(std::span<const BlockStatus> status);
   /// Adds slip, opening and hinges to `damage`: in place now, and ever up to the last look.
   void measure(std::span<const BlockStatus> status, Damage& damage) const;
-  /// Slip of the piece at a contact, by its vertex and edge; 0 for contacts made later.
-  [[nodiscard]] double slip(int vertex, int edge) const;
+  /// m. Slip of the piece at each contact, by its vertex and edge; 0 for contacts made later.
+  void slips(std::span<const contact::Contact> contacts, std::span<double> slips) const;
 
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  void restore(std::vector<Piece> pieces) { pieces_ = std::move(pieces); }
+  /// Takes pieces that ascend by vertex, then edge.
+  void restore(std::vector<Piece> pieces);
 
  private:
   struct Offset {
@@ -44,11 +45,14 @@ class JointGauge {
   /// Pairs of blocks with a piece of joint in place that is open beyond the limit, and one that is not.
   [[nodiscard]] int hinges(std::span<const BlockStatus> status) const;
   [[nodiscard]] Offset offset(const Piece& piece) const;
+  /// Null where there is none.
+  [[nodiscard]] const Piece* piece_at(int vertex, int edge) const;
   [[nodiscard]] bool in_place(const Piece& piece, std::span<const BlockStatus> status) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
-  std::vector<Piece> pieces_;  ///< ascending by vertex, then edge
+  std::vector<Piece> pieces_;   ///< ascending by vertex, then edge
+  std::vector<int> of_vertex_;  ///< where the pieces of each vertex begin; empty before there are pieces
 };
 
 }  // namespace keyblock::simulation

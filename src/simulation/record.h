@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,6 +112,9 @@ struct ContactRecord {
   [[nodiscard]] double slip() const { return std::abs(shear_displacement); }  ///< m
 };
 
+/// Receives contacts, some at a time.
+using TakeContacts = std::function<void(std::span<const ContactRecord>)>;
+
 struct ContactFrame {
   double time = 0.0;
   int stage = 0;
@@ -117,12 +122,13 @@ struct ContactFrame {
   long step = 0;  ///< of the run, over all stages
 };
 
-/// One row of DIR/histories.csv: displacement, velocity and Cauchy stress at the chosen points; NaN once the block is excavated. Rock far
-/// away has no stress.
+/// One row of DIR/histories.csv: displacement, velocity, Cauchy stress and acceleration at the chosen points; NaN once the block is
+/// excavated. Rock far away has no stress. The acceleration is the mean over the last step, (v′ − v)/Δt; 0 in static stages.
 struct HistoryRow {
   double time = 0.0;
   struct Point {
     double ux, uy, vx, vy, sxx, syy, sxy;
+    double ax = 0.0, ay = 0.0;
   };
   std::vector<Point> points;
   long step = 0;  ///< of the run, over all stages

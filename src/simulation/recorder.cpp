@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -170,35 +171,50 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   frame.time = state.time;
   frame.stage = stage;
   frame.step = state.step;
-  const auto contacts = stepper.contacts();
-  const contact::Surface& surface = model_.surface;
-  const std::vector<dynamics::ContactForce> forces = stepper.forces();
-  frame.contacts.reserve(forces.size());
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    const contact::Contact& c = contacts[k];
-    ContactRecord row;
-    row.block_a = c.block_a;
-    row.block_b = c.block_b;
-    row.state = static_cast<ContactState>(forces[k].state);
-    row.position = surface.position[at(c.vertex)];
-    row.normal = c.normal;
-    row.length = c.length;
-    row.gap = forces[k].gap;
-    row.shear_displacement = gauge_.joints().slip(c.vertex, c.edge);
-    row.normal_force = forces[k].normal;
-    row.shear_force = forces[k].shear;
-    row.label = labels_[at(c.edge)];
-    frame.contacts.push_back(row);
-  }
+  frame.contacts.reserve(stepper.force_count());
+  each_contact(stepper, [&](std::span<const ContactRecord> some) {
+    frame.contacts.insert(frame.contacts.end(), some.begin(), some.end());
+  });
   return frame;
 }
 
-HistoryRow::Point Recorder::at_point(const Point& point, const dynamics::State& state,
-                                     const dynamics::GroundMove& frame) const {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (point.block && !model_.surface.present[*point.block]) return {none, none, none, none, none, none, none};
+void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts& take) const {
+  constexpr std::size_t at_a_time = 64;
+  std::array<dynamics::ContactForce, at_a_time> forces;
+  std::array<ContactRecord, at_a_time> records;
+  std::array<double, at_a_time> slips;
+  const auto contacts = stepper.contacts();
+  const contact::Surface& surface = model_.surface;
+  for (std::size_t first = 0; first < stepper.force_count(); first += at_a_time) {
+    const std::size_t count = std::min(at_a_time, stepper.force_count() - first);
+    stepper.forces(first, std::span(forces).first(count));
+    gauge_.joints().slips(contacts.subspan(first, count), std::span(slips).first(count));
+    for (std::size_t k = 0; k < count; ++k) {
+      const contact::Contact& c = contacts[first + k];
+      ContactRecord& row = records[k];
+      row.block_a = c.block_a;
+      row.block_b = c.block_b;
+      row.state = static_cast<ContactState>(forces[k].state);
+      row.position = surface.position[at(c.vertex)];
+      row.normal = c.normal;
+      row.length = c.length;
+      row.gap = forces[k].gap;
+      row.shear_displacement = slips[k];
+      row.normal_force = forces[k].normal;
+      row.shear_force = forces[k].shear;
+      row.label = labels_[at(c.edge)];
+    }
+    take(std::span(records).first(count));
+  }
+}
+
+bool Recorder::is_there(const Point& point) const {
+  return !point.block || model_.surface.present[*point.block] != 0;
+}
+
+dynamics::GroundMove Recorder::move_of(const Point& point, const dynamics::State& state,
+                                       const dynamics::GroundMove& frame) const {
   dynamics::GroundMove move;
-  block::Stress s{none, none, none};
   if (!point.block) {
     move = far_ground(model_, state, point.reference);
   } else {
@@ -209,20 +225,42 @@ HistoryRow::Point Recorder::at_point(const Point& point, const dynamics::State& 
       v += point.phi[k] * Vec2{state.velocity[block.first + 2 * k], state.velocity[block.first + 2 * k + 1]};
     }
     move = {x - point.reference, v};
-    s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
   }
   if (point.absolute) {
     move.displacement += frame.displacement;
     move.velocity += frame.velocity;
   }
-  return {move.displacement.x, move.displacement.y, move.velocity.x, move.velocity.y, s.xx, s.yy, s.xy};
+  return move;
 }
 
-HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame) const {
+std::vector<Vec2> Recorder::velocities(const dynamics::State& state,
+                                       const dynamics::GroundMove& frame) const {
+  std::vector<Vec2> velocities;
+  for (const Point& point : points_) velocities.push_back(move_of(point, state, frame).velocity);
+  return velocities;
+}
+
+HistoryRow Recorder::history(const dynamics::State& state, const dynamics::GroundMove& frame,
+                             std::span<const Vec2> before) const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   HistoryRow row;
   row.time = state.time;
   row.step = state.step;
-  for (const Point& point : points_) row.points.push_back(at_point(point, state, frame));
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Point& point = points_[k];
+    if (!is_there(point)) {
+      row.points.push_back({none, none, none, none, none, none, none, none, none});
+      continue;
+    }
+    const auto [u, v] = move_of(point, state, frame);
+    block::Stress s{none, none, none};
+    if (point.block) {
+      const dynamics::Block& block = model_.blocks[*point.block];
+      s = block.elasticity.cauchy(&state.position[block.first], block.basis, point.reference);
+    }
+    const Vec2 a = before.empty() ? Vec2{} : (v - before[k]) / setup_.time_step;
+    row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy, a.x, a.y});
+  }
   return row;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "coupling/rock_column.h"
@@ -20,8 +21,14 @@ class Recorder {
   [[nodiscard]] Frame frame(const dynamics::State& state, int stage) const;
   [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
                                       int stage) const;
-  /// frame: how what displacements are relative to has moved (frame_motion()).
-  [[nodiscard]] HistoryRow history(const dynamics::State& state, const dynamics::GroundMove& frame) const;
+  /// Gives the contacts of the last step in their order, some at a time: so few that they stay in the nearest cache.
+  void each_contact(const dynamics::Stepper& stepper, const TakeContacts& take) const;
+  /// Velocities of the history points, m/s. frame: how what displacements are relative to has moved (frame_motion()).
+  [[nodiscard]] std::vector<Vec2> velocities(const dynamics::State& state,
+                                             const dynamics::GroundMove& frame) const;
+  /// before: velocities() before the step that led to `state`; empty: a static step, which has no acceleration.
+  [[nodiscard]] HistoryRow history(const dynamics::State& state, const dynamics::GroundMove& frame,
+                                   std::span<const Vec2> before) const;
   /// Largest true overlap of any two blocks, if it is deeper than `least_depth`, m.
   [[nodiscard]] std::optional<OverlapRecord> overlap(const dynamics::State& state, int stage,
                                                      double least_depth) const;
@@ -39,8 +46,10 @@ class Recorder {
     bool absolute = false;
   };
   [[nodiscard]] Point point_of(const History& history) const;
-  [[nodiscard]] HistoryRow::Point at_point(const Point& point, const dynamics::State& state,
-                                           const dynamics::GroundMove& frame) const;
+  [[nodiscard]] bool is_there(const Point& point) const;
+  /// In the frame of the point.
+  [[nodiscard]] dynamics::GroundMove move_of(const Point& point, const dynamics::State& state,
+                                             const dynamics::GroundMove& frame) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;

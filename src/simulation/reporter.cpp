@@ -1,6 +1,7 @@
 #include "simulation/reporter.h"
 
 #include <algorithm>
+#include <span>
 
 #include "simulation/energy_audit.h"
 #include "simulation/frame_motion.h"
@@ -16,10 +17,10 @@ constexpr double overlap_interval = 1.0;    // s between measurements of the tru
 
 }  // namespace
 
-bool Reporter::is_due(const RunState& now, double interval) const {
+bool Reporter::is_due(long stage_step, double interval) const {
   constexpr double never = 1e15;
   const auto every = static_cast<long>(std::clamp(step_count(interval, setup_.time_step), 1.0, never));
-  return now.stage_step % every == 0;
+  return stage_step % every == 0;
 }
 
 bool Reporter::is_static(const RunState& now) const {
@@ -44,6 +45,11 @@ void Reporter::measure_overlap(RunState& now) {
   now.record.max_area_change = std::max(now.record.max_area_change, recorder_.area_change(now.mechanics));
 }
 
+void Reporter::before_step(const RunState& now) {
+  if (setup_.histories.empty() || !is_due(now.stage_step + 1, setup_.output.history_interval)) return;
+  velocity_before_ = recorder_.velocities(now.mechanics, frame_motion(setup_, now));
+}
+
 void Reporter::after_step(RunState& now, const dynamics::Stepper& stepper, const dynamics::StepReport& report,
                           bool ends_stage) {
   if (!ends_stage) due_pictures(now, stepper);
@@ -56,20 +62,22 @@ void Reporter::due_pictures(RunState& now, const dynamics::Stepper& stepper) {
     if (now.stage_step % setup_.output.settle_frame_interval == 0) frame(now);
     return;
   }
-  if (is_due(now, setup_.output.frame_interval)) frame(now);
-  if (is_due(now, setup_.output.contact_interval)) contacts(now, stepper);
-  if (is_due(now, overlap_interval)) measure_overlap(now);
+  if (is_due(now.stage_step, setup_.output.frame_interval)) frame(now);
+  if (is_due(now.stage_step, setup_.output.contact_interval)) contacts(now, stepper);
+  if (is_due(now.stage_step, overlap_interval)) measure_overlap(now);
 }
 
 void Reporter::due_history(RunState& now) {
   if (setup_.histories.empty()) return;
-  if (!is_static(now) && !is_due(now, setup_.output.history_interval)) return;
-  observer_.history(recorder_.history(now.mechanics, frame_motion(setup_, now)));
+  if (!is_static(now) && !is_due(now.stage_step, setup_.output.history_interval)) return;
+  const std::span<const Vec2> before =
+      is_static(now) ? std::span<const Vec2>{} : std::span<const Vec2>{velocity_before_};
+  observer_.history(recorder_.history(now.mechanics, frame_motion(setup_, now), before));
   ++now.reported.histories;
 }
 
 void Reporter::due_step_row(RunState& now, const dynamics::StepReport& report) {
-  if (!is_due(now, step_row_interval)) return;
+  if (!is_due(now.stage_step, step_row_interval)) return;
   gauge_.watch(now.mechanics);
   const Energy energy = energy_audit(model_, now.mechanics, now.initial_energy);
   observer_.step({now.mechanics.time, now.mechanics.step, now.stage, report.iterations, report.shortest,

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "core/profile.h"
 #include "dynamics/step.h"
 #include "simulation/checkpoint.h"
@@ -39,13 +41,16 @@ class Reporter {
   void contacts(RunState& now, const dynamics::Stepper& stepper);
   void measure_overlap(RunState& now);
 
+  /// Before a dynamic step: keeps what records of the time after it need.
+  void before_step(const RunState& now);
   /// What is due after a step. ends_stage: frames, contacts and overlap are left to the end of the stage. Throws RunError when the energies
   /// are no finite numbers.
   void after_step(RunState& now, const dynamics::Stepper& stepper, const dynamics::StepReport& report,
                   bool ends_stage);
 
  private:
-  [[nodiscard]] bool is_due(const RunState& now, double interval) const;
+  /// Whether what is given every `interval`, s, is given after this many steps of the stage.
+  [[nodiscard]] bool is_due(long stage_step, double interval) const;
   [[nodiscard]] bool is_static(const RunState& now) const;
   void due_pictures(RunState& now, const dynamics::Stepper& stepper);
   void due_history(RunState& now);
@@ -57,6 +62,7 @@ class Reporter {
   RunObserver& observer_;
   Profile& profile_;
   Recorder recorder_;
+  std::vector<Vec2> velocity_before_;  ///< m/s, of history points, where a history is due after the step
 };
 
 }  // namespace keyblock::simulation

@@ -175,10 +175,6 @@ Energy Runner::energy() const {
   return energy_audit(model_, now_.mechanics, now_.initial_energy);
 }
 
-ContactFrame Runner::contacts() const {
-  return reporter_.recorder().contacts(now_.mechanics, *stepper_, now_.stage);
-}
-
 void Runner::orders_changed() {
   put_loads(now_.control, setup_, model_);
   stepper_.emplace(model_, team_, profile_, options_.stop);
@@ -286,6 +282,7 @@ StageOutlook Runner::static_step(dynamics::StepReport& report) {
 }
 
 StageOutlook Runner::dynamic_step(dynamics::StepReport& report) {
+  reporter_.before_step(now_);
   report = stepper_->advance(now_.mechanics, setup_.time_step, stage_->motion ? &*stage_->motion : nullptr);
   const auto taken = static_cast<double>(now_.stage_step + 1);
   stage_->is_still =

@@ -58,7 +58,9 @@ class Runner {
   [[nodiscard]] const dynamics::Model& model() const { return model_; }
   /// Contacts with their forces, as the last step left them. There are none before the first step of this runner, and after a change of the
   /// orders of blocks.
-  [[nodiscard]] ContactFrame contacts() const;
+  [[nodiscard]] std::size_t contact_count() const { return stepper_->force_count(); }
+  /// The contacts of the last step, some at a time.
+  void each_contact(const TakeContacts& take) const { reporter_.recorder().each_contact(*stepper_, take); }
   [[nodiscard]] Energy energy() const;
   /// Measures of damage so far, without a look of the run's own; none before the first excavation.
   [[nodiscard]] std::optional<Damage> damage() const;

@@ -160,6 +160,23 @@ bool LowRankUpdate::solve(const StepSystem& system, const StepMatrix& matrix, st
   return true;
 }
 
+/// The law of a spring, and how far it is stretched at D, m. A spring that the matrix has with another stiffness keeps that, stretched so that its
+/// force at D is right. One that is none any more, as its contact has become one of a face of a joint, has no force.
+double LowRankUpdate::find_law(const SpringArray& springs, const StepMatrix& matrix, Spring spring,
+                               Corrections::Law& law) {
+  const auto [c, normal] = spring;
+  const Force constant = springs.force_on(c, matrix.branch(c), 0.0, 0.0);
+  const double in_matrix = normal ? matrix.normal_stiffness(c) : matrix.shear_stiffness(c),
+               now = normal ? springs.kn[c] : springs.ks[c], own = now > 0.0 ? now : 1.0,
+               stiffness = in_matrix > 0.0 ? in_matrix : own;
+  law.spring = normal ? springs.normal_law(c) : springs.shear_law(c);
+  law.spring.stiffness = stiffness;
+  if (now == 0.0) law.spring.low = law.spring.high = 0.0;
+  law.line_stiffness = in_matrix;
+  law.line_force = normal ? constant.normal : constant.shear;
+  return now / stiffness * (normal ? springs.y[c] : springs.w[c]);
+}
+
 /// How the forces of the springs that are updated change on the way from D. False when that is not found.
 bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh) {
   const SpringArray& springs = system.springs();
@@ -167,18 +184,8 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
   stretch_.clear();
   force_.assign(updated_.size(), 0.0);
   for (std::size_t k = 0; k < updated_.size(); ++k) {
-    const auto [c, normal] = updated_[k];
-    const Force constant = springs.force_on(c, matrix.branch(c), 0.0, 0.0);
-    // A spring that the matrix has with another stiffness keeps that, stretched so that its force at D is right.
-    const double in_matrix = normal ? matrix.normal_stiffness(c) : matrix.shear_stiffness(c);
-    const double now = normal ? springs.kn[c] : springs.ks[c];
-    const double stiffness = in_matrix > 0.0 ? in_matrix : now, scale = now / stiffness;
-    stretch_.push_back(scale * (normal ? springs.y[c] : springs.w[c]));
     Corrections::Law& law = laws_.emplace_back();
-    law.spring = normal ? springs.normal_law(c) : springs.shear_law(c);
-    law.spring.stiffness = stiffness;
-    law.line_stiffness = in_matrix;
-    law.line_force = normal ? constant.normal : constant.shear;
+    stretch_.push_back(find_law(springs, matrix, updated_[k], law));
     const bool is_fresh = k + fresh >= updated_.size();
     if (!is_fresh) force_[k] = law.excess(stretch_.back());
     law.line_force += force_[k];

@@ -52,6 +52,8 @@ class LowRankUpdate {
           OpenCloseResult& result);
   bool solve(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh,
              std::span<double> direction);
+  static double find_law(const SpringArray& springs, const StepMatrix& matrix, Spring spring,
+                         Corrections::Law& law);
   bool find_forces(const StepSystem& system, const StepMatrix& matrix, std::size_t fresh);
   [[nodiscard]] bool is_exact(const StepSystem& system, bool is_kept) const;
   void look_at_faces(const StepSystem& system, const StepMatrix& matrix);

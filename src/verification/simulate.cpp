@@ -10,6 +10,7 @@
 #include "core/checked_json.h"
 #include "core/error.h"
 #include "results/csv.h"
+#include "results/record_fields.h"
 #include "results/summary.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
@@ -58,7 +59,7 @@ class Memory final : public simulation::RunObserver {
   void history(const simulation::HistoryRow& row) override {
     std::vector<double> numbers{row.time};
     for (const auto& p : row.points) {
-      for (const double x : {p.ux, p.uy, p.vx, p.vy, p.sxx, p.syy, p.sxy}) numbers.push_back(x);
+      for (const results::HistoryField& field : results::history_fields) numbers.push_back(p.*field.member);
     }
     outcome_.rows.push_back(std::move(numbers));
   }

@@ -289,7 +289,7 @@ class Balance(Scenario):
 
     def test_a_run(self):
         done = self.keyblock("run", self.SOURCE, "-o", "out", expect=2)
-        self.assertRegex(done.stderr.splitlines()[-1], "^keyblock: " + self.REASON.pattern + "; they are kept$")
+        self.assertRegex(done.stderr.splitlines()[-1], "^keyblock: errors of the computation: " + self.REASON.pattern + "; the results are kept$")
         self.assertRegex(done.stdout, "note: " + self.REASON.pattern)
         summary = self.summary("out")
         self.assertGreater(summary["energy"]["residual_ratio"], 0.05)

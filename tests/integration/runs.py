@@ -49,7 +49,7 @@ class Run(Scenario):
         with open(self.folder / "out/histories.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(
-            list(rows[0]), ["time", *(f"s.{quantity}" for quantity in ("ux", "uy", "vx", "vy", "sxx", "syy", "sxy"))]
+            list(rows[0]), ["time", *(f"s.{quantity}" for quantity in ("ux", "uy", "vx", "vy", "sxx", "syy", "sxy", "ax", "ay"))]
         )
         last = {key: float(value) for key, value in rows[-1].items()}
         self.assertAlmostEqual(last["time"], 0.5, places=9)

@@ -81,7 +81,7 @@ const tests = {
     );
     assert.match(
       findings,
-      /2 of 6 other checks need attention: steps that did not converge and largest true overlap of two blocks\./,
+      /2 of 7 other checks need attention: steps that did not converge and largest true overlap of two blocks\./,
     );
     assert.match(
       findings,

@@ -87,12 +87,12 @@ const tests = {
     const checks = await page.$$eval("#quality tbody tr", (rows) =>
       rows.map((r) => [...r.children].map((c) => c.innerText)),
     );
-    assert.equal(checks.filter((c) => c[1] === "not known").length, 3);
+    assert.equal(checks.filter((c) => c[1] === "not known").length, 5);
     for (const check of checks)
       assert.equal(check[3], check[1] === "not known" ? "–" : "✓ passed");
     assert.match(
       await text(page, "#quality .finding"),
-      /4 of 7 checks cannot be made/,
+      /5 of 8 checks cannot be made/,
     );
     assert.match(await text(page, "#quality .facts"), /not known/);
     assert.equal(await page.locator(".aside .plot").count(), 3); // with the ground motion

@@ -116,7 +116,10 @@ export function damagePlots(run: Run, clock: Clock): Plot[] {
   ];
 }
 
-/** Displacement, velocity and stress of each chosen point. */
+/** How many values each chosen point has: ux, uy, vx, vy, sxx, syy, sxy, ax, ay. */
+const historyValues = 9;
+
+/** Displacement, velocity, acceleration and stress of each chosen point. */
 export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plot[] }[] {
   const names = run.header.model.histories;
   const time = run.arrays.get("history.time", "f64");
@@ -124,7 +127,7 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
   if (names.length === 0 || rows === 0) return [];
   const values = run.arrays.get("history.values", "f32");
   const column = (point: number, c: number) =>
-    values.subarray((1 + 7 * point + c) * rows, (2 + 7 * point + c) * rows);
+    values.subarray((1 + historyValues * point + c) * rows, (2 + historyValues * point + c) * rows);
   // A static run takes no time: it is plotted over its steps.
   const isStatic = time[rows - 1] <= time[0];
   const x = isStatic ? Float64Array.from(values.subarray(0, rows)) : time;
@@ -145,6 +148,10 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
       plots: [
         plot("Displacement", inMetres ? "m" : "mm", [line("u_x", 0, length, 1), line("u_y", 1, length, 2)]),
         plot("Velocity", "m/s", [line("v_x", 2, 1, 1), line("v_y", 3, 1, 2)]),
+        // A static run has none, nor have results of earlier versions.
+        ...(isStatic || column(p, 7).every(Number.isNaN)
+          ? []
+          : [plot("Acceleration", "m/s²", [line("a_x", 7, 1, 1), line("a_y", 8, 1, 2)])]),
         plot("Stress", "kPa, compression negative", [
           line("σ_xx", 4, 1e-3, 1),
           line("σ_yy", 5, 1e-3, 2),

@@ -15,7 +15,7 @@ using testing::DoubleNear;
 using testing::Each;
 using testing::ElementsAre;
 
-constexpr double stiffness = 3e8;  // N/m
+constexpr double full_stiffness = 3e8;  // N/m
 
 std::vector<double> forces_of(const JointPressure& joint, const std::vector<double>& y) {
   std::vector<double> force(y.size());
@@ -37,26 +37,26 @@ const EdgeDivision& divided(int points) {
 
 // Of a triangle c (1 − s/ξ) over ξ the force is ½ K c ξ, at ξ/3 from the end.
 TEST(JointPressure, IsATriangleWhereOneEndIsOpen) {
-  const JointPressure joint(stiffness, two_ends(), false);
+  const JointPressure joint(full_stiffness, two_ends(), false);
   for (const double closed : {0.1, 0.3, 0.6, 0.9, 0.999}) {
     const double c = 1e-3;
     const std::vector<double> force = forces_of(joint, {c, -c * (1.0 - closed) / closed});
-    EXPECT_NEAR(force[0] + force[1], 0.5 * stiffness * c * closed, 1e-9 * stiffness * c);
+    EXPECT_NEAR(force[0] + force[1], 0.5 * full_stiffness * c * closed, 1e-9 * full_stiffness * c);
     EXPECT_NEAR(force[1] / (force[0] + force[1]), closed / 3.0, 1e-12);
   }
 }
 
 TEST(JointPressure, IsATrapeziumWhereBothEndsPress) {
-  const JointPressure joint(stiffness, two_ends(), false);
-  EXPECT_THAT(forces_of(joint, {1e-3, 1e-3}), Each(DoubleNear(0.5e-3 * stiffness, 1e-6)));
-  EXPECT_THAT(forces_of(joint, {1e-3, 0.0}),
-              ElementsAre(DoubleNear(stiffness * 1e-3 / 3, 1e-6), DoubleNear(stiffness * 1e-3 / 6, 1e-6)));
+  const JointPressure joint(full_stiffness, two_ends(), false);
+  EXPECT_THAT(forces_of(joint, {1e-3, 1e-3}), Each(DoubleNear(0.5e-3 * full_stiffness, 1e-6)));
+  EXPECT_THAT(forces_of(joint, {1e-3, 0.0}), ElementsAre(DoubleNear(full_stiffness * 1e-3 / 3, 1e-6),
+                                                         DoubleNear(full_stiffness * 1e-3 / 6, 1e-6)));
   EXPECT_THAT(forces_of(joint, {-1e-3, -1e-9}), Each(0.0));
 }
 
 TEST(JointPressure, PullsWhereItIsABond) {
-  JointPressure joint(stiffness, two_ends(), true);
-  EXPECT_THAT(forces_of(joint, {-1e-3, -1e-3}), Each(DoubleNear(-0.5e-3 * stiffness, 1e-6)));
+  JointPressure joint(full_stiffness, two_ends(), true);
+  EXPECT_THAT(forces_of(joint, {-1e-3, -1e-3}), Each(DoubleNear(-0.5e-3 * full_stiffness, 1e-6)));
   joint.pull_no_more();
   EXPECT_THAT(forces_of(joint, {-1e-3, -1e-3}), Each(0.0));
 }
@@ -64,10 +64,10 @@ TEST(JointPressure, PullsWhereItIsABond) {
 // However many contacts there are, a face that stays straight has the force and moment of its triangle.
 TEST(JointPressure, OfStraightFacesDoesNotDependOnTheContacts) {
   for (const double open : {-3e-3, -1e-3, -1e-5, 1e-4}) {
-    const JointPressure ends(stiffness, two_ends(), false);
+    const JointPressure ends(full_stiffness, two_ends(), false);
     const std::vector<double> two = forces_of(ends, {1e-3, open});
     for (const int points : {3, 5}) {
-      const JointPressure joint(stiffness, divided(points), false);
+      const JointPressure joint(full_stiffness, divided(points), false);
       std::vector<double> y;
       for (const double s : divided(points).points) y.push_back(std::lerp(1e-3, open, s));
       const std::vector<double> many = forces_of(joint, y);
@@ -76,8 +76,8 @@ TEST(JointPressure, OfStraightFacesDoesNotDependOnTheContacts) {
         sum += many[i];
         moment += many[i] * divided(points).points[i];
       }
-      EXPECT_NEAR(sum, two[0] + two[1], 1e-9 * stiffness * 1e-3) << points;
-      EXPECT_NEAR(moment, two[1], 1e-9 * stiffness * 1e-3) << points;
+      EXPECT_NEAR(sum, two[0] + two[1], 1e-9 * full_stiffness * 1e-3) << points;
+      EXPECT_NEAR(moment, two[1], 1e-9 * full_stiffness * 1e-3) << points;
     }
   }
 }
@@ -85,11 +85,11 @@ TEST(JointPressure, OfStraightFacesDoesNotDependOnTheContacts) {
 // An even pressure has the weights of the rule: it does its work on any order.
 TEST(JointPressure, OfEvenPressureHasTheWeightsOfTheRule) {
   for (const int points : {3, 5}) {
-    const JointPressure joint(stiffness, divided(points), false);
+    const JointPressure joint(full_stiffness, divided(points), false);
     const std::vector<double> force =
         forces_of(joint, std::vector<double>(static_cast<std::size_t>(points), 1e-3));
     for (std::size_t i = 0; i < force.size(); ++i)
-      EXPECT_NEAR(force[i], stiffness * 1e-3 * gauss_lobatto(points).weights[i], 1e-6);
+      EXPECT_NEAR(force[i], full_stiffness * 1e-3 * gauss_lobatto(points).weights[i], 1e-6);
   }
 }
 
@@ -99,7 +99,7 @@ TEST(JointPressure, TangentIsTheDerivativeOfTheForces) {
       {1e-3, -2e-3}, {-5e-4, 1e-3}, {1e-3, 2e-3, -1e-3}, {1e-3, -2e-4, -1e-3, 2e-4, 7e-4}};
   for (const std::vector<double>& y : states) {
     const std::size_t n = y.size();
-    const JointPressure joint(stiffness, n == 2 ? two_ends() : divided(static_cast<int>(n)), false);
+    const JointPressure joint(full_stiffness, n == 2 ? two_ends() : divided(static_cast<int>(n)), false);
     const std::vector<double> h = tangent_of(joint, y), force = forces_of(joint, y);
     for (std::size_t i = 0; i < n; ++i) {
       double line = 0.0;
@@ -110,15 +110,15 @@ TEST(JointPressure, TangentIsTheDerivativeOfTheForces) {
         more[j] += 1e-8;
         less[j] -= 1e-8;
         EXPECT_NEAR((forces_of(joint, more)[i] - forces_of(joint, less)[i]) / 2e-8, h[i * n + j],
-                    1e-4 * stiffness);
+                    1e-4 * full_stiffness);
       }
-      EXPECT_NEAR(line, force[i], 1e-9 * stiffness * 1e-3);
+      EXPECT_NEAR(line, force[i], 1e-9 * full_stiffness * 1e-3);
     }
   }
 }
 
 TEST(JointPressure, IsLinearWhileItIsClosedOrOpenAllAlong) {
-  const JointPressure joint(stiffness, two_ends(), false);
+  const JointPressure joint(full_stiffness, two_ends(), false);
   const auto linear = [&](std::vector<double> from, std::vector<double> to) {
     return joint.is_linear_between(from, to);
   };

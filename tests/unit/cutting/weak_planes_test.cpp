@@ -18,9 +18,9 @@ namespace {
 
 using rockmass::TraceSource;
 
-const bool seeded = ::setenv("RC_PARAMS", "seed=2001 max_success=200", 0) == 0;
+const bool is_seeded_here = ::setenv("RC_PARAMS", "seed=2001 max_success=200", 0) == 0;
 
-constexpr EdgeLabel set_0{EdgeKind::joint_set, 0}, weak{EdgeKind::trace_map, 0};
+constexpr EdgeLabel weak_set{EdgeKind::joint_set, 0}, weak{EdgeKind::trace_map, 0};
 
 /// Levels and uprights of set 0 every two metres, from side to side of a domain of 30 × 30 m.
 CutInput grid_of_blocks() {
@@ -103,7 +103,7 @@ TEST(WeakPlanes, StayWholeWhereverTheyCrossBlocks) {
     const BlockSystem system = cut(input);
     merged += system.statistics.merged_slivers;
     EXPECT_EQ(gaps_along(system, input.traces.back(), input.domain, 1e-6).size(), 0u) << k;
-    for (const JointTooth& tooth : system.teeth) EXPECT_EQ(tooth.joint, set_0) << k;
+    for (const JointTooth& tooth : system.teeth) EXPECT_EQ(tooth.joint, weak_set) << k;
   }
   EXPECT_GT(merged, 50);
 }
@@ -237,7 +237,7 @@ TEST(WeakPlanes, OfAJointSetStayWholeToo) {
 }
 
 RC_GTEST_PROP(WeakPlanes, InRandomRockStayWholeOrAreNamed, ()) {
-  RC_PRE(seeded);
+  RC_PRE(is_seeded_here);
   CutInput input = random_rock(*rc::gen::arbitrary<bool>());
   const std::size_t rock = input.traces.size();
   const int planes = *rc::gen::inRange(1, 4);

@@ -419,7 +419,8 @@ class Wall {
         for (const double height : {1.0, 0.4}) {
           const Vec2 a = plan_[k].kind == StageKind::shake ? acceleration(row.time) : Vec2{};
           history.points.push_back({1e-3 * height * a.x, -1.5e-3 * height + 1e-4 * a.y, 0.02 * a.x,
-                                    0.01 * a.y, -3.0e4 * height, -9.0e4 * height + 4e3 * a.y, 2e3 * a.x});
+                                    0.01 * a.y, -3.0e4 * height, -9.0e4 * height + 4e3 * a.y, 2e3 * a.x,
+                                    height * a.x, height * a.y});
         }
         run_.histories.push_back(std::move(history));
       }

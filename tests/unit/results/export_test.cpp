@@ -122,8 +122,8 @@ TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   simulation::HistoryRow row;
   row.time = 0.5;
-  row.points = {{none, none, none, none, none, none, none}, {1, 2, 3, 4, 5, 6, 7}};
-  EXPECT_THAT(histories_csv({"a", "b"}, {row}), testing::EndsWith("\n0.5,,,,,,,,1,2,3,4,5,6,7\n"));
+  row.points = {{none, none, none, none, none, none, none}, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
+  EXPECT_THAT(histories_csv({"a", "b"}, {row}), testing::EndsWith("\n0.5,,,,,,,,,,1,2,3,4,5,6,7,8,9\n"));
 }
 
 TEST(Export, GeoJsonOfEveryStageEnd) {
@@ -367,6 +367,30 @@ TEST(ResultFileDocs, OutlinesOfBlocksInFourLines) {
             "[[4.5, 4.5], [4.5, 5.5], [5.5, 5.5], [5.5, 4.5]]] 1 (3, 2)\n");
 }
 
+// Results of earlier versions have no acceleration.
+TEST(ResultFileDocs, HistoriesOfSevenQuantitiesAreRead) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const FreshFolder folder;
+  SampleRun sample;
+  write_sample(folder);
+  const std::string file = (folder / "result.h5").string();
+  const PythonResult done = python(folder, R"(
+import sys, h5py
+with h5py.File(sys.argv[1], "r+") as f:
+    old = f["histories/values"][:, :, :7]
+    del f["histories/values"]
+    f["histories/values"] = old
+)",
+                                   file);
+  ASSERT_EQ(done.status, 0) << done.output;
+  const RunData data = read_run(folder), as_written = sample.expected();
+  ASSERT_EQ(data.histories.size(), as_written.histories.size());
+  const auto &point = data.histories[3].points[1], &before = as_written.histories[3].points[1];
+  EXPECT_EQ(point.ux, before.ux);
+  EXPECT_EQ(point.sxy, before.sxy);
+  EXPECT_TRUE(std::isnan(point.ax) && std::isnan(point.ay));
+}
+
 TEST(ResultFileDocs, EveryDatasetSaysItsUnitAndItsNames) {
   if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
   const FreshFolder folder;
@@ -401,7 +425,7 @@ print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["s
             "frames/stress Pa\n"
             "frames/velocity m/s\n"
             "contacts/shear_force N/m\n"
-            "histories/values m, m, m/s, m/s, Pa, Pa, Pa\n"
+            "histories/values m, m, m/s, m/s, Pa, Pa, Pa, m/s2, m/s2\n"
             "model/block_young Pa\n"
             "steps/energy J/m, J/m, J/m, J/m, J/m, J/m, J/m, J/m, 1, J/m\n"
             "True\n");

@@ -135,6 +135,7 @@ void expect_equal(const simulation::HistoryRow& a, const simulation::HistoryRow&
     const auto &p = a.points[k], &q = b.points[k];
     EXPECT_TRUE(same(p.ux, q.ux) && same(p.uy, q.uy) && same(p.vx, q.vx) && same(p.vy, q.vy));
     EXPECT_TRUE(same(p.sxx, q.sxx) && same(p.syy, q.syy) && same(p.sxy, q.sxy));
+    EXPECT_TRUE(same(p.ax, q.ax) && same(p.ay, q.ay));
   }
 }
 
@@ -286,7 +287,7 @@ simulation::HistoryRow SampleRun::history(long step) {
   row.step = step;
   for (int k = 0; k < 2; ++k) {
     row.points.push_back({noise(step, k), noise(step, k + 2), noise(step, k + 4), noise(step, k + 6),
-                          noise(step, k + 8), 1e300, -5e-324});
+                          noise(step, k + 8), 1e300, -5e-324, noise(step, k + 10), noise(step, k + 12)});
   }
   return row;
 }

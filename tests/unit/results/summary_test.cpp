@@ -147,22 +147,21 @@ TEST(HistoriesCsv, HeaderAndRows) {
     begin = end + 1;
   }
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_THAT(
-      lines[0],
-      testing::StartsWith(
-          "time,crown.ux,crown.uy,crown.vx,crown.vy,crown.sxx,crown.syy,crown.sxy,\"a/b, \"\"c\"\".ux\""));
+  EXPECT_THAT(lines[0], testing::StartsWith("time,crown.ux,crown.uy,crown.vx,crown.vy,crown.sxx,crown.syy,"
+                                            "crown.sxy,crown.ax,crown.ay,\"a/b, \"\"c\"\".ux\""));
   std::vector<double> values;
   for (std::size_t begin = 0; begin <= lines[2].size();) {
     const std::size_t end = std::min(lines[2].find(',', begin), lines[2].size());
     values.push_back(std::strtod(lines[2].c_str() + begin, nullptr));
     begin = end + 1;
   }
-  ASSERT_EQ(values.size(), 15U);
+  ASSERT_EQ(values.size(), 19U);
   EXPECT_EQ(values[0], rows[1].time);
   EXPECT_EQ(values[1], rows[1].points[0].ux);
-  EXPECT_EQ(values[8], rows[1].points[1].ux);
-  EXPECT_EQ(values[13], 1e300);
-  EXPECT_EQ(histories_csv({"p"}, {}), "time,p.ux,p.uy,p.vx,p.vy,p.sxx,p.syy,p.sxy\n");
+  EXPECT_EQ(values[10], rows[1].points[1].ux);
+  EXPECT_EQ(values[15], 1e300);
+  EXPECT_EQ(values[18], rows[1].points[1].ay);
+  EXPECT_EQ(histories_csv({"p"}, {}), "time,p.ux,p.uy,p.vx,p.vy,p.sxx,p.syy,p.sxy,p.ax,p.ay\n");
 }
 
 }  // namespace

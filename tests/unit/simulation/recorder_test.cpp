@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../scene.h"
+#include "simulation/runner.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -88,6 +89,42 @@ TEST(Recorder, ForcesOfContactsOnBlockA) {
   EXPECT_NEAR(on_block.y, weight, 0.02 * weight);
 }
 
+// A wall that slides on its courses has more contacts than are handed over at once: none is lost or taken twice, and each has the slip of
+// its own piece of joint.
+TEST(Recorder, ContactsThatAreGivenSomeAtATimeAreThoseOfTheFrame) {
+  Scene scene(3e9, 10.0);
+  scene.rectangle({-1.0, -1.0}, 12.0, 1.0, 0.0, true);
+  for (int row = 0; row < 6; ++row)
+    for (int k = 0; k < 6; ++k) scene.rectangle({1.0 * k + 0.3 * (row % 2), 0.5 * row}, 1.0, 0.5);
+  scene.setup.motions = {loading::GroundMotion("m", {0.0, 0.1}, {{4.0, 0.0}, {4.0, 0.0}})};
+  scene.setup.time_step = scene.setup.output.contact_interval = 0.002;
+  scene.setup.stages = {stage("settle", StageKind::settle), stage("shaking", StageKind::shake)};
+  AllContacts observer;
+  std::vector<ContactRecord> given;
+  RunOptions options;
+  options.after_step = [&](const Runner& runner, const dynamics::StepReport&) {
+    given.clear();
+    runner.each_contact(
+        [&](std::span<const ContactRecord> some) { given.insert(given.end(), some.begin(), some.end()); });
+    EXPECT_EQ(given.size(), runner.contact_count());
+  };
+  run(scene.setup, options, observer);
+  const std::vector<ContactRecord>& kept = observer.frames.back().contacts;
+  ASSERT_GT(kept.size(), 64U);
+  ASSERT_EQ(given.size(), kept.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    EXPECT_EQ(given[k].block_a, kept[k].block_a);
+    EXPECT_EQ(given[k].normal_force, kept[k].normal_force);
+    EXPECT_EQ(given[k].position, kept[k].position);
+    EXPECT_EQ(given[k].shear_displacement, kept[k].shear_displacement);
+    // The first course slides on the floor: its vertices have gone as far as its blocks have, along x.
+    if (kept[k].block_b == 0) largest = std::max(largest, kept[k].slip());
+  }
+  // At 4 m/s² the base goes away under a friction of 10°: ½ (4 − g tan 10°) t².
+  EXPECT_NEAR(largest, 0.5 * (4.0 - g * std::tan(10.0 * degree)) * 0.01, 0.1 * 0.0113);
+}
+
 struct AllHistories final : RunObserver {
   std::vector<HistoryRow> rows;
   void history(const HistoryRow& row) override { rows.push_back(row); }
@@ -143,6 +180,65 @@ TEST(Recorder, AbsoluteHistoriesHaveTheMotionOfTheFrame) {
     EXPECT_NEAR(row.points[1].vy, 0.0, 1e-12) << row.time;
   }
   EXPECT_LT(observer.rows.back().points[0].ux, -1.0);
+}
+
+// What an accelerometer on a block records, by every rule: a block that falls has -g, and so has one in the frame of a base that is shaken
+// less the mean of the record over the step.
+TEST(Recorder, AccelerationIsTheMeanOverTheStep) {
+  for (const dynamics::TimeIntegration rule :
+       {dynamics::TimeIntegration::shi, dynamics::TimeIntegration::average_acceleration,
+        dynamics::TimeIntegration::generalized_alpha}) {
+    Scene scene(3e9, 30.0);
+    scene.rectangle({0.0, 0.0}, 1.0, 1.0);
+    RunSetup& setup = scene.setup;
+    setup.solver.integrator = rule;
+    setup.histories = {{"relative", "", {0.2, 0.9}}, {"absolute", "", {0.2, 0.9}, true}};
+    setup.motions = {loading::GroundMotion("m", {0.0, 0.5}, {{0.5, 1.0}, {1.5, -1.0}})};
+    setup.time_step = 0.001;
+    setup.output.history_interval = 0.003;
+    setup.stages = {stage("shaking", StageKind::shake, 0.3)};
+    setup.stages.back().scale = 2.0;
+    AllHistories observer;
+    run(setup, {}, observer);
+    ASSERT_EQ(observer.rows.size(), 166U);
+    for (const HistoryRow& row : observer.rows) {
+      const HistoryRow::Point &relative = row.points[0], &absolute = row.points[1];
+      const double middle = row.time - 0.0005;
+      EXPECT_NEAR(absolute.ax - relative.ax, 2.0 * (0.5 + 2.0 * middle), 1e-9) << row.time;
+      EXPECT_NEAR(absolute.ay - relative.ay, 2.0 * (1.0 - 4.0 * middle), 1e-9) << row.time;
+      // The rules of order two take the record at the ends of steps.
+      const double slack = rule == dynamics::TimeIntegration::shi ? 1e-9 : 0.01;
+      EXPECT_NEAR(absolute.ax, 0.0, slack) << row.time;
+      EXPECT_NEAR(absolute.ay, -9.81, slack) << row.time;
+    }
+  }
+}
+
+// A block that rests on a base and does not slip has the acceleration of the record: at a = 1 m/s², friction of 30° holds it.
+TEST(Recorder, AbsoluteAccelerationOfABlockThatHoldsIsTheRecord) {
+  Scene scene(3e9, 30.0);
+  scene.rectangle({-2.0, -1.0}, 4.0, 1.0, 0.0, true);
+  scene.rectangle({-0.5, 0.0}, 1.0, 0.5);
+  RunSetup& setup = scene.setup;
+  setup.histories = {{"block", "", {0.0, 0.25}, true}, {"base", "", {0.0, -0.5}, true}};
+  setup.motions = {loading::GroundMotion("m", {0.0, 0.4, 0.8}, {{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}})};
+  setup.time_step = 0.001;
+  setup.stages = {stage("weight", StageKind::settle, 0.0), stage("shaking", StageKind::shake, 0.8)};
+  AllHistories observer;
+  run(setup, {}, observer);
+  double largest = 0.0;
+  for (const HistoryRow& row : observer.rows) {
+    if (row.time == 0.0) {
+      for (const HistoryRow::Point& p : row.points) EXPECT_EQ(p.ax == 0.0 && p.ay == 0.0, true);
+      continue;
+    }
+    const double middle = row.time - 0.0005, record = 1.0 - std::abs(middle - 0.4) / 0.4;
+    EXPECT_NEAR(row.points[1].ax, record, 0.002) << row.time;
+    EXPECT_NEAR(row.points[0].ax, record, 0.02) << row.time;
+    EXPECT_NEAR(row.points[0].ay, 0.0, 0.02) << row.time;
+    largest = std::max(largest, row.points[0].ax);
+  }
+  EXPECT_NEAR(largest, 1.0, 0.02);
 }
 
 }  // namespace

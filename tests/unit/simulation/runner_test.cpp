@@ -89,13 +89,17 @@ TEST(Runner, ShowsStateModelAndContactsBetweenSteps) {
   const RunSetup setup = three_stages();
   RunObserver nobody;
   Runner runner(setup, {}, nobody);
-  EXPECT_TRUE(runner.contacts().contacts.empty());
+  EXPECT_EQ(runner.contact_count(), 0U);
   while (runner.stage() == 0) runner.advance();
   EXPECT_EQ(runner.model().surface.present[2], 1);
   double force = 0.0;
-  for (const ContactRecord& contact : runner.contacts().contacts) {
-    if (contact.block_a + contact.block_b == 1) force += contact.normal_force;
-  }
+  std::size_t contacts = 0;
+  runner.each_contact([&](std::span<const ContactRecord> some) {
+    contacts += some.size();
+    for (const ContactRecord& contact : some)
+      if (contact.block_a + contact.block_b == 1) force += contact.normal_force;
+  });
+  EXPECT_EQ(contacts, runner.contact_count());
   EXPECT_NEAR(force / (2600.0 * g * 0.5), 1.0, 0.02);
   EXPECT_EQ(runner.state().time, 0.0);
   runner.advance();
@@ -115,7 +119,7 @@ TEST(Runner, CallsBackAfterEveryStep) {
   options.after_step = [&](const Runner& runner, const dynamics::StepReport& report) {
     steps.push_back(runner.state().step);
     iterations += report.iterations;
-    most_contacts = std::max(most_contacts, runner.contacts().contacts.size());
+    most_contacts = std::max(most_contacts, runner.contact_count());
     EXPECT_FALSE(runner.done());
   };
   const RunRecord record = run(setup, options, nobody);
