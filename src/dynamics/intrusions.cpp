@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/index.h"
 #include "dynamics/block_depth.h"
@@ -30,7 +31,7 @@ void Intrusions::measure(const Step& step) {
 bool Intrusions::comes_in(const Step& step, int vertex, int block, double deepest) const {
   const Vec2 end = step.at_end(at(vertex));
   const double now = depth_in(step.surface, block, end, step.at_end);
-  if (now <= deepest || step.is_held(vertex, block)) return false;
+  if (now <= deepest || now <= deepest + step.explained(vertex, block)) return false;
   const double before = depth_in(step.surface, block, step.surface.position[at(vertex)],
                                  [&](std::size_t v) { return step.surface.position[v]; });
   return now - before > least_added * deepest;
@@ -66,17 +67,24 @@ bool Intrusions::any(const Step& step, const contact::CandidateList& candidates)
 
 bool comes_inside(const Attempt& attempt, const RotationCorrection& rotation, Intrusions& intrusions) {
   const std::function<Vec2(std::size_t)> end = [&](std::size_t v) { return rotation.at_end(attempt, v); };
-  const std::function<bool(int, int)> is_held = [&](int vertex, int block) {
+  const std::function<double(int, int)> explained = [&](int vertex, int block) {
+    const int own = attempt.model.surface.block[at(vertex)];
+    double closure = 0.0;
     for (std::size_t c = 0; c < attempt.contacts.size(); ++c) {
       const contact::Contact& contact = attempt.contacts[c];
-      if (contact.vertex == vertex && contact.block_b == block &&
-          attempt.problem.springs().force(c).normal > 0.0)
-        return true;
+      const bool is_there = contact.block_a == own && contact.block_b == block,
+                 is_back = contact.block_a == block && contact.block_b == own;
+      if (!(is_there || is_back) || !(attempt.problem.springs().force(c).normal > 0.0)) continue;
+      if (is_there && contact.vertex == vertex) return std::numeric_limits<double>::infinity();
+      // In statics joints close as a whole. In an impact the neighbours of a vertex that comes in deep are met by no contact yet.
+      if (attempt.drive.is_static)
+        closure = std::max(closure, contact.depth - dot(contact.normal, attempt.relative[c]));
     }
-    return false;
+    return closure;
   };
-  return intrusions.any({attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, is_held},
-                        attempt.state.contacts);
+  return intrusions.any(
+      {attempt.model.surface, attempt.displacement, attempt.drive.prescribed, end, explained},
+      attempt.state.contacts);
 }
 
 }  // namespace keyblock::dynamics

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace keyblock::dynamics {
 namespace {
 
@@ -22,7 +24,7 @@ struct Squares {
     candidates.block_pairs = {pair};
   }
   /// Whether the second square comes into the first one, where it goes by x to the left from where it lies `nearer` by already.
-  bool come_in(double x, double nearer = 0.0, bool held = false) {
+  bool come_in(double x, double nearer = 0.0, double closure = 0.0) {
     contact::Surface at_start = surface;
     for (std::size_t v = 4; v < 8; ++v) at_start.position[v].x -= nearer;
     std::vector<Vec2> went(8);
@@ -30,8 +32,8 @@ struct Squares {
     const std::function<Vec2(std::size_t)> at_end = [&](std::size_t v) {
       return at_start.position[v] + went[v];
     };
-    const std::function<bool(int, int)> is_held = [&](int, int) { return held; };
-    return Intrusions({1.0, 1.0}).any({at_start, went, {}, at_end, is_held}, candidates);
+    const std::function<double(int, int)> explained = [&](int, int) { return closure; };
+    return Intrusions({1.0, 1.0}).any({at_start, went, {}, at_end, explained}, candidates);
   }
 
   contact::Surface surface;
@@ -48,7 +50,12 @@ TEST(Intrusions, AreVerticesThatAStepTakesIntoAnotherBlock) {
 }
 
 TEST(Intrusions, AreNotWhatAContactHolds) {
-  EXPECT_FALSE(Squares().come_in(0.2, 0.0, true));
+  EXPECT_FALSE(Squares().come_in(0.2, 0.0, std::numeric_limits<double>::infinity()));
+}
+
+TEST(Intrusions, AreNotWhatTheClosureOfJointsExplains) {
+  EXPECT_FALSE(Squares().come_in(0.2, 0.0, 0.1 - 0.9 * Intrusions::most_share));
+  EXPECT_TRUE(Squares().come_in(0.2, 0.0, 0.1 - 1.1 * Intrusions::most_share));
 }
 
 TEST(Intrusions, AreNotWhatLayThereBefore) {
@@ -62,9 +69,9 @@ TEST(Intrusions, AreThoseOfFixedBlocksThatAreMoved) {
   const std::function<Vec2(std::size_t)> at_end = [&](std::size_t v) {
     return squares.surface.position[v] + prescribed[v / 4];
   };
-  const std::function<bool(int, int)> is_held = [](int, int) { return false; };
+  const std::function<double(int, int)> explained = [](int, int) { return 0.0; };
   EXPECT_TRUE(
-      Intrusions({1.0, 1.0}).any({squares.surface, went, prescribed, at_end, is_held}, squares.candidates));
+      Intrusions({1.0, 1.0}).any({squares.surface, went, prescribed, at_end, explained}, squares.candidates));
 }
 
 }  // namespace
