@@ -19,6 +19,7 @@ struct Group {
   std::array<double, lane_count> bonded{}, presses{};  ///< 1 or 0
   std::array<double, lane_count>
       closure{};  ///< m, that in-situ stress has closed a joint by that still presses
+  std::array<double, lane_count> next_deep{}, previous_deep{};  ///< 1 or 0: sides_to_deep()
   std::array<double, lane_count> in_face{};  ///< 1: it shares the pressure of a face that presses; 0
 };
 
@@ -64,7 +65,8 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
   const auto passes = ((load(group.bonded.data()) > 0.0) | in_face |
                        (gap <= tolerances.activation + reach + load(group.closure.data()))) &
                       (gap >= -deepest) & (along >= -before) & (along <= length + after) &
-                      outside(vertex[2], vertex[3]) & outside(-vertex[4], -vertex[5]);
+                      (outside(vertex[2], vertex[3]) | (load(group.next_deep.data()) > 0.0)) &
+                      (outside(-vertex[4], -vertex[5]) | (load(group.previous_deep.data()) > 0.0));
   // Near an end at a convex corner: there others of the same two corners may be the contact.
   const auto first_half = along < 0.5 * length;
   const auto disputed =
@@ -98,7 +100,7 @@ struct PairLimits {
 
 /// Into the group, unless the candidate is too far to be a contact: without a branch.
 inline void add(Group& group, std::size_t candidate, std::size_t pair, const PairLimits& limits,
-                const Memory& before, double clearance) {
+                const Memory& before, double clearance, SidesOfVertex sides) {
   const std::size_t i = group.size;
   group.candidate[i] = static_cast<int>(candidate);
   group.pair[i] = static_cast<int>(pair);
@@ -111,6 +113,8 @@ inline void add(Group& group, std::size_t candidate, std::size_t pair, const Pai
   group.bonded[i] = before.bonded ? 1.0 : 0.0;
   group.closure[i] = before.normal_force > 0.0 ? std::max(0.0, -before.offset) : 0.0;
   group.in_face[i] = before.in_face && before.normal_force > 0.0 ? 1.0 : 0.0;
+  group.next_deep[i] = sides.next ? 1.0 : 0.0;
+  group.previous_deep[i] = sides.previous ? 1.0 : 0.0;
   group.size += limits.away < clearance ? 0 : 1;
 }
 
@@ -146,10 +150,15 @@ void find_competitors(const CornerView& view, std::span<const std::size_t> pairs
   for (const std::size_t p : pairs) {
     const BlockPair& pair = candidates.block_pairs[p];
     const PairLimits limits(view, at(pair.block_a), at(pair.block_b));
-    for (std::size_t k = at(pair.first), end = candidates.end_of_pair(p); k < end; ++k) {
+    const std::size_t first = at(pair.first), end = candidates.end_of_pair(p);
+    const std::span<const int> deep = of_pair(view.deep, first, end);
+    const bool is_deep = limits.pressed > 0.0 || !deep.empty();
+    for (std::size_t k = first; k < end; ++k) {
       const int memory = held_by(k);
+      const Candidate& c = candidates.pairs[k];
       add(group, k, p, limits, memory >= 0 ? candidates.memory[at(memory)] : nothing,
-          limits.pressed > 0.0 ? 0.0 : candidates.pairs[k].clearance);
+          is_deep ? 0.0 : c.clearance,
+          deep.empty() ? SidesOfVertex{} : sides_to_deep(view.surface, candidates, deep, c));
       if (group.size == lane_count) take();
     }
   }

@@ -36,6 +36,7 @@ struct CornerView {
   const StepMotion& motion;
   std::span<const Corner> corners;  ///< Corners::all
   std::span<const double> pressed;  ///< m, pressed_depths()
+  std::span<const int> deep = {};   ///< deep_contacts()
 
   [[nodiscard]] const Corner& corner(int vertex) const { return corners[at(vertex)]; }
   [[nodiscard]] const Candidate& candidate(const Competitor& c) const {

@@ -69,7 +69,9 @@ void let_corners_compete(const CornerView& view, const BlockPair& pair, std::spa
 void choose_contacts(const SteadyPairs& steady_pairs, const CornerView& view, std::size_t end,
                      std::span<Competitor> competitors, BlockPair& pair) {
   SteadyMargin margin(steady_pairs, view, pair, end, competitors);
-  if (pressed_depth(view.pressed, pair.block_a, pair.block_b) > 0.0) margin.hangs_on_other_blocks();
+  if (pressed_depth(view.pressed, pair.block_a, pair.block_b) > 0.0 ||
+      !of_pair(view.deep, at(pair.first), end).empty())
+    margin.hangs_on_other_blocks();
   continue_over_joints(view, pair, competitors, margin);
   leave_out_strangers(view, pair, competitors, margin);
   let_corners_compete(view, pair, competitors, margin);

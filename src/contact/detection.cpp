@@ -49,8 +49,10 @@ void Detection::find_in_pairs(const CornerView& view, std::span<BlockPair> pairs
                               std::size_t last, std::vector<FoundContact>& found) const {
   std::vector<std::size_t> unsteady;
   for (std::size_t p = first; p < last; ++p) {
-    // Limits of depth are others there, in this step.
-    if (pressed_depth(view.pressed, pairs[p].block_a, pairs[p].block_b) > 0.0) pairs[p].steady.forget();
+    // Limits of depth, and which vertices may touch, are others there in this step.
+    if (pressed_depth(view.pressed, pairs[p].block_a, pairs[p].block_b) > 0.0 ||
+        !of_pair(view.deep, at(pairs[p].first), view.candidates.end_of_pair(p)).empty())
+      pairs[p].steady.forget();
     if (!steady_pairs_.is_steady(view.surface, view.motion, pairs[p])) unsteady.push_back(p);
   }
   std::vector<Competitor> competitors;
@@ -86,7 +88,8 @@ std::size_t Detection::find_which(const Surface& surface, const StepMotion& moti
                                   ThreadTeam& team) {
   corners_.measure(surface, team);
   const std::vector<double> pressed = pressed_depths(candidates, tolerances_, at(surface.blocks()));
-  const CornerView view{surface, candidates, tolerances_, motion, corners_.all(), pressed};
+  const std::vector<int> deep = deep_contacts(candidates, tolerances_);
+  const CornerView view{surface, candidates, tolerances_, motion, corners_.all(), pressed, deep};
   const std::size_t pairs = candidates.block_pairs.size(), pieces = (pairs + piece_size - 1) / piece_size;
   found_.resize(pieces);
   team.for_range(pieces, 2, [&](std::size_t begin, std::size_t end) {

@@ -76,7 +76,9 @@ bool comes_inside(const Attempt& attempt, const RotationCorrection& rotation, In
                  is_back = contact.block_a == block && contact.block_b == own;
       if (!(is_there || is_back) || !(attempt.problem.springs().force(c).normal > 0.0)) continue;
       if (is_there && contact.vertex == vertex) return std::numeric_limits<double>::infinity();
-      closure = std::max(closure, contact.depth - dot(contact.normal, attempt.relative[c]));
+      // In statics joints close as a whole. In an impact the neighbours of a vertex that comes in deep are met by no contact yet.
+      if (attempt.drive.is_static)
+        closure = std::max(closure, contact.depth - dot(contact.normal, attempt.relative[c]));
     }
     return closure;
   };

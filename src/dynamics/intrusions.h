@@ -28,8 +28,8 @@ class Intrusions {
     std::span<const Vec2> displacement;  ///< m, per vertex, in the step; of a fixed block 0
     std::span<const Vec2> prescribed;  ///< m, per block, of fixed blocks that are moved; empty: there is none
     const std::function<Vec2(std::size_t)>& at_end;  ///< m, where a vertex comes to be
-    /// m, how deep contacts explain that the vertex lies in the block: infinite where one presses on it there, else the closure of joints
-    /// between the two blocks. What turns about a vertex that is pressed in comes to lie as deep.
+    /// m, how deep contacts explain that the vertex lies in the block: infinite where one presses on it there, else, in a static step, the
+    /// closure of joints between the two blocks.
     const std::function<double(int vertex, int block)>& explained;
   };
   /// Whether there is one among these pairs of blocks.

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "contact/deep_contacts.h"
 #include "core/error.h"
 #include "core/index.h"
 #include "dynamics/energy.h"
@@ -318,8 +317,6 @@ void Stepper::accept(State& state, const Drive& drive, StepReport& report) {
   report.max_displacement = std::max(report.max_displacement, largest_move(model_, state, drive.end_time));
   report.audit.add(audit_contacts({model_.surface, state.contacts, motion_.reach(), open_close_.relative(),
                                    finder_.tolerances().end_zone}));
-  contact::hand_over_to_next_vertices(model_.surface, finder_.tolerances(), finder_.contacts(),
-                                      state.contacts);
 }
 
 // ── steps ────────────────────────────────────────────────────────────────────────────────────────────────────────────

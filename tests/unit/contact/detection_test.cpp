@@ -340,6 +340,27 @@ TEST(Detection, FacesDeepInEachOtherAreKept) {
   }
 }
 
+TEST(Detection, VerticesBesideOneThatPressesDeepMeetTheFace) {
+  // A triangle lies on its vertex 4; vertex 5 comes to the floor. Its edge to vertex 4 lies inside the floor by 6°.
+  const auto contacts_at = [](double depth, CandidateList& list) {
+    Surface surface;
+    add_block(surface, rectangle(-2, -1, 2, 0), true);
+    add_block(surface, {{{0.0, -depth}, {0.5, 0.001}, {0.2, 0.8}}, {}});
+    return find(surface, list);
+  };
+  for (const double stretch : {0.0, 0.002, 0.004, 0.05}) {  // m; the end zone is 0.003 m
+    CandidateList list;
+    ASSERT_EQ(contacts_at(0.02, list).size(), 1u);
+    list.memory[0].stiffness = 1e7;
+    list.memory[0].normal_force = 1e7 * stretch;
+    list.memory[0].offset = 0.0;
+    const auto contacts = contacts_at(0.05, list);
+    const bool meets =
+        std::ranges::any_of(contacts, [](const Contact& c) { return c.vertex == 5 && c.normal.y > 0.9; });
+    EXPECT_EQ(meets, stretch > 0.003) << stretch;
+  }
+}
+
 TEST(Detection, BornPenetratedContactsGetAnOffsetThatOnlyShrinks) {
   CandidateList list;
   const auto upper_at = [&](double y) {
