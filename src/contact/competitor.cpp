@@ -23,6 +23,12 @@ struct Group {
   std::array<double, lane_count> in_face{};  ///< 1: it shares the pressure of a face that presses; 0
 };
 
+/// What comes in there in the step meets the other edge: reach does not count.
+bool is_through_tip(const CornerView& view, const Candidate& candidate) {
+  const auto lines = tip_lines(view, candidate);
+  return std::max(lines[0].outside, lines[1].outside) > view.tolerances.end_zone;
+}
+
 /// The candidates of a group that are contacts, unless they lose to others of the same two corners, to `passed`. Returns their number. All
 /// at once and without branches: which of the conditions fails is a matter of chance.
 std::size_t pass(const CornerView& view, const Group& group, Competitor* passed) {
@@ -72,6 +78,8 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
   const auto disputed =
       (least(along, length - along) < zone) & ~((first_half & reflex_start) | (~first_half & reflex_end));
   const auto is_beyond = (along < -past_start) | (along > length + past_end);
+  const auto may_be_through =
+      passes & (gap < -tolerances.end_zone) & ~is_beyond & ~(load(group.bonded.data()) > 0.0);
   std::size_t count = 0;
   for (std::size_t i = 0; i < group.size; ++i) {
     passed[count].candidate = group.candidate[i];
@@ -81,7 +89,9 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
     passed[count].first_half = first_half[i] != 0;
     passed[count].is_beyond = is_beyond[i] != 0;
     passed[count].disputed = disputed[i] != 0;
-    count += passes[i] != 0 ? 1 : 0;
+    const bool is_through =
+        may_be_through[i] != 0 && is_through_tip(view, view.candidates.pairs[at(group.candidate[i])]);
+    count += passes[i] != 0 && !is_through ? 1 : 0;
   }
   return count;
 }
@@ -131,6 +141,21 @@ void name_corners(const CornerView& view, int first_candidate, std::span<Competi
 }
 
 }  // namespace
+
+std::array<TipLine, 2> tip_lines(const CornerView& view, const Candidate& candidate) {
+  const Surface& surface = view.surface;
+  const DividedEdge whole =
+      surface.divided.empty() ? DividedEdge{candidate.edge} : surface.divided[at(candidate.edge)];
+  const int start = whole.first, end = surface.next[at(start + whole.pieces - 1)];
+  const Vec2 vertex = view.corner(candidate.vertex).position;
+  const auto line = [&](int corner, int edge) {
+    const Vec2 from = vertex - view.corner(corner).position;
+    const Corner& other = view.corner(edge);
+    return TipLine{surface.is_reflex(at(corner)) ? -HUGE_VAL : cross(from, other.tangent), norm(from),
+                   other.length};
+  };
+  return {line(start, surface.previous[at(start)]), line(end, end)};
+}
 
 void find_competitors(const CornerView& view, std::span<const std::size_t> pairs,
                       std::vector<Competitor>& competitors) {

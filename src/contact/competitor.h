@@ -63,8 +63,18 @@ inline double inside(const CornerView& view, const Competitor& c) {
   return inside(c.along, view.line(c).length);
 }
 
-/// The candidates of these pairs of blocks, ascending, that pass the geometry: gap, place along the edge, and edges of the vertex outside
-/// the line. `disputed` and `corners` say which of them compete.
+/// The line of the edge beside an edge, and a vertex.
+struct TipLine {
+  double outside;  ///< m, of the vertex; inside where negative: −∞ at a reflex corner
+  double away;     ///< m, of the vertex from the corner between the two edges
+  double length;   ///< m, of the edge beside
+};
+/// At the two ends of the whole edge of a candidate. Near the tip of a wedge a vertex that is deep behind one edge may be in front of the other one:
+/// it is through the tip, and outside the block.
+std::array<TipLine, 2> tip_lines(const CornerView& view, const Candidate& candidate);
+
+/// The candidates of these pairs of blocks, ascending, that pass the geometry: gap, place along the edge, edges of the vertex outside the line,
+/// and the vertex not through the tip of a wedge. `disputed` and `corners` say which of them compete.
 void find_competitors(const CornerView& view, std::span<const std::size_t> pairs,
                       std::vector<Competitor>& competitors);
 

@@ -81,6 +81,16 @@ double place_margin(const CornerView& view, const Candidate& candidate, const Co
                    (length + beyond(surface.next[at(candidate.edge)]) - competitor.along) / rates.end});
 }
 
+/// Before the vertex, deeper than the end zone, is outside another edge.
+double tip_margin(const CornerView& view, const Candidate& candidate, double gap, double gap_rate) {
+  const double zone = view.tolerances.end_zone;
+  if (gap > -zone) return (gap + zone) / gap_rate;
+  double margin = HUGE_VAL;
+  for (const TipLine& line : tip_lines(view, candidate))
+    margin = std::min(margin, (zone - line.outside) / rate(line.away, line.length));
+  return margin;
+}
+
 /// Before an edge of the vertex no longer lies outside the line.
 double outside_margin(const CornerView& view, const Candidate& candidate) {
   const Surface& surface = view.surface;
@@ -106,7 +116,8 @@ double competitor_margin(const CornerView& view, const Candidate& candidate, con
   const Rates rates(line, view.corner(candidate.vertex).position);
   const double margin =
       std::min({place_margin(view, candidate, competitor, rates), outside_margin(view, candidate),
-                depth_margin(view, candidate, competitor, rates.gap)});
+                depth_margin(view, candidate, competitor, rates.gap),
+                tip_margin(view, candidate, competitor.gap, rates.gap)});
   const double from_zone_start = (along - zone - reach) / rates.start,
                from_zone_end = (length - along - zone - reach) / rates.end;
   if (from_zone_start > 0.0 && from_zone_end > 0.0) return std::min({margin, from_zone_start, from_zone_end});

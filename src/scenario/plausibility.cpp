@@ -46,6 +46,7 @@ class Plausibility {
     check_release();
     check_velocities();
     check_base();
+    check_multipliers();
     return std::move(warnings_);
   }
 
@@ -125,6 +126,22 @@ class Plausibility {
         std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), is_automatic))
       return;
     warn("auto_order: is not used, as no order is \"auto\"");
+  }
+
+  // Multipliers leave no penetration, and a joint of a given stiffness closes by one.
+  void check_multipliers() {
+    if (scenario_.solver.contact != dynamics::ContactMethod::augmented_lagrangian) return;
+    const double stiff = scenario_.solver.penalty * scenario_.rock.young.value_or(0.0);
+    const auto warn_of = [&](const std::string& path, const JointKeys& keys) {
+      if (keys.normal_stiffness && *keys.normal_stiffness < stiff)
+        warn(
+            "{}.normal_stiffness: no joint closes with solver.contact = \"augmented-lagrangian\"; "
+            "\"penalty\" has joints close by it",
+            path);
+    };
+    warn_of("joints", scenario_.joints);
+    for (const JointSetSpec& spec : scenario_.joint_sets) warn_of(spec.path, spec.joints);
+    for (const TraceMapSpec& spec : scenario_.trace_maps) warn_of(spec.path, spec.joints);
   }
 
   void check_excavated() {

@@ -131,6 +131,7 @@ def main():
     parser.add_argument("--program", default=os.environ.get("KEYBLOCK", str(ROOT / "build/release/keyblock")))
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--first", type=int, default=1, help="the first seed")
+    parser.add_argument("--seeds", type=int, nargs="+", metavar="SEED", help="these, in place of --first and --count")
     parser.add_argument("--minutes", type=float, default=1e9, help="no new scenario after so many")
     parser.add_argument("--seconds", type=int, default=60, help="of the processor, for one run")
     parser.add_argument("--threads-every", type=int, default=5, help="every so many run again with two threads")
@@ -143,7 +144,7 @@ def main():
         return 0
     outcomes = []
     end = time.monotonic() + 60.0 * arguments.minutes
-    for seed in range(arguments.first, arguments.first + arguments.count):
+    for seed in arguments.seeds or range(arguments.first, arguments.first + arguments.count):
         if time.monotonic() > end:
             break
         outcome = try_seed(arguments.program, seed, arguments.seconds, seed % arguments.threads_every == 0)

@@ -69,6 +69,15 @@ TEST(Warnings, OfUnusualValues) {
               UnorderedElementsAre(HasSubstr("region[0].young = 8 Pa (line 4)")));
 }
 
+TEST(Warnings, OfMultipliersForJointsThatClose) {
+  const auto warned = [](const char* stiffness) {
+    return warnings_of(two_blocks, {"solver.contact=\"augmented-lagrangian\"", stiffness});
+  };
+  EXPECT_THAT(warned("joints.normal_stiffness=1e9"), UnorderedElementsAre(HasSubstr("no joint closes")));
+  EXPECT_THAT(warned("joints.normal_stiffness=1e13"), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.normal_stiffness=1e9"}), IsEmpty());
+}
+
 TEST(Warnings, OfUnusualValuesAreNotOfOtherUnits) {
   const std::vector<std::string> tonnes{"rock.density=2.6", "rock.young=8e6", "joints.friction=0.55"};
   EXPECT_EQ(warnings_of(two_blocks, tonnes).size(), 3U);
