@@ -128,15 +128,13 @@ class Plausibility {
     warn("auto_order: is not used, as no order is \"auto\"");
   }
 
-  // Multipliers leave no penetration, and a joint of a given stiffness closes by one.
   void check_multipliers() {
     if (scenario_.solver.contact != dynamics::ContactMethod::augmented_lagrangian) return;
-    const double stiff = scenario_.solver.penalty * scenario_.rock.young.value_or(0.0);
     const auto warn_of = [&](const std::string& path, const JointKeys& keys) {
-      if (keys.normal_stiffness && *keys.normal_stiffness < stiff)
+      if (keys.normal_stiffness && *keys.normal_stiffness < scenario_.stiffness_by_penalty())
         warn(
-            "{}.normal_stiffness: no joint closes with solver.contact = \"augmented-lagrangian\"; "
-            "\"penalty\" has joints close by it",
+            "{}.normal_stiffness: is not used, as no joint closes with solver.contact = "
+            "\"augmented-lagrangian\"; with \"penalty\" joints close by it",
             path);
     };
     warn_of("joints", scenario_.joints);

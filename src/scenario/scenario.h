@@ -201,6 +201,8 @@ struct Scenario {
 
   /// Position of a value, or of the nearest table around it, which may be the file.
   [[nodiscard]] SourcePosition where(const std::string& key_path) const;
+  /// Pa/m, of contacts in the standard rock whose joint has no stiffness of its own.
+  [[nodiscard]] double stiffness_by_penalty() const { return solver.penalty * rock.young.value_or(0.0); }
 };
 
 }  // namespace keyblock::scenario
