@@ -13,6 +13,7 @@
 #include "cutting/geojson.h"
 #include "cutting/picture.h"
 #include "job/result_folder.h"
+#include "json_output.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario/inputs.h"
@@ -58,10 +59,7 @@ void cut_scenario(const CutArguments& arguments) {
   const std::string summary = scenario::cut_summary(scenario, realization, model, KEYBLOCK_VERSION);
   out.write("summary.json", summary);
   out.commit();
-  if (arguments.as_json) {
-    std::cout << summary;
-    return;
-  }
+  if (arguments.as_json) return print_json_text(summary);
   const cutting::CutStatistics& cut = model.system.statistics;
   std::cout << fmt::format(
       "{} blocks from {} of {} traces; {:.1f} m of {:.1f} m end in rock or bound no block; {} slivers "

@@ -2,6 +2,8 @@
 
 #include <iostream>
 
+#include "core/text.h"
+
 namespace keyblock::app {
 
 using nlohmann::ordered_json;
@@ -20,8 +22,12 @@ ordered_json mistakes_json(const std::vector<Diagnostic>& mistakes) {
   return list;
 }
 
+void print_json_text(std::string_view text) {
+  std::cout << harmless_json(text);
+}
+
 void print_json(const ordered_json& json) {
-  std::cout << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  print_json_text(json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace keyblock::app

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/checked_json.h"
@@ -11,6 +12,8 @@ namespace keyblock::app {
 /// A list of objects: file, line, column, key, found, expected, hint.
 nlohmann::ordered_json mistakes_json(const std::vector<Diagnostic>& mistakes);
 
+/// JSON to standard output as it stands, but for what a terminal obeys: that is escaped within the strings.
+void print_json_text(std::string_view text);
 /// To standard output, in several lines. Bytes that are no UTF-8 become U+FFFD.
 void print_json(const nlohmann::ordered_json& json);
 

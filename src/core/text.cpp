@@ -3,9 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace keyblock {
 namespace {
+
+/// Of a UTF-8 character.
+char32_t code_point(std::string_view character) {
+  constexpr std::array<unsigned, 4> of_first{0x7FU, 0x1FU, 0x0FU, 0x07U};
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(character[k]); };
+  char32_t code = byte(0) & of_first.at(character.size() - 1);
+  for (std::size_t k = 1; k < character.size(); ++k) code = code << 6U | (byte(k) & 0x3FU);
+  return code;
+}
 
 std::string escaped(char c) {
   if (c == '\n') return "\\n";
@@ -55,21 +65,9 @@ std::size_t find_invalid_utf8(std::string_view text) {
 }
 
 bool is_control(std::string_view character) {
-  const auto byte = [&](std::size_t k) {
-    return static_cast<unsigned>(static_cast<unsigned char>(character[k]));
-  };
-  switch (character.size()) {
-    case 1:
-      return byte(0) < 0x20U || byte(0) == 0x7FU;
-    case 2:
-      return byte(0) == 0xC2U && byte(1) < 0xA0U;
-    case 3: {
-      const unsigned code = (byte(0) & 0x0FU) << 12U | (byte(1) & 0x3FU) << 6U | (byte(2) & 0x3FU);
-      return (code >= 0x2028U && code <= 0x202EU) || (code >= 0x2066U && code <= 0x2069U);
-    }
-    default:
-      return false;
-  }
+  const char32_t code = code_point(character);
+  return code < 0x20U || (code >= 0x7FU && code < 0xA0U) || (code >= 0x2028U && code <= 0x202EU) ||
+         (code >= 0x2066U && code <= 0x2069U);
 }
 
 namespace {
@@ -98,6 +96,19 @@ std::string harmless(std::string_view text) {
     out += character == "\n" || character == "\t" ? character : shown;
     return true;
   });
+  return out;
+}
+
+std::string harmless_json(std::string_view json) {
+  std::string out;
+  for (std::size_t at = 0; at < json.size();) {
+    const std::string_view character = json.substr(at, std::max<std::size_t>(utf8_length(json, at), 1));
+    at += character.size();
+    // Others of one byte are escaped within strings already, as JSON has it.
+    const bool is_obeyed = (character.size() > 1 || character == "\x7f") && is_control(character);
+    out += is_obeyed ? fmt::format("\\u{:04x}", static_cast<unsigned>(code_point(character)))
+                     : std::string(character);
+  }
   return out;
 }
 

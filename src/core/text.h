@@ -20,6 +20,9 @@ bool is_control(std::string_view character);
 /// written as \x1b.
 std::string harmless(std::string_view text);
 
+/// JSON with what a terminal obeys within its strings written as \u009b: the same values to whoever reads it. Line breaks between values stay.
+std::string harmless_json(std::string_view json);
+
 /// Text as it may stand on one line of a message, whatever it holds: control characters and bytes that are no UTF-8 are
 /// written as \n, \t, \r and \x1b. What is longer than `longest` characters ends there, with `…`.
 std::string printable(std::string_view text, std::size_t longest);

@@ -31,6 +31,12 @@ class Consistency {
   }
 
  private:
+  /// Whether the list has any, were they wrong, or is no list at all: then that is the mistake that is told.
+  bool has_elements(std::string_view key) const {
+    const Value* list = root_.find(key);
+    return list != nullptr && (!list->is(Value::Type::array) || !list->items.empty());
+  }
+
   void fail(const std::string& path, std::string key, std::string found, std::string expected) {
     ReadContext& context = root_.context();
     context.mistakes.add({context.where(path), std::move(key), std::move(found), std::move(expected), ""});
@@ -41,7 +47,7 @@ class Consistency {
       fail(scenario_.joint_sets.front().path, "domain", "nothing", "[domain], which joint sets are made in");
     } else if (!scenario_.trace_maps.empty()) {
       fail(scenario_.trace_maps.front().path, "domain", "nothing", "[domain], which trace maps are cut in");
-    } else if (root_.find("block") == nullptr) {
+    } else if (scenario_.blocks.empty() && !has_elements("block")) {
       root_.missing("domain", "[domain] or at least one [[block]]");
     }
   }

@@ -367,15 +367,16 @@ bool TableReader::each_table(std::string_view key, const Rule& rule,
   for (std::size_t k = 0; k < found->items.size(); ++k) {
     const Value& item = found->items[k];
     const std::string item_path = paths.of(k);
-    // Whatever its name is worth, every element has its place in the list of names.
-    const bool named = path_.empty();
-    if (!item.is(Value::Type::table)) fail_at(item, item_path, describe(item), "a table");
-    if (item.is(Value::Type::table)) {
-      context_.positions[item_path] = item.where;
-      TableReader reader(context_, &item, item_path, 0, "");
-      read(reader);
-      reader.finish();
+    if (!item.is(Value::Type::table)) {
+      fail_at(item, item_path, describe(item), "a table");
+      continue;
     }
+    context_.positions[item_path] = item.where;
+    TableReader reader(context_, &item, item_path, 0, "");
+    read(reader);
+    reader.finish();
+    // Places in the list of names are those of what was read: one for each table, whatever its name is worth, and none for other elements.
+    const bool named = path_.empty();
     if (named) context_.list_names[std::string(key)].push_back(item.name() == nullptr ? "" : *item.name());
   }
   return true;

@@ -4,6 +4,7 @@
 import csv
 import json
 import os
+import re
 import unittest
 
 from program import INCLINE, Scenario
@@ -109,6 +110,15 @@ class Names(Study):
         self.assert_harmless(self.keyblock("check", "wrong.toml", expect=1))
         (self.folder / "\x1b]0;owned\x07.toml").write_text(NAMED)
         self.assert_harmless(self.keyblock("check", "\x1b]0;owned\x07.toml"))
+
+    def test_json_is_json_whatever_names_hold(self):
+        text = (self.folder / "incline.toml").read_text()
+        for code in [*range(0x7F, 0xA1), 0x1F, 0x200D, 0x2028, 0x2029, 0x202A, 0x202E, 0x2066, 0x2069, 0xFEFF, 0x10FFFF]:
+            self.write("odd.toml", re.sub(r'^(title = ")', rf"\1\\U{code:08x}", text, flags=re.M) + '\n["a\\U%08x"]\n' % code)
+            told = json.loads(self.keyblock("check", "odd.toml", "--json", expect=1).stdout)
+            self.assertEqual(len(told["mistakes"]), 1, hex(code))
+        self.write("odd.toml", re.sub(r'^title = "', '\\g<0>\\\\u2028', text, flags=re.M))
+        self.assertIn("\\u2028", self.keyblock("cut", "odd.toml", "-o", "cut", "--json").stdout)
 
 
 class FilesOfARunThatHasEnded(Scenario):

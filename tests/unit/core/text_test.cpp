@@ -40,6 +40,11 @@ TEST(Harmless, KeepsLinesAndTabsAndEscapesAllElseThatATerminalObeys) {
   EXPECT_EQ(harmless("\x1b]0;x\x07\r\xFC\u0085"), "\\x1b]0;x\\x07\\r\\xfc\\xc2\\x85");
 }
 
+TEST(Harmless, JsonKeepsItsValues) {
+  EXPECT_EQ(harmless_json("{\n \"a\x7f\u009b\u2028\u202e\u2069\": \"\u00e9\U0001f600\"\n}\n"),
+            "{\n \"a\\u007f\\u009b\\u2028\\u202e\\u2069\": \"\u00e9\U0001f600\"\n}\n");
+}
+
 TEST(Printable, EndsAfterSoManyCharacters) {
   EXPECT_EQ(printable("üüü", 3), "üüü");
   EXPECT_EQ(printable("üüüü", 3), "üüü…");
