@@ -295,10 +295,26 @@ void add_damping_fact(RunSetup& setup) {
   setup.ground.emplace_back(fmt::format("damping at {} Hz, with that of the rule", name), value + " %");
 }
 
+/// Average acceleration makes energy in joints that slide: guide, "Rules of time integration".
+void warn_of_average_acceleration(const Scenario& scenario, const RunSetup& setup,
+                                  std::vector<std::string>& notes) {
+  const bool may_slide = setup.properties.size() > 1;
+  const bool moves = std::ranges::any_of(scenario.stages, [](const simulation::Stage& stage) {
+    return stage.kind != simulation::StageKind::settle;
+  });
+  if (scenario.solver.integrator != dynamics::TimeIntegration::average_acceleration || !may_slide || !moves)
+    return;
+  notes.push_back(
+      fmt::format("solver.integrator{}: average-acceleration makes energy wherever joints slide; \"shi\" and "
+                  "\"generalized-alpha\" do not",
+                  place_text(scenario, "solver.integrator")));
+}
+
 /// What the setup as a whole shows.
 void add_setup_warnings(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
   add_shaking_warnings(scenario, setup.motions, notes);
   add_boundary_warnings(scenario, setup, notes);
+  warn_of_average_acceleration(scenario, setup, notes);
   if (const simulation::JointClosure soft = simulation::largest_closure(setup);
       soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
     notes.push_back(fmt::format(

@@ -40,6 +40,9 @@ constexpr OtherUnit stiffnesses[] = {{"GPa/m", 1e9}, {"MPa/m", 1e6}, {"kPa/m", 1
 constexpr OtherUnit strengths[] = {{"MPa", 1e6}, {"kPa", 1e3}};
 constexpr OtherUnit accelerations[] = {{"g", gravity}, {"cm/s2", 1e-2}};
 constexpr OtherUnit percents[] = {{"percent", 1e-2}};
+constexpr OtherUnit speeds[] = {{"km/s", 1e3}};
+constexpr OtherUnit forces[] = {{"kN/m", 1e3}, {"MN/m", 1e6}};
+constexpr OtherUnit spring_stiffnesses[] = {{"kN/m per m", 1e3}, {"MN/m per m", 1e6}};
 
 constexpr Usual density{"kg/m3", 1e3, 4e3, 1.5e3, 3.5e3, densities};
 constexpr Usual young{"Pa", 1e7, 1e12, 1e8, 2e11, pressures};
@@ -51,6 +54,12 @@ constexpr Usual friction{"degrees", 5.0, 75.0, 10.0, 60.0};
 constexpr Usual stress_ratio{"", 0.0, 5.0, 0.2, 4.0, percents};
 constexpr Usual depth{"m", 0.0, 1e4, 0.0, 5e3};
 constexpr Usual weight{"m/s2", 1.0, 30.0, 5.0, 15.0, accelerations};
+constexpr Usual speed{"m/s", 50.0, 9e3, 150.0, 8e3, speeds};
+constexpr Usual wall_pressure{"Pa", 1e3, 2e7, 5e3, 5e6, strengths};
+/// Of springs and of points of supports: what holds a block in its place may be as stiff as anybody likes.
+constexpr Usual spring_stiffness{"N/m per m", 1e4, HUGE_VAL, 1e5, 1e11, spring_stiffnesses};
+constexpr Usual bed_stiffness{"Pa/m", 1e5, HUGE_VAL, 1e6, 1e13, stiffnesses};
+constexpr Usual yield{"N/m", 1e3, 1e8, 5e3, 2e7, forces};
 
 }  // namespace usual_values
 namespace of = usual_values;
@@ -82,9 +91,47 @@ class Magnitudes {
     for (const TraceMapSpec& spec : scenario_.trace_maps) check_joints(spec.path, spec.joints);
     if (scenario_.domain) check_friction("domain.frame_friction", scenario_.domain->frame_friction);
     if (scenario_.in_situ) check_in_situ(*scenario_.in_situ);
+    if (scenario_.boundary) check_boundary(*scenario_.boundary);
+    for (const ExcavationSpec& spec : scenario_.excavations) check_walls(spec);
+    check_springs();
   }
 
  private:
+  void check_boundary(const BoundarySpec& boundary) {
+    check_rock_of_waves("boundary", boundary.density, boundary.vs, boundary.vp);
+    for (const RockLayerSpec& layer : boundary.column)
+      check_rock_of_waves(layer.path, layer.density, layer.vs, layer.vp);
+  }
+
+  void check_rock_of_waves(const std::string& path, std::optional<double> density, std::optional<double> vs,
+                           std::optional<double> vp) {
+    check_value(join_path(path, "density"), of::density, density);
+    check_value(join_path(path, "vs"), of::speed, vs);
+    check_value(join_path(path, "vp"), of::speed, vp);
+  }
+
+  void check_walls(const ExcavationSpec& spec) {
+    const std::string path = join_path(spec.path, "pressure");
+    check_size(path, of::wall_pressure, spec.pressure.constant);
+    for (const auto& [stage, pressure] : spec.pressure_by_stage)
+      check_size(join_path(path, stage), of::wall_pressure, pressure);
+  }
+
+  void check_springs() {
+    for (std::size_t k = 0; k < scenario_.springs.size(); ++k) {
+      const loading::Spring& spring = scenario_.springs[k];
+      const std::string path =
+          spring.name.empty() ? join_index("spring", k) : join_path("spring", spring.name);
+      check_value(join_path(path, "stiffness"), of::spring_stiffness, spring.stiffness);
+      check_value(join_path(path, "yield"), of::yield, spring.yield);
+    }
+    for (std::size_t k = 0; k < scenario_.supports.size(); ++k) {
+      const loading::Support& support = scenario_.supports[k];
+      check_value(join_path(join_index("support", k), "stiffness"),
+                  support.is_edge ? of::bed_stiffness : of::spring_stiffness, support.stiffness);
+    }
+  }
+
   void check_rock(const std::string& path, const RockKeys& rock) {
     check_value(join_path(path, "density"), of::density, rock.density);
     check_value(join_path(path, "young"), of::young, rock.young);

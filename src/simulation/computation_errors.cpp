@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/error.h"
 #include "simulation/energy_warnings.h"
 
@@ -22,7 +24,7 @@ std::vector<std::string> computation_errors(const RunRecord& run) {
   if (vertices.across_gaps > 0)
     errors.push_back(fmt::format("contacts pressed across gaps, {} in all steps, the widest gap {}",
                                  vertices.across_gaps, place_text(vertices.farthest)));
-  if (const std::string balance = failed_balance(run); !balance.empty()) errors.push_back(balance);
+  for (std::string& balance : failed_balances(run)) errors.push_back(std::move(balance));
   return errors;
 }
 

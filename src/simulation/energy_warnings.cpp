@@ -24,6 +24,23 @@ std::string reason_of_failure(const Energy& energy) {
       missed(energy), 100.0 * failed_residual);
 }
 
+bool has_made_most(const RunRecord& run) {
+  return run.made_ratio > failed_made;
+}
+
+std::string made(const RunRecord& run) {
+  return fmt::format(
+      "the rule of time integration has made energy, {:.3g} % of the largest term that is accounted for",
+      100.0 * run.made_ratio);
+}
+
+std::string made_too_much(const RunRecord& run) {
+  return fmt::format(
+      "{}, more than {:.0f} %: what moves has it from nothing, and the results are not to be used; "
+      "another solver.integrator, or a smaller time.step, may help",
+      made(run), 100.0 * failed_made);
+}
+
 }  // namespace
 
 std::vector<std::string> energy_warnings(const RunRecord& run) {
@@ -34,18 +51,21 @@ std::vector<std::string> energy_warnings(const RunRecord& run) {
     texts.push_back(fmt::format("{}, more than {:.0f} %: compare with a run with a smaller time.step",
                                 missed(run.energy), 100.0 * doubtful_residual));
   }
-  if (run.made_ratio > doubtful_made) {
-    texts.push_back(
-        fmt::format("the rule of time integration has made energy, {:.3g} % of the largest term that is "
-                    "accounted for: compare with "
-                    "a run with a smaller time.step, or with another solver.integrator",
-                    100.0 * run.made_ratio));
+  if (has_made_most(run)) {
+    texts.push_back(made_too_much(run));
+  } else if (run.made_ratio > doubtful_made) {
+    texts.push_back(made(run) +
+                    ": compare with a run with a smaller time.step, or with another solver.integrator");
   }
   return texts;
 }
 
-std::string failed_balance(const RunRecord& run) {
-  return run.interrupted || !has_failed(run.energy) ? std::string() : reason_of_failure(run.energy);
+std::vector<std::string> failed_balances(const RunRecord& run) {
+  std::vector<std::string> texts;
+  if (run.interrupted) return texts;
+  if (has_failed(run.energy)) texts.push_back(reason_of_failure(run.energy));
+  if (has_made_most(run)) texts.push_back(made_too_much(run));
+  return texts;
 }
 
 }  // namespace keyblock::simulation

@@ -12,12 +12,14 @@ inline constexpr double doubtful_residual = 0.01;
 inline constexpr double failed_residual = 0.05;
 /// RunRecord::made_ratio, above which the time integration drives what moves.
 inline constexpr double doubtful_made = 0.1;
+/// … and above which the results are none: most of what moves has its energy from nothing.
+inline constexpr double failed_made = 0.5;
 
 /// What the balance of energies says against the results of a run, in plain words; empty: nothing.
 [[nodiscard]] std::vector<std::string> energy_warnings(const RunRecord& run);
 
-/// Why the residual says that the results are none: it is above `failed_residual`, or no number; empty: it is not. A run that was interrupted is
-/// judged once it has ended.
-[[nodiscard]] std::string failed_balance(const RunRecord& run);
+/// Why energies say that the results are none, one text each: the residual is above `failed_residual`, or no number; the rule of integration has made
+/// more than `failed_made`. A run that was interrupted is judged once it has ended.
+[[nodiscard]] std::vector<std::string> failed_balances(const RunRecord& run);
 
 }  // namespace keyblock::simulation

@@ -69,11 +69,30 @@ TEST(Warnings, OfUnusualValues) {
               UnorderedElementsAre(HasSubstr("region[0].young = 8 Pa (line 4)")));
 }
 
+TEST(Warnings, OfUnusualValuesOfWhatHoldsAndSurroundsTheRock) {
+  const auto warned = [](const std::vector<std::string>& overrides) {
+    return warnings_of(two_blocks, overrides);
+  };
+  const std::string spring =
+      "spring=[{ name = \"K\", from = [0.5, 0.5], to = [0.5, 0.9], stiffness = 2e8, yield = 1e5 }]";
+  EXPECT_THAT(warned({spring}), IsEmpty());
+  EXPECT_THAT(warned({spring, "spring.K.stiffness=200"}),
+              UnorderedElementsAre(HasSubstr("kN/m per m? That is 2e+05 N/m per m")));
+  EXPECT_THAT(warned({spring, "spring.K.yield=100"}),
+              UnorderedElementsAre(HasSubstr("in kN/m? That is 1e+05 N/m")));
+}
+
+TEST(Warnings, OfARuleThatMakesEnergy) {
+  EXPECT_THAT(warnings_of(two_blocks, {"solver.integrator=\"average-acceleration\""}),
+              UnorderedElementsAre(HasSubstr("makes energy wherever joints slide")));
+}
+
 TEST(Warnings, OfMultipliersForJointsThatClose) {
   const auto warned = [](const char* stiffness) {
     return warnings_of(two_blocks, {"solver.contact=\"augmented-lagrangian\"", stiffness});
   };
-  EXPECT_THAT(warned("joints.normal_stiffness=1e9"), UnorderedElementsAre(HasSubstr("is not used, as no joint closes")));
+  EXPECT_THAT(warned("joints.normal_stiffness=1e9"),
+              UnorderedElementsAre(HasSubstr("is not used, as no joint closes")));
   EXPECT_THAT(warned("joints.normal_stiffness=1e13"), IsEmpty());
   EXPECT_THAT(warnings_of(two_blocks, {"joints.normal_stiffness=1e9"}), IsEmpty());
 }
