@@ -74,7 +74,7 @@ TEST(Warnings, OfUnusualValuesOfWhatHoldsAndSurroundsTheRock) {
     return warnings_of(two_blocks, overrides);
   };
   const std::string spring =
-      "spring=[{ name = \"K\", from = [0.5, 0.5], to = [0.5, 0.9], stiffness = 2e8, yield = 1e5 }]";
+      "spring=[{ name = \"K\", from = [0.5, 0.5], to = [1.5, 1.5], stiffness = 2e8, yield = 1e5 }]";
   EXPECT_THAT(warned({spring}), IsEmpty());
   EXPECT_THAT(warned({spring, "spring.K.stiffness=200"}),
               UnorderedElementsAre(HasSubstr("kN/m per m? That is 2e+05 N/m per m")));
