@@ -185,7 +185,16 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
 }
 
 void read_gravity(TableReader& root, Scenario& scenario) {
-  root.point("gravity", scenario.gravity, {.meaning = "Acceleration of gravity.", .unit = "m/s²"});
+  const Rule rule{.meaning = "Acceleration of gravity; a single number is that downwards.", .unit = "m/s²"};
+  const Value* given = root.find("gravity");
+  if (given != nullptr && given->is_number()) {
+    double downwards = 0.0;
+    Rule of_number = rule;
+    of_number.at_least = 0.0;
+    if (root.number("gravity", downwards, of_number)) scenario.gravity = {0.0, -downwards};
+  } else {
+    root.point("gravity", scenario.gravity, rule);
+  }
   double tilt = 0.0;
   root.number(
       "tilt", tilt,
