@@ -185,13 +185,15 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
 }
 
 void read_gravity(TableReader& root, Scenario& scenario) {
-  const Rule rule{.meaning = "Acceleration of gravity; a single number is that downwards.", .unit = "m/s²"};
+  Rule rule{.meaning = "Acceleration of gravity; a single number is that downwards.", .unit = "m/s²"};
   const Value* given = root.find("gravity");
-  if (given != nullptr && given->is_number()) {
+  if (root.documenting()) {
+    rule.fallback = "[0, -9.81]";
+    root.any("gravity", "point [x, y], or number of at least 0", rule);
+  } else if (given != nullptr && given->is_number()) {
     double downwards = 0.0;
-    Rule of_number = rule;
-    of_number.at_least = 0.0;
-    if (root.number("gravity", downwards, of_number)) scenario.gravity = {0.0, -downwards};
+    rule.at_least = 0.0;
+    if (root.number("gravity", downwards, rule)) scenario.gravity = {0.0, -downwards};
   } else {
     root.point("gravity", scenario.gravity, rule);
   }

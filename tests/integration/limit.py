@@ -129,6 +129,16 @@ class DefaultCriterion(Limit):
             for words in ("The factor of safety is 1.45", "Ground and loads", "Just beyond the limit", "friction φ"):
                 self.assertIn(words, page)
 
+    def test_the_page_on_slopes_says_what_the_program_says(self):
+        self.keyblock("new", "slope", "--force")
+        page = (ROOT / "docs/slopes.md").read_text()
+        blocks = re.findall(r"```sh\nkeyblock (limit slope\.toml [^\n]*)\n```\n```\n(.*?)\n```", page, re.DOTALL)
+        self.assertEqual(len(blocks), 3)
+        for words, printed in blocks:
+            said = self.keyblock(*words.split()).stdout
+            for line in printed.split("…\n")[-1].splitlines():
+                self.assertIn(line + "\n", said, words)
+
     def test_a_slope_that_is_asked_when_rock_falls_says_what_moves(self):
         rest = '\n[[stage]]\nname = "quiet"\nkind = "rest"\nduration = 2.0\n'
         said = self.limit(*self.slope(rest), "--key", "joints.strength_factor", "--from", 1, "--to", 3, "--until", "fallen").stdout
