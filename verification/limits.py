@@ -135,10 +135,31 @@ def straight_column(slenderness, young=1e9):
     return [("column", box(0, -0.5, length, 1), "")], loads
 
 
+def stack_stiffness(count):
+    """Of the joints of a stack, against turning, over weight × height of a block: the least with which it stands upright.
+
+    Block i turns by θ_i: ½ k Σ (θ_i − θ_{i−1})² − ½ W h Σ (½ + number above) θ_i² ≥ 0."""
+
+    def stands(k):
+        pivot = 0.0
+        for i in range(count):
+            diagonal = (2 * k if i + 1 < count else k) - (0.5 + count - 1 - i)
+            pivot = diagonal - (k * k / pivot if i else 0.0)
+            if pivot <= 0:
+                return False
+        return True
+
+    low, high = 0.0, 100.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stands(middle) else (middle, high)
+    return high
+
+
 def limits():
     text = '''title = "Limits of equilibrium"
 case  = 30
-about = """Static stages at default settings, on both sides of known limits, 0.5 % from them. A block on an incline: tan φ = tan α. A slab that leans against a wall with friction at foot and head: equilibrium of forces and moments. A dam with water and uplift: thrust over weight less uplift. Columns that topple over steps: Goodman & Bray (1976). A semicircular arch of 25 voussoirs, thickness over mean radius 0.15, φ 37°, under lateral acceleration: 1.443 m/s² by limit analysis of rigid blocks (linear programme, no tension). A cantilever column at 0.85 of Euler's load with a lateral force at its tip: beam-column theory. A rock slope with a plane that dips out of it: tan φ/tan α, and the seismic coefficients tan(φ − α) (1 − k_v); what a static stage names counts as loosened. A dry retaining wall: moments about its toe. Straight columns 1 % either side of their buckling load, with shear, and a pillar on a soft joint, kn b³/12 = W h/2: beyond it they are in equilibrium that is not stable."""
+about = """Static stages at default settings, on both sides of known limits, 0.5 % from them. A block on an incline: tan φ = tan α. A slab that leans against a wall with friction at foot and head: equilibrium of forces and moments. A dam with water and uplift: thrust over weight less uplift. Columns that topple over steps: Goodman & Bray (1976). A semicircular arch of 25 voussoirs, thickness over mean radius 0.15, φ 37°, under lateral acceleration: 1.443 m/s² by limit analysis of rigid blocks (linear programme, no tension). A cantilever column at 0.85 of Euler's load with a lateral force at its tip: beam-column theory. A rock slope with a plane that dips out of it: tan φ/tan α, and the seismic coefficients tan(φ − α) (1 − k_v); what a static stage names counts as loosened. A dry retaining wall: moments about its toe. Straight columns 1 % either side of their buckling load, with shear, and pillars on soft joints, one with kn b³/12 = W h/2, and three on one another: beyond it they are in equilibrium that is not stable."""
 '''
 
     def sides(name, file, stands, moves):
@@ -222,4 +243,12 @@ about = """Static stages at default settings, on both sides of known limits, 0.5
         blocks=[("ground", box(-3, -1, 7, 1), FIXED), ("pillar", box(0, 0, width, height), "")], stages=SETTLE,
     )
     stability("a pillar on a soft joint", "limit_pillar", *(f"joints.normal_stiffness={stiffness * f:.3f}" for f in (1.02, 0.98)))
+
+    count, height = 3, 5.0
+    stiffness = 12 * stack_stiffness(count) * density * G * width * height**2 / width**3
+    scenario(
+        "limit_stack", title="Three pillars on one another, on soft joints", rock=STIFF_ROCK, joints=f"friction = 60.0\nnormal_stiffness = {stiffness:.6f}\nshear_stiffness = 1.0e9",
+        step=0.01, blocks=[("ground", box(-3, -1, 7, 1), FIXED)] + [(f"p{k}", box(0, k * height, width, height), "") for k in range(count)], stages=SETTLE,
+    )
+    stability("three pillars on one another", "limit_stack", *(f"joints.normal_stiffness={stiffness * f:.3f}" for f in (1.02, 0.98)))
     case("limits", text)

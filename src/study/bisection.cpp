@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 namespace keyblock::study {
 namespace {
@@ -78,23 +77,29 @@ Bisection::State Bisection::follow(const Known& known) const {
   return state;
 }
 
-Bisection::Next Bisection::next(const Known& known, std::size_t count) const {
-  Next next;
+/// Values that are needed in any case, and the brackets that come after them.
+std::vector<double> Bisection::needed(const Known& known, std::deque<Bracket>& later) const {
+  std::vector<double> values;
   for (const double value : in_order_)
-    if (!known(value)) next.values.push_back(value);
-  std::deque<Bracket> later;
-  if (next.values.empty()) {
-    std::vector<double> path;
-    for (Bracket bracket : crossings(known)) {
-      const auto missing = narrow(bracket, known, path);
-      if (!missing) continue;
-      next.values.push_back(*missing);
-      later.push_back({bracket.not_met, *missing});
-      later.push_back({*missing, bracket.met});
-    }
-  } else if (scan_.size() == 2) {
-    later.push_back({from_, to_});
+    if (!known(value)) values.push_back(value);
+  if (!values.empty()) {
+    if (scan_.size() == 2) later.push_back({from_, to_});
+    return values;
   }
+  std::vector<double> path;
+  for (Bracket bracket : crossings(known)) {
+    const auto missing = narrow(bracket, known, path);
+    if (!missing) continue;
+    values.push_back(*missing);
+    later.push_back({bracket.not_met, *missing});
+    later.push_back({*missing, bracket.met});
+  }
+  return values;
+}
+
+Bisection::Next Bisection::next(const Known& known, std::size_t count) const {
+  std::deque<Bracket> later;
+  Next next{needed(known, later)};
   next.needed = next.values.size();
   while (!later.empty() && next.values.size() < count) {
     const Bracket bracket = later.front();

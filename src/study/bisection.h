@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -59,6 +60,7 @@ class Bisection {
   /// Brackets between neighbours of the scan, all of which are known.
   [[nodiscard]] std::vector<Bracket> crossings(const Known& known) const;
   [[nodiscard]] Status status_without_onset(const Known& known) const;
+  [[nodiscard]] std::vector<double> needed(const Known& known, std::deque<Bracket>& later) const;
   std::optional<double> narrow(Bracket& bracket, const Known& known, std::vector<double>& path) const;
 
   double from_, to_, tolerance_;

@@ -79,7 +79,9 @@ LimitCriterion limit_criterion(const std::string& name, std::optional<double> ab
   } else if (name == "collapsed") {
     criterion.measure = distance_measure;
     criterion.collapse = true;
-    if (above) refuse("--above", fmt::format("{}", *above), "nothing, as collapsed has no threshold");
+    if (above)
+      refuse("--above", fmt::format("{}", *above), "nothing, as collapsed has no threshold",
+             "--until fallen, moved or a measure such as loosened_area_m2 has one");
   } else if (!find_measure(name)) {
     std::vector<std::string> words{"fallen", "moved", "collapsed"};
     for (const Measure& m : measures()) words.push_back(m.name);
@@ -118,8 +120,12 @@ const LimitDefault& limit_default(const scenario::Scenario& scenario) {
 
 bool needs_rest(const LimitCriterion& criterion, const scenario::Scenario& scenario) {
   const simulation::Stage& last = scenario.stages.back();
-  const bool shakes = std::any_of(scenario.stages.begin(), scenario.stages.end(),
-                                  [](const auto& stage) { return stage.kind == StageKind::shake; });
+  const bool shakes =
+      std::any_of(scenario.stages.begin(), scenario.stages.end(),
+                  [](const auto& stage) { return stage.kind == StageKind::shake; }) ||
+      std::any_of(scenario.blocks.begin(), scenario.blocks.end(), [](const scenario::BlockSpec& block) {
+        return !block.motion_x.empty() || !block.motion_y.empty();
+      });
   return criterion.collapse && shakes && last.kind != StageKind::settle &&
          !(last.kind == StageKind::rest && last.until_still);
 }
