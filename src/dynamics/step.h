@@ -131,7 +131,7 @@ class Stepper {
   /// Finds the contacts of the state. The problem has the forces there, at D = 0, shear forces within the Coulomb bounds of the normal ones.
   const StepProblem& find_forces(State& state);
   /// Whether the equilibrium that the last static step reached is stable: ∇²Π + σ ρ > 0 with a small σ, where all contacts that press hold along
-  /// their joints. What slides is not asked for: static steps name it. The block that goes farthest where it gives way; −1: it is stable.
+  /// their joints. What slides is not asked for: static steps name it. The block that goes farthest where it gives way; −1: it is stable, or the model is too large for the test.
   /// left_out: per block, whether it is held where it is.
   int find_unstable_block(State& state, const std::vector<bool>& left_out);
   /// m, per block: how far its vertices went in the last static step, or would go in one that was not taken.

@@ -42,6 +42,8 @@ constexpr double least_shift = 1e-9;
 constexpr double more_shift = 10.0, most_shift = 1e3;  // until the matrix is positive definite
 constexpr double held_fast = 1e12;                     // times σ, of what is left out
 constexpr int mode_iterations = 30;
+constexpr std::size_t most_unknowns =
+    200'000;  // of a matrix that is factored whole, whatever solver the steps take
 
 /// Every contact that presses sticks.
 void hold_along_joints(SpringArray& springs) {
@@ -81,6 +83,7 @@ int farthest_block(const Model& model, linalg::BlockSolver& solver) {
 }  // namespace
 
 int Stepper::find_unstable_block(State& state, const std::vector<bool>& left_out) {
+  if (model_.unknowns > most_unknowns) return -1;
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;

@@ -23,19 +23,24 @@ constexpr const char* distance_measure = "displacement_max_m";
 // Of the size of the rock: an outline that comes so near to its edge reaches it.
 constexpr double at_the_edge = 1e-6;
 
+constexpr const char* is_named = "a static stage names what moves without bound, and holds it there";
+constexpr const char* comes_down =
+    "rock that only loosens still bears; what comes down into the opening is asked for";
+
 constexpr LimitDefault defaults[] = {
-    {LimitModel::structure, true, "a structure, to equilibrium", "collapsed",
-     "a static stage names what moves without bound, and holds it there"},
-    {LimitModel::structure, false, "a structure in motion", "collapsed",
+    {LimitModel::structure, LimitEnd::settled, "a structure, to equilibrium", "collapsed", is_named},
+    {LimitModel::structure, LimitEnd::in_motion, "a structure in motion", "collapsed",
+     "what falls or goes on sliding does not stand"},
+    {LimitModel::structure, LimitEnd::shaken, "a structure that is shaken", "collapsed",
      "what rocks comes to rest again; what falls or goes on sliding does not"},
-    {LimitModel::slope, true, "a slope, to equilibrium", "collapsed",
-     "a static stage names what moves without bound, and holds it there"},
-    {LimitModel::slope, false, "a slope in motion", "collapsed",
+    {LimitModel::slope, LimitEnd::settled, "a slope, to equilibrium", "collapsed", is_named},
+    {LimitModel::slope, LimitEnd::in_motion, "a slope in motion", "collapsed",
      "a slope that slides has failed, long before its rock has gone as far as a fall"},
-    {LimitModel::tunnel, true, "an opening, to equilibrium", "collapsed",
-     "nothing falls in a static stage: it names what moves without bound, and holds it there"},
-    {LimitModel::tunnel, false, "an opening in motion", "fallen",
-     "rock that only loosens still bears; what comes down into the opening is asked for"}};
+    {LimitModel::slope, LimitEnd::shaken, "a slope that is shaken", "moved",
+     "it slides as long as the shaking is strong enough, and stops: how far is what counts"},
+    {LimitModel::tunnel, LimitEnd::settled, "an opening, to equilibrium", "collapsed", is_named},
+    {LimitModel::tunnel, LimitEnd::in_motion, "an opening in motion", "fallen", comes_down},
+    {LimitModel::tunnel, LimitEnd::shaken, "an opening that is shaken", "fallen", comes_down}};
 
 Box box_of_rock(const scenario::Scenario& scenario) {
   Box box;
@@ -57,8 +62,8 @@ std::string LimitCriterion::text() const {
 
 bool LimitCriterion::is_met(double measured, const StageMeasures& deciding) const {
   if (collapse) return deciding.standing != Standing::stands && deciding.standing != Standing::rocks;
-  const bool is_named = deciding.kind == StageKind::settle && deciding.standing == Standing::moves;
-  return measured > above || (is_named && measure == distance_measure);
+  const bool goes_on = deciding.kind == StageKind::settle && deciding.standing == Standing::moves;
+  return measured > above || (goes_on && measure == distance_measure);
 }
 
 const StageMeasures& deciding_stage(const RunResult& run) {
@@ -106,28 +111,32 @@ LimitModel limit_model(const scenario::Scenario& scenario) {
              : LimitModel::tunnel;
 }
 
+LimitEnd limit_end(const scenario::Scenario& scenario) {
+  if (scenario.stages.back().kind == StageKind::settle) return LimitEnd::settled;
+  const bool is_shaken =
+      std::any_of(scenario.stages.begin(), scenario.stages.end(),
+                  [](const simulation::Stage& stage) { return stage.kind == StageKind::shake; }) ||
+      std::any_of(scenario.blocks.begin(), scenario.blocks.end(), [](const scenario::BlockSpec& block) {
+        return !block.motion_x.empty() || !block.motion_y.empty();
+      });
+  return is_shaken ? LimitEnd::shaken : LimitEnd::in_motion;
+}
+
 std::span<const LimitDefault> limit_defaults() {
   return defaults;
 }
 
 const LimitDefault& limit_default(const scenario::Scenario& scenario) {
   const LimitModel model = limit_model(scenario);
-  const bool is_static = scenario.stages.back().kind == StageKind::settle;
-  return *std::find_if(std::begin(defaults), std::end(defaults), [&](const LimitDefault& row) {
-    return row.model == model && row.is_static == is_static;
-  });
+  const LimitEnd end = limit_end(scenario);
+  return *std::find_if(std::begin(defaults), std::end(defaults),
+                       [&](const LimitDefault& row) { return row.model == model && row.end == end; });
 }
 
 bool needs_rest(const LimitCriterion& criterion, const scenario::Scenario& scenario) {
   const simulation::Stage& last = scenario.stages.back();
-  const bool shakes =
-      std::any_of(scenario.stages.begin(), scenario.stages.end(),
-                  [](const auto& stage) { return stage.kind == StageKind::shake; }) ||
-      std::any_of(scenario.blocks.begin(), scenario.blocks.end(), [](const scenario::BlockSpec& block) {
-        return !block.motion_x.empty() || !block.motion_y.empty();
-      });
-  return criterion.collapse && shakes && last.kind != StageKind::settle &&
-         !(last.kind == StageKind::rest && last.until_still);
+  const bool waits = last.kind == StageKind::rest && last.until_still;
+  return criterion.collapse && !waits && limit_end(scenario) == LimitEnd::shaken;
 }
 
 }  // namespace keyblock::study

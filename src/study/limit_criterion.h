@@ -40,10 +40,18 @@ enum class LimitModel {
 };
 LimitModel limit_model(const scenario::Scenario& scenario);
 
+/// How a scenario ends.
+enum class LimitEnd {
+  settled,    ///< its last stage is static
+  in_motion,  ///< its last stage is dynamic, and nothing has shaken it
+  shaken,     ///< its last stage is dynamic, and a motion has
+};
+LimitEnd limit_end(const scenario::Scenario& scenario);
+
 /// Which criterion is that of a model, when none is asked for.
 struct LimitDefault {
   LimitModel model;
-  bool is_static;  ///< its last stage
+  LimitEnd end;
   const char* what;
   const char* criterion;
   const char* why;

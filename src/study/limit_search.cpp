@@ -279,7 +279,7 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   request.criterion = chosen_criterion(read, until, above);
   request.has_rest = needs_rest(request.criterion, read);
   request.finds_moving =
-      !request.criterion.collapse && std::string_view(limit_default(read).criterion) == "collapsed";
+      !request.criterion.collapse && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
   check_since(request, read.stages);
   check_ends(plan, request);

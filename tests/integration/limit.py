@@ -138,6 +138,13 @@ class DefaultCriterion(Limit):
             said = self.keyblock(*words.split()).stdout
             for line in printed.split("…\n")[-1].splitlines():
                 self.assertIn(line + "\n", said, words)
+        (earthquake,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+        slope = re.sub(r'(?m)^boundary = "frame".*\n', "", (self.folder / "slope.toml").read_text())
+        self.write("shaken.toml", slope + earthquake)
+        self.keyblock("run", "shaken.toml", "-o", "shaken")
+        self.assertAlmostEqual(self.summary("shaken")["stages"][-1]["damage"]["displacement_max_m"], 0.06, delta=0.005)
+        self.limit("shaken.toml", "--key", "stage.earthquake.scale", "--from", 0, "--to", 4, "--workers", 2, out="scale")
+        self.assertEqual(self.found("scale")["until"], "moved")
 
     def test_a_slope_that_is_asked_when_rock_falls_says_what_moves(self):
         rest = '\n[[stage]]\nname = "quiet"\nkind = "rest"\nduration = 2.0\n'

@@ -120,6 +120,7 @@ TEST(LimitCriterion, IsThatOfTheModel) {
         {settle + shake + rest + "until = \"still\"\n", LimitModel::structure, "collapsed", false},
         {cut + settle, LimitModel::slope, "collapsed", false},
         {cut + settle + rest, LimitModel::slope, "collapsed", false},
+        {cut + settle + shake + rest, LimitModel::slope, "moved", false},
         {hole + settle, LimitModel::tunnel, "collapsed", false},
         {hole + settle + rest, LimitModel::tunnel, "fallen", false},
         {hole + settle + shake, LimitModel::tunnel, "fallen", false},
