@@ -211,7 +211,8 @@ void add_limit(CLI::App& app) {
       "  keyblock limit tunnel.toml --key excavation.tunnel.pressure --from 2e5 --to 0 --until fallen "
       "--above 0.1 "
       "-o out/pressure\n"
-      "  keyblock limit arch.toml --key tilt --from 0 --to 45 --until collapsed -o out/tilt");
+      "  keyblock limit slope.toml --key stage.excavated.k_h --from 0 --to -0.5 -o out/yield\n"
+      "  keyblock limit arch.toml --key tilt --from 0 --to 45 -o out/tilt");
   command->callback([arguments] { run_limit(*arguments); });
 }
 

@@ -29,19 +29,29 @@ constexpr double room = 0.05;  // above the largest measure, as a share of their
 constexpr std::string_view page_style = R"(<style>
 :root{color-scheme:light dark;--page:#f6f5f2;--paper:#fff;--ink:#1c2126;--muted:#5c656e;--line:#d9d8d3;--accent:#1f5fa8;--bad:#b3261e}
 @media (prefers-color-scheme:dark){:root{--page:#16181b;--paper:#1e2125;--ink:#e6e8ea;--muted:#a2abb3;--line:#373c42;--accent:#6fb1f5;--bad:#ff8a80}}
-body{font:16px/1.5 system-ui,"Segoe UI","Noto Sans","DejaVu Sans",sans-serif;background:var(--page);color:var(--ink);margin:0 auto;max-width:1000px;padding:16px}
+body{font:16px/1.5 system-ui,"Segoe UI","Noto Sans","DejaVu Sans",sans-serif;background:var(--page);color:var(--ink);margin:0 auto;max-width:1300px;padding:16px}
 section{background:var(--paper);border:1px solid var(--line);border-radius:8px;padding:12px 16px;margin:16px 0;overflow-x:auto}
-a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}
+a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}p.how{color:var(--muted)}.screen{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,520px),1fr));gap:0 16px;align-items:start}
 table{border-collapse:collapse}td,th{padding:3px 12px 3px 0;text-align:right;border-bottom:1px solid var(--line)}th{color:var(--muted);font-weight:normal}
 .plot{width:100%;max-width:720px}.plot text{font-size:13px;fill:var(--muted)}.axis{stroke:var(--muted)}.threshold{stroke:var(--muted);stroke-dasharray:5 4}
 .line{stroke:var(--accent);stroke-width:2}.bracket{fill:var(--accent);fill-opacity:.18}.no{fill:none;stroke:var(--accent);stroke-width:2}.yes{fill:var(--bad)}
 .drawings{display:flex;flex-wrap:wrap;gap:16px}figure{margin:0;width:300px}.one figure{width:min(100%,640px)}figure svg{width:100%;height:auto}td.name{text-align:left}figcaption{font-size:.9em}
 </style>)";
 
-std::string paragraphs(const std::string& text) {
-  std::string out = "<p class=\"answer\">";
+std::string paragraph(const char* kind, const std::string& text) {
+  if (text.empty()) return {};
+  std::string out = fmt::format("<p class=\"{}\">", kind);
   for (const char c : xml_text(text)) out += c == '\n' ? std::string("<br>") : std::string(1, c);
   return out + "</p>";
+}
+
+/// The answer, and what was asked.
+std::string words(const LimitResult& result) {
+  const std::string answer = answer_text(result);
+  std::string rest = limit_text(result);
+  if (const std::size_t there = rest.find(answer); !answer.empty() && there != std::string::npos)
+    rest.erase(there, answer.size());
+  return paragraph("answer", answer) + paragraph("how", rest);
 }
 
 /// Places of numbers along an axis.
@@ -292,13 +302,14 @@ std::string limit_page(const fs::path& directory, const LimitResult& result) {
   return fmt::format(
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Limit: "
-      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{4}"
-      "</section>{5}{11}{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
+      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}</section><div "
+      "class=\"screen\"><section>{4}"
+      "</section>{5}{11}</div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
       xml_text(result.title.empty() ? result.scenario : result.title), page_style,
-      xml_text(result.request.key), paragraphs(limit_text(result)), Plot(result).draw(),
-      drawings(directory, result), trial_table(directory, result), xml_text(result.version),
-      xml_text(result.scenario), result.seed, SharePlot(result).draw(), ground_table(result));
+      xml_text(result.request.key), words(result), Plot(result).draw(), drawings(directory, result),
+      trial_table(directory, result), xml_text(result.version), xml_text(result.scenario), result.seed,
+      SharePlot(result).draw(), ground_table(result));
 }
 
 }  // namespace keyblock::study

@@ -113,18 +113,21 @@ TEST(LimitCriterion, IsThatOfTheModel) {
       settle = "[[stage]]\nname = \"a\"\nkind = \"settle\"\n",
       shake = "[[stage]]\nname = \"b\"\nkind = \"shake\"\nmotion = \"sine\"\n",
       rest = "[[stage]]\nname = \"c\"\nkind = \"rest\"\nduration = 1.0\n";
-  for (const auto& [text, model, criterion, waits] :
-       {std::tuple{settle, LimitModel::structure, "collapsed", false},
-        {settle + shake, LimitModel::structure, "collapsed", true},
-        {settle + shake + rest, LimitModel::structure, "collapsed", true},
-        {settle + shake + rest + "until = \"still\"\n", LimitModel::structure, "collapsed", false},
-        {cut + settle, LimitModel::slope, "collapsed", false},
-        {cut + settle + rest, LimitModel::slope, "collapsed", false},
-        {cut + settle + shake + rest, LimitModel::slope, "moved", false},
-        {hole + settle, LimitModel::tunnel, "collapsed", false},
-        {hole + settle + rest, LimitModel::tunnel, "fallen", false},
-        {hole + settle + shake, LimitModel::tunnel, "fallen", false},
-        {hole + cut + settle, LimitModel::slope, "collapsed", false}}) {
+  using Parts = std::vector<std::string>;
+  for (const auto& [parts, model, criterion, waits] :
+       {std::tuple{Parts{settle}, LimitModel::structure, "collapsed", false},
+        {Parts{settle, shake}, LimitModel::structure, "collapsed", true},
+        {Parts{settle, shake, rest}, LimitModel::structure, "collapsed", true},
+        {Parts{settle, shake, rest, "until = \"still\"\n"}, LimitModel::structure, "collapsed", false},
+        {Parts{cut, settle}, LimitModel::slope, "collapsed", false},
+        {Parts{cut, settle, rest}, LimitModel::slope, "collapsed", false},
+        {Parts{cut, settle, shake, rest}, LimitModel::slope, "moved", false},
+        {Parts{hole, settle}, LimitModel::tunnel, "collapsed", false},
+        {Parts{hole, settle, rest}, LimitModel::tunnel, "fallen", false},
+        {Parts{hole, settle, shake}, LimitModel::tunnel, "fallen", false},
+        {Parts{hole, cut, settle}, LimitModel::slope, "collapsed", false}}) {
+    std::string text;
+    for (const std::string& part : parts) text += part;
     const scenario::Scenario scenario = scenario_of(text);
     EXPECT_EQ(limit_model(scenario), model) << text;
     const LimitDefault& row = limit_default(scenario);
