@@ -303,8 +303,8 @@ std::string limit_page(const fs::path& directory, const LimitResult& result) {
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Limit: "
       "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}</section><div "
-      "class=\"screen\"><section>{4}"
-      "</section>{5}{11}</div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
+      "class=\"screen\"><div><section>{4}"
+      "</section>{11}</div>{5}</div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
       xml_text(result.title.empty() ? result.scenario : result.title), page_style,
       xml_text(result.request.key), words(result), Plot(result).draw(), drawings(directory, result),
