@@ -17,6 +17,7 @@
 #include "simulation/standing.h"
 #include "study/folder.h"
 #include "study/limit_search.h"
+#include "study/limit_words.h"
 #include "study_progress.h"
 
 namespace keyblock::app {
@@ -27,7 +28,7 @@ using Status = study::Bisection::Status;
 struct LimitArguments {
   ScenarioArguments scenario;
   study::LimitRequest request;
-  std::string until = "fallen";
+  std::string until;  ///< empty: by the model
   std::optional<double> above;
   std::string folder;
   int workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -38,9 +39,11 @@ void tell_trial(const study::LimitRequest& request, const study::RealizationLimi
                 const study::LimitTrial& trial) {
   const std::string which =
       request.realizations > 1 ? fmt::format("realization {}, ", limit.realization) : "";
-  const std::string measured = request.criterion.collapse
-                                   ? std::string(simulation::standing_name(trial.standing))
-                                   : fmt::format("{} {:.5g}", request.criterion.measure, trial.measure);
+  std::string measured = simulation::standing_name(trial.standing);
+  if (!request.criterion.collapse) {
+    const std::string also = trial.standing == simulation::Standing::stands ? "" : ", " + measured;
+    measured = fmt::format("{} {:.5g}{}", request.criterion.measure, trial.measure, also);
+  }
   std::cout << fmt::format("{}{} = {:.8g}: {}, {}\n", which, request.key, trial.value, measured,
                            trial.met ? "met" : "not met")
             << std::flush;
@@ -68,12 +71,12 @@ void refuse_ends(const study::LimitResult& result) {
                  "exchange --from and --to");
     case Status::met_at_both:
       return end("--from", request.from, "that the criterion holds at both ends", without,
-                 "move --from away from --to, raise --above, or count from a later stage with --since");
+                 request.criterion.collapse
+                     ? "move --from away from --to"
+                     : "move --from away from --to, raise --above, or count from a later stage with --since");
     case Status::met_at_none:
       return end("--to", request.to, "that the criterion holds at neither end", with,
-                 limit.trials.front().state_hash == limit.trials.back().state_hash
-                     ? "both runs are the same to the last bit: the key has no effect on this model"
-                     : "move --to farther, lower --above, or let the last stage last longer");
+                 study::not_met_hint(result));
     case Status::found:
     case Status::open:
       return;
@@ -83,7 +86,7 @@ void refuse_ends(const study::LimitResult& result) {
 void tell_result(const study::LimitResult& result, const std::string& folder) {
   std::cout << "\n" << study::limit_text(result);
   for (const auto& limit : result.realizations) {
-    const study::LimitTrial* beyond = limit.found() ? limit.trial_at(limit.state.met) : nullptr;
+    const study::LimitTrial* beyond = limit.just_beyond();
     if (beyond == nullptr || result.realizations.size() > 1) continue;
     const std::filesystem::path page = study::run_folder(folder, beyond->run) / "report.html";
     if (std::filesystem::exists(page)) std::cout << "just beyond it: " << page.string() << "\n";
@@ -124,6 +127,14 @@ void run_limit(LimitArguments arguments) {
   if (result.realizations.size() == 1) refuse_ends(result);
 }
 
+/// The table of default criteria, a line each.
+std::string default_criteria() {
+  std::string text = "Without --until:\n";
+  for (const study::LimitDefault& row : study::limit_defaults())
+    text += fmt::format("  {}: {}, as {}\n", row.what, row.criterion, row.why);
+  return text;
+}
+
 }  // namespace
 
 void add_limit(CLI::App& app) {
@@ -144,8 +155,8 @@ void add_limit(CLI::App& app) {
       ->add_option(
           "--until", arguments->until,
           "What is to hold at the end of the last stage: fallen (area of fallen rock), moved (largest "
-          "displacement), collapsed (the blocks do not stand), or a measure of summary.json by its name")
-      ->capture_default_str()
+          "displacement), collapsed (the blocks do not stand), or a measure of summary.json by its name; "
+          "default: by the model, see below")
       ->type_name("CRITERION");
   command
       ->add_option(
@@ -162,6 +173,12 @@ void add_limit(CLI::App& app) {
                    "Where the bisection ends: width of the bracket over the larger of its ends")
       ->capture_default_str()
       ->type_name("T");
+  command
+      ->add_option("--scan", request.scan,
+                   "Look at N equal parts of the way before the bisection, and find all limits that show; "
+                   "default: 8 for the scale of a motion, which need not be monotone, else 1")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
   command
       ->add_option("--realizations", request.realizations,
                    "A limit for each of realizations 0 … N-1, their median and other quantiles")
@@ -180,17 +197,22 @@ void add_limit(CLI::App& app) {
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--resume", arguments->resume,
-                    "Go on with the runs in DIR; --from, --to, --until, --above, --since, --tolerance and "
-                    "--realizations may change");
+                    "Go on with the runs in DIR; --from, --to, --until, --above, --since, --tolerance, "
+                    "--scan and --realizations may change");
   command->footer(
-      "Each trial is a run of its own, kept in DIR/runs.\n\n"
+      "Each trial is a run of its own, kept in DIR/runs. Where collapsed is asked of a last stage in motion, "
+      "a "
+      "rest until all is still follows it in every trial.\n\n" +
+      default_criteria() +
+      "\n"
       "Examples:\n"
       "  keyblock limit tunnel.toml --key joints.friction --from 45 --to 5 -o out/friction\n"
       "  keyblock limit tunnel.toml --key joints.strength_factor --from 0.5 --to 5 -o out/safety\n"
       "  keyblock limit tunnel.toml --key excavation.tunnel.pressure --from 2e5 --to 0 --until fallen "
       "--above 0.1 "
       "-o out/pressure\n"
-      "  keyblock limit arch.toml --key tilt --from 0 --to 45 --until collapsed -o out/tilt");
+      "  keyblock limit slope.toml --key stage.excavated.k_h --from 0 --to -0.5 -o out/yield\n"
+      "  keyblock limit arch.toml --key tilt --from 0 --to 45 -o out/tilt");
   command->callback([arguments] { run_limit(*arguments); });
 }
 

@@ -102,7 +102,14 @@ std::string standing_text(const StageRecord& stage) {
       return stage.stage.kind == StageKind::settle
                  ? fmt::format("it moves ({})", simulation::verdict_text(stage))
                  : fmt::format("it moves, at up to {:.2g} m/s", stage.largest_speed);
+    case Standing::rocks:
+      return fmt::format(
+          "it still rocks, at up to {:.2g} m/s; a stage of kind \"rest\" tells what comes of it",
+          stage.largest_speed);
+    case Standing::unstable:
+      return fmt::format("it does not stand ({})", simulation::verdict_text(stage));
     case Standing::collapsed:
+    case Standing::fallen:
       return fmt::format("it has collapsed: {} {} fallen", stage.damage.fallen_blocks,
                          stage.damage.fallen_blocks == 1 ? "block has" : "blocks have");
     case Standing::unsettled:
@@ -155,7 +162,8 @@ std::vector<std::string> warnings(const RunRecord& run) {
           fmt::format("stage \"{}\" ended before equilibrium: worst residual {:.1e} of a block's weight",
                       stage.stage.name, stage.worst_residual_ratio));
     } else if (stage.stage.kind == StageKind::settle &&
-               simulation::verdict_of(stage) == simulation::Verdict::equilibrium_after_moving) {
+               (simulation::verdict_of(stage) == simulation::Verdict::equilibrium_after_moving ||
+                simulation::verdict_of(stage) == simulation::Verdict::unstable)) {
       texts.push_back(fmt::format("stage \"{}\" is {}", stage.stage.name, simulation::verdict_text(stage)));
     }
   }

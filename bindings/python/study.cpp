@@ -100,14 +100,15 @@ void bind_study(py::module_& module) {
       "find_limit",
       [](const Scenario& scenario, const std::filesystem::path& folder, const std::string& key, double from,
          double to, const std::string& until, std::optional<double> above, const std::string& since,
-         double tolerance, int realizations, bool resume, int workers, std::vector<std::string> command,
-         const py::object& progress) {
-        return limit(scenario, folder, {key, from, to, until, above, since, tolerance, realizations, resume},
-                     workers, std::move(command), progress);
+         double tolerance, int realizations, bool resume, int scan, int workers,
+         std::vector<std::string> command, const py::object& progress) {
+        return limit(scenario, folder,
+                     {key, from, to, until, above, since, tolerance, realizations, resume, scan}, workers,
+                     std::move(command), progress);
       },
       py::arg("scenario").none(false), py::arg("folder"), py::kw_only(), py::arg("key"), py::arg("start"),
       py::arg("stop"), py::arg("until"), py::arg("above"), py::arg("since"), py::arg("tolerance"),
-      py::arg("realizations"), py::arg("resume"), py::arg("workers"), py::arg("command"),
+      py::arg("realizations"), py::arg("resume"), py::arg("scan"), py::arg("workers"), py::arg("command"),
       py::arg("progress"));
   module.def(
       "verify",

@@ -59,14 +59,15 @@ KEYBLOCK_API void collect_study(const std::filesystem::path& folder);
 
 /// What `keyblock limit` is asked for.
 struct LimitRequest {
-  std::string key;               ///< key path of a number
-  double from = 0.0, to = 0.0;   ///< the criterion does not hold at `from`, and holds at `to`
-  std::string until = "fallen";  ///< fallen, moved, collapsed, or a measure of summary.json
-  std::optional<double> above;   ///< it holds when the measure is above this
-  std::string since;             ///< stage at whose end the measure begins; empty: the first excavation
-  double tolerance = 0.02;       ///< width of the bracket over the larger of its ends
+  std::string key;              ///< key path of a number
+  double from = 0.0, to = 0.0;  ///< the criterion does not hold at `from`, and holds at `to`
+  std::string until;  ///< fallen, moved, collapsed, or a measure of summary.json; empty: by the model
+  std::optional<double> above;  ///< it holds when the measure is above this
+  std::string since;            ///< stage at whose end the measure begins; empty: the first excavation
+  double tolerance = 0.02;      ///< width of the bracket over the larger of its ends
   int realizations = 1;
   bool resume = false;
+  int scan = 0;  ///< equal parts of the way that are looked at before; 0: 8 for the scale of a motion, else 1
 };
 
 /// The value of a number of the scenario at which rock first falls, moves or collapses; limit.json as text, which is in the folder, too.

@@ -46,6 +46,21 @@ class Limit:
         return math.nan if found is None else float(found)
 
     @property
+    def answer(self) -> str:
+        """The limit in a sentence, with its unit and what happens just beyond it."""
+        return str(self.summary.get("answer", ""))
+
+    @property
+    def unit(self) -> str:
+        """The unit of the key; empty where it has none."""
+        return str(self.summary.get("unit", ""))
+
+    @property
+    def limits(self) -> list[float]:
+        """All limits of the first realization: where the criterion begins to hold and where it ceases to, from `from` on."""
+        return [float(found["limit"]) for found in self.realizations[0].get("limits", [])]
+
+    @property
     def interval(self) -> Estimate:
         """The limit with its interval by order statistics; its ends are NaN where realizations are too few (at 95 %: below six)."""
         low, high = self.summary["median"]["interval"] or (math.nan, math.nan)
@@ -61,7 +76,7 @@ class Limit:
 
     @property
     def realizations(self) -> list[record.Record]:
-        """Of each realization: `status`, `bracket`, `limit`, `just_beyond`, `error`, `trials`."""
+        """Of each realization: `status`, `bracket`, `limit`, `just_beyond`, `limits`, `error`, `trials`."""
         return list(self.summary["realizations"])
 
     def records(self) -> list[dict[str, Any]]:
@@ -98,7 +113,7 @@ class Limit:
             ax.axvline(self.value, color=colors.OUTLINE, linewidth=1.0, linestyle=(0, (5, 3)), label=f"limit {self.value:.4g}")
         if not math.isnan(self.interval.low):
             ax.axvspan(self.interval.low, self.interval.high, color=colors.OUTLINE, alpha=0.12, linewidth=0)
-        ax.set_xlabel(self.key)
+        ax.set_xlabel(f"{self.key} ({self.unit})" if self.unit else self.key)
         ax.set_ylabel(figures.measure_label(str(self.summary["measure"])))
         figures.legend_below(ax, columns=3)
 

@@ -114,18 +114,20 @@ def find_limit(
     start: float,
     stop: float,
     *,
-    until: str = "fallen",
+    until: str | None = None,
     above: float | None = None,
     since: str = "",
     tolerance: float = 0.02,
     realizations: int = 1,
+    scan: int | None = None,
     workers: int | None = None,
     resume: bool = False,
     progress: Callable[[int, int], Any] | bool | str | None = None,
 ) -> Limit:
     """The value of a number of the scenario at which rock first falls, moves or collapses, as `keyblock limit` finds it: bisection between `start`,
     at which that does not hold, and `stop`, at which it does. `until`: "fallen", "moved", "collapsed" or a measure of summary.json, which
-    is to be larger than `above`. Throws InputError, and RunError where a run fails."""
+    is to be larger than `above`; None: by the model, as `answer` and `why` of the result tell. `scan`: equal parts of the way that are looked at
+    before, to find all limits; None: 8 for the scale of a motion, else 1. Throws InputError, and RunError where a run fails."""
     from .limit import Limit
 
     path = os.path.abspath(os.fspath(folder))
@@ -136,12 +138,13 @@ def find_limit(
             key=key,
             start=float(start),
             stop=float(stop),
-            until=until,
+            until=until or "",
             above=None if above is None else float(above),
             since=since,
             tolerance=float(tolerance),
             realizations=realizations,
             resume=resume,
+            scan=scan or 0,
             workers=_count(workers),
             command=_worker_command(),
             progress=shown.call,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import concurrent.futures
 import concurrent.futures.process
 import json
+import math
 import os
 import signal
 import subprocess
@@ -178,6 +179,14 @@ def test_limits_are_those_of_the_program(tmp_path: Path) -> None:
     assert ours.value == theirs.value and ours.interval == theirs.interval
     with pytest.raises(kb.InputError, match="joints.frictoin|frictoin"):
         kb.find_limit(kb.Scenario.load(file), tmp_path / "wrong", "joints.frictoin", 45.0, 5.0)
+
+
+def test_a_limit_takes_its_criterion_from_the_model(tmp_path: Path) -> None:
+    scenario = kb.Scenario.load(ROOT / "verification/scenarios/limit_slope.toml")
+    found = kb.find_limit(scenario, tmp_path / "out", "stage.excavated.k_h", 0.0, -0.5, scan=3, workers=2)
+    assert found.value == pytest.approx(-math.tan(math.radians(10.0)), rel=0.02)
+    assert (found.summary.until, found.summary.scan) == ("collapsed", 3)
+    assert "a slope" in found.summary.why
 
 
 def test_problems_with_known_answers() -> None:

@@ -209,6 +209,8 @@ def test_variants_and_texts_of_spreadsheets(study_folder, tmp_path):
 def test_a_limit(limit, limit_folder, tmp_path):
     assert limit.key == "joints.friction"
     assert limit.value == pytest.approx(30.0, rel=0.02)
+    assert (limit.unit, limit.limits) == ("°", [limit.value])
+    assert limit.answer.startswith("The friction angle that is needed is ") and limit.answer.endswith(" moves.")
     assert np.isnan(limit.interval.low)
     trials = limit.records()
     assert len(trials) == len(limit.realizations[0].trials)

@@ -136,6 +136,7 @@ std::string find_limit(const Scenario& scenario, const std::filesystem::path& fo
   asked.since = request.since;
   asked.tolerance = request.tolerance;
   asked.realizations = request.realizations;
+  asked.scan = request.scan;
   study::Plan plan = study::plan_limit(text_of(scenario), version(), asked, request.until, request.above);
   const auto lock = study::lock_study(folder);
   std::atomic<bool> stop = false;

@@ -122,12 +122,18 @@ class Stepper {
   /// After excavation: forgets the contacts of blocks that are gone.
   void remove_absent(State& state);
 
+  /// m/s², acceleration of the ground that static steps from now on stand for: each block has the inertia force of it as a load. None before.
+  void set_static_ground(Vec2 acceleration) { static_ground_ = acceleration; }
   /// One dynamic step of length dt, s.
   StepReport advance(State& state, double dt, const GroundAcceleration* ground);
   /// One static step: velocities are zero before and after. A trial may not be taken (StepReport::taken). Afterwards balance() is known.
   StepReport relax(State& state, const StaticStep& static_step);
   /// Finds the contacts of the state. The problem has the forces there, at D = 0, shear forces within the Coulomb bounds of the normal ones.
   const StepProblem& find_forces(State& state);
+  /// Whether the equilibrium that the last static step reached is stable: ∇²Π + σ ρ > 0 with a small σ, where all contacts that press hold along
+  /// their joints. What slides is not asked for: static steps name it. The block that goes farthest where it gives way; −1: it is stable, or the model is too large for the test.
+  /// left_out: per block, whether it is held where it is.
+  int find_unstable_block(State& state, const std::vector<bool>& left_out);
   /// m, per block: how far its vertices went in the last static step, or would go in one that was not taken.
   [[nodiscard]] std::span<const double> travel() const { return travel_; }
   /// Forces that nothing balances, at the position that the last static step reached.
@@ -175,6 +181,7 @@ class Stepper {
   bool quiet_ = false;             ///< no contact changed its branch in it
   std::vector<Vec2> prescribed_;   ///< m, per block, in the step; empty: no fixed block is moved
   std::vector<double> travel_;     ///< m, per block, of static steps
+  Vec2 static_ground_;             ///< m/s²
 };
 
 }  // namespace keyblock::dynamics

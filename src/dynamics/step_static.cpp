@@ -4,6 +4,7 @@
 
 #include "core/index.h"
 #include "dynamics/step.h"
+#include "solve/step_matrix.h"
 #include "solve/step_numbers.h"
 
 namespace keyblock::dynamics {
@@ -36,7 +37,79 @@ void find_travel(const Model& model, std::span<const Vec2> displacement, std::sp
   }
 }
 
+/// σ over E/(ρA): far above rounding, far below what a block that buckles lacks.
+constexpr double least_shift = 1e-9;
+constexpr double more_shift = 10.0, most_shift = 1e3;  // until the matrix is positive definite
+constexpr double held_fast = 1e12;                     // times σ, of what is left out
+constexpr int mode_iterations = 30;
+constexpr std::size_t most_unknowns =
+    200'000;  // of a matrix that is factored whole, whatever solver the steps take
+
+/// Every contact that presses sticks.
+void hold_along_joints(SpringArray& springs) {
+  for (std::size_t c = 0; c < springs.size(); ++c) {
+    SpringArray::Branch branch = springs.branch[c];
+    if (springs.friction[c] < 0.0 || !(springs.force(c).normal > 0.0)) continue;
+    branch.shear = SpringArray::Shear::held;
+    springs.set_branch(c, branch);
+  }
+}
+
+/// Of the lowest mode of a matrix that has a factor.
+int farthest_block(const Model& model, linalg::BlockSolver& solver) {
+  std::vector<double> mode(model.unknowns), residual(model.unknowns);
+  for (std::size_t k = 0; k < mode.size(); ++k) mode[k] = 1.0 / static_cast<double>(1 + k % 7);
+  for (int i = 0; i < mode_iterations; ++i) {
+    std::fill(residual.begin(), residual.end(), 0.0);
+    solver.solve(mode, residual, [](std::span<const double>) { return 0.0; });
+    const double largest =
+        std::abs(*std::ranges::max_element(mode, {}, [](double x) { return std::abs(x); }));
+    for (double& x : mode) x /= std::max(largest, 1e-300);
+  }
+  int farthest = -1;
+  double most = 0.0;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    if (!model.moves(b)) continue;
+    double squared = 0.0;
+    for (std::size_t k = 0; k < 2 * at(model.blocks[b].size); ++k)
+      squared += mode[model.blocks[b].first + k] * mode[model.blocks[b].first + k];
+    if (squared <= most) continue;
+    most = squared;
+    farthest = static_cast<int>(b);
+  }
+  return farthest;
+}
+
 }  // namespace
+
+int Stepper::find_unstable_block(State& state, const std::vector<bool>& left_out) {
+  if (model_.unknowns > most_unknowns) return -1;
+  Drive drive;
+  drive.end_time = state.time;
+  drive.is_static = true;
+  drive.ground_acceleration = static_ground_;
+  drive.step = 1.0;
+  drive.rule = rules_.rule();
+  drive.prescribed = prescribed_;
+  std::vector<double> scale(model_.blocks.size());
+  drive.inertia_scale = scale;
+  StepMatrix matrix;
+  for (double shift = least_shift; shift <= most_shift; shift *= more_shift) {
+    for (std::size_t b = 0; b < scale.size(); ++b) {
+      const Block& block = model_.blocks[b];
+      scale[b] = shift * block.material.young / (block.material.density * block.area) *
+                 (left_out[b] ? held_fast : 1.0);
+    }
+    build(state, drive, true);
+    hold_along_joints(problem_.springs());
+    linalg::BlockSolver& solver = choose_solver(state, true, true);
+    open_close_.forget_factor();
+    matrix.assemble({problem_, finder_.of_step(), solver, model_.solver, team_, profile_});
+    if (!solver.factor()) continue;
+    return shift == least_shift ? -1 : farthest_block(model_, solver);
+  }
+  return -1;
+}
 
 StepReport Stepper::relax(State& state, const StaticStep& static_step) {
   StepReport report;
@@ -45,6 +118,7 @@ StepReport Stepper::relax(State& state, const StaticStep& static_step) {
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;
+  drive.ground_acceleration = static_ground_;
   drive.is_trial = static_step.is_trial;
   drive.inertia_scale = static_step.inertia_scale;
   drive.step = static_step.step;
@@ -75,6 +149,7 @@ const StepProblem& Stepper::find_forces(State& state) {
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;
+  drive.ground_acceleration = static_ground_;
   drive.step = 1.0;
   const std::vector<double> scale(model_.blocks.size(), 1.0);
   drive.inertia_scale = scale;

@@ -20,6 +20,8 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"excavate", record.stage.excavate},
           {"install", record.stage.install},
           {"scale", record.stage.scale},
+          {"k_h", record.stage.k_h},
+          {"k_v", record.stage.k_v},
           {"tolerance", record.stage.tolerance},
           {"steps", record.steps},
           {"start_time", record.start_time},

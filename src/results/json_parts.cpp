@@ -70,10 +70,23 @@ ordered_json standing_json(const std::optional<simulation::Standing>& standing) 
 }
 
 std::optional<simulation::Standing> read_standing(const ordered_json& json) {
-  using simulation::Standing;
-  for (const Standing s : {Standing::stands, Standing::moves, Standing::collapsed, Standing::unsettled})
-    if (json == simulation::standing_name(s)) return s;
+  for (const simulation::StandingWord& word : simulation::standing_words())
+    if (json == word.name) return word.standing;
   return std::nullopt;
+}
+
+ordered_json movers_json(const simulation::Movers& movers) {
+  return {{"blocks", movers.blocks},
+          {"weight_n_m", movers.weight},
+          {"heaviest", movers.heaviest < 0 ? ordered_json() : ordered_json(movers.heaviest)},
+          {"heaviest_weight_n_m", movers.heaviest_weight},
+          {"way_m", movers.way}};
+}
+
+simulation::Movers read_movers(const ordered_json& json) {
+  const ordered_json& heaviest = json.at("heaviest");
+  return {json.at("blocks").get<int>(), heaviest.is_null() ? -1 : heaviest.get<int>(),
+          number(json.at("weight_n_m")), number(json.at("heaviest_weight_n_m")), number(json.at("way_m"))};
 }
 
 ordered_json energy_json(const simulation::Energy& energy) {

@@ -15,6 +15,7 @@ namespace keyblock::results {
 nlohmann::ordered_json damage_json(const simulation::Damage& damage);
 nlohmann::ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen);
 nlohmann::ordered_json standing_json(const std::optional<simulation::Standing>& standing);
+nlohmann::ordered_json movers_json(const simulation::Movers& movers);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
 /// With what each block does (simulation/verdict.h).
@@ -32,6 +33,7 @@ nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, 
 simulation::Damage read_damage(const nlohmann::ordered_json& json);
 std::vector<simulation::FallenBlock> read_fallen(const nlohmann::ordered_json& json);
 std::optional<simulation::Standing> read_standing(const nlohmann::ordered_json& json);
+simulation::Movers read_movers(const nlohmann::ordered_json& json);
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
 std::vector<simulation::MovingBlock> read_moving(const nlohmann::ordered_json& json);
 /// Of excavations by number.

@@ -152,6 +152,8 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"install", r.stage.install},
                           {"motion_index", r.stage.motion},
                           {"scale", r.stage.scale},
+                          {"k_h", r.stage.k_h},
+                          {"k_v", r.stage.k_v},
                           {"given_duration", or_null(r.stage.duration)},
                           {"max_steps", or_null(r.stage.max_steps)},
                           {"tolerance", r.stage.tolerance},
@@ -173,6 +175,8 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"damage", damage_json(r.damage)},
                           {"fallen", fallen_json(r.fallen)},
                           {"standing", standing_json(r.standing)},
+                          {"movers", movers_json(r.movers)},
+                          {"unstable_block", r.unstable_block},
                           {"largest_speed", r.largest_speed},
                           {"wall_time", r.wall_time},
                           {"interrupted", r.interrupted},
@@ -192,6 +196,10 @@ static simulation::Stage read_given_stage(const ordered_json& json) {
   if (json.contains("install")) json.at("install").get_to(stage.install);
   json.at("motion_index").get_to(stage.motion);
   stage.scale = number(json.at("scale"));
+  if (json.contains("k_h")) {  // not in files of version 0.1
+    stage.k_h = number(json.at("k_h"));
+    stage.k_v = number(json.at("k_v"));
+  }
   stage.duration = optional_number(json.at("given_duration"));
   if (!json.at("max_steps").is_null()) stage.max_steps = json.at("max_steps").get<int>();
   stage.tolerance = number(json.at("tolerance"));
@@ -225,6 +233,10 @@ StageLine read_stage_json(const std::string& text) {
       r.fallen = read_fallen(json.at("fallen"));
       r.standing = read_standing(json.at("standing"));
       r.largest_speed = number(json.at("largest_speed"));
+    }
+    if (json.contains("movers")) {  // likewise
+      r.movers = read_movers(json.at("movers"));
+      json.at("unstable_block").get_to(r.unstable_block);
     }
     r.wall_time = number(json.at("wall_time"));
     json.at("interrupted").get_to(r.interrupted);

@@ -63,6 +63,8 @@ ordered_json equilibrium(const simulation::StageRecord& r) {
           {"worst_residual_ratio", r.worst_residual_ratio},
           {"largest_way_m", r.way},
           {"largest_way_share", r.way_share},
+          {"unstable_blocks", r.unstable_block < 0 ? 0 : 1},
+          {"unstable_block", r.unstable_block < 0 ? ordered_json() : ordered_json(r.unstable_block)},
           {"moving_blocks", r.moving.size()},
           {"moving", movements_json(r)}};
 }
@@ -83,6 +85,8 @@ ordered_json stage(const simulation::StageRecord& r, const simulation::ModelReco
           {"start_time", r.start_time},
           {"duration", r.duration},
           {"scale", r.stage.scale},
+          {"k_h", r.stage.k_h},
+          {"k_v", r.stage.k_v},
           {"pga_m_s2", r.pga},
           {"pgv_m_s", r.pgv},
           {"arias_m_s", r.arias},
@@ -91,6 +95,7 @@ ordered_json stage(const simulation::StageRecord& r, const simulation::ModelReco
           {"still", r.still},
           {"equilibrium", equilibrium(r)},
           {"standing", standing_json(r.standing)},
+          {"movers", movers_json(r.movers)},
           {"largest_speed_m_s", r.largest_speed},
           {"blocks_by_order", blocks_by_order(r)},
           {"release", release_json(r.release, model.excavation_names)},

@@ -53,6 +53,11 @@ class Facts {
       add(quoted("trace map", spec.name), own(spec.joints, "as all joints"));
     for (const RegionSpec& spec : scenario_.regions) add(quoted("region", spec.name), own_rock(spec.rock));
     shaking();
+    for (const simulation::Stage& stage : scenario_.stages) {
+      if (stage.k_h != 0.0 || stage.k_v != 0.0)
+        add(quoted("seismic coefficients in", stage.name),
+            fmt::format("k_h {}, k_v {}", number(stage.k_h), number(stage.k_v)));
+    }
     if (!scenario_.loads.empty()) add("loads", std::to_string(scenario_.loads.size()));
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
     if (!scenario_.springs.empty()) add("springs", std::to_string(scenario_.springs.size()));

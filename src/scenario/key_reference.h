@@ -54,7 +54,10 @@ struct SectionReference {
 /// Every section and key, in the order in which they are read.
 std::vector<SectionReference> key_reference();
 
-/// The same as Markdown, the body of docs/scenario.md.
+/// The unit of what a key path leads to, as the reference has it: "Pa", "°"; empty where it has none, or is not known.
+std::string key_unit(const std::string& path);
+
+/// Every section as Markdown, the body of docs/scenario.md.
 std::string scenario_reference();
 
 }  // namespace keyblock::scenario

@@ -118,6 +118,20 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .unit = "m",
                  .above = 0.0,
                  .fallback = "a twentieth of [damage] slip"}));
+  t.number(
+      "k_h", stage.k_h,
+      only(settle, "kind = \"settle\"",
+           {.meaning =
+                "Horizontal seismic coefficient: every block is pushed to the right by this share of its "
+                "weight, to the left where it is negative, as long as the stage lasts.",
+            .at_least = -10.0,
+            .at_most = 10.0}));
+  t.number(
+      "k_v", stage.k_v,
+      only(settle, "kind = \"settle\"",
+           {.meaning = "Vertical seismic coefficient, likewise: upwards, downwards where it is negative.",
+            .at_least = -10.0,
+            .at_most = 10.0}));
   const std::string settle_steps = std::to_string(simulation::default_settle_steps);
   t.integer("max_steps", stage.max_steps,
             only(settle, "kind = \"settle\"",

@@ -191,7 +191,18 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
 }
 
 void read_gravity(TableReader& root, Scenario& scenario) {
-  root.point("gravity", scenario.gravity, {.meaning = "Acceleration of gravity.", .unit = "m/s²"});
+  Rule rule{.meaning = "Acceleration of gravity; a single number is that downwards.", .unit = "m/s²"};
+  const Value* given = root.find("gravity");
+  if (root.documenting()) {
+    rule.fallback = "[0, -9.81]";
+    root.any("gravity", "point [x, y], or number of at least 0", rule);
+  } else if (given != nullptr && given->is_number()) {
+    double downwards = 0.0;
+    rule.at_least = 0.0;
+    if (root.number("gravity", downwards, rule)) scenario.gravity = {0.0, -downwards};
+  } else {
+    root.point("gravity", scenario.gravity, rule);
+  }
   double tilt = 0.0;
   root.number(
       "tilt", tilt,

@@ -24,6 +24,19 @@ std::optional<std::pair<double, double>> to_pair(const Value& value) {
   return std::pair(a.number, b.number);
 }
 
+/// Numbers that `--set gravity[1]=…` has put in the place of those of a default.
+bool replace_components(const Value& value, Vec2& point) {
+  if (!value.is(Value::Type::table) || value.items.empty()) return false;
+  Vec2 changed = point;
+  for (const Value& item : value.items) {
+    if (!item.is_number() || !std::isfinite(item.number) || (item.key != "0" && item.key != "1"))
+      return false;
+    (item.key == "0" ? changed.x : changed.y) = item.number;
+  }
+  point = changed;
+  return true;
+}
+
 bool is_one_point(const std::vector<Vec2>& line) {
   return std::all_of(line.begin(), line.end(), [&](Vec2 p) { return p == line.front(); });
 }
@@ -64,6 +77,7 @@ std::optional<Vec2> TableReader::to_point(const Value& value, const std::string&
 
 bool TableReader::point(std::string_view key, Vec2& value, const Rule& rule) {
   const Value* found = take(key, rule, {KeyKind::point}, "point [x, y]", point_default(value));
+  if (found != nullptr && replace_components(*found, value)) return true;
   const auto point = found == nullptr ? std::nullopt : to_point(*found, path_of(key));
   if (point) value = *point;
   return point.has_value();

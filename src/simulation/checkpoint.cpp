@@ -14,7 +14,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0014;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0015;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -41,6 +41,8 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.stage.scale);
   archive(s.stage.duration);
   archive(s.stage.max_steps);
+  archive(s.stage.k_h);
+  archive(s.stage.k_v);
   archive(s.stage.tolerance);
   archive(s.steps);
   archive(s.start_time);
@@ -54,12 +56,14 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.way);
   archive(s.way_share);
   archive(s.moving);
+  archive(s.unstable_block);
   archive(s.release);
   archive(s.blocks_by_order);
   archive(s.damage);
   archive(s.fallen);
   archive(s.largest_speed);
   archive(s.standing);
+  archive(s.movers);
   archive(s.wall_time);
   archive(s.interrupted);
   archive(s.still);

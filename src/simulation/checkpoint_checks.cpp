@@ -193,9 +193,11 @@ bool is_record(const StageRecord& record, const Stage& stage, const RunSetup& se
   return s.name == stage.name && s.kind == stage.kind && s.excavate == stage.excavate &&
          s.install == stage.install && s.motion == stage.motion && are_counts({record.steps}) &&
          std::all_of(record.moving.begin(), record.moving.end(), is_block) &&
+         (record.unstable_block == -1 || is_place(record.unstable_block, blocks)) &&
+         (record.movers.heaviest == -1 || is_place(record.movers.heaviest, blocks)) &&
          std::all_of(record.fallen.begin(), record.fallen.end(),
                      [&](const FallenBlock& f) { return is_block(f) && f.part <= WallPart::invert; }) &&
-         (!record.standing || *record.standing <= Standing::unsettled) && are_points(record.release, setup) &&
+         (!record.standing || *record.standing <= Standing::unstable) && are_points(record.release, setup) &&
          record.motion_time.size() == record.motion.size();
 }
 

@@ -138,7 +138,7 @@ std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const
     if (!started() || !model_.moves(b)) continue;
     const dynamics::Block& block = model_.blocks[b];
     const Vec2 moved = displacement(b, state);
-    if (norm(moved) <= setup_.damage.loosened_distance) continue;
+    if (norm(moved) <= setup_.damage.loosened_distance && moving_[b] == 0) continue;
     status[b] = BlockStatus::loosened;
     const double fall = fall_distance(block);
     if (fall <= 0.0 || norm(moved) <= fall) continue;
@@ -148,16 +148,42 @@ std::vector<BlockStatus> DamageGauge::status(const dynamics::State& state) const
   return status;
 }
 
-double DamageGauge::largest_speed(const dynamics::State& state) const {
-  double largest = 0.0;
+double DamageGauge::speed(std::size_t b, const dynamics::State& state) const {
+  const dynamics::Block& block = model_.blocks[b];
+  const Vec2 velocity =
+      Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
+  return norm(velocity - base_.velocity(state, block.centroid));
+}
+
+void DamageGauge::name_moving(std::span<const MovingBlock> moving) {
+  moving_.assign(model_.blocks.size(), 0);
+  for (const MovingBlock& block : moving) moving_[at(block.block)] = 1;
+}
+
+void DamageGauge::find_movers(const dynamics::State& state, StageRecord& record) const {
+  std::vector<int> blocks;
+  for (const FallenBlock& block : record.fallen) blocks.push_back(block.block);
+  const bool anything_fell = !blocks.empty();
+  for (const MovingBlock& block : record.moving)
+    if (!anything_fell) blocks.push_back(block.block);
+  if (blocks.empty() && record.unstable_block >= 0) blocks.push_back(record.unstable_block);
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     if (!model_.moves(b)) continue;
-    const dynamics::Block& block = model_.blocks[b];
-    const Vec2 velocity =
-        Vec2{state.velocity[block.first], state.velocity[block.first + 1]} / std::sqrt(block.area);
-    largest = std::max(largest, norm(velocity - base_.velocity(state, block.centroid)));
+    const double v = speed(b, state);
+    record.largest_speed = std::max(record.largest_speed, v);
+    if (v > setup_.damage.loosened_distance && !anything_fell && record.stage.kind != StageKind::settle)
+      blocks.push_back(static_cast<int>(b));
   }
-  return largest;
+  Movers& movers = record.movers;
+  for (const int b : blocks) {
+    const double weight = model_.blocks[at(b)].mass() * norm(model_.gravity);
+    ++movers.blocks;
+    movers.weight += weight;
+    if (started()) movers.way = std::max(movers.way, norm(displacement(at(b), state)));
+    if (movers.heaviest >= 0 && weight <= movers.heaviest_weight) continue;
+    movers.heaviest = b;
+    movers.heaviest_weight = weight;
+  }
 }
 
 void DamageGauge::watch(const dynamics::State& state) {
@@ -213,8 +239,9 @@ Damage DamageGauge::measure(const dynamics::State& state) {
 void DamageGauge::describe(const dynamics::State& state, StageRecord& record) {
   record.damage = measure(state);
   record.fallen = fallen(status(state));
-  record.largest_speed = largest_speed(state);
-  if (setup_.excavations.empty()) record.standing = standing_of(record, setup_.damage.loosened_distance);
+  find_movers(state, record);
+  if (setup_.excavations.empty())
+    record.standing = standing_of(record, setup_.damage.loosened_distance, false);
 }
 
 }  // namespace keyblock::simulation

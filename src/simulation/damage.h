@@ -27,6 +27,7 @@ class DamageGauge {
   DamageGauge(const RunSetup& setup, const dynamics::Model& model)
       : setup_(setup), model_(model), base_(setup, model), joints_(setup, model) {
     reference_.open.resize(setup.excavations.size());
+    name_moving({});
   }
 
   /// Excavations, by index, that are about to be opened: their outlines count as openings from now on, and closure stays as it is
@@ -37,6 +38,10 @@ class DamageGauge {
   void start(const dynamics::State& state, std::span<const contact::Contact> contacts);
   /// A look at what a block that falls later would take away with it.
   void watch(const dynamics::State& state);
+
+  /// Blocks that a static stage calls moving, at its end: they would go beyond any distance, and are held where they were named. They count as
+  /// loosened until this is called again.
+  void name_moving(std::span<const MovingBlock> moving);
 
   /// A look, and all measures.
   [[nodiscard]] Damage measure(const dynamics::State& state);
@@ -69,8 +74,9 @@ class DamageGauge {
   /// Where the outline of a block would be now if the base had not moved.
   [[nodiscard]] Polygon polygon_on_base(std::size_t block, const dynamics::State& state) const;
   [[nodiscard]] Vec2 down() const;
-  /// m/s, largest of a centroid against the base.
-  [[nodiscard]] double largest_speed(const dynamics::State& state) const;
+  /// m/s, of a centroid against the base.
+  [[nodiscard]] double speed(std::size_t block, const dynamics::State& state) const;
+  void find_movers(const dynamics::State& state, StageRecord& record) const;
   /// m; 0: nothing falls.
   [[nodiscard]] double fall_distance(const dynamics::Block& block) const;
   /// m, of a centroid against the base since the reference.
@@ -82,6 +88,7 @@ class DamageGauge {
   JointGauge joints_;
   Reference reference_;
   Openings openings_;
+  std::vector<std::uint8_t> moving_;  ///< per block: named by name_moving
 };
 
 }  // namespace keyblock::simulation

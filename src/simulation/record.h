@@ -204,12 +204,24 @@ struct MovingBlock {
   int group = 0;  ///< the same for moving blocks that touch and do not fall: the least of their numbers
 };
 
-/// How blocks around no opening are at the end of a stage (standing.h).
+/// The blocks by which it is told how blocks are at the end of a stage: those that have fallen, or else those that move (standing.h).
+struct Movers {
+  int blocks = 0;                ///< how many
+  int heaviest = -1;             ///< of them; −1: there are none
+  double weight = 0.0;           ///< N per metre of tunnel, of all of them
+  double heaviest_weight = 0.0;  ///< N per metre of tunnel
+  double way = 0.0;              ///< m, the largest since the reference
+};
+
+/// How blocks are at the end of a stage (standing.h).
 enum class Standing : std::uint8_t {
   stands = 0,
   moves = 1,
-  collapsed = 2,
+  collapsed = 2,  ///< around no opening
   unsettled = 3,  ///< static steps ended before it was known
+  rocks = 4,
+  fallen = 5,    ///< the same as collapsed, beside an opening
+  unstable = 6,  ///< in equilibrium that is not stable
 };
 
 /// How far the wall of an opening has come into it, at a share of release.
@@ -236,12 +248,14 @@ struct StageRecord {
   /// settle only: the largest way of a block that is not moving, while it was out of balance; m, and as a share of the block size
   double way = 0.0, way_share = 0.0;
   std::vector<MovingBlock> moving;
+  int unstable_block = -1;  ///< settle only: goes farthest where the equilibrium is not stable; −1: it is
   std::vector<ReleasePoint> release;  ///< of excavations that were opened in parts, in the order of steps
   std::vector<int> blocks_by_order;   ///< [n]: blocks of order n that are there at the end and not fixed
   Damage damage;
   std::vector<FallenBlock> fallen;   ///< at its end, ascending
   double largest_speed = 0.0;        ///< m/s, of a centroid against the base, at its end
   std::optional<Standing> standing;  ///< none where there are excavations
+  Movers movers;                     ///< around openings, too
   double wall_time = 0.0;            ///< s
   bool interrupted = false;
   bool still = false;  ///< it ended before `planned_duration`, as nothing moved any more

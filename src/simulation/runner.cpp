@@ -61,6 +61,11 @@ void keep_audit(const dynamics::ContactAudit& audit, const RunSetup& setup, RunS
   keep_larger(vertices.unexplained, audit.unexplained, now, setup);
 }
 
+/// m/s², of the ground: forces of inertia are against it.
+Vec2 seismic_acceleration(const Stage& stage, const dynamics::Model& model) {
+  return -norm(model.gravity) * Vec2{stage.k_h, stage.k_v};
+}
+
 bool is_set(const std::atomic<bool>* flag) {
   return flag != nullptr && flag->load();
 }
@@ -179,6 +184,7 @@ void Runner::orders_changed() {
   put_loads(now_.control, setup_, model_);
   stepper_.emplace(model_, team_, profile_, options_.stop);
   stepper_->resume(now_.mechanics);
+  if (stage_) stepper_->set_static_ground(seismic_acceleration(stage_->record.stage, model_));
   reporter_.orders_changed();
 }
 
@@ -202,6 +208,7 @@ void Runner::begin_stage() {
   record.start_time = now_.stage_start;
   record.steps = now_.stage_step;
   plan_motion(setup_, record);
+  gauge_.name_moving({});
   if (is_new) {
     excavate(setup_, record.stage, model_, now_.mechanics, *stepper_, gauge_, opening_);
     install(setup_, record.stage, model_, now_.mechanics);
@@ -238,6 +245,7 @@ void Runner::begin_settling() {
   const Stage& stage = stage_->record.stage;
   stage_->most_steps = stage.max_steps.value_or(default_settle_steps);
   stage_->settler.emplace(model_, setup_.time_step, stage.tolerance);
+  stepper_->set_static_ground(seismic_acceleration(stage, model_));
   if (now_.stage_step > 0) {
     stage_->settler->restore(now_.settler);
     return;
@@ -315,6 +323,7 @@ void Runner::end_stage() {
     record.way = settler.astray();
     record.way_share = record.way / model_.block_size;
     record.moving = settler.moving(*stepper_);
+    gauge_.name_moving(record.moving);
   } else {
     record.still = stage_->is_still && now_.stage_step < stage_->most_steps;
     record.interrupted = record.interrupted || (!record.still && now_.stage_step < stage_->most_steps);
@@ -328,6 +337,8 @@ void Runner::end_stage() {
   reporter_.measure_overlap(now_);
   reporter_.frame(now_);
   if (!is_within_step_) reporter_.contacts(now_, *stepper_);
+  if (record.equilibrium_reached && !is_within_step_)
+    record.unstable_block = stepper_->find_unstable_block(now_.mechanics, stage_->settler->which_move());
   gauge_.describe(now_.mechanics, record);
   record.release = opening_.end_stage(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);

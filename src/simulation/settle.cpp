@@ -184,6 +184,12 @@ void Settler::control_inertia(std::span<const double> moved) {
   }
 }
 
+std::vector<bool> Settler::which_move() const {
+  std::vector<bool> moving(model_.blocks.size());
+  for (std::size_t b = 0; b < moving.size(); ++b) moving[b] = model_.moves(b) && moving_.moves(b);
+  return moving;
+}
+
 std::vector<MovingBlock> Settler::moving(const dynamics::Stepper& stepper) const {
   std::vector<int> group(model_.blocks.size());  // of a block: the least of its blocks
   std::iota(group.begin(), group.end(), 0);

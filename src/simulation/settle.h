@@ -27,6 +27,8 @@ class Settler {
 
   /// Largest balance over blocks that are not moving.
   [[nodiscard]] double worst_ratio() const { return memory_.worst_ratio; }
+  /// Per block.
+  [[nodiscard]] std::vector<bool> which_move() const;
   /// Blocks that are moving. stepper: after the last step, for the contacts that make groups of them.
   [[nodiscard]] std::vector<MovingBlock> moving(const dynamics::Stepper& stepper) const;
   /// m, the largest way of a block that is in equilibrium, while it was not.

@@ -22,6 +22,7 @@ std::string blocks_text(int count) {
 Verdict verdict_of(const StageRecord& stage) {
   if (!stage.moving.empty()) return Verdict::moving;
   if (!stage.equilibrium_reached) return Verdict::not_reached;
+  if (stage.unstable_block >= 0) return Verdict::unstable;
   return stage.way_share > far_share ? Verdict::equilibrium_after_moving : Verdict::equilibrium;
 }
 
@@ -54,6 +55,8 @@ std::string verdict_text(const StageRecord& stage) {
   switch (verdict_of(stage)) {
     case Verdict::equilibrium:
       return "in equilibrium";
+    case Verdict::unstable:
+      return fmt::format("in equilibrium that is not stable: block {} gives way", stage.unstable_block);
     case Verdict::equilibrium_after_moving:
       return fmt::format("in equilibrium after moving {:.2g} m", stage.way);
     case Verdict::not_reached:

@@ -8,6 +8,7 @@ namespace keyblock::simulation {
 /// What a static stage came to.
 enum class Verdict {
   equilibrium,               ///< every block balances
+  unstable,                  ///< every block balances, and the least push brings it down
   equilibrium_after_moving,  ///< the same, and on the way a block went farther than 0.02 ℓ out of balance
   moving,  ///< the other blocks balance, or the stage ended before they did (`not_reached` is for stages without any)
   not_reached

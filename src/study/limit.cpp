@@ -7,88 +7,32 @@
 
 #include "scenario/key_path.h"
 #include "simulation/damage_fields.h"
-#include "simulation/standing.h"
 #include "statistics/order_statistics.h"
 #include "statistics/proportion.h"
 #include "statistics/sample.h"
 #include "study/measures.h"
-#include "study/refusal.h"
 
 namespace keyblock::study {
 namespace {
 
 using Status = Bisection::Status;
 
-constexpr std::size_t most_lines = 20;  // of realizations, in the text
 constexpr double limit_quantiles[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-std::string realization_text(const LimitResult& result, const RealizationLimit& limit) {
-  const LimitRequest& request = result.request;
-  if (!limit.error.empty()) return "a trial failed: " + limit.error;
-  switch (limit.state.status) {
-    case Status::found:
-      return fmt::format("limit {:.5g}: not met at {:.6g}, met at {:.6g} ({} runs)", limit.limit(),
-                         limit.state.not_met, limit.state.met, limit.trials.size());
-    case Status::met_at_both:
-      return fmt::format("met at --from {:.6g} already", request.from);
-    case Status::met_at_none:
-      return fmt::format("not met up to --to {:.6g}", request.to);
-    case Status::ends_swapped:
-      return fmt::format("met at --from {:.6g}, not at --to {:.6g}", request.from, request.to);
-    case Status::open:
-      break;
-  }
-  return fmt::format("between {:.6g} and {:.6g} so far", limit.state.not_met, limit.state.met);
-}
-
-/// "limits of 18 of 20 realizations: median 5.1 (95 % interval 4 … 6), …"
-std::string quantiles_text(const LimitResult& result) {
-  const auto& all = result.realizations;
-  const auto found = std::count_if(all.begin(), all.end(), [](const auto& limit) { return limit.found(); });
-  std::string text = fmt::format("limits of {} of {} realizations", found, all.size());
-  const LimitQuantile median = result.median();
-  if (!std::isfinite(median.limit.value)) return text + "\n";
-  text += ": median " + result.number_text(median);
-  if (std::isfinite(median.limit.low) && std::isfinite(median.limit.high))
-    text += fmt::format(" ({:.0f} % interval {} … {})", 100.0 * result.confidence,
-                        result.number_text(median.limit.low), result.number_text(median.limit.high));
-  text += "\nquantiles:";
-  std::string before = " ";
-  for (const LimitQuantile& quantile : result.quantiles()) {
-    text += fmt::format("{}{:.0f} % {} ({} … {})", before, 100.0 * quantile.p, result.number_text(quantile),
-                        result.number_text(quantile.limit.low), result.number_text(quantile.limit.high));
-    before = ", ";
-  }
-  return text + "\n";
-}
+/// Places that a scan of such a key looks at by default.
+constexpr int scanned_parts = 8;
 
 }  // namespace
 
-std::string LimitCriterion::text() const {
-  const Measure& m = measures()[find_measure(measure).value()];
-  if (collapse) return "blocks that do not stand";
-  return fmt::format("{} of more than {:.6g}{}{}", m.title, above, m.unit.empty() ? "" : " ", m.unit);
+int scan_of(const std::string& key) {
+  const auto segments = scenario::parse_key_path(key);
+  if (!segments || segments->empty()) return 1;
+  const bool is_scale = segments->front().key == "stage" && segments->back().key == "scale";
+  return is_scale || segments->front().key == "motion" ? scanned_parts : 1;
 }
 
-LimitCriterion limit_criterion(const std::string& name, std::optional<double> above, double loosened) {
-  LimitCriterion criterion{name, name, above.value_or(0.0), false};
-  if (name == "fallen") {
-    criterion.measure = "fallen_area_m2";
-  } else if (name == "moved") {
-    criterion.measure = "displacement_max_m";
-    criterion.above = above.value_or(loosened);
-  } else if (name == "collapsed") {
-    criterion.measure = "displacement_max_m";
-    criterion.collapse = true;
-    if (above) refuse("--above", fmt::format("{}", *above), "nothing, as collapsed has no threshold");
-  } else if (!find_measure(name)) {
-    std::vector<std::string> words{"fallen", "moved", "collapsed"};
-    for (const Measure& m : measures()) words.push_back(m.name);
-    const std::string hint = scenario::suggestion(name, words);
-    refuse("--until", '"' + name + '"', "fallen, moved, collapsed or a measure of summary.json", hint);
-  }
-  if (!std::isfinite(criterion.above)) refuse("--above", fmt::format("{}", criterion.above), "a number");
-  return criterion;
+bool LimitTrial::goes() const {
+  return standing != simulation::Standing::stands && standing != simulation::Standing::rocks;
 }
 
 const LimitTrial* RealizationLimit::trial_at(double value) const {
@@ -168,30 +112,26 @@ std::vector<LimitShare> LimitResult::met_shares() const {
   return shares;
 }
 
-LimitTrial limit_trial(const LimitCriterion& criterion, const std::string& since, double value,
-                       const RunResult& run) {
-  const StageMeasures& last = run.stages.at(run.stages.size() - 1);
-  const simulation::Damage damage = damage_between(run, since, "").value_or(last.damage);
-  LimitTrial trial{value,         run.key, simulation::damage_value(damage, criterion.measure),
-                   last.standing, false,   run.state_hash};
-  trial.met =
-      criterion.collapse ? last.standing != simulation::Standing::stands : trial.measure > criterion.above;
+LimitTrial limit_trial(const LimitRequest& request, double value, const RunResult& run) {
+  const LimitCriterion& criterion = request.criterion;
+  const StageMeasures& deciding = deciding_stage(run);
+  const simulation::Damage damage =
+      damage_between(run, request.since, "").value_or(run.stages.at(run.stages.size() - 1).damage);
+  LimitTrial trial;
+  trial.value = value;
+  trial.run = run.key;
+  trial.measure = simulation::damage_value(damage, criterion.measure);
+  trial.standing = deciding.standing;
+  trial.met = criterion.is_met(trial.measure, deciding);
+  trial.state_hash = run.state_hash;
+  trial.movers = deciding.movers;
+  trial.heaviest = deciding.heaviest;
+  const auto segments = scenario::parse_key_path(request.key);
+  if (!segments || segments->size() < 2 || segments->front().key != "stage") return trial;
+  const scenario::PathSegment& of = (*segments)[1];
+  for (std::size_t k = 0; k < run.stages.size(); ++k)
+    if (of.key == run.stages[k].name || of.index == k) trial.pga = run.stages[k].pga;
   return trial;
-}
-
-std::string limit_text(const LimitResult& result) {
-  const LimitRequest& request = result.request;
-  const std::string since =
-      request.since.empty() ? "" : fmt::format(" since the end of \"{}\"", request.since);
-  std::string text = fmt::format("{} until {}{}\n", request.key, request.criterion.text(), since);
-  const auto& all = result.realizations;
-  for (std::size_t k = 0; k < std::min(all.size(), most_lines); ++k) {
-    const std::string which = all.size() == 1 ? "" : fmt::format("realization {}: ", all[k].realization);
-    text += which + realization_text(result, all[k]) + "\n";
-  }
-  if (all.size() > most_lines) text += fmt::format("and {} realizations more\n", all.size() - most_lines);
-  if (all.size() < 2 || !result.complete) return text;
-  return text + quantiles_text(result);
 }
 
 }  // namespace keyblock::study

@@ -1,30 +1,16 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "statistics/interval.h"
 #include "study/bisection.h"
+#include "study/limit_criterion.h"
 #include "study/run_result.h"
 
 /// A limit: the value of a key of the scenario at which a criterion first holds.
 namespace keyblock::study {
-
-/// When a run is beyond the limit, told by how it is at the end of its last stage.
-struct LimitCriterion {
-  std::string name;     ///< as asked for: "fallen", "moved", "collapsed", or a measure
-  std::string measure;  ///< by its name in summary.json; of "collapsed", what is told beside the verdict
-  double above = 0.0;   ///< it holds when the measure is larger; in the unit of the measure
-  bool collapse =
-      false;  ///< it holds when the blocks do not stand (simulation/standing.h); `above` is then of no use
-
-  /// `fallen area of more than 0.1 m²`.
-  [[nodiscard]] std::string text() const;
-};
-
-/// `fallen`, `moved`, `collapsed` or the name of a measure. Without `above`: the `loosened` distance of the scenario, m, for
-/// "moved", 0 for all others. Throws InputError.
-LimitCriterion limit_criterion(const std::string& name, std::optional<double> above, double loosened);
 
 struct LimitRequest {
   std::string key;  ///< key path of a number
@@ -33,7 +19,13 @@ struct LimitRequest {
   std::string since;        ///< stage from whose end on the measure counts; empty: from the first excavation
   double tolerance = 0.02;  ///< width of the bracket over its larger end
   int realizations = 1;
+  int scan = 0;               ///< parts of the way that are looked at before the bisection; 0: by the key
+  bool finds_moving = false;  ///< from where on blocks move before the criterion holds is looked for, too
+  bool has_rest = false;      ///< a rest until all is still follows the last stage (needs_rest)
 };
+
+/// Parts of the way of a key that need not be monotone: the scale of a motion, and what a motion is made of. 1 for others.
+int scan_of(const std::string& key);
 
 /// A run at one value.
 struct LimitTrial {
@@ -43,6 +35,12 @@ struct LimitTrial {
   simulation::Standing standing = simulation::Standing::stands;
   bool met = false;
   std::string state_hash;
+  simulation::Movers movers = {};
+  std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
+  double pga = 0.0;           ///< m/s², of the stage that the key is of; 0: none
+
+  /// Blocks fall or move.
+  [[nodiscard]] bool goes() const;
 };
 
 /// A quantile of the limits of all realizations.
@@ -65,11 +63,14 @@ struct RealizationLimit {
   Bisection::State state;
   std::vector<LimitTrial> trials;  ///< in the order of the bisection
   std::string error;               ///< why a trial failed; empty: none has
+  /// A trial at which the criterion does not hold, and blocks fall or move all the same: the one nearest to `from`.
+  std::optional<LimitTrial> moves = {};
 
   [[nodiscard]] const LimitTrial* trial_at(double value) const;
   [[nodiscard]] bool found() const { return error.empty() && state.status == Bisection::Status::found; }
   /// The middle of the bracket.
   [[nodiscard]] double limit() const { return 0.5 * (state.not_met + state.met); }
+  [[nodiscard]] const LimitTrial* just_beyond() const { return found() ? trial_at(state.met) : nullptr; }
 };
 
 struct LimitResult {
@@ -77,6 +78,8 @@ struct LimitResult {
   std::uint64_t seed = 0;
   std::vector<std::string> overrides;
   LimitRequest request;
+  std::string unit;                                         ///< of the key
+  std::vector<std::pair<std::string, std::string>> ground;  ///< ground and loads: names and values
   double confidence = 0.95;
   bool complete = false;  ///< every bisection has ended
   std::vector<RealizationLimit> realizations;
@@ -92,17 +95,13 @@ struct LimitResult {
   [[nodiscard]] std::vector<LimitShare> met_shares() const;
 };
 
-/// The trial of a run that is done. since: LimitRequest::since.
-LimitTrial limit_trial(const LimitCriterion& criterion, const std::string& since, double value,
-                       const RunResult& run);
+/// The trial of a run that is done.
+LimitTrial limit_trial(const LimitRequest& request, double value, const RunResult& run);
 
 /// limits.csv: a row for each realization, documented in docs/user-guide.md.
 std::string limit_csv(const LimitResult& result);
 
 /// limit.json, documented in docs/user-guide.md. It depends on the scenario and the request alone, not on workers or time.
 std::string limit_json(const LimitResult& result);
-
-/// What was found, for people: a line for each realization, the median, and what to try where there is no limit.
-std::string limit_text(const LimitResult& result);
 
 }  // namespace keyblock::study

@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "core/checked_json.h"
+#include "results/json_parts.h"
 #include "simulation/standing.h"
-#include "study/limit.h"
+#include "study/limit_words.h"
 
 namespace keyblock::study {
 namespace {
@@ -43,22 +44,38 @@ ordered_json trial_json(const LimitTrial& trial) {
           {"met", trial.met},
           {"measure", number_or_null(trial.measure)},
           {"standing", simulation::standing_name(trial.standing)},
+          {"movers", results::movers_json(trial.movers)},
           {"run", "runs/" + trial.run},
           {"state_hash", trial.state_hash}};
+}
+
+/// Where the criterion begins to hold, and where it ends to.
+ordered_json limits_json(const RealizationLimit& limit) {
+  ordered_json all = ordered_json::array();
+  for (const Bisection::Bracket& bracket : limit.state.limits) {
+    const LimitTrial* beyond = limit.trial_at(bracket.met);
+    all.push_back(
+        {{"limit", bracket.middle()},
+         {"not_met", bracket.not_met},
+         {"met", bracket.met},
+         {"just_beyond", beyond == nullptr ? ordered_json() : ordered_json("runs/" + beyond->run)}});
+  }
+  return all;
 }
 
 ordered_json realization_json(const RealizationLimit& limit) {
   ordered_json trials = ordered_json::array(), bracket, beyond, error;
   for (const LimitTrial& trial : limit.trials) trials.push_back(trial_json(trial));
   if (limit.found()) bracket = {{"not_met", limit.state.not_met}, {"met", limit.state.met}};
-  if (const LimitTrial* trial = limit.trial_at(limit.state.met); limit.found() && trial != nullptr)
-    beyond = "runs/" + trial->run;
+  if (const LimitTrial* trial = limit.just_beyond()) beyond = "runs/" + trial->run;
   if (!limit.error.empty()) error = limit.error;
   return {{"realization", limit.realization},
           {"status", status_word(limit)},
           {"bracket", bracket},
           {"limit", limit.found() ? number_or_null(limit.limit()) : ordered_json()},
           {"just_beyond", beyond},
+          {"limits", limits_json(limit)},
+          {"moves_already", limit.moves ? trial_json(*limit.moves) : ordered_json()},
           {"error", error},
           {"trials", trials}};
 }
@@ -81,7 +98,7 @@ std::string limit_csv(const LimitResult& result) {
   std::string text = "realization,status,not_met,met,limit,runs,just_beyond\n";
   for (const RealizationLimit& limit : result.realizations) {
     text += fmt::format("{},{},", limit.realization, status_word(limit));
-    const LimitTrial* beyond = limit.found() ? limit.trial_at(limit.state.met) : nullptr;
+    const LimitTrial* beyond = limit.just_beyond();
     if (beyond != nullptr) {
       text += fmt::format("{},{},{},{},runs/{}\n", limit.state.not_met, limit.state.met, limit.limit(),
                           limit.trials.size(), beyond->run);
@@ -108,19 +125,26 @@ std::string limit_json(const LimitResult& result) {
                          {"low", number_or_null(quantile.limit.low)},
                          {"high", number_or_null(quantile.limit.high)}});
   if (!request.since.empty()) since = request.since;
+  const ordered_json why =
+      request.criterion.why.empty() ? ordered_json() : ordered_json(request.criterion.why);
   const ordered_json json{{"title", result.title},
                           {"scenario", result.scenario},
                           {"version", result.version},
                           {"seed", result.seed},
                           {"overrides", result.overrides},
+                          {"answer", answer_text(result)},
                           {"key", request.key},
+                          {"unit", result.unit},
                           {"from", request.from},
                           {"to", request.to},
                           {"until", request.criterion.name},
+                          {"why", why},
                           {"measure", request.criterion.measure},
                           {"above", above},
                           {"since", since},
                           {"tolerance", request.tolerance},
+                          {"scan", request.scan},
+                          {"rest_until_still", request.has_rest},
                           {"complete", result.complete},
                           {"median",
                            {{"value", number_or_null(median.limit.value)},
@@ -128,6 +152,7 @@ std::string limit_json(const LimitResult& result) {
                             {"confidence", result.confidence},
                             {"interval", interval}}},
                           {"quantiles", quantiles},
+                          {"ground", results::ground_json(result.ground)},
                           {"met_share", shares_json(result)},
                           {"realizations", realizations}};
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -9,8 +9,8 @@
 #include "core/folder.h"
 #include "core/read_file.h"
 #include "core/xml_text.h"
-#include "simulation/standing.h"
 #include "study/limit_search.h"
+#include "study/limit_words.h"
 #include "study/measures.h"
 
 namespace keyblock::study {
@@ -29,19 +29,29 @@ constexpr double room = 0.05;  // above the largest measure, as a share of their
 constexpr std::string_view page_style = R"(<style>
 :root{color-scheme:light dark;--page:#f6f5f2;--paper:#fff;--ink:#1c2126;--muted:#5c656e;--line:#d9d8d3;--accent:#1f5fa8;--bad:#b3261e}
 @media (prefers-color-scheme:dark){:root{--page:#16181b;--paper:#1e2125;--ink:#e6e8ea;--muted:#a2abb3;--line:#373c42;--accent:#6fb1f5;--bad:#ff8a80}}
-body{font:16px/1.5 system-ui,"Segoe UI","Noto Sans","DejaVu Sans",sans-serif;background:var(--page);color:var(--ink);margin:0 auto;max-width:1000px;padding:16px}
+body{font:16px/1.5 system-ui,"Segoe UI","Noto Sans","DejaVu Sans",sans-serif;background:var(--page);color:var(--ink);margin:0 auto;max-width:1300px;padding:16px}
 section{background:var(--paper);border:1px solid var(--line);border-radius:8px;padding:12px 16px;margin:16px 0;overflow-x:auto}
-a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}
+a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}p.how{color:var(--muted)}.screen{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,520px),1fr));gap:0 16px;align-items:start}
 table{border-collapse:collapse}td,th{padding:3px 12px 3px 0;text-align:right;border-bottom:1px solid var(--line)}th{color:var(--muted);font-weight:normal}
 .plot{width:100%;max-width:720px}.plot text{font-size:13px;fill:var(--muted)}.axis{stroke:var(--muted)}.threshold{stroke:var(--muted);stroke-dasharray:5 4}
 .line{stroke:var(--accent);stroke-width:2}.bracket{fill:var(--accent);fill-opacity:.18}.no{fill:none;stroke:var(--accent);stroke-width:2}.yes{fill:var(--bad)}
-.drawings{display:flex;flex-wrap:wrap;gap:16px}figure{margin:0;width:300px}figure svg{width:100%;height:auto}figcaption{font-size:.9em}
+.drawings{display:flex;flex-wrap:wrap;gap:16px}figure{margin:0;width:300px}.one figure{width:min(100%,640px)}figure svg{width:100%;height:auto}td.name{text-align:left}figcaption{font-size:.9em}
 </style>)";
 
-std::string paragraphs(const std::string& text) {
-  std::string out = "<p class=\"answer\">";
+std::string paragraph(const char* kind, const std::string& text) {
+  if (text.empty()) return {};
+  std::string out = fmt::format("<p class=\"{}\">", kind);
   for (const char c : xml_text(text)) out += c == '\n' ? std::string("<br>") : std::string(1, c);
   return out + "</p>";
+}
+
+/// The answer, and what was asked.
+std::string words(const LimitResult& result) {
+  const std::string answer = answer_text(result);
+  std::string rest = limit_text(result);
+  if (const std::size_t there = rest.find(answer); !answer.empty() && there != std::string::npos)
+    rest.erase(there, answer.size());
+  return paragraph("answer", answer) + paragraph("how", rest);
 }
 
 /// Places of numbers along an axis.
@@ -50,15 +60,28 @@ struct Scale {
   [[nodiscard]] double at(double value) const { return begin + (value - low) / (high - low) * (end - begin); }
 };
 
-/// Both axes, with the ends of that of the key.
-std::string frame(const Scale& x, const Scale& y, const std::string& key) {
-  return fmt::format(
+constexpr int ticks = 4;  // parts of an axis
+
+/// "excavation.tunnel.pressure, Pa"
+std::string key_title(const LimitResult& result) {
+  return result.request.key + (result.unit.empty() ? "" : ", " + result.unit);
+}
+
+/// Both axes, with values along that of the key.
+std::string frame(const Scale& x, const Scale& y, const LimitResult& result) {
+  std::string svg = fmt::format(
       "<path class=\"axis\" fill=\"none\" d=\"M{0:.0f} {1:.0f}V{2:.0f}H{3:.0f}\"/>"
-      "<text x=\"{0:.0f}\" y=\"{4:.0f}\">{5:.5g}</text><text x=\"{3:.0f}\" y=\"{4:.0f}\" "
-      "text-anchor=\"end\">{6:.5g}</text>"
-      "<text x=\"{7:.0f}\" y=\"{8:.0f}\" text-anchor=\"middle\">{9}</text>",
-      x.begin, y.end, y.begin, x.end, y.begin + 16.0, x.low, x.high, 0.5 * (x.begin + x.end),
-      Chart::height - 8.0, xml_text(key));
+      "<text x=\"{4:.0f}\" y=\"{5:.0f}\" text-anchor=\"middle\">{6}</text>",
+      x.begin, y.end, y.begin, x.end, 0.5 * (x.begin + x.end), Chart::height - 8.0,
+      xml_text(key_title(result)));
+  for (int k = 0; k <= ticks; ++k) {
+    const double value = x.low + (x.high - x.low) * k / ticks;
+    svg += fmt::format(
+        "<path class=\"axis\" d=\"M{0:.2f} {1:.0f}v4\"/><text x=\"{0:.2f}\" y=\"{2:.0f}\" "
+        "text-anchor=\"middle\">{3}</text>",
+        x.at(value), y.begin, y.begin + 18.0, quantity(value, result.unit, 4));
+  }
+  return svg;
 }
 
 Scale key_scale(const LimitRequest& request) {
@@ -106,15 +129,18 @@ class Plot {
   }
 
   [[nodiscard]] std::string bracket(const RealizationLimit& limit) const {
-    if (!limit.found()) return {};
-    const double a = x_.at(limit.state.not_met), b = x_.at(limit.state.met);
-    return fmt::format(
-        "<rect class=\"bracket\" x=\"{:.2f}\" y=\"{:.0f}\" width=\"{:.2f}\" height=\"{:.0f}\"/>",
-        std::min(a, b), y_.end, std::max(std::abs(a - b), 1.5), y_.begin - y_.end);
+    std::string svg;
+    for (const Bisection::Bracket& between : limit.state.limits) {
+      const double a = x_.at(between.not_met), b = x_.at(between.met);
+      svg += fmt::format(
+          "<rect class=\"bracket\" x=\"{:.2f}\" y=\"{:.0f}\" width=\"{:.2f}\" height=\"{:.0f}\"/>",
+          std::min(a, b), y_.end, std::max(std::abs(a - b), 1.5), y_.begin - y_.end);
+    }
+    return svg;
   }
 
   [[nodiscard]] std::string axes(const std::string& title) const {
-    std::string svg = frame(x_, y_, request_.key);
+    std::string svg = frame(x_, y_, result_);
     svg += fmt::format(
         "<text x=\"{0:.0f}\" y=\"{1:.0f}\" text-anchor=\"end\">{6:.3g}</text><text x=\"{0:.0f}\" "
         "y=\"{2:.0f}\" "
@@ -130,10 +156,10 @@ class Plot {
   [[nodiscard]] std::string point(const RealizationLimit& limit, const LimitTrial& trial) const {
     if (!std::isfinite(trial.measure)) return {};
     return fmt::format(
-        "<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"><title>realization {}: {:.6g}: "
-        "{:.4g}</title></circle>",
-        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(trial.measure), limit.realization, trial.value,
-        trial.measure);
+        "<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"><title>realization {}: at {}: "
+        "{}</title></circle>",
+        trial.met ? "yes" : "no", x_.at(trial.value), y_.at(trial.measure), limit.realization,
+        quantity(trial.value, result_.unit, 6), xml_text(outcome_text(request_, trial)));
   }
 
   const LimitResult& result_;
@@ -181,7 +207,7 @@ class SharePlot {
 
  private:
   [[nodiscard]] std::string axes() const {
-    std::string svg = frame(x_, y_, result_.request.key);
+    std::string svg = frame(x_, y_, result_);
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0})
       svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"end\">{:.0f} %</text>",
                          x_.begin - 6.0, y_.at(share) + 4.0, 100.0 * share);
@@ -231,15 +257,17 @@ std::string drawings(const fs::path& directory, const LimitResult& result) {
   std::string figures;
   std::size_t count = 0;
   for (const RealizationLimit& limit : result.realizations) {
-    const LimitTrial* beyond = limit.found() ? limit.trial_at(limit.state.met) : nullptr;
+    const LimitTrial* beyond = limit.just_beyond();
     if (beyond == nullptr || count++ >= most_drawings) continue;
     const std::string name =
-        fmt::format("realization {}, {} = {:.6g}", limit.realization, result.request.key, beyond->value);
+        fmt::format("realization {}, {} = {}: {}", limit.realization, result.request.key,
+                    quantity(beyond->value, result.unit, 6), outcome_text(result.request, *beyond));
     figures += "<figure>" + drawing_of(directory, *beyond) + "<figcaption>" +
                link_to(directory, *beyond, name) + "</figcaption></figure>";
   }
   if (figures.empty()) return {};
-  return "<section><h2>Just beyond the limit</h2><div class=\"drawings\">" + figures + "</div></section>";
+  return "<section><h2>Just beyond the limit</h2><div class=\"drawings" +
+         std::string(count == 1 ? " one" : "") + "\">" + figures + "</div></section>";
 }
 
 std::string trial_table(const fs::path& directory, const LimitResult& result) {
@@ -248,15 +276,24 @@ std::string trial_table(const fs::path& directory, const LimitResult& result) {
     for (const LimitTrial& trial : limit.trials) {
       rows += fmt::format(
           "<tr><td>{}</td><td>{:.8g}</td><td>{:.5g}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-          limit.realization, trial.value, trial.measure, simulation::standing_name(trial.standing),
+          limit.realization, trial.value, trial.measure, xml_text(outcome_text(result.request, trial)),
           trial.met ? "yes" : "no", link_to(directory, trial, trial.run));
     }
   }
   return fmt::format(
       "<section><h2>Trials, in the order of the "
       "bisection</h2><table><tr><th>realization</th><th>{}</th><th>{}</th>"
-      "<th>at the end it</th><th>criterion met</th><th>run</th></tr>{}</table></section>",
-      xml_text(result.request.key), xml_text(result.request.criterion.measure), rows);
+      "<th>at the end</th><th>criterion met</th><th>run</th></tr>{}</table></section>",
+      xml_text(key_title(result)), xml_text(result.request.criterion.measure), rows);
+}
+
+std::string ground_table(const LimitResult& result) {
+  if (result.ground.empty()) return {};
+  std::string rows;
+  for (const auto& [name, value] : result.ground)
+    rows += fmt::format("<tr><td class=\"name\">{}</td><td class=\"name\">{}</td></tr>", xml_text(name),
+                        xml_text(value));
+  return "<section><h2>Ground and loads</h2><table>" + rows + "</table></section>";
 }
 
 }  // namespace
@@ -265,13 +302,14 @@ std::string limit_page(const fs::path& directory, const LimitResult& result) {
   return fmt::format(
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Limit: "
-      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{4}"
-      "</section>{10}{5}{6}<p>keyblock {7}, {8}, seed {9}; <a "
+      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}</section><div "
+      "class=\"screen\"><div><section>{4}"
+      "</section>{11}</div>{5}</div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
       xml_text(result.title.empty() ? result.scenario : result.title), page_style,
-      xml_text(result.request.key), paragraphs(limit_text(result)), Plot(result).draw(),
-      drawings(directory, result), trial_table(directory, result), xml_text(result.version),
-      xml_text(result.scenario), result.seed, SharePlot(result).draw());
+      xml_text(result.request.key), words(result), Plot(result).draw(), drawings(directory, result),
+      trial_table(directory, result), xml_text(result.version), xml_text(result.scenario), result.seed,
+      SharePlot(result).draw(), ground_table(result));
 }
 
 }  // namespace keyblock::study

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -12,9 +13,11 @@
 #include "core/error.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
+#include "scenario/key_reference.h"
 #include "scenario/parse.h"
 #include "study/folder.h"
 #include "study/refusal.h"
+#include "study/variant.h"
 
 namespace keyblock::study {
 namespace {
@@ -22,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double largest_tolerance = 0.5;
+constexpr int most_scanned = 1000;  // parts
 
 // As TOML, with a point or an exponent: what must be an integer is no key for a bisection.
 std::string value_text(double value) {
@@ -46,6 +50,8 @@ void check_request(const LimitRequest& request) {
   }
   if (request.from == request.to)
     refuse("--to", fmt::format("{}, as --from", request.to), "another value than --from");
+  if (request.scan < 0 || request.scan > most_scanned)
+    refuse("--scan", fmt::format("{}", request.scan), fmt::format("1 to {} parts", most_scanned));
   if (!(request.tolerance > 0.0 && request.tolerance <= largest_tolerance))
     refuse("--tolerance", fmt::format("{}", request.tolerance),
            fmt::format("above 0, at most {}", largest_tolerance));
@@ -72,10 +78,11 @@ class Search {
         plan_(std::move(plan)),
         result_(result),
         options_(options),
-        bisection_(result.request.from, result.request.to, result.request.tolerance) {
+        bisection_(result.request.from, result.request.to, result.request.tolerance, result.request.scan) {
     for (PlannedRun& run : plan_.runs) run.wanted = false;
     for (int k = 0; k < result.request.realizations; ++k) result_.realizations.push_back({k, {}, {}, {}});
     told_.resize(result_.realizations.size());
+    second_.resize(result_.realizations.size());
   }
 
   /// Whether it came to its end.
@@ -96,7 +103,12 @@ class Search {
 
   PlannedRun planned(int realization, double value) const {
     const std::string text = value_text(value);
-    return {run_key(realization, {result_.request.key + "=" + text}, ""), realization, {{text}}, "", true};
+    const std::string variant = result_.request.has_rest ? still_variant : "";
+    return {run_key(realization, {result_.request.key + "=" + text}, variant),
+            realization,
+            {{text}},
+            variant,
+            true};
   }
 
   // What is known of a run that a trial is: read once.
@@ -110,7 +122,7 @@ class Search {
     return [this, realization](double value) -> std::optional<bool> {
       const RunState& state = state_of(planned(realization, value));
       if (state.kind != RunState::Kind::done) return std::nullopt;
-      return limit_trial(result_.request.criterion, result_.request.since, value, state.result).met;
+      return limit_trial(result_.request, value, state.result).met;
     };
   }
 
@@ -120,22 +132,57 @@ class Search {
       limit.state = bisection_.follow(known(limit.realization));
       limit.trials.clear();
       for (const double value : limit.state.path)
-        limit.trials.push_back(limit_trial(result_.request.criterion, result_.request.since, value,
-                                           state_of(planned(limit.realization, value)).result));
-      for (; told_[k] < limit.trials.size(); ++told_[k]) options_.trial(limit, limit.trials[told_[k]]);
+        limit.trials.push_back(
+            limit_trial(result_.request, value, state_of(planned(limit.realization, value)).result));
+      for (const LimitTrial& trial : limit.trials)
+        if (told_[k].insert(trial.value).second) options_.trial(limit, trial);
+      look_for_moving(k);
     }
+  }
+
+  LimitTrial trial_of(int realization, double value) {
+    return limit_trial(result_.request, value, state_of(planned(realization, value)).result);
+  }
+
+  Known known_to_go(int realization) {
+    return [this, realization](double value) -> std::optional<bool> {
+      if (state_of(planned(realization, value)).kind != RunState::Kind::done) return std::nullopt;
+      return trial_of(realization, value).goes();
+    };
+  }
+
+  /// Of a search that has ended: which trial goes though the criterion does not hold, and from where on they do.
+  void look_for_moving(std::size_t k) {
+    RealizationLimit& limit = result_.realizations[k];
+    const double from = result_.request.from;
+    if (searching(limit)) return;
+    for (const LimitTrial& trial : limit.trials) {
+      const bool is_nearer =
+          !limit.moves || std::abs(trial.value - from) < std::abs(limit.moves->value - from);
+      if (!trial.met && trial.goes() && is_nearer) limit.moves = trial;
+    }
+    if (!limit.moves || limit.moves->value == from || !result_.request.finds_moving) return;
+    if (!second_[k]) second_[k].emplace(from, limit.moves->value, result_.request.tolerance);
+    const Bisection::State state = second_[k]->follow(known_to_go(limit.realization));
+    if (state.status == Bisection::Status::found) limit.moves = trial_of(limit.realization, state.met);
+  }
+
+  /// What is to be run of a realization.
+  Bisection::Next next_of(std::size_t k, std::size_t workers) {
+    const RealizationLimit& limit = result_.realizations[k];
+    if (searching(limit)) return bisection_.next(known(limit.realization), workers);
+    return second_[k] && limit.error.empty() ? second_[k]->next(known_to_go(limit.realization), workers)
+                                             : Bisection::Next{};
   }
 
   std::vector<PlannedRun> next_round() {
     std::vector<PlannedRun> needed, ahead;
     const auto workers = static_cast<std::size_t>(std::max(options_.workers.workers, 1));
-    for (const RealizationLimit& limit : result_.realizations) {
-      if (!searching(limit)) continue;
-      const std::size_t at_once = limit.state.path.empty() ? 2 : 1;
-      const auto values = bisection_.next(known(limit.realization), std::max(workers, at_once));
-      const std::size_t least = std::min(values.size(), needed_of(limit, values));
-      for (std::size_t n = 0; n < values.size(); ++n)
-        (n < least ? needed : ahead).push_back(planned(limit.realization, values[n]));
+    for (std::size_t k = 0; k < result_.realizations.size(); ++k) {
+      const Bisection::Next next = next_of(k, workers);
+      for (std::size_t n = 0; n < next.values.size(); ++n)
+        (n < next.needed ? needed : ahead)
+            .push_back(planned(result_.realizations[k].realization, next.values[n]));
     }
     for (const PlannedRun& run : ahead) {
       if (needed.empty() || needed.size() >= workers) break;
@@ -143,14 +190,6 @@ class Search {
       needed.push_back(run);
     }
     return needed;
-  }
-
-  // Both ends are run at once; of what follows, one is needed.
-  std::size_t needed_of(const RealizationLimit& limit, const std::vector<double>& values) const {
-    const auto& request = result_.request;
-    if (limit.state.path.size() >= 2) return 1;
-    return static_cast<std::size_t>(std::count_if(
-        values.begin(), values.end(), [&](double v) { return v == request.from || v == request.to; }));
   }
 
   // False: interrupted.
@@ -181,8 +220,14 @@ class Search {
       const RunState& state = states_.at(run.key);
       RealizationLimit& limit = result_.realizations[static_cast<std::size_t>(run.realization)];
       if (state.kind == RunState::Kind::done || !limit.error.empty()) continue;
-      const auto next = bisection_.next(known(run.realization), 1);
-      if (next.empty() || planned(run.realization, next.front()).key != run.key) continue;
+      const Bisection::Next next = next_of(static_cast<std::size_t>(run.realization), 0);
+      const auto is_this = [&](double value) { return planned(run.realization, value).key == run.key; };
+      if (std::none_of(next.values.begin(), next.values.end(), is_this)) continue;
+      if (!searching(limit)) {  // what is told beside the limit is not worth its loss
+        second_[static_cast<std::size_t>(run.realization)].reset();
+        result_.request.finds_moving = false;
+        continue;
+      }
       limit.error =
           fmt::format("{} = {} ({}): {}", result_.request.key, run.values[0][0], run.key, state.problem);
     }
@@ -194,7 +239,8 @@ class Search {
   const LimitOptions& options_;
   Bisection bisection_;
   std::map<std::string, RunState> states_;
-  std::vector<std::size_t> told_;  // trials, of every realization
+  std::vector<std::set<double>> told_;            // values of trials, of every realization
+  std::vector<std::optional<Bisection>> second_;  // for blocks that move before, likewise
 };
 
 LimitResult empty_limit(const Plan& plan, const LimitRequest& request) {
@@ -205,8 +251,21 @@ LimitResult empty_limit(const Plan& plan, const LimitRequest& request) {
   result.seed = plan.seed;
   result.overrides = plan.overrides;
   result.request = request;
+  result.unit = scenario::key_unit(request.key);
+  for (const scenario::GroundFact& fact : plan.ground) result.ground.emplace_back(fact.name, fact.value);
   result.confidence = plan.confidence;
   return result;
+}
+
+/// That which is asked for, or else that of the model.
+LimitCriterion chosen_criterion(const scenario::Scenario& scenario, const std::string& until,
+                                std::optional<double> above) {
+  const double loosened = scenario.damage.loosened_distance;
+  if (!until.empty()) return limit_criterion(until, above, loosened);
+  const LimitDefault& row = limit_default(scenario);
+  LimitCriterion criterion = limit_criterion(row.criterion, above, loosened);
+  criterion.why = fmt::format("--until {} is the default for {}: {}", row.criterion, row.what, row.why);
+  return criterion;
 }
 
 }  // namespace
@@ -217,7 +276,11 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   Plan plan = make_plan(scenario, version, warnings);
   const scenario::Scenario read = scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides,
                                                                 scenario::StudyTable::leave_out);
-  request.criterion = limit_criterion(until, above, read.damage.loosened_distance);
+  request.criterion = chosen_criterion(read, until, above);
+  request.has_rest = needs_rest(request.criterion, read);
+  request.finds_moving =
+      !request.criterion.collapse && std::string_view(limit_default(read).criterion) != "fallen";
+  if (request.scan == 0) request.scan = scan_of(request.key);
   check_since(request, read.stages);
   check_ends(plan, request);
   plan.realizations = request.realizations;

@@ -11,7 +11,8 @@
 namespace keyblock::study {
 
 /// The plan of a limit, without runs yet: that of a study with the key as its one axis, and nothing else of [study] but `keep`,
-/// `confidence` and the raster. The criterion of `request` is made of `until` and `above`; its `since` is checked. Throws InputError for what is wrong with the
+/// `confidence` and the raster. The criterion of `request` is made of `until` (empty: that of the
+/// model, limit_default) and `above`, its scan where it has none; its `since` is checked. Throws InputError for what is wrong with the
 /// scenario, also with the key at both ends of the interval, and with the request.
 Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitRequest& request,
                 const std::string& until, std::optional<double> above,

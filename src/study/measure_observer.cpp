@@ -63,10 +63,16 @@ void MeasureObserver::begin(const simulation::ModelRecord& model) {
   fell_.assign(blocks_, -1);
 }
 
+std::string MeasureObserver::name_of(int block) const {
+  return block < 0 ? std::string() : model_.blocks[at(block)].name;
+}
+
 void MeasureObserver::stage_end(int index, const simulation::StageRecord& stage) {
   if (stage.interrupted) return;
   result_.stages.push_back({stage.stage.name, stage.stage.kind, stage.pga, stage.pgv, stage.arias,
-                            stage.damage, simulation::standing_of(stage, still_)});
+                            stage.damage,
+                            simulation::standing_of(stage, loosened_, !model_.excavation_names.empty()),
+                            stage.movers, name_of(stage.movers.heaviest)});
   fallen_ = stage.fallen;
   std::vector<int> fell(blocks_, -1);
   for (const simulation::FallenBlock& block : fallen_)

@@ -11,9 +11,9 @@ namespace keyblock::study {
 class MeasureObserver : public simulation::RunObserver {
  public:
   /// Fills `result` (except for key, realization, values, variant and error), which must outlive the run. The first `blocks`
-  /// blocks of the model are the rock; a frame comes after them. What is faster than `still`, m/s, moves.
-  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks, double still)
-      : result_(result), grid_(grid), blocks_(blocks), still_(still) {}
+  /// blocks of the model are the rock; a frame comes after them. loosened: m, of DamageLimits.
+  MeasureObserver(RunResult& result, const MapGrid& grid, std::size_t blocks, double loosened)
+      : result_(result), grid_(grid), blocks_(blocks), loosened_(loosened) {}
 
   void begin(const simulation::ModelRecord& model) override;
   void frame(const simulation::Frame& frame) override { last_ = frame; }
@@ -24,10 +24,12 @@ class MeasureObserver : public simulation::RunObserver {
   [[nodiscard]] const simulation::Frame& last_frame() const { return last_; }
 
  private:
+  [[nodiscard]] std::string name_of(int block) const;
+
   RunResult& result_;
   MapGrid grid_;
   std::size_t blocks_;
-  double still_;
+  double loosened_;
   simulation::ModelRecord model_;
   simulation::Frame last_;
   std::vector<int> fell_;                        ///< stage of every block; −1: has not fallen

@@ -8,12 +8,13 @@
 #include <string_view>
 
 #include "study/measures.h"
+#include "study/variant.h"
 
 namespace keyblock::study {
 namespace {
 
 constexpr std::size_t least_digits = 4, hash_digits = 10;
-constexpr std::string_view variants[] = {"", "friction-", "friction+", "released"};
+constexpr std::string_view variants[] = {"", "friction-", "friction+", "released", still_variant};
 
 bool has_only(std::string_view text, std::string_view letters) {
   return text.find_first_not_of(letters) == std::string_view::npos;

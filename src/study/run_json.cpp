@@ -16,7 +16,7 @@ using results::number;
 using simulation::BlockStatus;
 using simulation::StageKind;
 
-constexpr int run_format = 3;
+constexpr int run_format = 4;
 constexpr std::uint64_t largest_map = 4'000'000;  // cells
 const std::string expected_words = "the measures of a run as keyblock wrote them";
 const std::string checksum_mark = ",\"checksum\":\"";
@@ -28,7 +28,9 @@ ordered_json stage_json(const StageMeasures& stage) {
           {"pgv_m_s", stage.pgv},
           {"arias_m_s", stage.arias},
           {"damage", results::damage_json(stage.damage)},
-          {"standing", results::standing_json(stage.standing)}};
+          {"standing", results::standing_json(stage.standing)},
+          {"movers", results::movers_json(stage.movers)},
+          {"heaviest_name", stage.heaviest}};
 }
 
 StageMeasures read_stage(const ordered_json& json) {
@@ -42,6 +44,8 @@ StageMeasures read_stage(const ordered_json& json) {
   stage.arias = number(json.at("arias_m_s"));
   stage.damage = results::read_damage(json.at("damage"));
   stage.standing = results::read_standing(json.at("standing")).value_or(simulation::Standing::unsettled);
+  stage.movers = results::read_movers(json.at("movers"));
+  json.at("heaviest_name").get_to(stage.heaviest);
   return stage;
 }
 

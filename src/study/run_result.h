@@ -27,6 +27,8 @@ struct StageMeasures {
   double arias = 0.0;  ///< m/s, sum of both components: π/(2g) ∫ a² dt
   simulation::Damage damage;
   simulation::Standing standing = simulation::Standing::stands;  ///< around openings, too
+  simulation::Movers movers = {};
+  std::string heaviest = {};  ///< name of the heaviest of them; empty for cut blocks
 };
 
 struct FallenBlock {

@@ -50,6 +50,19 @@ void release(std::vector<Stage>& stages) {
                stages.begin() + static_cast<std::ptrdiff_t>(last));
 }
 
+/// s; what rocks or slides for longer is not waited for.
+constexpr double longest_rest = 30.0;
+
+void rest_until_still(std::vector<Stage>& stages) {
+  Stage rest;
+  rest.name = "until still";
+  while (std::ranges::find(stages, rest.name, &Stage::name) != stages.end()) rest.name += " again";
+  rest.kind = StageKind::rest;
+  rest.duration = longest_rest;
+  rest.until_still = true;
+  stages.push_back(std::move(rest));
+}
+
 }  // namespace
 
 std::vector<std::string> variants_of(const scenario::Scenario& scenario,
@@ -69,6 +82,7 @@ void apply_variant(scenario::Scenario& scenario, const std::string& variant, con
   if (variant == "friction-") return change_friction(scenario, -check.friction);
   if (variant == "friction+") return change_friction(scenario, check.friction);
   if (variant == "released") return release(scenario.stages);
+  if (variant == still_variant) return rest_until_still(scenario.stages);
   throw std::invalid_argument("no variant '" + variant + "'");
 }
 

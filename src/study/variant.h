@@ -12,7 +12,13 @@
 ///   released               what was excavated in stages of kind "settle" is taken out at the start of the dynamic stage that
 ///                          follows, and the settling stages from the first excavation up to it are left out: the rock is
 ///                          released at once.
+///
+/// And of the trials of a limit:
+///
+///   still                  a stage of kind "rest" follows the last one, until all is still, of 30 s at most.
 namespace keyblock::study {
+
+inline constexpr const char* still_variant = "still";
 
 /// "" and the variants that mean something: "released" when a settling stage excavates, a dynamic one follows, and none of
 /// `compared` is among those left out.

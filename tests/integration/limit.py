@@ -97,6 +97,123 @@ class KnownAnswers(Limit):
         self.check_bracket(2600 * 9.81, 0.01)
 
 
+# A block of 0.5 m × 2 m under one sine. It overturns, stands again, and overturns (Housner's equation, integrated: 2.85, 6.7, 7.27 g b/h).
+ROCKING = COLUMN.replace("[[-0.5, 0.0], [0.5, 0.0], [0.5, 4.0], [-0.5, 4.0]]", "[[-0.25, 0.0], [0.25, 0.0], [0.25, 2.0], [-0.25, 2.0]]") + """
+[[motion]]
+name = "pulse"
+x = { amplitude = 2.4525, frequency = 2.13, cycles = 1 }
+[[stage]]
+name = "shaken"
+kind = "shake"
+motion = "pulse"
+"""
+
+
+class DefaultCriterion(Limit):
+    def slope(self, more=""):
+        self.keyblock("new", "slope", "--force")
+        text = (self.folder / "slope.toml").read_text() + more
+        self.write("slope.toml", text)
+        return ("slope.toml", "--tolerance", 0.005)
+
+    def test_a_slope_has_its_factor_of_safety(self):
+        """tan 40° / tan 30°, whether the last stage is static or not."""
+        for name, more in (("static", ""), ("in_motion", '\n[[stage]]\nname = "quiet"\nkind = "rest"\nduration = 2.0\n')):
+            said = self.limit(*self.slope(more), "--key", "joints.strength_factor", "--from", 1, "--to", 3, out=name).stdout
+            self.check_bracket(1.4534, 0.005, out=name)
+            self.assertRegex(said, r"\nThe factor of safety is 1\.45\d: at 1\.45\d the blocks stand, .* at 1\.4\d\d block 2 \(8701 kN/m\) moves\.\n")
+            self.assertIn("--until collapsed is the default for a slope", said)
+            self.assertEqual(self.found(name)["until"], "collapsed")
+            self.assertIn("a slope", self.found(name)["why"])
+            page = (self.folder / name / "report.html").read_text()
+            for words in ("The factor of safety is 1.45", "Ground and loads", "Just beyond the limit", "friction φ"):
+                self.assertIn(words, page)
+
+    def test_the_page_on_slopes_says_what_the_program_says(self):
+        self.keyblock("new", "slope", "--force")
+        page = (ROOT / "docs/slopes.md").read_text()
+        blocks = re.findall(r"```sh\nkeyblock (limit slope\.toml [^\n]*)\n```\n```\n(.*?)\n```", page, re.DOTALL)
+        self.assertEqual(len(blocks), 3)
+        for words, printed in blocks:
+            said = self.keyblock(*words.split()).stdout
+            for line in printed.split("…\n")[-1].splitlines():
+                self.assertIn(line + "\n", said, words)
+        (earthquake,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+        slope = re.sub(r'(?m)^boundary = "frame".*\n', "", (self.folder / "slope.toml").read_text())
+        self.write("shaken.toml", slope + earthquake)
+        self.keyblock("run", "shaken.toml", "-o", "shaken")
+        self.assertAlmostEqual(self.summary("shaken")["stages"][-1]["damage"]["displacement_max_m"], 0.06, delta=0.005)
+        self.limit("shaken.toml", "--key", "stage.earthquake.scale", "--from", 0, "--to", 4, "--workers", 2, out="scale")
+        self.assertEqual(self.found("scale")["until"], "moved")
+
+    def test_a_slope_that_is_asked_when_rock_falls_says_what_moves(self):
+        rest = '\n[[stage]]\nname = "quiet"\nkind = "rest"\nduration = 2.0\n'
+        said = self.limit(*self.slope(rest), "--key", "joints.strength_factor", "--from", 1, "--to", 3, "--until", "fallen").stdout
+        self.assertRegex(said, r"at 1\.4[56]\d? already block 2 \(8701 kN/m\) moves; --until collapsed asks for that")
+        self.assertAlmostEqual(self.found()["realizations"][0]["moves_already"]["value"] / 1.4534, 1.0, delta=0.006)
+
+    def test_moved_counts_what_a_static_stage_names(self):
+        self.limit(*self.slope(), "--key", "joints.strength_factor", "--from", 1, "--to", 3, "--until", "moved", "--above", 100)
+        self.check_bracket(1.4534, 0.005)
+        self.keyblock("run", "slope.toml", "-o", "run", "--set", "joints.strength_factor=1.5")
+        damage = self.summary("run")["stages"][0]["damage"]
+        self.assertAlmostEqual(damage["loosened_area_m2"], 341.155, delta=0.1)
+        self.assertLess(damage["displacement_max_m"], 1.0)
+
+    def test_seismic_coefficients_and_gravity(self):
+        """tan(φ − α) = tan 10°, of the weight; horizontal gravity likewise, and gravity itself where a plane has cohesion."""
+        words = self.slope()
+        self.limit(*words, "--key", "stage.excavated.k_h", "--from", 0, "--to", -0.5, out="k_h")
+        self.check_bracket(-math.tan(math.radians(10)), 0.005, out="k_h")
+        self.limit(*words, "--key", "gravity[0]", "--from", 0, "--to", -5, out="g")
+        self.check_bracket(-9.81 * math.tan(math.radians(10)), 0.005, out="g")
+        self.assertEqual(self.found("g")["unit"], "m/s²")
+        # A block that hangs on a bond with tension.
+        self.write("pushed.toml", PUSHED.replace("force = [1000.0, 0.0]", "force = [10000.0, 0.0]"))
+        self.limit("pushed.toml", "--key", "gravity", "--from", 20, "--to", 1, "--tolerance", 0.005, out="down")
+        self.check_bracket(10000 / 2600 / math.tan(math.radians(30)), 0.005, out="down")
+        self.limit("pushed.toml", "--key", "load[0].force[0]", "--from", 0, "--to", 1e5, "--tolerance", 0.005, out="force")
+        self.check_bracket(2600 * 9.81 * math.tan(math.radians(30)), 0.005, out="force")
+
+    def test_a_column_that_rocks_has_not_collapsed(self):
+        self.keyblock("new", "column")
+        said = self.limit("column.toml", "--key", "stage.shaken.scale", "--from", 0, "--to", 10).stdout
+        limit = self.check_bracket(4.10, 0.02)
+        self.assertIn("judged after a rest until all is still", said)
+        self.assertRegex(said, r"The scale of the motion at the limit is 4\.\d+ \(PGA 16\.\d m/s²\): ")
+        self.assertEqual(self.found()["scan"], 8)
+        stages = json.loads((self.folder / "out" / limit["just_beyond"] / "summary.json").read_text())["stages"]
+        self.assertEqual([stage["name"] for stage in stages], ["stands", "shaken", "after", "until still"])
+
+    def test_all_limits_of_a_rocking_block(self):
+        self.write("rocking.toml", ROCKING)
+        words = ("rocking.toml", "--key", "stage.shaken.scale", "--from", 1, "--to", 15, "--scan", 14)
+        said = self.limit(*words, "--workers", 2).stdout
+        (limit,) = self.found()["realizations"]
+        limits = [found["limit"] for found in limit["limits"]]
+        self.assertEqual(len(limits), 3)
+        self.assertAlmostEqual(limits[0], 2.85, delta=0.06)
+        self.assertAlmostEqual(limits[2], 7.27, delta=0.15)
+        self.assertIn("There are 3 limits: beyond the first the criterion ceases to hold at 6.", said)
+        self.limit(*words, "--workers", 1, out="one")
+        self.assertEqual((self.folder / "one/limit.json").read_text(), (self.folder / "out/limit.json").read_text())
+        values = [line.split(" = ")[1].split(":")[0] for line in said.splitlines() if line.startswith("stage.shaken.scale = ")]
+        self.assertEqual(len(values), len(set(values)))
+
+    def test_a_wall_that_is_not_met_is_told_the_right_criterion(self):
+        words = (CASES / "limit_wall.toml", "--key", "load_factor", "--from", 1, "--to", 5)
+        self.limit(*words, "--tolerance", 0.005, out="right")
+        self.check_bracket(1.9556, 0.005, out="right")
+        said = self.limit(*words, "--until", "fallen", out="wrong", expect=1).stderr
+        self.assertIn("holds at neither end", said)
+        self.assertRegex(said, r"at 1\.9\d* already .* move.*; --until collapsed asks for that")
+
+    def test_an_opening_in_motion_is_asked_what_falls(self):
+        self.write("gallery.toml", GALLERY)
+        self.limit("gallery.toml", "--key", "joints.strength_factor", "--from", 0.5, "--to", 8, "--tolerance", 0.2)
+        self.assertEqual(self.found()["until"], "fallen")
+
+
 class Reproducible(Limit):
     FRICTION = (INCLINE, "--key", "joints.friction", "--from", 45, "--to", 5, "--until", "collapsed")
 

@@ -25,6 +25,7 @@ PAGES = [
     "docs/python-runs.md",
     "docs/python.md",
     "docs/result-file.md",
+    "docs/slopes.md",
     "docs/studies.md",
     "docs/study-report.md",
     "docs/user-guide.md",

@@ -41,6 +41,9 @@ export interface Stage {
   excavate: number[];
   /** Names of the supports that come to life at its start; not in results of earlier versions. */
   install?: string[];
+  /** Seismic coefficients of a static stage, over the weight. */
+  k_h?: number;
+  k_v?: number;
   scale: number;
   tolerance: number;
   steps: number;
@@ -76,7 +79,7 @@ export interface Stage {
     mean_m: number | null;
   }[];
   /** Of a run without excavations; null: with them, or not known. */
-  standing: "stands" | "moves" | "collapsed" | "unsettled" | null;
+  standing: "stands" | "moves" | "rocks" | "collapsed" | "fallen" | "unsettled" | "unstable" | null;
   /** Of a block at its end. */
   largest_speed_m_s: number | null;
   wall_time_s: number | null;

@@ -38,6 +38,10 @@ function ofStructure(run: Run): { words: string; grade: Grade } {
         : { words: "Stands", grade: "good" };
     case "moves":
       return { words: "Moves", grade: "attention" };
+    case "unstable":
+      return { words: "Does not stand", grade: "bad" };
+    case "rocks":
+      return { words: "Still rocks", grade: "attention" };
     case "collapsed":
       return { words: "Has collapsed", grade: "bad" };
     default:

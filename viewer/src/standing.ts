@@ -45,6 +45,10 @@ function verdict(run: Run, k: number): string {
       return stage.kind === "settle"
         ? `It moves: ${stage.verdict} at the end of ${end} (${movingNames(run, stage)}).`
         : `It moves: at the end of ${end} blocks go at up to ${significant(stage.largest_speed_m_s, 2)}\u00a0m/s.`;
+    case "rocks":
+      return `It still rocks at the end of ${end}, at up to ${significant(stage.largest_speed_m_s, 2)}\u00a0m/s. A stage of kind "rest" tells what comes of it.`;
+    case "unstable":
+      return `It does not stand: at the end of ${end} it is ${stage.verdict}.`;
     case "unsettled":
       return `It is not known whether it stands: ${end} ended without equilibrium.`;
     default:

@@ -69,6 +69,7 @@ export function stageTable(run: Run): HTMLElement {
       "td",
       { class: "text" },
       s.excavate.map((e) => run.header.model.excavations[e]).join(", ") || "–",
+      s.k_h || s.k_v ? h("span", { class: "sub" }, `k_h ${s.k_h ?? 0}, k_v ${s.k_v ?? 0}`) : null,
       s.install?.length ? h("span", { class: "sub" }, `installs ${s.install.join(", ")}`) : null,
     ),
     h("td", {}, integer(s.steps)),

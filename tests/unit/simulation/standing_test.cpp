@@ -10,8 +10,8 @@
 namespace keyblock::simulation {
 namespace {
 
-/// m/s.
-constexpr double still = 0.01;
+/// m.
+constexpr double loosened = 0.01;
 
 StageRecord record_of(StageKind kind) {
   StageRecord record;
@@ -22,25 +22,35 @@ StageRecord record_of(StageKind kind) {
 
 TEST(Standing, OfStaticStages) {
   StageRecord record = record_of(StageKind::settle);
-  EXPECT_EQ(standing_of(record, still), Standing::stands);
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::stands);
   record.moving = {{3, 1.0}};
-  EXPECT_EQ(standing_of(record, still), Standing::moves);
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::moves);
   record.damage.fallen_blocks = 1;
-  EXPECT_EQ(standing_of(record, still), Standing::collapsed);
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::collapsed);
   record = record_of(StageKind::settle);
   record.equilibrium_reached = false;
-  EXPECT_EQ(standing_of(record, still), Standing::unsettled);
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::unsettled);
+}
+
+TEST(Standing, WhatBalancesAndIsNotStableDoesNotStand) {
+  StageRecord record = record_of(StageKind::settle);
+  record.unstable_block = 3;
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::unstable);
 }
 
 TEST(Standing, OfDynamicStages) {
   StageRecord record = record_of(StageKind::rest);
   record.largest_speed = 0.009;
-  EXPECT_EQ(standing_of(record, still), Standing::stands);
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::stands);
   record.largest_speed = 0.011;
-  EXPECT_EQ(standing_of(record, still), Standing::moves);
+  record.movers = {1, 0, 1e4, 1e4, 0.005};
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::rocks);
+  record.movers.way = 0.02;
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::moves);
   record.damage.fallen_blocks = 1;
   record.largest_speed = 0.0;  // lies still after the fall
-  EXPECT_EQ(standing_of(record, still), Standing::collapsed);
+  EXPECT_EQ(standing_of(record, loosened, false), Standing::collapsed);
+  EXPECT_EQ(standing_of(record, loosened, true), Standing::fallen);
 }
 
 /// A column of three drums, 0.8 m wide and 3 m high, under gravity that leans by so much of itself: 0.267 topples it.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace keyblock::study {
 namespace {
@@ -26,11 +27,13 @@ class Trials {
       const auto found = known_.find(value);
       return found == known_.end() ? std::nullopt : std::optional(found->second);
     };
-    for (auto values = bisection_.next(known, at_a_time); !values.empty();
-         values = bisection_.next(known, at_a_time))
-      for (const double value : values) known_[value] = met_(value);
+    for (auto next = bisection_.next(known, at_a_time); !next.values.empty();
+         next = bisection_.next(known, at_a_time))
+      for (const double value : next.values) known_[value] = met_(value);
     return bisection_.follow(known);
   }
+  /// The criterion holds where this says so.
+  void hold_where(std::function<bool(double)> met) { met_ = std::move(met); }
   [[nodiscard]] std::size_t count() const { return known_.size(); }
 
  private:
@@ -65,12 +68,12 @@ TEST(Bisection, TriesTheSameValuesHoweverManyAtATime) {
 TEST(Bisection, FirstBothEndsThenWhatMayFollow) {
   const Bisection bisection(0.0, 8.0, 0.02);
   const Known nothing = [](double) { return std::optional<bool>(); };
-  EXPECT_THAT(bisection.next(nothing, 2), ElementsAre(0.0, 8.0));
-  EXPECT_THAT(bisection.next(nothing, 5), ElementsAre(0.0, 8.0, 4.0, 2.0, 6.0));
+  EXPECT_THAT(bisection.next(nothing, 2).values, ElementsAre(0.0, 8.0));
+  EXPECT_THAT(bisection.next(nothing, 5).values, ElementsAre(0.0, 8.0, 4.0, 2.0, 6.0));
   const Known ends = [](double value) {
     return value == 0.0 ? std::optional(false) : value == 8.0 ? std::optional(true) : std::nullopt;
   };
-  EXPECT_THAT(bisection.next(ends, 3), ElementsAre(4.0, 2.0, 6.0));
+  EXPECT_THAT(bisection.next(ends, 3).values, ElementsAre(4.0, 2.0, 6.0));
 }
 
 TEST(Bisection, EndsThatTellNothingEndIt) {
@@ -81,8 +84,44 @@ TEST(Bisection, EndsThatTellNothingEndIt) {
     const bool first = at_from, last = at_to;
     const Known known = [=](double value) { return std::optional(value == 0.0 ? first : last); };
     EXPECT_EQ(bisection.follow(known).status, status);
-    EXPECT_THAT(bisection.next(known, 4), IsEmpty());
+    EXPECT_THAT(bisection.next(known, 4).values, IsEmpty());
   }
+}
+
+// It holds from 2.9 to 6.7, and from 7.3 on.
+TEST(Bisection, AScanFindsAllLimitsThatShow) {
+  const auto island = [](double value) { return (value >= 2.9 && value <= 6.7) || value >= 7.3; };
+  const Bisection bisection(1.0, 7.0, 0.02, 8);
+  for (const std::size_t at_a_time : {1UL, 4UL}) {
+    Trials trials(bisection, 1.0, 7.0, 0.0);
+    trials.hold_where(island);
+    const auto state = trials.run(at_a_time);
+    EXPECT_EQ(state.status, Status::found);
+    ASSERT_EQ(state.limits.size(), 2U);
+    EXPECT_THAT(state.not_met, DoubleNear(2.9, 0.06));
+    EXPECT_THAT(state.limits[0].met, DoubleNear(2.9, 0.06));
+    EXPECT_GT(state.limits[1].not_met, state.limits[1].met);  // it ends to hold
+    EXPECT_THAT(state.limits[1].met, DoubleNear(6.7, 0.14));
+  }
+  Trials trials(bisection, 1.0, 7.0, 0.0);
+  trials.hold_where([](double value) { return value < 1.1; });
+  const auto state = trials.run(1);
+  EXPECT_EQ(state.status, Status::ends_swapped);
+  EXPECT_EQ(state.limits.size(), 1U);
+}
+
+TEST(Bisection, AllThatIsNeededComesAtOnce) {
+  const Bisection bisection(0.0, 8.0, 0.02, 4);
+  const Known nothing = [](double) { return std::optional<bool>(); };
+  const Bisection::Next scan = bisection.next(nothing, 1);
+  EXPECT_THAT(scan.values, ElementsAre(0.0, 8.0, 2.0, 4.0, 6.0));
+  EXPECT_EQ(scan.needed, 5U);
+  const Known island = [](double value) {
+    return std::fmod(value, 2.0) == 0.0 ? std::optional(value == 4.0) : std::nullopt;
+  };
+  const Bisection::Next both = bisection.next(island, 1);
+  EXPECT_THAT(both.values, ElementsAre(3.0, 5.0));
+  EXPECT_EQ(both.needed, 2U);
 }
 
 TEST(Bisection, EndsWhereTheLimitIsZero) {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/checked_json.h"
 #include "core/error.h"
+#include "scenario/parse.h"
+#include "study/limit_words.h"
 
 namespace keyblock::study {
 namespace {
@@ -30,9 +33,29 @@ RunResult run_with(double fallen, double moved, Standing standing) {
   return run;
 }
 
+LimitRequest request_of(const LimitCriterion& criterion, const std::string& since = "") {
+  LimitRequest request;
+  request.key = "joints.friction";
+  request.criterion = criterion;
+  request.since = since;
+  return request;
+}
+
+LimitResult result_of(const std::vector<Bisection::State>& states) {
+  LimitResult result;
+  result.request.key = "joints.friction";
+  result.request.from = 40.0;
+  result.request.criterion = limit_criterion("fallen", 0.5, 0.01);
+  result.request.realizations = static_cast<int>(states.size());
+  result.complete = true;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    result.realizations.push_back({static_cast<int>(k), states[k], {}, {}});
+  return result;
+}
+
 TEST(LimitCriterion, HoldsByTheLastStage) {
   const auto met = [](const char* name, std::optional<double> above, const RunResult& run) {
-    return limit_trial(limit_criterion(name, above, 0.01), "", 1.0, run).met;
+    return limit_trial(request_of(limit_criterion(name, above, 0.01)), 1.0, run).met;
   };
   const RunResult still = run_with(0.0, 0.01, Standing::stands);
   const RunResult fallen = run_with(0.4, 0.02, Standing::collapsed);
@@ -46,6 +69,120 @@ TEST(LimitCriterion, HoldsByTheLastStage) {
   EXPECT_FALSE(met("collapsed", {}, still));
   for (const Standing standing : {Standing::collapsed, Standing::moves, Standing::unsettled})
     EXPECT_TRUE(met("collapsed", {}, run_with(0.0, 0.0, standing)));
+}
+
+TEST(LimitCriterion, WhatAStaticStageCallsMovingIsBeyondAnyDistance) {
+  RunResult run = run_with(0.0, 1e-4, Standing::moves);
+  run.stages.back().kind = simulation::StageKind::settle;
+  const auto met = [&](const char* name, std::optional<double> above) {
+    return limit_trial(request_of(limit_criterion(name, above, 0.01)), 1.0, run).met;
+  };
+  EXPECT_TRUE(met("moved", 5.0));
+  EXPECT_TRUE(met("displacement_max_m", 5.0));
+  EXPECT_FALSE(met("fallen", {}));
+  // It slides a while, and is caught.
+  run.stages.emplace_back();
+  run.stages.back().kind = simulation::StageKind::rest;
+  run.stages.back().damage.displacement_max = 0.4;
+  EXPECT_TRUE(met("collapsed", {}));
+  // A later static stage finds that it is held.
+  run.stages.back().kind = simulation::StageKind::settle;
+  EXPECT_FALSE(met("collapsed", {}));
+}
+
+TEST(LimitCriterion, RockingIsNoCollapse) {
+  const RunResult run = run_with(0.0, 0.005, Standing::rocks);
+  EXPECT_FALSE(limit_trial(request_of(limit_criterion("collapsed", {}, 0.01)), 1.0, run).met);
+}
+
+scenario::Scenario scenario_of(const std::string& more) {
+  return scenario::parse_scenario_text(
+      "[domain]\nx = [0, 20]\ny = [0, 20]\n[rock]\ndensity = 2600\nyoung = 1e9\npoisson = 0.2\n"
+      "[joints]\nfriction = 30\n[time]\nstep = 0.01\n"
+      "[[motion]]\nname = \"sine\"\nx = { amplitude = 1.0, frequency = 2.0, cycles = 1 }\n" +
+          more,
+      "s.toml", {}, scenario::StudyTable::leave_out);
+}
+
+TEST(LimitCriterion, IsThatOfTheModel) {
+  const std::string
+      hole = "[[excavation]]\nname = \"hole\"\nshape = \"circle\"\ncenter = [10, 10]\ndiameter = 4\n",
+      cut =
+          "[[excavation]]\nname = \"cut\"\nshape = \"polygon\"\n"
+          "outer = [[0, 10], [8, 10], [12, 20], [0, 20]]\n",
+      settle = "[[stage]]\nname = \"a\"\nkind = \"settle\"\n",
+      shake = "[[stage]]\nname = \"b\"\nkind = \"shake\"\nmotion = \"sine\"\n",
+      rest = "[[stage]]\nname = \"c\"\nkind = \"rest\"\nduration = 1.0\n";
+  using Parts = std::vector<std::string>;
+  for (const auto& [parts, model, criterion, waits] :
+       {std::tuple{Parts{settle}, LimitModel::structure, "collapsed", false},
+        {Parts{settle, shake}, LimitModel::structure, "collapsed", true},
+        {Parts{settle, shake, rest}, LimitModel::structure, "collapsed", true},
+        {Parts{settle, shake, rest, "until = \"still\"\n"}, LimitModel::structure, "collapsed", false},
+        {Parts{cut, settle}, LimitModel::slope, "collapsed", false},
+        {Parts{cut, settle, rest}, LimitModel::slope, "collapsed", false},
+        {Parts{cut, settle, shake, rest}, LimitModel::slope, "moved", false},
+        {Parts{hole, settle}, LimitModel::tunnel, "collapsed", false},
+        {Parts{hole, settle, rest}, LimitModel::tunnel, "fallen", false},
+        {Parts{hole, settle, shake}, LimitModel::tunnel, "fallen", false},
+        {Parts{hole, cut, settle}, LimitModel::slope, "collapsed", false}}) {
+    std::string text;
+    for (const std::string& part : parts) text += part;
+    const scenario::Scenario scenario = scenario_of(text);
+    EXPECT_EQ(limit_model(scenario), model) << text;
+    const LimitDefault& row = limit_default(scenario);
+    EXPECT_STREQ(row.criterion, criterion) << text;
+    EXPECT_EQ(needs_rest(limit_criterion(row.criterion, {}, 0.01), scenario), waits) << text;
+  }
+}
+
+TEST(LimitCriterion, ScansKeysOfAMotion) {
+  EXPECT_EQ(scan_of("stage.shaken.scale"), 8);
+  EXPECT_EQ(scan_of("stage[1].scale"), 8);
+  EXPECT_EQ(scan_of("motion.sine.x.amplitude"), 8);
+  EXPECT_EQ(scan_of("joints.friction"), 1);
+  EXPECT_EQ(scan_of("stage.cut.k_h"), 1);
+}
+
+TEST(LimitWords, TheAnswerIsASentenceWithUnits) {
+  LimitResult result = result_of({{Status::found, 7812.5, 7031.25, {}, {{7812.5, 7031.25}}}});
+  result.request.key = "excavation.tunnel.pressure";
+  result.unit = "Pa";
+  result.realizations[0].trials = {
+      {7812.5, "r0000-a", 0.0, Standing::stands, false, "1"},
+      {7031.25, "r0000-b", 0.7, Standing::fallen, true, "2", {1, 292, 7200.0, 7200.0, 1.5}}};
+  EXPECT_EQ(
+      answer_text(result),
+      "The support pressure that “tunnel” needs is 7.42 kPa: at 7.81 kPa no rock falls, at 7.03 kPa fallen "
+      "area is 0.7 m² and block 292 (7.2 kN/m) has fallen.");
+  result.request.criterion = limit_criterion("collapsed", {}, 0.01);
+  result.request.key = "stage.shaken.scale";
+  result.request.from = 0.0;
+  result.request.to = 8.0;
+  result.unit = "";
+  result.realizations[0] = {0, {Status::found, 4.0, 4.1, {}, {{4.0, 4.1}, {7.0, 6.9}}}, {}, {}};
+  result.realizations[0].trials = {
+      {4.0, "r0000-a", 0.0, Standing::stands, false, "1"},
+      {4.1, "r0000-b", 0.7, Standing::collapsed, true, "2", {2, 1, 5e4, 3e4, 1.5}, "upper", 16.4}};
+  EXPECT_EQ(
+      answer_text(result),
+      "The scale of the motion at the limit is 4.05 (PGA 16.2 m/s²): at 4 the blocks stand, at 4.1 2 blocks "
+      "(50 "
+      "kN/m) have fallen, the heaviest “upper” (30 kN/m). There are 2 limits: beyond the first the criterion "
+      "ceases to hold at 6.95.");
+}
+
+TEST(LimitWords, WhereNothingFallsItIsSaidWhatMoves) {
+  LimitResult result = result_of({{Status::met_at_none, 0.0, 0.0, {}}});
+  result.realizations[0].trials = {
+      {40.0, "r0000-a", 0.0, Standing::stands, false, "1"},
+      {0.0, "r0000-b", 0.0, Standing::moves, false, "2", {1, 3, 693e3, 693e3, 0.1}}};
+  result.realizations[0].moves = result.realizations[0].trials[1];
+  result.unit = "°";
+  EXPECT_EQ(not_met_hint(result), "at 0° already block 3 (693 kN/m) moves; --until collapsed asks for that");
+  EXPECT_EQ(
+      answer_text(result),
+      "not met up to --to 0°. But at 0° already block 3 (693 kN/m) moves; --until collapsed asks for that.");
 }
 
 TEST(LimitCriterion, RefusesWhatItDoesNotKnow) {
@@ -63,29 +200,14 @@ TEST(LimitCriterion, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(message("collapsed", 1.0), HasSubstr("--above: found 1"));
 }
 
-LimitResult result_of(const std::vector<Bisection::State>& states) {
-  LimitResult result;
-  result.request = {"joints.friction",
-                    40.0,
-                    0.0,
-                    limit_criterion("fallen", 0.5, 0.01),
-                    "",
-                    0.02,
-                    static_cast<int>(states.size())};
-  result.complete = true;
-  for (std::size_t k = 0; k < states.size(); ++k)
-    result.realizations.push_back({static_cast<int>(k), states[k], {}, {}});
-  return result;
-}
-
 // What gravity brought down by the end of a stage does not count from there on.
 TEST(LimitCriterion, CountsSinceAStage) {
   RunResult run = run_with(99.4, 0.0, Standing::collapsed);
   run.stages[0].name = "settled";
   const LimitCriterion criterion = limit_criterion("fallen", 0.5, 0.01);
-  EXPECT_TRUE(limit_trial(criterion, "", 1.0, run).met);
-  EXPECT_FALSE(limit_trial(criterion, "settled", 1.0, run).met);
-  EXPECT_NEAR(limit_trial(criterion, "settled", 1.0, run).measure, 0.4, 1e-9);
+  EXPECT_TRUE(limit_trial(request_of(criterion), 1.0, run).met);
+  EXPECT_FALSE(limit_trial(request_of(criterion, "settled"), 1.0, run).met);
+  EXPECT_NEAR(limit_trial(request_of(criterion, "settled"), 1.0, run).measure, 0.4, 1e-9);
 }
 
 /// Friction angles from 40° on downwards: one more than is searched, one less, and four that are found.
