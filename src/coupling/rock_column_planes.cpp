@@ -26,6 +26,7 @@ struct RockColumn::Link {
   double least = 0.0, most = 0.0;  ///< Pa, bounds of τ
   int state = 0;                   ///< y: 1 is open; x: ±1 slips
   bool is_open = false;
+  [[nodiscard]] double bound() const { return state > 0 ? most : least; }  ///< Pa, of one that slips
 };
 
 /// The solution of a step with planes.
@@ -142,37 +143,41 @@ class RockColumn::Slide {
   std::vector<double> solve_shear(double& change, double& size) {
     for (Link& link : links_) link.state = 0;
     std::vector<double> d;
-    const auto held = [&](std::size_t j) {
-      return column_.planes_[j].shear_stiffness * (links_[j].jump.x - number(j, slip_in_x));
-    };
     for (int round = 0; round < most_rounds; ++round) {
       d = solve_with(systems_[0], [&](std::size_t j) -> std::pair<double, double> {
         const Link& link = links_[j];
-        if (link.state != 0) return {0.0, link.state > 0 ? link.most : link.least};
+        if (link.state != 0) return {0.0, link.bound()};
         return {column_.planes_[j].shear_stiffness, held(j)};
       });
-      bool changes = false;
-      for (std::size_t j = 0; j < links_.size(); ++j) {
-        Link& link = links_[j];
-        const double tau = held(j) + column_.planes_[j].shear_stiffness * jump_of(d, link);
-        const int state = tau > link.most ? 1 : tau < link.least ? -1 : 0;
-        changes |= state != link.state;
-        link.state = state;
-      }
-      if (!changes) break;
+      if (!change_shear_states(d)) break;
     }
     for (std::size_t j = 0; j < links_.size(); ++j) {
       Link& link = links_[j];
-      const double jump = link.jump.x + jump_of(d, link),
-                   slip = link.state == 0 ? number(j, slip_in_x)
-                                          : jump - (link.state > 0 ? link.most : link.least) /
-                                                       column_.planes_[j].shear_stiffness;
+      const double stiffness = column_.planes_[j].shear_stiffness, jump = link.jump.x + jump_of(d, link),
+                   slip = link.state == 0 ? number(j, slip_in_x) : jump - link.bound() / stiffness;
       change = std::max(change, std::abs(slip - link.slip));
       size = std::max(size, std::abs(slip));
       link.slip = slip;
-      tau_[j] = column_.planes_[j].shear_stiffness * (jump - slip);
+      tau_[j] = stiffness * (jump - slip);
     }
     return d;
+  }
+
+  /// Pa, τ at D = 0 of a plane that does not slip.
+  [[nodiscard]] double held(std::size_t j) const {
+    return column_.planes_[j].shear_stiffness * (links_[j].jump.x - number(j, slip_in_x));
+  }
+  /// By the bounds that a solution goes beyond. Whether any state is another.
+  bool change_shear_states(const std::vector<double>& d) {
+    bool changes = false;
+    for (std::size_t j = 0; j < links_.size(); ++j) {
+      Link& link = links_[j];
+      const double tau = held(j) + column_.planes_[j].shear_stiffness * jump_of(d, link);
+      const int state = tau > link.most ? 1 : tau < link.least ? -1 : 0;
+      changes |= state != link.state;
+      link.state = state;
+    }
+    return changes;
   }
 
   void write(std::span<double> memory) const {

@@ -21,6 +21,9 @@ Checked check(const scenario::Scenario& scenario, int realization) {
     const simulation::RunSetup setup =
         scenario::build_setup(scenario, realization, checked.blocks, &checked.warnings);
     simulation::build_model(setup);
+    for (const auto& [name, value] : setup.ground) {
+      if (name == "boundary") checked.notes.push_back(name + ": " + value);
+    }
     for (const auto& [name, value] : scenario::boundary_facts(setup))
       checked.notes.push_back(name + ": " + value);
     if (const auto reason = simulation::yields_without_limit(setup))

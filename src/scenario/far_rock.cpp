@@ -37,6 +37,15 @@ const char* name_of(simulation::ColumnSide side) {
   return side == simulation::ColumnSide::left ? "left" : "right";
 }
 
+void add_layer_facts(const std::vector<dynamics::RockLayer>& layers, double origin, const char* where,
+                     std::vector<std::pair<std::string, std::string>>& facts) {
+  for (const dynamics::RockLayer& layer : layers) {
+    const std::string from = layers.size() > 1 ? fmt::format(" below {:.4g} m", layer.top + origin) : "";
+    facts.emplace_back(where + from, fmt::format("v_s {:.4g} m/s, v_p {:.4g} m/s, {:.4g} kg/m³",
+                                                 layer.speeds().x, layer.speeds().y, layer.density));
+  }
+}
+
 /// "2.3 of its strength"
 std::string asked_for(double mobilized) {
   return std::isfinite(mobilized) ? fmt::format("{:.2g} of its strength", mobilized)
@@ -187,12 +196,6 @@ std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation
   if (!setup.boundary) return facts;
   const simulation::Boundary& boundary = *setup.boundary;
   const double origin = setup.system.origin.y;
-  const char* sides = boundary.sides == Sides::free_field ? "free field"
-                      : boundary.sides == Sides::viscous  ? "viscous"
-                                                          : "rollers";
-  facts.emplace_back("boundary",
-                     fmt::format("{} base, {} at the sides, {}", boundary.compliant ? "compliant" : "rigid",
-                                 sides, boundary.overburden ? "overburden" : "free top"));
   if (boundary.overburden)
     facts.emplace_back(
         "overburden",
@@ -205,15 +208,9 @@ std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation
   if (boundary.compliant)
     facts.emplace_back("impedance of the half-space", fmt::format("ρ v_s {:.4g}, ρ v_p {:.4g} Pa s/m",
                                                                   boundary.dashpots.x, boundary.dashpots.y));
-  const auto add = [&](const std::vector<dynamics::RockLayer>& layers, const char* where) {
-    for (const dynamics::RockLayer& layer : layers) {
-      const std::string from = layers.size() > 1 ? fmt::format(" below {:.4g} m", layer.top + origin) : "";
-      facts.emplace_back(where + from, fmt::format("v_s {:.4g} m/s, v_p {:.4g} m/s, {:.4g} kg/m³",
-                                                   layer.speeds().x, layer.speeds().y, layer.density));
-    }
-  };
-  add(boundary.layers, boundary.right_layers.empty() ? "rock beside the model" : "rock on the left");
-  add(boundary.right_layers, "rock on the right");
+  add_layer_facts(boundary.layers, origin,
+                  boundary.right_layers.empty() ? "rock beside the model" : "rock on the left", facts);
+  add_layer_facts(boundary.right_layers, origin, "rock on the right", facts);
   facts.emplace_back("taken from", boundary.source);
   if (boundary.sides != Sides::roller) {
     const auto [base, left] = simulation::column_heights(setup, simulation::ColumnSide::left);

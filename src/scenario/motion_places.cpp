@@ -13,7 +13,6 @@ namespace keyblock::scenario {
 namespace {
 
 using dynamics::RockColumn;
-using dynamics::RockLayer;
 using loading::GroundMotion;
 
 constexpr double same_depth = 0.05;  // share by which the depth of a record and of the base may differ

@@ -109,48 +109,56 @@ class Finder {
     }
   }
 
+  // Of a piece on the way inwards from a side.
+  [[nodiscard]] Vec2 begin(ColumnSide side, std::size_t k) const {
+    return side == ColumnSide::left ? pieces_[k].from : pieces_[k].to;
+  }
+  [[nodiscard]] Vec2 end(ColumnSide side, std::size_t k) const {
+    return side == ColumnSide::left ? pieces_[k].to : pieces_[k].from;
+  }
+  [[nodiscard]] Vec2 way(ColumnSide side, std::size_t k) const {
+    const Vec2 along = end(side, k) - begin(side, k);
+    return along / norm(along);
+  }
+
+  /// The piece by which the joint of another goes on.
+  [[nodiscard]] std::optional<std::size_t> next(ColumnSide side, std::size_t last) const {
+    std::optional<std::size_t> found;
+    double nearest = far * size_;
+    const Vec2 from = end(side, last), along = way(side, last);
+    const auto& order = side == ColumnSide::left ? by_left_ : by_right_;
+    const auto begin_x = [&](std::size_t k) { return begin(side, k).x; };
+    auto candidate = std::ranges::lower_bound(order, from.x - nearest, {}, begin_x);
+    for (; candidate != order.end() && begin_x(*candidate) <= from.x + far * size_; ++candidate) {
+      const std::size_t k = *candidate;
+      const Vec2 gap = begin(side, k) - from;
+      if (!(pieces_[k].label == pieces_[last].label) || k == last || norm(gap) > nearest ||
+          std::abs(cross(along, gap)) > near * size_ || dot(along, way(side, k)) < straight ||
+          dot(along, end(side, k) - from) <= 0.0)
+        continue;
+      nearest = norm(gap);
+      found = k;
+    }
+    return found;
+  }
+
   /// From a piece at a side inwards, from piece to piece of the same joint.
   [[nodiscard]] Course follow(ColumnSide side, std::size_t first) const {
-    const bool left = side == ColumnSide::left;
-    const auto begin = [&](std::size_t k) { return left ? pieces_[k].from : pieces_[k].to; };
-    const auto end = [&](std::size_t k) { return left ? pieces_[k].to : pieces_[k].from; };
-    const auto unit = [&](std::size_t k) { return (end(k) - begin(k)) / norm(end(k) - begin(k)); };
-    Course course{.side = side, .pieces = {first}, .height = begin(first).y};
-    for (std::size_t last = first;;) {
-      std::optional<std::size_t> next;
-      double nearest = far * size_;
-      const double x = end(last).x;
-      const auto& order = left ? by_left_ : by_right_;
-      const auto begin_x = [&](std::size_t k) { return begin(k).x; };
-      auto candidate = std::ranges::lower_bound(order, x - nearest, {}, begin_x);
-      for (; candidate != order.end() && begin_x(*candidate) <= x + far * size_; ++candidate) {
-        const std::size_t k = *candidate;
-        if (!(pieces_[k].label == pieces_[last].label) || k == last) continue;
-        const Vec2 gap = begin(k) - end(last);
-        if (norm(gap) > nearest || std::abs(cross(unit(last), gap)) > near * size_ ||
-            dot(unit(last), unit(k)) < straight || dot(unit(last), end(k) - end(last)) <= 0.0)
-          continue;
-        nearest = norm(gap);
-        next = k;
-      }
-      if (!next) {
-        course.end_height = end(last).y;
-        const double whole = norm(end(last) - begin(first)), stretch = std::min(whole, end_stretch * size_);
-        const auto near_start = std::ranges::find_if(
-            course.pieces, [&](std::size_t k) { return norm(end(k) - begin(first)) >= 0.999 * stretch; });
-        const auto near_end = std::find_if(course.pieces.rbegin(), course.pieces.rend(), [&](std::size_t k) {
-          return norm(end(last) - begin(k)) >= 0.999 * stretch;
-        });
-        const double way = left ? 1.0 : -1.0;
-        course.dip = dip_of(way * (end(*near_start) - begin(first)));
-        course.end_dip = dip_of(way * (end(last) - begin(*near_end)));
-        course.length = norm(end(last) - begin(first));
-        course.is_through = std::abs(end(last).x - begin(first).x) >= (1.0 - 1e-6) * box_.size().x;
-        return course;
-      }
-      course.pieces.push_back(*next);
-      last = *next;
-    }
+    Course course{.side = side, .pieces = {first}, .height = begin(side, first).y};
+    for (auto k = next(side, first); k; k = next(side, *k)) course.pieces.push_back(*k);
+    const Vec2 start = begin(side, first), stop = end(side, course.pieces.back());
+    course.end_height = stop.y;
+    course.length = norm(stop - start);
+    course.is_through = std::abs(stop.x - start.x) >= (1.0 - 1e-6) * box_.size().x;
+    const double stretch = 0.999 * std::min(course.length, end_stretch * size_);
+    const auto near_start = std::ranges::find_if(
+        course.pieces, [&](std::size_t k) { return norm(end(side, k) - start) >= stretch; });
+    const auto near_end = std::find_if(course.pieces.rbegin(), course.pieces.rend(),
+                                       [&](std::size_t k) { return norm(stop - begin(side, k)) >= stretch; });
+    const double to_right = side == ColumnSide::left ? 1.0 : -1.0;
+    course.dip = dip_of(to_right * (end(side, *near_start) - start));
+    course.end_dip = dip_of(to_right * (stop - begin(side, *near_end)));
+    return course;
   }
 
   /// What a joint of a course is in the rock beside a side.
