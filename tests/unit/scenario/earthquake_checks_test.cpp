@@ -261,10 +261,10 @@ TEST(MotionPlaces, OfARecordInTheGround) {
 // Known: at the depth H in uniform ground an outcrop of 1 moves by cos(kH).
 TEST(MotionPlaces, TheOutcropOfARecordWithin) {
   const double frequency = 3.0, speed = std::sqrt(4e8 / 2200.0);
-  const simulation::RunSetup setup = build_setup(
-      parse(shaken_ground, {let_out, "motion.m.at=within", "motion.m.depth=20",
-                            "motion.m.x={amplitude=1, frequency=3, cycles=40}"}),
-      0);
+  const simulation::RunSetup setup =
+      build_setup(parse(shaken_ground, {let_out, "motion.m.at=within", "motion.m.depth=20",
+                                        "motion.m.x={amplitude=1, frequency=3, cycles=40}"}),
+                  0);
   double largest = 0.0;
   const loading::GroundMotion& motion = setup.motions.front();
   for (double t = 10.0; t < 13.0; t += 0.001) largest = std::max(largest, std::abs(motion.at(t).x));
