@@ -40,6 +40,7 @@ Checked checked(const ScenarioArguments& arguments) {
                 .stages = scenario.stages.size(),
                 .notes = scenario::sliver_notes(scenario, system),
                 .plan = {}};
+  found.notes.insert(found.notes.begin(), of_run.notes.begin(), of_run.notes.end());
   // Every combination of values is looked at here.
   if (scenario.study) found.plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
   return found;

@@ -146,6 +146,10 @@ std::vector<Field> outcome(const StageRecord& record, const Progress& last) {
     fields.push_back({0, simulation::verdict_text(record)});
   }
   if (record.stage.kind != StageKind::settle) fields.push_back({2, fmt::format("{:.2f} s", record.duration)});
+  if (record.still)
+    fields.push_back({6, record.waits_for ? fmt::format("still, after {} until {:.4g} s",
+                                                        record.waits_for->what, record.waits_for->until)
+                                          : "still"});
   fields.push_back({1, fmt::format("{} steps", record.steps)});
   fields.push_back({3, "in " + clock_text(record.wall_time)});
   if (record.wall_time > 0.0) {

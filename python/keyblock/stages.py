@@ -20,7 +20,7 @@ _NAMES = {
     "wall_time": "wall_time_s",
 }
 _SAME = ["name", "kind", "steps", "start_time", "duration", "planned_duration", "scale"]
-_SAME += ["standing", "movers", "interrupted", "still", "damage", "fallen"]
+_SAME += ["standing", "movers", "interrupted", "still", "waits_for", "damage", "fallen"]
 
 
 class Stage(record.Record):

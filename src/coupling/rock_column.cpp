@@ -5,12 +5,14 @@
 
 #include "core/index.h"
 #include "core/lanes.h"
+#include "coupling/rock_column_system.h"
 
 namespace keyblock::dynamics {
 
 namespace {
 
 constexpr double elements_of_a_wave = 40.0;
+constexpr int parts_with_dip = 4;  // of a step, with planes that are not level
 constexpr int least_elements = 20, most_elements = 4000;
 
 enum Quantity : std::size_t { displacement, velocity, acceleration, force };
@@ -39,24 +41,6 @@ constexpr double own_mass = 5.0 / 12.0, shared_mass = 1.0 / 12.0;
 
 }  // namespace
 
-/// A symmetric matrix with one diagonal beside the main one, and the right side.
-struct RockColumn::Tridiagonal {
-  std::vector<double> diagonal, beside, right;
-  explicit Tridiagonal(std::size_t n) : diagonal(n, 0.0), beside(n, 0.0), right(n, 0.0) {}
-
-  /// The solution, in the place of the right side.
-  void solve() {
-    const std::size_t n = right.size();
-    for (std::size_t k = 1; k < n; ++k) {
-      const double share = beside[k - 1] / diagonal[k - 1];
-      diagonal[k] -= share * beside[k - 1];
-      right[k] -= share * right[k - 1];
-    }
-    for (std::size_t k = n; k-- > 0;)
-      right[k] = (right[k] - (k + 1 < n ? beside[k] * right[k + 1] : 0.0)) / diagonal[k];
-  }
-};
-
 Vec2 RockLayer::impedance() const {
   return {std::sqrt(density * shear), std::sqrt(density * upright)};
 }
@@ -72,8 +56,15 @@ const RockLayer& layer_at(std::span<const RockLayer> layers, double height) {
 }
 
 RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double ground,
-                       std::optional<Vec2> dashpots, double fastest, double viscosity)
-    : layers_(layers.begin(), layers.end()), dashpots_(dashpots), viscosity_(viscosity) {
+                       std::optional<Vec2> dashpots, double fastest, double viscosity,
+                       std::span<const RockPlane> planes)
+    : layers_(layers.begin(), layers.end()),
+      dashpots_(dashpots),
+      viscosity_(viscosity),
+      planes_(planes.begin(), planes.end()) {
+  std::stable_sort(planes_.begin(), planes_.end(),
+                   [](const RockPlane& a, const RockPlane& b) { return a.height < b.height; });
+  std::erase_if(planes_, [&](const RockPlane& p) { return p.height <= base || p.height >= ground; });
   height_.push_back(base);
   for (std::size_t k = layers_.size(); k-- > 0;) {
     const RockLayer& rock = layers_[k];
@@ -82,19 +73,41 @@ RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double gr
     const double slowest = std::sqrt(std::min(rock.shear, rock.upright) / rock.density),
                  longest =
                      std::min(slowest / (elements_of_a_wave * fastest), (ground - base) / least_elements);
-    const int count = std::clamp(static_cast<int>(std::ceil((top - bottom) / longest)), 1, most_elements);
-    for (int i = 1; i <= count; ++i) {
-      height_.push_back(std::lerp(bottom, top, static_cast<double>(i) / count));
-      density_.push_back(rock.density);
-      modulus_[0].push_back(rock.shear);
-      modulus_[1].push_back(rock.upright);
+    double from = bottom;
+    for (const RockPlane& plane : planes_) {
+      if (plane.height <= from || plane.height >= top) continue;
+      add_elements(rock, from, plane.height, longest);
+      from = plane.height;
+      link_.push_back(density_.size());
+      sideways_.push_back(rock.sideways / rock.upright);
+      height_.push_back(from);
+      density_.push_back(0.0);
+      for (auto& modulus : modulus_) modulus.push_back(0.0);
     }
+    add_elements(rock, from, top, longest);
+  }
+}
+
+void RockColumn::add_elements(const RockLayer& rock, double bottom, double top, double longest) {
+  const int count = std::clamp(static_cast<int>(std::ceil((top - bottom) / longest)), 1, most_elements);
+  for (int i = 1; i <= count; ++i) {
+    height_.push_back(std::lerp(bottom, top, static_cast<double>(i) / count));
+    density_.push_back(rock.density);
+    modulus_[0].push_back(rock.shear);
+    modulus_[1].push_back(rock.upright);
   }
 }
 
 /// M (c (D/Δt − v)/Δt − c_a a − c_F F) = −ρ a_frame − K (u + D + β D/Δt) − C v′(D), see Integrator.
 void RockColumn::step(std::span<const double> before, double dt, const Integrator& rule, Vec2 frame,
                       std::span<double> after) const {
+  const int parts = has_dipping_planes() ? parts_with_dip : 1;
+  step_once(before, dt / parts, rule, frame, after);
+  for (int k = 1; k < parts; ++k) step_once(after, dt / parts, rule, frame, after);
+}
+
+void RockColumn::step_once(std::span<const double> before, double dt, const Integrator& rule, Vec2 frame,
+                           std::span<double> after) const {
   const std::size_t n = height_.size();
   // What D = 0 would end with.
   std::vector<Motion> coasting(n);
@@ -112,7 +125,11 @@ void RockColumn::step(std::span<const double> before, double dt, const Integrato
       system.diagonal[0] = 1.0;
       system.right[0] = system.beside[0] = 0.0;
     }
-    system.solve();
+  }
+  if (planes_.empty()) {
+    for (Tridiagonal& system : systems) system.solve();
+  } else {
+    solve_planes(before, systems, after);
   }
   for (std::size_t k = 0; k < n; ++k) {
     const double d[] = {systems[0].right[k], systems[1].right[k]};
@@ -132,6 +149,7 @@ void RockColumn::assemble(std::span<const double> before, std::span<const Motion
   const std::size_t n = height_.size();
   const auto owed = [&](std::size_t k) { return -coasting[k].force[static_cast<int>(axis)]; };
   for (std::size_t e = 0; e + 1 < n; ++e) {
+    if (is_link(e)) continue;
     const double length = height_[e + 1] - height_[e], mass = density_[e] * length,
                  stiffness = modulus_[axis][e] / length,
                  pull = stiffness * (before[place(displacement, n, e + 1) + axis] -
@@ -146,6 +164,12 @@ void RockColumn::assemble(std::span<const double> before, std::span<const Motion
   }
 }
 
+std::size_t RockColumn::next_above(std::size_t element) const {
+  do ++element;
+  while (element < density_.size() && is_link(element));
+  return element;
+}
+
 RockColumn::Place RockColumn::place_of(double height) const {
   const auto above = std::upper_bound(height_.begin() + 1, height_.end() - 1, height);
   Place p;
@@ -153,10 +177,13 @@ RockColumn::Place RockColumn::place_of(double height) const {
   const double from = height_[p.element], to = height_[p.element + 1];
   p.share = std::clamp((height - from) / (to - from), 0.0, 1.0);
   // Stress is known in the middle of elements, and at the ground. Below the middle of the lowest element it goes on as above.
-  p.stressed = p.share < 0.5 && p.element > 0 ? p.element - 1 : p.element;
+  // The stress is the same on both sides of a plane.
+  std::size_t below = p.element;
+  while (below > 0 && is_link(below - 1)) --below;
+  p.stressed = p.share < 0.5 && below > 0 ? below - 1 : p.element;
   const auto middle = [&](std::size_t e) { return 0.5 * (height_[e] + height_[e + 1]); };
-  const double low = middle(p.stressed),
-               high = p.stressed + 2 < height_.size() ? middle(p.stressed + 1) : height_.back();
+  const std::size_t over = next_above(p.stressed);
+  const double low = middle(p.stressed), high = over + 1 < height_.size() ? middle(over) : height_.back();
   p.stress_share = std::min((height - low) / (high - low), 1.0);
   const RockLayer& rock = layer_at(layers_, height);
   p.sideways = rock.sideways / rock.upright;
@@ -189,9 +216,9 @@ RockColumn::Stress RockColumn::stress(std::span<const double> strained, const Pl
         (vector_at(strained, 2 * (e + 1)) - vector_at(strained, 2 * e)) / (height_[e + 1] - height_[e]);
     return Vec2{modulus_[0][e] * strain.x, modulus_[1][e] * strain.y};
   };
-  const bool at_ground = p.stressed + 2 == height_.size();
-  const Vec2 on_level =
-      lerp(of_element(p.stressed), at_ground ? Vec2{} : of_element(p.stressed + 1), p.stress_share);
+  const std::size_t next = next_above(p.stressed);
+  const bool at_ground = next + 1 == height_.size();
+  const Vec2 on_level = lerp(of_element(p.stressed), at_ground ? Vec2{} : of_element(next), p.stress_share);
   return {p.sideways * on_level.y, on_level.y, on_level.x};
 }
 

@@ -50,14 +50,6 @@ Numbers memory_of(std::span<const FarRock> far, std::size_t points, Numbers memo
   return memory.subspan(begin, size_of(far[k].column));
 }
 
-/// In a static step, rock far away is at rest where the last dynamic one left it.
-void rest(const RockColumn& column, std::span<double> memory) {
-  const std::span<double> before = memory.subspan(column.memory_size());
-  const std::span<const double> moved = column.displacements(memory);
-  for (std::size_t k = 0; k < moved.size(); ++k) before[k] += moved[k];
-  std::fill_n(memory.begin(), column.memory_size(), 0.0);
-}
-
 }  // namespace
 
 /// Tractions are those beyond the one before the run.
@@ -107,7 +99,8 @@ class SeismicBoundary::Step {
       const std::span<double> after = far_after(k);
       const std::span<const double> before = memory_of(std::span(of_.far_), of_.points_.size(), memory_, k);
       if (drive_.is_static) {
-        rest(column, after);
+        // It is at rest where the last dynamic step left it.
+        column.rest(after.first(column.memory_size()), after.subspan(column.memory_size()));
       } else {
         column.step(before, drive_.step, Integrator::of(model_.solver), drive_.ground_acceleration, after);
         strained_.push_back(column.strained(before, drive_.step, after));
@@ -288,6 +281,10 @@ GroundMove SeismicBoundary::far_ground(std::span<const double> memory, const Far
   const GroundMove right = move(far_.size() - 1, place.right);
   return {lerp(left.displacement, right.displacement, place.share),
           lerp(left.velocity, right.velocity, place.share)};
+}
+
+RockPlaneState SeismicBoundary::plane(std::span<const double> memory, std::size_t far, std::size_t k) const {
+  return far_[far].column.plane(memory_of(std::span(far_), points_.size(), memory, far), k);
 }
 
 void SeismicBoundary::add_held_blocks(std::vector<int>& blocks) const {

@@ -65,6 +65,8 @@ class SeismicBoundary final : public Coupling {
 
   [[nodiscard]] std::span<const BoundaryPoint> boundary_points() const { return points_; }
   [[nodiscard]] std::span<const FarRock> far_rock() const { return far_; }
+  /// Plane k of far rock `far`.
+  [[nodiscard]] RockPlaneState plane(std::span<const double> memory, std::size_t far, std::size_t k) const;
 
  private:
   struct PointMemory;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "scenario/far_rock.h"
 #include "scenario/inputs.h"
 #include "simulation/build_model.h"
 #include "simulation/feasibility.h"
@@ -10,7 +11,7 @@ namespace keyblock::job {
 
 Checked check(const scenario::Scenario& scenario, int realization) {
   std::vector<std::string> of_inputs = scenario::check_inputs(scenario);
-  Checked checked{scenario::build_blocks(scenario, realization), {}};
+  Checked checked{scenario::build_blocks(scenario, realization), {}, {}};
   if (scenario.stages.empty()) {
     checked.warnings = std::move(of_inputs);
     scenario::add_block_warnings(scenario, checked.blocks, checked.warnings);
@@ -20,6 +21,11 @@ Checked check(const scenario::Scenario& scenario, int realization) {
     const simulation::RunSetup setup =
         scenario::build_setup(scenario, realization, checked.blocks, &checked.warnings);
     simulation::build_model(setup);
+    for (const auto& [name, value] : setup.ground) {
+      if (name == "boundary") checked.notes.push_back(name + ": " + value);
+    }
+    for (const auto& [name, value] : scenario::boundary_facts(setup))
+      checked.notes.push_back(name + ": " + value);
     if (const auto reason = simulation::yields_without_limit(setup))
       checked.warnings.push_back("a run ends at once: " + *reason);
   }

@@ -11,6 +11,7 @@ namespace keyblock::job {
 struct Checked {
   scenario::BlockModel blocks;
   std::vector<std::string> warnings;  ///< of the study, if there is one, too
+  std::vector<std::string> notes;     ///< what the rock around the model is taken to be
 };
 
 /// Looks at files, blocks and model. Throws InputError with all mistakes, those of files before any block is cut, and RunError where the

@@ -46,6 +46,8 @@ std::vector<MotionComponent> read_esm(const MotionText& text, const MotionReadin
   const auto unit = line_unit(text, unit_line);
   if (!unit) text.fail(unit_line, fmt::format("a unit of acceleration: {}", acceleration_units_text));
   const MotionDirection direction = find_esm_direction(keys, component.label);
+  if (const auto depth = parse_number(keys.value("SENSOR_DEPTH_M:")); depth && *depth > 0.0)
+    component.at_depth = true;
   std::size_t next = 0;
   set_samples(component, text.numbers(esm_data_line(text), points, 0, "samples", &next), *unit, direction);
   if (next < text.size()) text.fail(next, fmt::format("the end of the file after {} samples", points));

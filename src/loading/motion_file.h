@@ -15,6 +15,7 @@ struct MotionComponent {
   std::string label;  ///< direction as the file words it: "360", "up", "CHAN 1: 90 DEG"; may be empty
   bool vertical =
       false;  ///< acceleration is positive upwards; a record positive downwards is turned on reading
+  std::optional<bool> at_depth;   ///< in a borehole, or at the surface; none: the file does not say
   std::optional<double> azimuth;  ///< degrees from north, clockwise; absent when vertical or not in the file
 
   double start = 0.0;                ///< s, time of the first sample; 0 unless the file has times

@@ -40,7 +40,9 @@ MotionDirection find_knet_direction(const MotionText& text, const HeaderKeys& ke
   if (value.size() == 1 && value[0] >= '1' && value[0] <= '6') {
     const int number = value[0] - '1';
     component.format = "KiK-net";
-    component.label = fmt::format("{}, {}", names[number % 3], number < 3 ? "at depth" : "at the surface");
+    component.at_depth = number < 3;
+    component.label =
+        fmt::format("{}, {}", names[number % 3], *component.at_depth ? "at depth" : "at the surface");
     return parse_direction(names[number % 3]);
   }
   const MotionDirection direction = parse_direction(value);

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 
 #include "core/checked_json.h"
 #include "report/page_data.h"
@@ -44,7 +45,20 @@ ordered_json stage_json(const simulation::StageRecord& record) {
           {"interrupted", record.interrupted}};
 }
 
-ordered_json model_json(const simulation::ModelRecord& model) {
+/// What the ground is, and what it came to beside the model.
+std::vector<std::pair<std::string, std::string>> ground_rows(const results::RunData& data) {
+  auto rows = data.model.ground;
+  for (const simulation::PlaneRecord& plane : data.run.planes)
+    rows.emplace_back(
+        fmt::format("“{}” beside the model, x = {:.4g} m", plane.joint, plane.x + data.model.origin.x),
+        fmt::format("at {:.4g} m it slipped by up to {:.3g} mm, and {:.3g} mm are left{}",
+                    plane.height + data.model.origin.y, 1e3 * plane.slip_max, 1e3 * plane.slip,
+                    plane.opened ? "; it opened" : ""));
+  return rows;
+}
+
+ordered_json model_json(const results::RunData& data) {
+  const simulation::ModelRecord& model = data.model;
   ordered_json outlines = ordered_json::array();
   for (const auto& outline : model.excavation_outlines) outlines.push_back(results::points_json(outline));
   ordered_json names = ordered_json::object();
@@ -71,7 +85,7 @@ ordered_json model_json(const simulation::ModelRecord& model) {
           {"opening_limit_m", results::or_null(model.opening_limit)},
           {"warnings", model.warnings},
           {"closure_is_lower_bound", model.closure_is_lower_bound},
-          {"ground", results::ground_json(model.ground)},
+          {"ground", results::ground_json(ground_rows(data))},
           {"cutting",
            {{"traces", cut.traces},
             {"joints_used", cut.joints_used},
@@ -125,7 +139,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
   for (const ArrayPack::Entry& e : arrays.entries())
     entries.push_back({{"name", e.name}, {"type", e.type}, {"offset", e.offset}, {"count", e.count}});
   const results::Areas area = results::areas(run.model, run.run);
-  const ordered_json header{{"model", model_json(run.model)},
+  const ordered_json header{{"model", model_json(run)},
                             {"run", run_json(run)},
                             {"area", {{"blocks_m2", area.blocks}, {"excavated_m2", area.excavated}}},
                             {"recorded_frames", run.frames.size()},

@@ -65,6 +65,43 @@ std::vector<simulation::FallenBlock> read_fallen(const ordered_json& json) {
   return fallen;
 }
 
+ordered_json wait_json(const std::optional<simulation::StageWait>& wait) {
+  if (!wait) return nullptr;
+  return {{"what", wait->what}, {"until_s", wait->until}};
+}
+
+ordered_json planes_json(const std::vector<simulation::PlaneRecord>& planes, Vec2 origin) {
+  ordered_json json = ordered_json::array();
+  for (const simulation::PlaneRecord& p : planes)
+    json.push_back({{"joint", p.joint},
+                    {"x", p.x + origin.x},
+                    {"height_m", p.height + origin.y},
+                    {"dip_deg", p.dip},
+                    {"mobilized", std::isfinite(p.mobilized) ? ordered_json(p.mobilized) : ordered_json()},
+                    {"normal_stress_pa", p.normal},
+                    {"shear_stress_pa", p.shear},
+                    {"slip_m", p.slip},
+                    {"slip_max_m", p.slip_max},
+                    {"opened", p.opened}});
+  return json;
+}
+
+std::vector<simulation::PlaneRecord> read_planes(const ordered_json& json) {
+  std::vector<simulation::PlaneRecord> planes;
+  for (const ordered_json& p : json)
+    planes.push_back({.joint = p.at("joint").get<std::string>(),
+                      .x = p.at("x").get<double>(),
+                      .height = p.at("height_m").get<double>(),
+                      .dip = p.at("dip_deg").get<double>(),
+                      .mobilized = p.at("mobilized").is_null() ? HUGE_VAL : p.at("mobilized").get<double>(),
+                      .normal = p.at("normal_stress_pa").get<double>(),
+                      .shear = p.at("shear_stress_pa").get<double>(),
+                      .slip = p.at("slip_m").get<double>(),
+                      .slip_max = p.at("slip_max_m").get<double>(),
+                      .opened = p.at("opened").get<bool>()});
+  return planes;
+}
+
 ordered_json standing_json(const std::optional<simulation::Standing>& standing) {
   return standing ? ordered_json(simulation::standing_name(*standing)) : ordered_json();
 }

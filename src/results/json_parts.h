@@ -14,6 +14,11 @@ namespace keyblock::results {
 
 nlohmann::ordered_json damage_json(const simulation::Damage& damage);
 nlohmann::ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen);
+/// What the stage waits for; null where it is nothing.
+nlohmann::ordered_json wait_json(const std::optional<simulation::StageWait>& wait);
+/// Heights and places less none; `origin` is added to them.
+nlohmann::ordered_json planes_json(const std::vector<simulation::PlaneRecord>& planes, Vec2 origin);
+std::vector<simulation::PlaneRecord> read_planes(const nlohmann::ordered_json& json);
 nlohmann::ordered_json standing_json(const std::optional<simulation::Standing>& standing);
 nlohmann::ordered_json movers_json(const simulation::Movers& movers);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);

@@ -166,6 +166,7 @@ std::string stage_json(int index, const simulation::StageRecord& r, bool ended) 
                           {"arias", r.arias},
                           {"equilibrium_reached", r.equilibrium_reached},
                           {"still", r.still},
+                          {"waits_for", wait_json(r.waits_for)},
                           {"worst_residual_ratio", r.worst_residual_ratio},
                           {"way", r.way},
                           {"way_share", r.way_share},
@@ -222,6 +223,8 @@ StageLine read_stage_json(const std::string& text) {
     if (json.contains("arias")) r.arias = number(json.at("arias"));
     json.at("equilibrium_reached").get_to(r.equilibrium_reached);
     r.still = json.value("still", false);
+    if (const auto wait = json.find("waits_for"); wait != json.end() && !wait->is_null())
+      r.waits_for = {number(wait->at("until_s")), wait->at("what").get<std::string>()};
     r.worst_residual_ratio = number(json.at("worst_residual_ratio"));
     if (json.contains("way")) r.way = number(json.at("way"));
     if (json.contains("way_share")) r.way_share = number(json.at("way_share"));
@@ -258,6 +261,7 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"max_area_change", run.max_area_change},
                           {"energy", energy_json(run.energy)},
                           {"made_ratio", run.made_ratio},
+                          {"planes", planes_json(run.planes, {})},
                           {"interrupted", run.interrupted}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -277,6 +281,7 @@ simulation::RunRecord read_run_json(const std::string& text) {
     run.max_area_change = number(json.at("max_area_change"));
     run.energy = read_energy(json.at("energy"));
     run.made_ratio = json.contains("made_ratio") ? number(json.at("made_ratio")) : 0.0;
+    if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
     json.at("interrupted").get_to(run.interrupted);
     return run;
   });

@@ -93,6 +93,7 @@ ordered_json stage(const simulation::StageRecord& r, const simulation::ModelReco
           {"wall_time_s", r.wall_time},
           {"interrupted", r.interrupted},
           {"still", r.still},
+          {"waits_for", wait_json(r.waits_for)},
           {"equilibrium", equilibrium(r)},
           {"standing", standing_json(r.standing)},
           {"movers", movers_json(r.movers)},
@@ -106,23 +107,31 @@ ordered_json stage(const simulation::StageRecord& r, const simulation::ModelReco
 ordered_json damping(const simulation::ModelRecord& model) {
   ordered_json json = ordered_json::array();
   for (const simulation::DampingRow& row : model.damping)
-    json.push_back(
-        {{"frequency_hz", row.frequency}, {"rock", row.rock}, {"rule", row.rule}, {"total", row.total()}});
+    json.push_back({{"frequency_hz", row.frequency},
+                    {"rock", row.rock},
+                    {"rule", row.rule},
+                    {"total", row.total()},
+                    {"waves", row.waves()}});
   return json;
 }
 
 /// null where there is none.
-ordered_json boundary(const simulation::ModelRecord& model) {
-  if (!model.boundary) return nullptr;
-  const simulation::Boundary& b = *model.boundary;
-  ordered_json rock = ordered_json::array(), columns = ordered_json::array(), half_space = nullptr;
-  for (const dynamics::RockLayer& layer : b.layers) {
+ordered_json rock_layers(const std::vector<dynamics::RockLayer>& layers, double origin) {
+  ordered_json rock = ordered_json::array();
+  for (const dynamics::RockLayer& layer : layers) {
     rock.push_back({{"top_m", nullptr},
                     {"density", layer.density},
                     {"vs_m_s", layer.speeds().x},
                     {"vp_m_s", layer.speeds().y}});
-    if (rock.size() > 1) rock.back()["top_m"] = layer.top + model.origin.y;
+    if (rock.size() > 1) rock.back()["top_m"] = layer.top + origin;
   }
+  return rock;
+}
+
+ordered_json boundary(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
+  if (!model.boundary) return nullptr;
+  const simulation::Boundary& b = *model.boundary;
+  ordered_json columns = ordered_json::array(), half_space = nullptr;
   for (const simulation::ColumnRecord& c : model.columns)
     columns.push_back({{"x", c.x + model.origin.x},
                        {"base_m", c.base + model.origin.y},
@@ -133,8 +142,12 @@ ordered_json boundary(const simulation::ModelRecord& model) {
           {"sides", name_of(b.sides)},
           {"top", b.overburden ? "overburden" : "free"},
           {"half_space", half_space},
-          {"rock", rock},
-          {"columns", columns}};
+          {"rock", rock_layers(b.layers, model.origin.y)},
+          {"rock_on_the_right",
+           b.right_layers.empty() ? ordered_json() : rock_layers(b.right_layers, model.origin.y)},
+          {"rock_source", b.source},
+          {"columns", columns},
+          {"planes", planes_json(run.planes, model.origin)}};
 }
 
 ordered_json profile(const simulation::RunRecord& run) {
@@ -196,7 +209,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"contact_checks", contact_checks_json(run.contact_checks, model.origin)},
       {"errors", simulation::computation_errors(run)},
       {"max_area_change", run.max_area_change},
-      {"boundary", boundary(model)},
+      {"boundary", boundary(model, run)},
       {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
       {"energy_warnings", simulation::energy_warnings(run)},

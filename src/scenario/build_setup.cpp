@@ -6,12 +6,14 @@
 
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
+#include "scenario/dynamic_checks.h"
 #include "scenario/expected_blocks.h"
 #include "scenario/far_rock.h"
 #include "scenario/ground_facts.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
+#include "scenario/motion_places.h"
 #include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
@@ -282,17 +284,30 @@ void place_rock(const Scenario& scenario, const BlockModel& blocks, RunSetup& se
   }
 }
 
-/// "1.7 + 0.1, …": what swings alone loses by the rock and by the rule of time integration.
-void add_damping_fact(RunSetup& setup) {
+/// What waves, and blocks that swing against the ground, lose by the rock and by the rule of time integration together.
+void add_damping_facts(RunSetup& setup) {
   const std::vector<simulation::DampingRow> rows = simulation::damping_table(setup);
-  const bool is_asked = setup.solver.damping || setup.boundary;
-  if (rows.empty() || !is_asked) return;
-  std::string name, value;
+  if (rows.empty()) return;
+  std::string frequencies, of_waves, of_blocks;
   for (const simulation::DampingRow& row : rows) {
-    name += fmt::format("{}{:g}", name.empty() ? "" : ", ", row.frequency);
-    value += fmt::format("{}{:.2g}", value.empty() ? "" : ", ", 100.0 * row.total());
+    const char* between = frequencies.empty() ? "" : ", ";
+    frequencies += fmt::format("{}{:g}", between, row.frequency);
+    of_waves += fmt::format("{}{:.2g}", between, 100.0 * row.waves());
+    of_blocks += fmt::format("{}{:.2g}", between, 100.0 * row.total());
   }
-  setup.ground.emplace_back(fmt::format("damping at {} Hz, with that of the rule", name), value + " %");
+  setup.ground.emplace_back(fmt::format("damping of waves at {} Hz, with that of the rule", frequencies),
+                            of_waves + " %");
+  if (of_blocks != of_waves)
+    setup.ground.emplace_back("damping of blocks against the ground, likewise", of_blocks + " %");
+}
+
+/// What a frame leaves out of a recorded earthquake.
+void add_box_fact(const Scenario& scenario, RunSetup& setup) {
+  const double stress = stress_left_out(scenario, setup);
+  for (auto& [name, value] : setup.ground) {
+    if (name == around_the_model && stress > 0.0)
+      value = fmt::format("closed box: wave stress of {:.2g} MPa left out", stress / 1e6);
+  }
 }
 
 /// Average acceleration makes energy in joints that slide: guide, "Rules of time integration".
@@ -315,6 +330,7 @@ void add_setup_warnings(const Scenario& scenario, RunSetup& setup, std::vector<s
   add_shaking_warnings(scenario, setup.motions, notes);
   add_boundary_warnings(scenario, setup, notes);
   warn_of_average_acceleration(scenario, setup, notes);
+  add_dynamic_warnings(scenario, setup, notes);
   if (const simulation::JointClosure soft = simulation::largest_closure(setup);
       soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
     notes.push_back(fmt::format(
@@ -346,29 +362,32 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
 
   place_rock(scenario, blocks, setup);
   const Vec2 origin = setup.system.origin;
-  setup.boundary = boundary_of(scenario, setup.joints, origin.y);
+  setup.stages = scenario.stages;
+  setup.solver = scenario.solver;
+  setup.boundary = boundary_of(scenario);
   setup.gravity = scenario.gravity;
   setup.in_situ = in_situ_stress(scenario, simulation::boundary_box(setup).max.y);
   setup.time_step = scenario.time_step;
   setup.motions = read_motions(scenario, notes);
-  take_to_outcrop(scenario, setup.motions);
+  const std::vector<simulation::JointPiece> pieces = place_far_rock(scenario, setup);
+  take_to_base(scenario, setup);
+  place_far_planes(scenario, setup, pieces, notes);
   setup.files = input_files(scenario);
   for (const GroundFact& fact : ground_facts(scenario)) setup.ground.emplace_back(fact.name, fact.value);
-  if (setup.boundary) {
-    for (auto& fact : boundary_facts(*setup.boundary, origin.y)) setup.ground.push_back(std::move(fact));
-  }
+  for (auto& fact : boundary_facts(setup)) setup.ground.push_back(std::move(fact));
   place_loading(scenario, origin, setup);
-  setup.stages = scenario.stages;
   place_histories(scenario, setup, notes);
   check_springs(scenario, setup, notes);
   if (auto mistakes = stage_mistakes(scenario, setup.motions); !mistakes.empty())
+    throw InputError(std::move(mistakes));
+  if (auto mistakes = dynamic_mistakes(scenario, setup); !mistakes.empty())
     throw InputError(std::move(mistakes));
   add_stage_warnings(scenario, notes);
   setup.damage = scenario.damage;
   setup.output = scenario.output;
   setup.automatic_order = scenario.automatic;
-  setup.solver = scenario.solver;
-  add_damping_fact(setup);
+  add_damping_facts(setup);
+  add_box_fact(scenario, setup);
   add_block_warnings(scenario, blocks, notes);
   add_setup_warnings(scenario, setup, notes);
   if (warnings != nullptr) {

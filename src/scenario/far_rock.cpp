@@ -3,48 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "loading/motion_measures.h"
-#include "rockmass/section.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "simulation/build_boundary.h"
+#include "simulation/far_layers.h"
+#include "simulation/far_planes.h"
 
 namespace keyblock::scenario {
 namespace {
 
 using simulation::Sides;
-
-/// Symmetric: xx, yy, xy.
-using Matrix = std::array<std::array<double, 3>, 3>;
-
-Matrix compliance_of(const RockKeys& rock) {
-  const bool strain = *rock.state == PlaneState::plane_strain;
-  const double nu = *rock.poisson, young = strain ? *rock.young / (1.0 - nu * nu) : *rock.young,
-               in_section = strain ? nu / (1.0 - nu) : nu, shear = 2.0 * (1.0 + nu) / *rock.young;
-  return {
-      {{1.0 / young, -in_section / young, 0.0}, {-in_section / young, 1.0 / young, 0.0}, {0.0, 0.0, shear}}};
-}
-
-void add_set(const rockmass::JointSet& set, const JointProperties& joint, double azimuth, double stiffness,
-             Matrix& compliance) {
-  const bool is_true = set.spacing_measure == rockmass::SpacingMeasure::true_spacing;
-  const double distance =
-                   set.spacing.mean *
-                   (is_true ? rockmass::trace_spacing_factor(set.dip, set.dip_direction, azimuth) : 1.0),
-               density = set.length.mean / (set.length.mean + set.gap.mean) / distance,
-               fall = rockmass::radians(rockmass::apparent_dip(set.dip, set.dip_direction, azimuth)),
-               nx = std::sin(fall), ny = std::cos(fall), normal = joint.normal_stiffness.value_or(stiffness),
-               shear = joint.stiffness_ratio * normal;
-  const std::array<double, 3> across{nx * nx, ny * ny, 2.0 * nx * ny},
-      along{-nx * ny, nx * ny, nx * nx - ny * ny};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c)
-      compliance[r][c] += density * (across[r] * across[c] / normal + along[r] * along[c] / shear);
-  }
-}
 
 dynamics::RockLayer layer_of(double top, double density, double vs, double vp) {
   const double shear = density * vs * vs, upright = density * vp * vp;
@@ -60,6 +31,77 @@ Vec2 last_velocity(const loading::GroundMotion& motion) {
 bool shakes_sideways(const loading::GroundMotion& motion) {
   return std::any_of(motion.accelerations().begin(), motion.accelerations().end(),
                      [](Vec2 a) { return a.x != 0.0; });
+}
+
+const char* name_of(simulation::ColumnSide side) {
+  return side == simulation::ColumnSide::left ? "left" : "right";
+}
+
+void add_layer_facts(const std::vector<dynamics::RockLayer>& layers, double origin, const char* where,
+                     std::vector<std::pair<std::string, std::string>>& facts) {
+  for (const dynamics::RockLayer& layer : layers) {
+    const std::string from = layers.size() > 1 ? fmt::format(" below {:.4g} m", layer.top + origin) : "";
+    facts.emplace_back(where + from, fmt::format("v_s {:.4g} m/s, v_p {:.4g} m/s, {:.4g} kg/m³",
+                                                 layer.speeds().x, layer.speeds().y, layer.density));
+  }
+}
+
+/// "2.3 of its strength"
+std::string asked_for(double mobilized) {
+  return std::isfinite(mobilized) ? fmt::format("{:.2g} of its strength", mobilized)
+                                  : "more than any strength";
+}
+
+/// Blocks belong to a region by their centroids. The layer beside the model ends where the region was drawn.
+void to_outline(const Scenario& scenario, const simulation::RunSetup& setup, double& height) {
+  constexpr double level = 0.1;  // rise of an edge over its length
+  const double origin = setup.system.origin.y;
+  double nearest = simulation::mean_block_size(setup), end = height;
+  for (const RegionSpec& region : scenario.regions) {
+    const Ring& outline = region.polygon.outer;
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
+      const double middle = 0.5 * (a.y + b.y) - origin;
+      if (std::abs(b.y - a.y) > level * std::abs(b.x - a.x) || std::abs(middle - height) >= nearest) continue;
+      nearest = std::abs(middle - height);
+      end = middle;
+    }
+  }
+  height = end;
+}
+
+/// The layers that [boundary] gives, or those of the model.
+void place_layers(const Scenario& scenario, std::span<const simulation::JointPiece> pieces,
+                  simulation::RunSetup& setup) {
+  simulation::Boundary& boundary = *setup.boundary;
+  boundary.layers.clear();
+  for (const RockLayerSpec& layer : scenario.boundary->column)
+    boundary.layers.push_back(layer_of(layer.top - setup.system.origin.y, layer.density, layer.vs, layer.vp));
+  boundary.source = "[[boundary.column]]";
+  if (!boundary.layers.empty()) return;
+  simulation::FarLayers far = simulation::far_layers(setup, pieces);
+  if (!far.gap.empty() || far.left.empty())
+    throw InputError(
+        Diagnostic{scenario.where("boundary"), "boundary",
+                   fmt::format("no rock at the {}", far.gap.empty() ? "sides" : far.gap),
+                   "blocks at the sides, or [[boundary.column]], which says what the rock there is", ""});
+  for (auto* layers : {&far.left, &far.right}) {
+    for (std::size_t k = 1; k < layers->size(); ++k) to_outline(scenario, setup, (*layers)[k].top);
+  }
+  boundary.layers = std::move(far.left);
+  boundary.right_layers = std::move(far.right);
+  boundary.source = std::move(far.source);
+}
+
+/// The layers, and the half-space below, which is as the lowest one but for what [boundary] says.
+void take_layers(const Scenario& scenario, std::span<const simulation::JointPiece> pieces,
+                 simulation::RunSetup& setup) {
+  place_layers(scenario, pieces, setup);
+  const dynamics::RockLayer& lowest = setup.boundary->layers.back();
+  const BoundarySpec& spec = *scenario.boundary;
+  const double density = spec.density.value_or(lowest.density);
+  setup.boundary->dashpots = {density * spec.vs.value_or(lowest.speeds().x),
+                              density * spec.vp.value_or(lowest.speeds().y)};
 }
 
 void warn_of_motion(const Scenario& scenario, const simulation::RunSetup& setup,
@@ -99,26 +141,7 @@ void warn_of_motion(const Scenario& scenario, const simulation::RunSetup& setup,
 
 }  // namespace
 
-dynamics::RockLayer effective_rock(const Scenario& scenario, const simulation::JointTable& joints) {
-  const RockKeys& rock = scenario.rock;
-  Matrix s = compliance_of(rock);
-  const double stiffness = scenario.solver.penalty * *rock.young;
-  for (std::size_t k = 0; k < scenario.joint_sets.size(); ++k)
-    add_set(scenario.joint_sets[k].set, joints.joint_sets[k], scenario.section_azimuth.value_or(0.0),
-            stiffness, s);
-  const auto minor = [&](std::size_t r1, std::size_t r2, std::size_t c1, std::size_t c2) {
-    return s[r1][c1] * s[r2][c2] - s[r1][c2] * s[r2][c1];
-  };
-  const double determinant =
-      s[0][0] * minor(1, 2, 1, 2) - s[0][1] * minor(1, 2, 0, 2) + s[0][2] * minor(1, 2, 0, 1);
-  return {.density = *rock.density,
-          .shear = minor(0, 1, 0, 1) / determinant,
-          .upright = minor(0, 2, 0, 2) / determinant,
-          .sideways = -minor(0, 2, 1, 2) / determinant};
-}
-
-std::optional<simulation::Boundary> boundary_of(const Scenario& scenario,
-                                                const simulation::JointTable& joints, double origin) {
+std::optional<simulation::Boundary> boundary_of(const Scenario& scenario) {
   if (!scenario.boundary || scenario.boundary->sides == Sides::frame) return std::nullopt;
   const BoundarySpec& spec = *scenario.boundary;
   simulation::Boundary boundary;
@@ -126,45 +149,82 @@ std::optional<simulation::Boundary> boundary_of(const Scenario& scenario,
   boundary.sides = spec.sides;
   boundary.overburden = spec.overburden;
   if (spec.overburden) boundary.depth = scenario.in_situ ? scenario.in_situ->depth.value_or(0.0) : 0.0;
-  for (const RockLayerSpec& layer : spec.column)
-    boundary.layers.push_back(layer_of(layer.top - origin, layer.density, layer.vs, layer.vp));
-  if (boundary.layers.empty()) boundary.layers.push_back(effective_rock(scenario, joints));
-  const dynamics::RockLayer& lowest = boundary.layers.back();
-  const double density = spec.density.value_or(lowest.density);
-  boundary.dashpots = {density * spec.vs.value_or(lowest.speeds().x),
-                       density * spec.vp.value_or(lowest.speeds().y)};
   boundary.fastest = spec.frequency;
   return boundary;
 }
 
-void take_to_outcrop(const Scenario& scenario, std::vector<loading::GroundMotion>& motions) {
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    if (scenario.motions[k].place != MotionPlace::inside) continue;
-    std::vector<Vec2> twice = motions[k].accelerations();
-    for (Vec2& a : twice) a = 2.0 * a;
-    motions[k] = loading::GroundMotion(motions[k].name(), motions[k].times(), std::move(twice));
+std::vector<simulation::JointPiece> place_far_rock(const Scenario& scenario, simulation::RunSetup& setup) {
+  if (!setup.boundary) return {};
+  std::vector<simulation::JointPiece> pieces = simulation::joint_pieces(setup);
+  take_layers(scenario, pieces, setup);
+  return pieces;
+}
+
+void place_far_planes(const Scenario& scenario, simulation::RunSetup& setup,
+                      std::span<const simulation::JointPiece> pieces, std::vector<std::string>& warnings) {
+  if (!setup.boundary) return;
+  simulation::FarJoints joints = simulation::far_joints(setup, pieces);
+  const double origin = setup.system.origin.y;
+  if (!scenario.boundary->planes) {
+    for (const simulation::FarPlane& plane : joints.planes) {
+      if (plane.mobilized > 1.0)
+        warnings.push_back(
+            fmt::format("boundary.planes{} = false: '{}' at {:.4g} m would slip in the ground alone, which "
+                        "asks for {}; the rock beside the model does not slip, and holds it inside",
+                        place_text(scenario, "boundary.planes"), plane.joint,
+                        plane.at_side[0].height + origin, asked_for(plane.mobilized)));
+    }
+  } else if (!joints.planes.empty()) {
+    setup.boundary->planes = std::move(joints.planes);
+    // What is a plane is no part of the rock.
+    take_layers(scenario, joints.others, setup);
+  }
+  for (const simulation::HeldJoint& joint : joints.held) {
+    constexpr double near_slip = 0.8;
+    if (joint.mobilized > near_slip)
+      warnings.push_back(fmt::format(
+          "boundary.sides{}: '{}', {:.0f} degrees steep, meets the {} side at {:.4g} m; the ground alone "
+          "asks for {}. The rock beside the model does not slip on it, and holds what slips "
+          "inside; let it end inside the model, or move the sides away",
+          place_text(scenario, "boundary.sides"), joint.joint, std::abs(joint.dip), name_of(joint.side),
+          joint.height + origin, asked_for(joint.mobilized)));
   }
 }
 
-std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::Boundary& boundary,
-                                                                double origin) {
+std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::RunSetup& setup) {
   std::vector<std::pair<std::string, std::string>> facts;
-  const char* sides = boundary.sides == Sides::free_field ? "free field"
-                      : boundary.sides == Sides::viscous  ? "viscous"
-                                                          : "rollers";
-  facts.emplace_back("boundary",
-                     fmt::format("{} base, {} at the sides, {}", boundary.compliant ? "compliant" : "rigid",
-                                 sides, boundary.overburden ? "overburden" : "free top"));
+  if (!setup.boundary) return facts;
+  const simulation::Boundary& boundary = *setup.boundary;
+  const double origin = setup.system.origin.y;
+  if (boundary.overburden)
+    facts.emplace_back(
+        "overburden",
+        boundary.depth > 0.0
+            ? fmt::format(
+                  "its weight, and {:.4g} m of rock in which waves from below go on to the ground and "
+                  "come back; what the model sends up does not come back",
+                  boundary.depth)
+            : "its stress alone: waves from below come back from the top of the model as from the ground");
   if (boundary.compliant)
     facts.emplace_back("impedance of the half-space", fmt::format("ρ v_s {:.4g}, ρ v_p {:.4g} Pa s/m",
                                                                   boundary.dashpots.x, boundary.dashpots.y));
-  for (const dynamics::RockLayer& layer : boundary.layers) {
-    const std::string from =
-        boundary.layers.size() > 1 ? fmt::format(" below {:.4g} m", layer.top + origin) : "";
-    facts.emplace_back("rock beside the model" + from,
-                       fmt::format("v_s {:.4g} m/s, v_p {:.4g} m/s, {:.4g} kg/m³", layer.speeds().x,
-                                   layer.speeds().y, layer.density));
+  add_layer_facts(boundary.layers, origin,
+                  boundary.right_layers.empty() ? "rock beside the model" : "rock on the left", facts);
+  add_layer_facts(boundary.right_layers, origin, "rock on the right", facts);
+  facts.emplace_back("taken from", boundary.source);
+  if (boundary.sides != Sides::roller) {
+    const auto [base, left] = simulation::column_heights(setup, simulation::ColumnSide::left);
+    const double right = simulation::column_heights(setup, simulation::ColumnSide::right).ground;
+    facts.emplace_back("columns beside the model",
+                       left == right ? fmt::format("{:.4g} to {:.4g} m", base + origin, left + origin)
+                                     : fmt::format("{:.4g} to {:.4g} m on the left, to {:.4g} m on the right",
+                                                   base + origin, left + origin, right + origin));
   }
+  for (const simulation::FarPlane& plane : boundary.planes)
+    facts.emplace_back(fmt::format("“{}” beside the model", plane.joint),
+                       fmt::format("goes on at {:.4g} m, where elastic ground asks for {}{}",
+                                   plane.at_side[0].height + origin, asked_for(plane.mobilized),
+                                   plane.mobilized > 1.0 ? ": it slips there as well" : ""));
   return facts;
 }
 

@@ -1,33 +1,30 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scenario/scenario.h"
+#include "simulation/rock_sample.h"
 #include "simulation/setup.h"
 
 namespace keyblock::scenario {
 
-/// Rock with its joint sets, as long waves that go up and down feel it. Of a set, d is the distance of its traces in the section, n the
-/// normal of these, and p = length / (length + gap) the share of each plane that is joint. Stress and strain in the order xx, yy, xy, with
-/// the engineering shear strain:
-///
-///     S = S₀ + Σ p/d (N Nᵀ/k_n + T Tᵀ/k_s),     N = (n_x², n_y², 2 n_x n_y),   T = (−n_x n_y, n_x n_y, n_x² − n_y²)
-///
-/// S₀: compliance of the rock in the section. Moduli are those of S⁻¹, where nothing moves sideways. Trace maps do not count.
-dynamics::RockLayer effective_rock(const Scenario& scenario, const simulation::JointTable& joints);
+/// What [boundary] says, without the rock beside the model. Nothing without [boundary], or with a frame.
+std::optional<simulation::Boundary> boundary_of(const Scenario& scenario);
 
-/// What [boundary] is for a run; heights less `origin`, m. Nothing without [boundary], or with a frame.
-std::optional<simulation::Boundary> boundary_of(const Scenario& scenario,
-                                                const simulation::JointTable& joints, double origin);
+/// Puts the rock beside the model into setup.boundary: the layers that [boundary] gives, or those of the blocks at the sides, and the
+/// half-space below. Returns the joints of the model. Throws InputError where there is no rock to take it from.
+std::vector<simulation::JointPiece> place_far_rock(const Scenario& scenario, simulation::RunSetup& setup);
 
-/// The motions as a compliant base takes them, those of an outcrop: twice the wave that goes up.
-void take_to_outcrop(const Scenario& scenario, std::vector<loading::GroundMotion>& motions);
+/// Puts the planes into setup.boundary that slip beside the model as well, under the motions of the setup. What joints would slip there and
+/// cannot is added to `warnings`.
+void place_far_planes(const Scenario& scenario, simulation::RunSetup& setup,
+                      std::span<const simulation::JointPiece> pieces, std::vector<std::string>& warnings);
 
-/// What is said of the rock around the model in reports. origin: m, that heights are local to.
-std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::Boundary& boundary,
-                                                                double origin);
+/// What is said of the rock around the model in reports and by `check`.
+std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation::RunSetup& setup);
 
 /// What seems wrong with [boundary] and what acts on it.
 void add_boundary_warnings(const Scenario& scenario, const simulation::RunSetup& setup,

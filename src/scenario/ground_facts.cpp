@@ -52,6 +52,7 @@ class Facts {
     for (const TraceMapSpec& spec : scenario_.trace_maps)
       add(quoted("trace map", spec.name), own(spec.joints, "as all joints"));
     for (const RegionSpec& spec : scenario_.regions) add(quoted("region", spec.name), own_rock(spec.rock));
+    around();
     shaking();
     for (const simulation::Stage& stage : scenario_.stages) {
       if (stage.k_h != 0.0 || stage.k_v != 0.0)
@@ -147,6 +148,28 @@ class Facts {
     const std::string properties = own(spec.joints, "");
     if (!properties.empty()) parts.push_back(properties);
     add(quoted("set", set.name), joined(parts));
+  }
+
+  /// What is around the model, where waves of an earthquake meet it.
+  void around() {
+    if (scenario_.boundary && scenario_.boundary->sides != simulation::Sides::frame) {
+      const BoundarySpec& spec = *scenario_.boundary;
+      const char* sides = spec.sides == simulation::Sides::free_field ? "free field"
+                          : spec.sides == simulation::Sides::viscous  ? "viscous"
+                                                                      : "rollers";
+      add("boundary", fmt::format("{} base, {} at the sides, {}", spec.compliant ? "compliant" : "rigid",
+                                  sides, spec.overburden ? "overburden" : "free top"));
+    } else if (scenario_.domain && scenario_.domain->frame && record_shakes()) {
+      add(around_the_model, "closed box: wave stress left out");
+    }
+  }
+
+  [[nodiscard]] bool record_shakes() const {
+    return std::any_of(scenario_.stages.begin(), scenario_.stages.end(), [&](const simulation::Stage& stage) {
+      if (stage.motion < 0) return false;
+      const MotionSpec& spec = scenario_.motions[static_cast<std::size_t>(stage.motion)];
+      return !spec.sine_x && !spec.sine_y;
+    });
   }
 
   /// The motions that stages apply, once each.

@@ -12,6 +12,9 @@ struct GroundFact {
   friend bool operator==(const GroundFact&, const GroundFact&) = default;
 };
 
+/// The fact that a record shakes a closed box.
+inline constexpr const char* around_the_model = "around the model";
+
 /// The openings, the rock, its joints, and what acts on it: as given, with defaults in their place.
 std::vector<GroundFact> ground_facts(const Scenario& scenario);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -11,6 +13,7 @@
 #include "core/hash.h"
 #include "loading/motion_file.h"
 #include "loading/motion_measures.h"
+#include "loading/motion_text.h"
 #include "loading/projection.h"
 #include "rockmass/trace_map.h"
 #include "scenario/shaking_checks.h"
@@ -38,6 +41,11 @@ class MotionReader {
   std::vector<GroundMotion> read() {
     std::vector<GroundMotion> motions;
     for (const MotionSpec& spec : scenario_.motions) {
+      if (spec.place == MotionPlace::inside)
+        warnings_.push_back(fmt::format(
+            "{}.at = \"inside\": an older word for \"incident\", the wave that goes up alone; a record "
+            "from a borehole is \"within\"",
+            spec.path));
       try {
         motions.push_back(spec.components.empty() ? tables(spec) : record(spec));
       } catch (const InputError& error) {
@@ -74,6 +82,7 @@ class MotionReader {
       warn_of_repetition(spec, component);
       try {
         MotionComponent read = channel(component);
+        check_place(spec, component, read);
         const ComponentDirection along = direction(component, read);
         components.emplace_back(std::move(read), along);
       } catch (const InputError& error) {
@@ -128,6 +137,31 @@ class MotionReader {
     MotionComponent component = std::move(read[static_cast<std::size_t>(number - 1)]);
     for (const std::string& note : component.notes) warnings_.push_back(component.file + ": " + note);
     return component;
+  }
+
+  /// What is known to be recorded in a borehole is no outcrop, and what is at the surface is not within the ground.
+  void check_place(const MotionSpec& motion, const MotionComponentSpec& spec,
+                   const MotionComponent& component) {
+    const std::string label = loading::lower(component.label);
+    const bool is_told =
+        std::ranges::any_of(std::array{"depth", "downhole", "borehole"},
+                            [&](const char* word) { return label.find(word) != std::string::npos; });
+    if (!component.at_depth && !is_told) return;
+    const bool at_depth = component.at_depth.value_or(true);
+    const bool compliant = scenario_.boundary && scenario_.boundary->compliant;
+    const MotionPlace place = motion.place.value_or(compliant ? MotionPlace::outcrop : MotionPlace::base);
+    const std::string key = motion.path + ".at";
+    if (at_depth && place != MotionPlace::within && place != MotionPlace::base)
+      fail(key,
+           fmt::format("{}, with a component that was recorded at depth (\"{}\" of {})",
+                       motion.place ? "a motion of an outcrop, or of the wave that goes up" : "nothing",
+                       component.label, spec.file.filename().string()),
+           "\"within\", with its depth");
+    if (!at_depth && place == MotionPlace::within)
+      fail(key,
+           fmt::format("\"within\", with a component of the surface (\"{}\" of {})", component.label,
+                       spec.file.filename().string()),
+           "\"outcrop\", or components recorded at depth");
   }
 
   ComponentDirection direction(const MotionComponentSpec& spec, const MotionComponent& component) {

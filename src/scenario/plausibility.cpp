@@ -233,13 +233,19 @@ class Plausibility {
       if (stage.kind == StageKind::settle) settled = true;
       if (stage.kind == StageKind::shake && !settled) {
         warn("{}: shakes before the rock has settled{}", path, excavated ? " after an excavation" : "");
-      } else if (stage.kind == StageKind::shake && before != nullptr && before->kind == StageKind::settle &&
-                 has_opening()) {
-        warn(
-            "{}: what hangs loose comes down during the shaking; a stage of kind \"rest\" before it tells "
-            "the two "
-            "apart",
-            path);
+      } else if (stage.kind == StageKind::shake && before != nullptr && has_opening() &&
+                 !scenario_.accepted.late_falls) {
+        if (before->kind == StageKind::settle)
+          warn(
+              "{}: what hangs loose comes down during the shaking, and counts as the earthquake's; a stage "
+              "of "
+              "kind \"rest\" with until = \"still\" before it tells the two apart",
+              path);
+        if (before->kind == StageKind::rest && !before->until_still)
+          warn(
+              "{}: what hangs loose and is not down after {} s of '{}' counts as the earthquake's; "
+              "until = \"still\" there waits for it",
+              path, before->duration.value_or(0.0), before->name);
       }
       before = &stage;
     }

@@ -98,7 +98,7 @@ void read_boundary_keys(TableReader& t, Scenario& scenario) {
   check_speeds(t, boundary.vs, boundary.vp);
   t.tables("column", boundary.column,
            {.meaning = "Layers of the rock beside the model, from above.",
-            .fallback = "[rock] with its joint sets",
+            .fallback = "that of the blocks at the sides, with their joints",
             .applies = around,
             .condition = "sides other than \"frame\""},
            read_layer);
@@ -109,6 +109,13 @@ void read_boundary_keys(TableReader& t, Scenario& scenario) {
             .above = 0.0,
             .applies = around,
             .condition = "sides other than \"frame\""});
+  const bool free_field = documenting || boundary.sides == Sides::free_field;
+  t.boolean(
+      "planes", boundary.planes,
+      {.meaning = "Joints through the whole model that are at most 10° steep go on in the rock beside it, "
+                  "and slip there as well; else that rock is elastic.",
+       .applies = free_field,
+       .condition = "sides = \"free-field\""});
   if (documenting) return;
   if (!around && boundary.compliant)
     t.fail("sides", "\"frame\" with a compliant base", "base = \"rigid\", or \"free-field\" sides");

@@ -17,8 +17,11 @@ constexpr Word<Baseline> baselines[] = {{"none", Baseline::none},
                                         {"linear", Baseline::linear},
                                         {"taper", Baseline::taper}};
 
-constexpr Word<MotionPlace> places[] = {
-    {"outcrop", MotionPlace::outcrop}, {"inside", MotionPlace::inside}, {"base", MotionPlace::base}};
+constexpr Word<MotionPlace> places[] = {{"outcrop", MotionPlace::outcrop},
+                                        {"incident", MotionPlace::incident},
+                                        {"within", MotionPlace::within},
+                                        {"base", MotionPlace::base},
+                                        {"inside", MotionPlace::inside}};
 
 // How a file is read. `given` holds where there is a file to read, `file_condition` says so.
 void read_reading(TableReader& t, MotionComponentSpec& component, bool given,
@@ -146,11 +149,22 @@ bool has_file(const TableReader& t, std::string_view key) {
 void read_motion(TableReader& t, MotionSpec& motion) {
   motion.path = t.path();
   t.name("name", motion.name, "motion", {.meaning = "Name, for the stages that use it.", .required = true});
-  t.word(
-      "at", motion.place, places,
-      {.meaning = "Where it was recorded. `outcrop`: on free rock, as most records are; `inside`: the wave "
-                  "that goes up in the rock below; `base`: the motion of the base itself.",
-       .fallback = "\"outcrop\" over a compliant base, else \"base\""});
+  t.word("at", motion.place, places,
+         {.meaning =
+              "What it is a record of, in the words of SHAKE. `outcrop`: free rock, as most records on "
+              "rock are; `incident`: the wave that goes up alone, half of an outcrop (`inside` is an older "
+              "word for it); `within`: the ground at `depth`, as an instrument in a borehole sees it; "
+              "`base`: the base of the model itself.",
+          .fallback = "\"outcrop\" over a compliant base, else \"base\""});
+  const bool within = motion.place == MotionPlace::within;
+  t.number("depth", motion.depth,
+           {.meaning = "Of a record within the ground: below the ground beside the model.",
+            .unit = "m",
+            .required = within && !t.documenting(),
+            .above = 0.0,
+            .fallback = "required with at = \"within\"",
+            .applies = within || t.documenting(),
+            .condition = "at = \"within\""});
   const bool listed = t.find("components") != nullptr;
   const bool record = listed || has_file(t, "x") || has_file(t, "y");
   const bool documenting = t.documenting();

@@ -105,9 +105,10 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   const bool dynamic = any || stage.kind != StageKind::settle;
   t.word("until", stage.until_still, stage_ends,
          only(dynamic, "kind = \"shake\" or \"rest\"",
-              {.meaning = "`still`: the stage ends before its duration, once nothing moves, slips or turns "
-                          "any more. A shaking stage does not end before its acceleration stays below a "
-                          "twentieth of the largest."}));
+              {.meaning =
+                   "`still`: the stage ends before its duration, once nothing moves, slips or turns "
+                   "any more. It does not end before a planned load, prescribed displacement or pressure is "
+                   "constant, nor before the shaking is over."}));
   const bool still = t.documenting() || stage.until_still;
   t.number(
       "still_time", stage.still_time,
@@ -118,6 +119,13 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .unit = "m",
                  .above = 0.0,
                  .fallback = "a twentieth of [damage] slip"}));
+  t.number(
+      "still_acceleration", stage.still_acceleration,
+      only(t.documenting() || (stage.until_still && shake), "until = \"still\" and kind = \"shake\"",
+           {.meaning = "The shaking is over when its acceleration stays below this and below a twentieth of "
+                       "the largest.",
+            .unit = "m/s²",
+            .above = 0.0}));
   t.number(
       "k_h", stage.k_h,
       only(settle, "kind = \"settle\"",

@@ -90,10 +90,13 @@ class Consistency {
   void check_motion_places() {
     const bool compliant = scenario_.boundary && scenario_.boundary->compliant;
     for (const MotionSpec& motion : scenario_.motions) {
-      if (!motion.place || compliant == (*motion.place != MotionPlace::base)) continue;
+      // A record within the ground moves a rigid base at its depth, too.
+      if (!motion.place || compliant == (*motion.place != MotionPlace::base) ||
+          (motion.place == MotionPlace::within && scenario_.boundary))
+        continue;
       const std::string key = join_path(motion.path, "at");
       fail(key, key, compliant ? "\"base\" over a compliant base" : "a motion of waves over a rigid base",
-           compliant ? "\"outcrop\" or \"inside\", or [boundary] base = \"rigid\""
+           compliant ? "\"outcrop\", \"incident\" or \"within\", or [boundary] base = \"rigid\""
                      : "\"base\", or [boundary] with base = \"compliant\"");
     }
   }
@@ -159,7 +162,9 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"order-1", &AcceptedWarnings::order_1},
     {"free-boundary", &AcceptedWarnings::free_boundary},
     {"step", &AcceptedWarnings::step},
-    {"damping", &AcceptedWarnings::damping}};
+    {"damping", &AcceptedWarnings::damping},
+    {"closed-box", &AcceptedWarnings::closed_box},
+    {"late-falls", &AcceptedWarnings::late_falls}};
 
 void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
   std::vector<std::string> words;

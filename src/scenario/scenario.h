@@ -122,13 +122,16 @@ struct BoundarySpec {
   std::optional<double> density, vs, vp;  ///< of the half-space below
   std::vector<RockLayerSpec> column;      ///< empty: the rock of the model
   double frequency = 25.0;                ///< Hz
+  bool planes = true;                     ///< level joints go on beside the model, and slip there
 };
 
 /// Where a motion was recorded.
 enum class MotionPlace {
-  outcrop,  ///< on free rock
-  inside,   ///< the wave that goes up
-  base,     ///< what the base of the model does
+  outcrop,   ///< on free rock
+  incident,  ///< the wave that goes up
+  inside,    ///< the same, by an older word
+  within,    ///< in the ground, at a depth: waves that go up and down
+  base,      ///< what the base of the model does
 };
 
 struct MotionComponentSpec {
@@ -150,6 +153,7 @@ struct MotionSpec {
   loading::AccelerationTable x, y;
   std::optional<loading::Sine> sine_x, sine_y;
   std::optional<MotionPlace> place;  ///< empty: on an outcrop over a compliant base, else at the base
+  std::optional<double> depth;       ///< m below the ground, of a record within
   std::string path;
 };
 
@@ -159,7 +163,9 @@ struct AcceptedWarnings {
   bool order_1 = false;        ///< of blocks of order 1 that are too stiff for the closure of an opening
   bool free_boundary = false;  ///< of stress in rock that nothing holds
   bool step = false;           ///< of a time step that is long for the motion
-  bool damping = false;        ///< of damping beyond critical
+  bool damping = false;        ///< of damping beyond critical, or of what nobody asked to be damped
+  bool closed_box = false;     ///< of a record that shakes a frame
+  bool late_falls = false;     ///< of what hangs loose when the shaking begins
 };
 
 struct Scenario {

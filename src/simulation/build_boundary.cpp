@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/index.h"
 #include "geometry/quadrature.h"
@@ -13,6 +14,7 @@ namespace {
 using dynamics::BoundaryPoint;
 using dynamics::FarRock;
 using dynamics::RockColumn;
+using dynamics::RockPlane;
 
 constexpr double springs_over_young = 1000.0;  // 1/m, as of supports
 constexpr double alike = 1e-9;                 // of the size of the model: what rounding makes of one height
@@ -87,16 +89,27 @@ class Builder {
   void add_far_rock() {
     const std::optional<Vec2> dashpots =
         boundary_.compliant ? std::optional<Vec2>(boundary_.dashpots) : std::nullopt;
-    const auto add = [&](double height, double x) {
-      far_.push_back({RockColumn(boundary_.layers, outside_.box().min.y, height, dashpots, boundary_.fastest,
-                                 dynamics::stiffness_damping(model_)),
+    const auto add = [&](ColumnSide side, double height, double x) {
+      std::vector<dynamics::RockPlane> planes;
+      for (const FarPlane& plane : boundary_.planes)
+        planes.push_back(plane.at_side[side == ColumnSide::left ? 0 : 1]);
+      far_.push_back({RockColumn(boundary_.layers_at(side), outside_.box().min.y, height, dashpots,
+                                 boundary_.fastest, dynamics::stiffness_damping(model_), planes),
                       x});
     };
     const double left = outside_.ground(Side::left), right = outside_.ground(Side::right);
-    add(left, outside_.box().min.x);
-    if (std::abs(left - right) > outside_.tolerance()) add(right, outside_.box().max.x);
+    add(ColumnSide::left, left, outside_.box().min.x);
+    if (std::abs(left - right) > outside_.tolerance() || !boundary_.right_layers.empty() ||
+        !std::ranges::all_of(boundary_.planes, [&](const FarPlane& p) { return is_alike(p); }))
+      add(ColumnSide::right, right, outside_.box().max.x);
   }
 
+  /// Both columns would slip alike.
+  [[nodiscard]] bool is_alike(const FarPlane& plane) const {
+    const auto& [left, right] = plane.at_side;
+    return std::abs(left.height - right.height) <= outside_.tolerance() &&
+           std::abs(left.dip) + std::abs(right.dip) <= alike;
+  }
   void set_far(Side side, BoundaryPoint& p) const {
     if (boundary_.sides != Sides::free_field) return;
     p.far = side == Side::right ? static_cast<int>(far_.size()) - 1 : 0;
@@ -119,7 +132,10 @@ class Builder {
         p.normal = {side == Side::left ? -1.0 : 1.0, 0.0};
         p.springs = {stiffness, 0.0};
         p.absorbs = takes_waves;
-        const Vec2 of_rock = dynamics::layer_at(boundary_.layers, p.place.y).impedance();
+        const Vec2 of_rock =
+            dynamics::layer_at(boundary_.layers_at(side == Side::left ? ColumnSide::left : ColumnSide::right),
+                               p.place.y)
+                .impedance();
         p.dashpots = {of_rock.y, of_rock.x};  // pressure goes across a side, shear along it
         set_far(side, p);
         return;
@@ -189,6 +205,39 @@ std::optional<dynamics::MassDamping> mass_damping(const dynamics::Model& model) 
 ColumnHeights column_heights(const RunSetup& setup, ColumnSide side) {
   const Outside outside(setup);
   return {outside.box().min.y, outside.ground(side == ColumnSide::left ? Side::left : Side::right)};
+}
+
+std::vector<PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Model& model,
+                                       const dynamics::State& state) {
+  std::vector<PlaneRecord> planes;
+  if (!setup.boundary || setup.boundary->planes.empty()) return planes;
+  for (std::size_t k = 0; k < model.couplings.size(); ++k) {
+    const auto* boundary = dynamic_cast<const dynamics::SeismicBoundary*>(model.couplings[k].get());
+    if (boundary == nullptr) continue;
+    for (std::size_t f = 0; f < boundary->far_rock().size(); ++f) {
+      const FarRock& far = boundary->far_rock()[f];
+      for (std::size_t j = 0; j < far.column.planes().size(); ++j) {
+        const RockPlane& plane = far.column.planes()[j];
+        const dynamics::RockPlaneState is = boundary->plane(state.couplings[k], f, j);
+        const auto of = std::ranges::find_if(setup.boundary->planes, [&](const FarPlane& p) {
+          return std::ranges::any_of(p.at_side,
+                                     [&](const RockPlane& side) { return side.height == plane.height; });
+        });
+        const bool is_known = of != setup.boundary->planes.end();
+        planes.push_back({.joint = is_known ? of->joint : "",
+                          .x = far.x,
+                          .height = plane.height,
+                          .dip = plane.dip * 180.0 / std::numbers::pi,
+                          .mobilized = is_known ? of->mobilized : 0.0,
+                          .normal = is.normal,
+                          .shear = is.shear,
+                          .slip = is.slip,
+                          .slip_max = is.largest_slip,
+                          .opened = is.opened});
+      }
+    }
+  }
+  return planes;
 }
 
 std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup,

@@ -4,6 +4,8 @@
 
 #include "coupling/seismic_boundary.h"
 #include "model/model.h"
+#include "model/state.h"
+#include "simulation/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {
@@ -23,5 +25,9 @@ ColumnHeights column_heights(const RunSetup& setup, ColumnSide side);
 
 /// The rock around the model: on all edges of moving blocks that lie on a side of the rectangle. setup.boundary must be there.
 std::shared_ptr<const dynamics::Coupling> build_boundary(const RunSetup& setup, const dynamics::Model& model);
+
+/// The planes beside the model, as they are in a state.
+std::vector<PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Model& model,
+                                       const dynamics::State& state);
 
 }  // namespace keyblock::simulation

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
 #include <utility>
 
 #include "core/archive.h"
@@ -14,7 +15,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0015;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0016;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -67,6 +68,12 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.wall_time);
   archive(s.interrupted);
   archive(s.still);
+  StageWait wait = s.waits_for.value_or(StageWait{});
+  archive(wait.what);
+  archive(wait.until);
+  if constexpr (!std::is_const_v<StageRecordOrConst>) {
+    if (!wait.what.empty()) s.waits_for = wait;
+  }
   archive(s.motion_time);
   archive(s.motion);
 }

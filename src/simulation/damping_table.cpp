@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "model/damping.h"
 
@@ -34,7 +35,10 @@ std::vector<DampingRow> damping_table(const RunSetup& setup) {
   for (const double frequency : {1.0, 3.0, 10.0, 30.0}) {
     const double rock =
         setup.solver.damping ? setup.solver.damping->ratio_at(frequency) : of_blocks(setup, frequency);
-    rows.push_back({frequency, rock, dynamics::numerical_damping(rule, setup.time_step, frequency)});
+    const double in_waves =
+        setup.solver.damping ? std::numbers::pi * frequency * setup.solver.damping->stiffness_time() : rock;
+    rows.push_back(
+        {frequency, rock, dynamics::numerical_damping(rule, setup.time_step, frequency), in_waves});
   }
   return rows;
 }

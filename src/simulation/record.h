@@ -18,12 +18,15 @@
 /// What a run tells the outside: plain data, written to the result file and drawn in the report.
 namespace keyblock::simulation {
 
-/// What swings alone at a frequency loses, as shares of critical.
+/// What swings alone, and what goes as a wave, at a frequency loses, as shares of critical.
 struct DampingRow {
   double frequency = 0.0;  ///< Hz
   double rock = 0.0;       ///< by [solver] damping, or rock_damping
   double rule = 0.0;       ///< by the rule of time integration
+  /// By the part of `rock` in proportion to stiffness: a wave through the ground has no motion against the ground, which the rest acts on.
+  double rock_in_waves = 0.0;
   [[nodiscard]] double total() const { return rock + rule; }
+  [[nodiscard]] double waves() const { return rock_in_waves + rule; }
 };
 
 /// Rock far away beside the model, as far up as the ground there.
@@ -234,6 +237,12 @@ struct ReleasePoint {
   int excavation = 0;
 };
 
+/// What a stage that ends when all is still waits for first: planned loads, motions of fixed blocks and supports, pressures, the shaking.
+struct StageWait {
+  double until = 0.0;  ///< s, in the stage
+  std::string what;    ///< "load 1"
+};
+
 struct StageRecord {
   Stage stage;
   long steps = 0;
@@ -258,7 +267,8 @@ struct StageRecord {
   Movers movers;                     ///< around openings, too
   double wall_time = 0.0;            ///< s
   bool interrupted = false;
-  bool still = false;  ///< it ended before `planned_duration`, as nothing moved any more
+  bool still = false;                  ///< it ended before `planned_duration`, as nothing moved any more
+  std::optional<StageWait> waits_for;  ///< before that may be
   /// The motion as applied, thinned to what a plot needs: time in the stage (s), acceleration (m/s²).
   std::vector<double> motion_time;
   std::vector<Vec2> motion;
@@ -290,6 +300,18 @@ struct ContactChecks {
   OverlapRecord unexplained;  ///< the deepest vertex, less what closes the joint there
 };
 
+/// A joint that goes on in the rock beside the model, at the end of the run.
+struct PlaneRecord {
+  std::string joint;                 ///< the set or map that it is of
+  double x = 0.0, height = 0.0;      ///< m, local: of its column, and in it
+  double dip = 0.0;                  ///< degrees, downwards to the right
+  double mobilized = 0.0;            ///< FarPlane::mobilized
+  double normal = 0.0, shear = 0.0;  ///< Pa, that it carries
+  double slip = 0.0;                 ///< m, positive where the upper rock has gone to the right
+  double slip_max = 0.0;             ///< m, the largest in the run
+  bool opened = false;               ///< at any time
+};
+
 struct RunRecord {
   long steps = 0;
   double wall_time = 0.0;  ///< s
@@ -302,6 +324,7 @@ struct RunRecord {
   Energy energy;
   double made_ratio = 0.0;  ///< energy that the time integration has made, over the largest other term
   std::vector<StageRecord> stages;
+  std::vector<PlaneRecord> planes;  ///< beside the model, from left to right and from below
   bool interrupted = false;
   Profile profile;  ///< of this run; of the part after resuming, if it was resumed
 };

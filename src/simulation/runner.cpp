@@ -8,12 +8,14 @@
 #include "core/index.h"
 #include "core/out_of_memory.h"
 #include "dynamics/energy.h"
+#include "simulation/build_boundary.h"
 #include "simulation/build_model.h"
 #include "simulation/checkpoint_checks.h"
 #include "simulation/energy_audit.h"
 #include "simulation/excavate.h"
 #include "simulation/feasibility.h"
 #include "simulation/install.h"
+#include "simulation/planned_changes.h"
 #include "simulation/run_checks.h"
 #include "simulation/step_count.h"
 
@@ -171,6 +173,7 @@ void Runner::end() {
       record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
   record.energy = energy();
   record.made_ratio = made_ratio(model_, record.energy);
+  record.planes = planes_beside(setup_, model_, now_.mechanics);
   record.interrupted = record.interrupted || is_set(options_.stop) || now_.stage < std::ssize(setup_.stages);
   record.profile = profile_;
   observer_.end(record);
@@ -209,6 +212,7 @@ void Runner::begin_stage() {
   record.steps = now_.stage_step;
   plan_motion(setup_, record);
   gauge_.name_moving({});
+  record.waits_for = wait_of(setup_, record);
   if (is_new) {
     excavate(setup_, record.stage, model_, now_.mechanics, *stepper_, gauge_, opening_);
     install(setup_, record.stage, model_, now_.mechanics);
@@ -232,12 +236,9 @@ void Runner::begin_stage() {
 /// For the time when nothing moves any more.
 void Runner::begin_waiting(bool is_new) {
   const Stage& stage = stage_->record.stage;
-  double begin = 0.0;
-  if (stage.kind == StageKind::shake)
-    begin = end_of_shaking(setup_.motions.at(static_cast<std::size_t>(stage.motion)),
-                           stage_->record.planned_duration.value_or(0.0));
+  const std::optional<StageWait>& wait = stage_->record.waits_for;
   stage_->stillness.emplace(stage.still_distance.value_or(still_share * setup_.damage.slip), stage.still_time,
-                            begin);
+                            wait ? wait->until : 0.0);
   if (!is_new) stage_->stillness->restore(now_.still);
 }
 

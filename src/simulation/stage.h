@@ -30,7 +30,9 @@ struct Stage {
   bool until_still = false;  ///< shake, rest: it ends once nothing moves any more (Stillness)
   double still_time = 0.5;   ///< s, for so long
   std::optional<double> still_distance;  ///< m, by more than this; default a twentieth of DamageLimits::slip
-  std::optional<int> max_steps;          ///< settle
+  /// m/s²; a motion that stays below it, or below a twentieth of its peak, is over
+  double still_acceleration = 0.05;
+  std::optional<int> max_steps;  ///< settle
   /// settle: inertia forces of an earthquake as loads that stay, over the weight: to the right, and up.
   double k_h = 0.0, k_v = 0.0;
   double tolerance = 1e-4;  ///< settle: largest residual of a block over its weight at equilibrium

@@ -28,7 +28,7 @@ bool Stillness::stays(const contact::Surface& surface) const {
   return true;
 }
 
-double end_of_shaking(const loading::GroundMotion& motion, double duration) {
+double end_of_shaking(const loading::GroundMotion& motion, double duration, double least) {
   const std::vector<double>& times = motion.times();
   const std::vector<Vec2>& accelerations = motion.accelerations();
   double largest = 0.0, last = 0.0;
@@ -38,7 +38,7 @@ double end_of_shaking(const loading::GroundMotion& motion, double duration) {
   };
   for_samples([&](double /*time*/, double a) { largest = std::max(largest, a); });
   for_samples([&](double time, double a) {
-    if (a > weak_share * largest) last = time;
+    if (a > std::min(weak_share * largest, least)) last = time;
   });
   return last;
 }

@@ -8,7 +8,7 @@
 namespace keyblock::simulation {
 
 /// Whether a stage that ends when all is still has come to that: no vertex of a block that is there is farther than a distance from where it
-/// was, for a time. What moves, slips or turns moves vertices. A shaking stage is not still before its motion is over.
+/// was, for a time. What moves, slips or turns moves vertices. No stage is still before all is over that is planned (planned_changes.h).
 class Stillness {
  public:
   /// All that is known from step to step.
@@ -32,7 +32,8 @@ class Stillness {
   Memory memory_;
 };
 
-/// s, time in a motion after which its acceleration never exceeds a twentieth of the largest before `duration`.
-[[nodiscard]] double end_of_shaking(const loading::GroundMotion& motion, double duration);
+/// s, time in a motion, of which `duration` is applied, after which its acceleration is weak: never above a twentieth of the largest, nor
+/// above `least`, m/s².
+[[nodiscard]] double end_of_shaking(const loading::GroundMotion& motion, double duration, double least);
 
 }  // namespace keyblock::simulation

@@ -10,7 +10,7 @@
 namespace keyblock::scenario {
 namespace {
 
-/// Rock of a box on a half-space of itself, with one set of joints 2 m apart that stand for a half of their planes.
+/// Rock of a box on a half-space of itself, with one set of through-going joints 2 m apart.
 std::string jointed_ground(double dip, const std::string& boundary,
                            const std::string& motion = "x = [[0, 0], [1, 1], [2, -1], [3, 0]]") {
   return "accept_warnings = [\"order-1\"]\n[section]\nazimuth = 90.0\n[domain]\nx = [0, 40]\ny = [-20, 0]\n"
@@ -18,7 +18,7 @@ std::string jointed_ground(double dip, const std::string& boundary,
          "[joints]\nfriction = 30.0\nnormal_stiffness = 2.0e9\nshear_stiffness = 1.0e9\n"
          "[[joint_set]]\nname = \"set\"\ndip = " +
          std::to_string(dip) +
-         "\ndip_direction = 90.0\nspacing = 2.0\nlength = 10.0\ngap = 10.0\n[boundary]\n" + boundary +
+         "\ndip_direction = 90.0\nspacing = 2.0\nlength = 1000.0\ngap = 0.0\n[boundary]\n" + boundary +
          "\n[time]\nstep = 0.005\n[[motion]]\nname = \"quake\"\n" + motion +
          "\n[[stage]]\nname = \"settle\"\nkind = \"settle\"\n[[stage]]\nname = \"shake\"\nkind = "
          "\"shake\"\nmotion = \"quake\"\n";
@@ -28,9 +28,9 @@ simulation::RunSetup setup_of(const std::string& text) {
   return build_setup(parse_scenario_text(text, "ground.toml"), 0);
 }
 
-// Of rock with G = 2 GPa and level joints, which one plane in two is.
+// Of rock with G = 2 GPa and level joints.
 TEST(FarRock, IsSofterByItsJoints) {
-  const double share = 0.5 / 2.0, nu = 0.2, young = 4.8e9;
+  const double share = 1.0 / 2.0, nu = 0.2, young = 4.8e9;
   for (const double dip : {0.0, 90.0}) {
     const dynamics::RockLayer rock = setup_of(jointed_ground(dip, "")).boundary->layers.front();
     EXPECT_NEAR(1.0 / rock.shear, 1.0 / 2e9 + share / 1e9, 1e-15) << dip;

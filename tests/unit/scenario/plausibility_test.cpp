@@ -131,7 +131,8 @@ TEST(Warnings, ThatAreAcceptedAreNamed) {
       mistakes(two_blocks, {"accept_warnings=['plane-stres']"}),
       HasSubstr(
           "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
-          "\"free-boundary\", \"step\" or \"damping\"; did you mean 'plane-stress'?"));
+          "\"free-boundary\", \"step\", \"damping\", \"closed-box\" or \"late-falls\"; did you mean "
+          "'plane-stress'?"));
   EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
 }
 

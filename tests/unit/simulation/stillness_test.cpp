@@ -6,6 +6,7 @@
 
 #include "../fresh_folder.h"
 #include "../scene.h"
+#include "simulation/planned_changes.h"
 
 namespace keyblock::simulation {
 namespace {
@@ -70,8 +71,58 @@ TEST(Stillness, ShakingIsOverWhenItStaysWeak) {
   const loading::GroundMotion motion(
       "two", {0.0, 1.0, 2.0, 3.0, 4.0, 5.0},
       {{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}, {0.0, 4.0}, {0.1, 0.0}, {0.0, 0.0}});
-  EXPECT_EQ(end_of_shaking(motion, 5.0), 3.0);
-  EXPECT_EQ(end_of_shaking(motion, 2.0), 1.0);
+  EXPECT_EQ(end_of_shaking(motion, 5.0, 1.0), 3.0);
+  EXPECT_EQ(end_of_shaking(motion, 2.0, 1.0), 1.0);
+  EXPECT_EQ(end_of_shaking(motion, 5.0, 0.05), 4.0)
+      << "a twentieth of a strong shaking still moves what yields early";
+}
+
+/// A load that grows from 1.0 to 1.1 s on a block that bears it.
+RunSetup loaded_later(double until) {
+  RunSetup setup = slide(5.0);
+  setup.properties[1].name = "stone";
+  loading::Load load;
+  load.block = "stone";
+  load.from = load.to = {0.5, 0.25};
+  load.value = {100.0, 0.0};
+  load.factor = loading::TimeTable({{0.0, 0.0}, {1.0, 0.0}, {until, 1.0}, {until + 1.0, 1.0}});
+  setup.loads = {load};
+  return setup;
+}
+
+// Nothing that is planned may come after the end.
+TEST(Stillness, WaitsForALoadThatIsToCome) {
+  RunObserver nobody;
+  const RunRecord record = run(loaded_later(1.1), {}, nobody);
+  ASSERT_TRUE(record.stages[0].waits_for);
+  EXPECT_EQ(record.stages[0].waits_for->what, "load 1");
+  EXPECT_EQ(record.stages[0].waits_for->until, 1.1);
+  EXPECT_TRUE(record.stages[0].still);
+  EXPECT_NEAR(record.stages[0].duration, 1.2, 0.02);
+  EXPECT_FALSE(record.stages[1].waits_for);
+}
+
+// What comes after its longest duration keeps it going to that: later stages count on its time.
+TEST(Stillness, WaitsToTheEndForWhatComesLater) {
+  RunObserver nobody;
+  const RunRecord record = run(loaded_later(9.0), {}, nobody);
+  EXPECT_FALSE(record.stages[0].still);
+  EXPECT_EQ(record.stages[0].duration, 5.0);
+}
+
+// The rows of a table that say nothing new are no change.
+TEST(PlannedChanges, EndWhereATableIsConstant) {
+  using loading::TimeTable;
+  EXPECT_EQ(TimeTable({{0.0, 0.0}, {2.0, 0.0}, {2.1, 1.0}, {3.0, 1.0}}).last_change(), 2.1);
+  EXPECT_EQ(TimeTable({{0.0, 1.0}, {5.0, 1.0}}).last_change(), std::nullopt);
+  EXPECT_EQ(TimeTable().last_change(), std::nullopt);
+  RunSetup setup = slide(1.0);
+  EXPECT_FALSE(last_planned_change(setup));
+  setup.properties[0].name = "floor";
+  setup.properties[0].motion_x = TimeTable({{0.0, 0.0}, {3.0, 0.0}, {4.0, 0.1}});
+  EXPECT_EQ(last_planned_change(setup)->what, "the motion of the fixed block 'floor'");
+  setup.supports.emplace_back().motion_y = TimeTable({{0.0, 0.0}, {6.0, 0.1}});
+  EXPECT_EQ(last_planned_change(setup)->time, 6.0);
 }
 
 // Only vertices that are there count, and one that is nowhere never stays.
