@@ -165,9 +165,31 @@ def corners():
     return text
 
 
+def sliding():
+    tilt, width, height = 25.0, 0.8, 1.0
+    s, c = math.sin(math.radians(tilt)), math.cos(math.radians(tilt))
+    scenario(
+        "sliding_on_open_heel", title="A block on a tilted base, whose joint is open at the heel", gravity=(G * s, -G * c), rock=RIGID,
+        joints="friction = 30.0\nnormal_stiffness = 1.0e9", step=0.002, blocks=[("base", box(-1, -1, 4, 1), FIXED), ("block", box(0, 0, width, height), "")],
+        stages=SETTLE,
+    )
+    # It would tip at tan(tilt) = width/height; from a third of that on the heel is open.
+    assert width / height / 3 < s / c < width / height
+    text = ""
+    for what, share, moving in (("stands", 1.005, {"at_most": 0}), ("slides", 0.995, {"at_least": 1})):
+        for kind, ways in (
+            ("", 'orders = [1, 2]\nvary = { "solver.face_contacts" = [2, 3, 5], "joints.normal_stiffness" = [1.0e9, 1.0e10] }\n'),
+            (", order 3", 'orders = [3]\nvary = { "joints.normal_stiffness" = [1.0e9, 1.0e10] }\n'),
+        ):
+            text += f'\n[[run]]\nname = "sliding on an open heel{kind}: {what}"\nscenario = "scenarios/sliding_on_open_heel.toml"\n'
+            text += f'set = ["joints.friction={math.degrees(math.atan(share * s / c)):.9f}"]\n{ways}'
+            text += quantity("blocks that move", "summary('stages.0.equilibrium.moving_blocks')", **moving)
+    return text
+
+
 def joint_pressure():
     text = '''title = "Pressure along joints"
 case  = 41
-about = """Joints of given stiffness k, at default settings. A rigid block of width b with a load e beside its middle: the pressure is a trapezium up to e = b/6, then a triangle of length 3 (b/2 − e), whatever the order and the number of contacts. A bond of strength t that is bent breaks at t b²/6. A pier of eight blocks on such joints falls at a tilt that an independent computation of rigid blocks gives (verification/joint_pressure.py), 2 % either side. A joint that in-situ stress has closed by 10 mm and a wall that moves away relaxes by what two joints and the rock between them give in a row. Two blocks that lean on each other corner to corner, θ from upright: the force between them is level, and their feet need a friction of ½ (tan θ − thickness/length), 1 % either side."""
+about = """Joints of given stiffness k, at default settings. A rigid block of width b with a load e beside its middle: the pressure is a trapezium up to e = b/6, then a triangle of length 3 (b/2 − e), whatever the order and the number of contacts. A bond of strength t that is bent breaks at t b²/6. A pier of eight blocks on such joints falls at a tilt that an independent computation of rigid blocks gives (verification/joint_pressure.py), 2 % either side. A joint that in-situ stress has closed by 10 mm and a wall that moves away relaxes by what two joints and the rock between them give in a row. Two blocks that lean on each other corner to corner, θ from upright: the force between them is level, and their feet need a friction of ½ (tan θ − thickness/length), 1 % either side. A block on a tilted base whose joint is open at the heel slides at the friction of the tilt, 0.5 % either side."""
 '''
-    case("joint_pressure", text + eccentric() + cracks() + piers() + prestressed() + corners())
+    case("joint_pressure", text + eccentric() + cracks() + piers() + prestressed() + corners() + sliding())

@@ -20,13 +20,15 @@ struct Group {
   std::array<double, lane_count>
       closure{};  ///< m, that in-situ stress has closed a joint by that still presses
   std::array<double, lane_count> next_deep{}, previous_deep{};  ///< 1 or 0: sides_to_deep()
+  std::array<double, lane_count> pressed{};                     ///< m, by the spring of what presses
   std::array<double, lane_count> in_face{};  ///< 1: it shares the pressure of a face that presses; 0
 };
 
-/// What comes in there in the step meets the other edge: reach does not count.
-bool is_through_tip(const CornerView& view, const Candidate& candidate) {
+/// What comes in there in the step meets the other edge: reach does not count. A tip that an impact has pressed through another one is held as long as
+/// its spring explains it. pressed: m, by that spring.
+bool is_through_tip(const CornerView& view, const Candidate& candidate, double pressed) {
   const auto lines = tip_lines(view, candidate);
-  return std::max(lines[0].outside, lines[1].outside) > view.tolerances.end_zone;
+  return std::max(lines[0].outside, lines[1].outside) > view.tolerances.end_zone + pressed;
 }
 
 /// The candidates of a group that are contacts, unless they lose to others of the same two corners, to `passed`. Returns their number. All
@@ -90,7 +92,8 @@ std::size_t pass(const CornerView& view, const Group& group, Competitor* passed)
     passed[count].is_beyond = is_beyond[i] != 0;
     passed[count].disputed = disputed[i] != 0;
     const bool is_through =
-        may_be_through[i] != 0 && is_through_tip(view, view.candidates.pairs[at(group.candidate[i])]);
+        may_be_through[i] != 0 &&
+        is_through_tip(view, view.candidates.pairs[at(group.candidate[i])], group.pressed[i]);
     count += passes[i] != 0 && !is_through ? 1 : 0;
   }
   return count;
@@ -121,6 +124,8 @@ inline void add(Group& group, std::size_t candidate, std::size_t pair, const Pai
   group.deepest[i] = before.normal_force > 0.0 ? HUGE_VAL : group.past_end[i];
   group.presses[i] = before.normal_force > 0.0 ? 1.0 : 0.0;
   group.bonded[i] = before.bonded ? 1.0 : 0.0;
+  group.pressed[i] =
+      before.normal_force > 0.0 && before.stiffness > 0.0 ? before.normal_force / before.stiffness : 0.0;
   group.closure[i] = before.normal_force > 0.0 ? std::max(0.0, -before.offset) : 0.0;
   group.in_face[i] = before.in_face && before.normal_force > 0.0 ? 1.0 : 0.0;
   group.next_deep[i] = sides.next ? 1.0 : 0.0;

@@ -67,6 +67,15 @@ void for_cells(const EdgeDivision& division, std::span<const double> y, const Of
   }
 }
 
+/// A force at s, to the two points that it is between, as a beam on them bears it.
+void add_between(const std::vector<double>& points, double s, double force, std::span<double> bearing) {
+  std::size_t i = 0;
+  while (i + 2 < points.size() && s > points[i + 1]) ++i;
+  const double share = (s - points[i]) / (points[i + 1] - points[i]);
+  bearing[i] += (1.0 - share) * force;
+  bearing[i + 1] += share * force;
+}
+
 enum class Closed { all, none, partly };
 
 Closed closed_part(const EdgeDivision& division, std::span<const double> y) {
@@ -85,15 +94,16 @@ const EdgeDivision& two_ends() {
   return ends;
 }
 
-/// Calls of_point(weight, N_i) for the points of Gauss's rule in the parts where the joint is closed: exact, as N_i N_j is a polynomial.
+/// Calls of_point(weight, s, N_i) for the points of Gauss's rule in the parts where the joint is closed: exact, as N_i N_j is a polynomial.
 template <typename OfPoint>
 void JointPressure::for_closed_points(std::span<const double> y, const OfPoint& of_point) const {
   const LineRule& rule = gauss_legendre(static_cast<int>(y.size()));
   Shares shares;
   const auto add = [&](double from, double to) {
     for (std::size_t q = 0; q < rule.points.size(); ++q) {
-      find_shares(*points_, from + (to - from) * rule.points[q], shares);
-      of_point((to - from) * rule.weights[q], shares);
+      const double s = from + (to - from) * rule.points[q];
+      find_shares(*points_, s, shares);
+      of_point((to - from) * rule.weights[q], s, shares);
     }
   };
   const Closed closed = pulls_ ? Closed::all : closed_part(*points_, y);
@@ -112,19 +122,26 @@ void JointPressure::for_closed_points(std::span<const double> y, const OfPoint& 
 }
 
 void JointPressure::forces(std::span<const double> y, std::span<double> force) const {
+  forces(y, force, {});
+}
+
+void JointPressure::forces(std::span<const double> y, std::span<double> force,
+                           std::span<double> bearing) const {
   std::ranges::fill(force, 0.0);
-  for_closed_points(y, [&](double weight, const Shares& shares) {
+  std::ranges::fill(bearing, 0.0);
+  for_closed_points(y, [&](double weight, double s, const Shares& shares) {
     double closure = 0.0;
     for (std::size_t i = 0; i < y.size(); ++i) closure += shares[i] * y[i];
     const double pressed = stiffness_ * weight * closure;
     for (std::size_t i = 0; i < y.size(); ++i) force[i] += pressed * shares[i];
+    if (!bearing.empty()) add_between(points_->points, s, pressed, bearing);
   });
 }
 
 void JointPressure::tangent(std::span<const double> y, std::span<double> h) const {
   std::ranges::fill(h, 0.0);
   const std::size_t n = y.size();
-  for_closed_points(y, [&](double weight, const Shares& shares) {
+  for_closed_points(y, [&](double weight, double /*s*/, const Shares& shares) {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) h[i * n + j] += stiffness_ * weight * (shares[i] * shares[j]);
     }

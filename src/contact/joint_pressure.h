@@ -27,6 +27,13 @@ class JointPressure {
 
   /// F_i, N per thickness, from y_i, m.
   void forces(std::span<const double> y, std::span<double> force) const;
+  /// F_i, and what of the pressure each contact bears for friction,
+  ///
+  ///     B_i = k a ∫ max(y, 0) h_i ds,    h_i: 1 at s_i, 0 at the other points, straight between
+  ///
+  /// Σ B_i = Σ F_i and Σ s_i B_i = Σ s_i F_i, and no B_i is negative where the joint does not pull. Where it is partly open, some F_i of three or more
+  /// contacts are: friction over those that press alone would hold more than μ times the force between the blocks.
+  void forces(std::span<const double> y, std::span<double> force, std::span<double> bearing) const;
   /// H_ij by rows, N/m per thickness.
   void tangent(std::span<const double> y, std::span<double> h) const;
   /// Whether F is linear in y between two states: the joint is closed all along in both, or open.

@@ -110,14 +110,16 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
       .penetration = s.penetration(y),
       .closed = where(closed, broadcast(1.0), zero)};
   accounts.leave_out_beyond(count);
-  const Lanes pressure = where(normal > zero, normal, zero);
+  // Of faces what the contact bears: what its nodal force is beyond that belongs to others.
+  const Lanes borne = s.normal_force(y) + springs.faces.bearings(first),
+              pressure = where(borne > zero, borne, zero);
   memory.normal_force = pressure;
-  memory.bounding_force = normal;
+  memory.bounding_force = borne;
   if (!drive.is_static && attempt.model.solver.contact == ContactMethod::penalty) {
     const Lanes friction = at_first(springs.friction), constant = at_first(springs.constant);
     const auto slides = closed & ~locked & (friction > zero);
     const Lanes owed = pressure - (bound - constant) / where(slides, friction, broadcast(1.0));
-    memory.bounding_force = where(slides, pressure + owed, normal);
+    memory.bounding_force = where(slides, pressure + owed, borne);
   }
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;

@@ -28,6 +28,7 @@ void FaceSprings::begin(std::size_t rows) {
   next_of_row_.clear();
   first_of_row_.assign(rows, -1);
   force_.assign(rows + lane_count, 0.0);
+  bearing_.assign(rows + lane_count, 0.0);
   stiffness_.assign(rows, 0.0);
   elastic_share_.assign(rows, 1.0);
 }
@@ -47,12 +48,22 @@ void FaceSprings::add(const contact::JointPressure& pressure, double dashpot,
 void FaceSprings::press(std::span<const double> y) {
   if (empty()) return;
   std::ranges::fill(force_, 0.0);
-  Numbers closure, pressed;
+  std::ranges::fill(bearing_, 0.0);
+  Numbers closure, pressed, borne;
   for (std::size_t f = 0; f < size(); ++f) {
     const std::span<const std::size_t> rows = rows_of(f);
     const std::span<double> force = std::span(pressed).first(rows.size());
-    faces_[f].pressure.forces(gather(rows, y, closure), force);
-    for (std::size_t i = 0; i < rows.size(); ++i) force_[rows[i]] += force[i];
+    std::span<double> bearing = std::span(borne).first(rows.size());
+    if (rows.size() > 2) {
+      faces_[f].pressure.forces(gather(rows, y, closure), force, bearing);
+    } else {
+      faces_[f].pressure.forces(gather(rows, y, closure), force);
+      bearing = force;  // between two ends they are the same
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      force_[rows[i]] += force[i];
+      bearing_[rows[i]] += bearing[i];
+    }
   }
 }
 

@@ -38,6 +38,9 @@ class FaceSprings {
   /// N per thickness, that faces press a row with, as press() found it last.
   [[nodiscard]] double force(std::size_t row) const { return empty() ? 0.0 : force_[row]; }
   [[nodiscard]] Lanes forces(std::size_t row) const { return empty() ? Lanes{} : load(&force_[row]); }
+  /// N per thickness, likewise: what of the pressure the row bears for friction (contact::JointPressure).
+  [[nodiscard]] double bearing(std::size_t row) const { return empty() ? 0.0 : bearing_[row]; }
+  [[nodiscard]] Lanes bearings(std::size_t row) const { return empty() ? Lanes{} : load(&bearing_[row]); }
   /// N/m per thickness, of a row that alone is pressed in, its faces closed all along.
   [[nodiscard]] double stiffness(std::size_t row) const { return empty() ? 0.0 : stiffness_[row]; }
 
@@ -73,8 +76,8 @@ class FaceSprings {
   std::vector<Face> faces_;
   std::vector<std::size_t> rows_;
   std::vector<int> first_of_row_, next_of_row_;  ///< per row, per face: faces by their first row; −1: none
-  std::vector<double> force_, stiffness_;        ///< per row
-  std::vector<double> elastic_share_;            ///< per row of a face
+  std::vector<double> force_, bearing_, stiffness_;  ///< per row
+  std::vector<double> elastic_share_;                ///< per row of a face
 };
 
 /// What the pressure of a face does otherwise than a straight line on which it was at the start of a way y + α dy.

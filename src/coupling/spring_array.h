@@ -184,6 +184,13 @@ class SpringArray {
   [[nodiscard]] Lanes normal_forces(std::size_t c) const {
     return normal_laws(c).force(load(&y[c])) + faces.forces(c);
   }
+  /// N per thickness, that the friction of a row goes with: its normal force, but of faces what it bears (FaceSprings::bearing).
+  [[nodiscard]] double bearing(std::size_t c) const {
+    return force_at(c, y[c], w[c]).normal + faces.bearing(c);
+  }
+  [[nodiscard]] Lanes bearings(std::size_t c) const {
+    return normal_laws(c).force(load(&y[c])) + faces.bearings(c);
+  }
   /// Whether nothing presses or pulls along the normal.
   [[nodiscard]] bool is_open(std::size_t c) const {
     return normal_law(c).is_low(y[c]) && !(faces.force(c) != 0.0);

@@ -47,6 +47,13 @@ struct CutStatistics {
   double sliver_area = 0.0;      ///< m² that changed its block by merging
 };
 
+/// How much of the joints of a set or map is in the model.
+struct JointShare {
+  EdgeLabel joint;
+  double length = 0.0;   ///< m inside the domain
+  double removed = 0.0;  ///< m of these that end in rock or bound no block
+};
+
 /// A place where rock of one wall of a joint reaches into the other, so that the walls hold each other: a sliver was merged across the
 /// joint, which goes on straight on both sides of it.
 struct JointTooth {
@@ -64,6 +71,7 @@ struct SmallBlock {
 
 struct BlockSystem {
   std::vector<CutBlock> blocks;
+  std::vector<JointShare> joints;        ///< one for each set and map that meets the domain
   std::vector<JointTooth> teeth;         ///< in the order of cutting
   std::vector<SmallBlock> slivers_left;  ///< in the order of the blocks
   CutStatistics statistics;

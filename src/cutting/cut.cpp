@@ -69,20 +69,30 @@ class TraceMarks {
   std::vector<bool> marked_;
 };
 
+JointShare& share_of(EdgeLabel joint, std::vector<JointShare>& shares) {
+  const auto found = std::ranges::find(shares, joint, &JointShare::joint);
+  return found != shares.end() ? *found : shares.emplace_back(JointShare{joint, 0.0, 0.0});
+}
+
 /// Takes away what bounds no block, and counts it.
-PlanarGraph bounded_blocks(NodedLinework noded, const std::vector<int>& trace_of_piece,
-                           CutStatistics& statistics) {
+PlanarGraph bounded_blocks(NodedLinework noded, const std::vector<int>& trace_of_piece, BlockSystem& system) {
+  CutStatistics& statistics = system.statistics;
   PlanarGraph& graph = noded.graph;
   TraceMarks meeting(trace_of_piece), used(trace_of_piece);
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     meeting.add(noded.traces[e]);
-    if (is_joint(graph.edges[e].label)) statistics.trace_length += graph.length(graph.edges[e]);
+    const GraphEdge& edge = graph.edges[e];
+    if (is_joint(edge.label)) share_of(edge.label, system.joints).length += graph.length(edge);
   }
   std::vector<std::pair<int, int>> ends;
   ends.reserve(graph.edges.size());
   for (const GraphEdge& edge : graph.edges) ends.emplace_back(edge.from, edge.to);
   const std::vector<GraphEdge> removed = graph.remove_trees();
-  for (const GraphEdge& edge : removed) statistics.removed_length += graph.length(edge);
+  for (const GraphEdge& edge : removed) share_of(edge.label, system.joints).removed += graph.length(edge);
+  for (const JointShare& share : system.joints) {
+    statistics.trace_length += share.length;
+    statistics.removed_length += share.removed;
+  }
   statistics.removed_pieces += static_cast<int>(removed.size());
   // What is left keeps its order.
   std::size_t e = 0;
@@ -191,7 +201,7 @@ BlockSystem cut(const CutInput& input) {
       work.grid * std::max(bounds({work.domain, {}}).size().x, bounds({work.domain, {}}).size().y);
   if (norm(work.shift) > far_away * size) system.origin = work.shift;
 
-  PlanarGraph graph = bounded_blocks(node(work), rockmass::trace_numbers(input.traces), statistics);
+  PlanarGraph graph = bounded_blocks(node(work), rockmass::trace_numbers(input.traces), system);
   graph.trace_faces();
   cluster_vertices(graph, vertex_rounding * graph.grid);
   snap_vertices_to_edges(graph, edge_rounding * graph.grid);

@@ -142,10 +142,9 @@ void Stepper::forces(std::size_t first, std::span<ContactForce> to) const {
     const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
     ContactForce& force = to[i] = {};
     force.gap = c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
-    const SpringArray::Force of_springs = springs.force(k);
-    force.normal = of_springs.normal;
+    force.normal = springs.bearing(k);
     if (springs.is_open(k)) continue;
-    force.shear = of_springs.shear;
+    force.shear = springs.force(k).shear;
     const bool holds = std::abs(springs.ks[k] * springs.w[k]) <= springs.bound[k];
     force.state = holds ? contact::State::locked : contact::State::sliding;
   }

@@ -49,7 +49,7 @@ constexpr std::size_t most_unknowns =
 void hold_along_joints(SpringArray& springs) {
   for (std::size_t c = 0; c < springs.size(); ++c) {
     SpringArray::Branch branch = springs.branch[c];
-    if (springs.friction[c] < 0.0 || !(springs.force(c).normal > 0.0)) continue;
+    if (springs.friction[c] < 0.0 || !(springs.bearing(c) > 0.0)) continue;
     branch.shear = SpringArray::Shear::held;
     springs.set_branch(c, branch);
   }

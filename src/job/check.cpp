@@ -4,6 +4,7 @@
 
 #include "scenario/far_rock.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_warnings.h"
 #include "simulation/build_model.h"
 #include "simulation/feasibility.h"
 
@@ -29,6 +30,8 @@ Checked check(const scenario::Scenario& scenario, int realization) {
     if (const auto reason = simulation::yields_without_limit(setup))
       checked.warnings.push_back("a run ends at once: " + *reason);
   }
+  if (const std::string joints = scenario::joints_in_model(scenario, checked.blocks.system); !joints.empty())
+    checked.notes.push_back("joints in the model, of their length: " + joints);
   for (std::string& warning : scenario::study_warnings(scenario))
     checked.warnings.push_back(std::move(warning));
   return checked;

@@ -11,6 +11,7 @@
 #include "scenario/far_rock.h"
 #include "scenario/ground_facts.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "scenario/motion_places.h"
@@ -302,8 +303,8 @@ void add_damping_facts(RunSetup& setup) {
 }
 
 /// What a frame leaves out of a recorded earthquake.
-void add_box_fact(const Scenario& scenario, RunSetup& setup) {
-  const double stress = stress_left_out(scenario, setup);
+void add_box_fact(RunSetup& setup) {
+  const double stress = stress_left_out(setup);
   for (auto& [name, value] : setup.ground) {
     if (name == around_the_model && stress > 0.0)
       value = fmt::format("closed box: wave stress of {:.2g} MPa left out", stress / 1e6);
@@ -374,6 +375,8 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   place_far_planes(scenario, setup, pieces, notes);
   setup.files = input_files(scenario);
   for (const GroundFact& fact : ground_facts(scenario)) setup.ground.emplace_back(fact.name, fact.value);
+  if (std::string joints = joints_in_model(scenario, setup.system); !joints.empty())
+    setup.ground.emplace_back("joints in the model, of their length", std::move(joints));
   for (auto& fact : boundary_facts(setup)) setup.ground.push_back(std::move(fact));
   place_loading(scenario, origin, setup);
   place_histories(scenario, setup, notes);
@@ -387,7 +390,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.output = scenario.output;
   setup.automatic_order = scenario.automatic;
   add_damping_facts(setup);
-  add_box_fact(scenario, setup);
+  add_box_fact(setup);
   add_block_warnings(scenario, blocks, notes);
   add_setup_warnings(scenario, setup, notes);
   if (warnings != nullptr) {

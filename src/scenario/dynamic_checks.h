@@ -17,7 +17,7 @@ std::vector<Diagnostic> dynamic_mistakes(const Scenario& scenario, const simulat
 void add_dynamic_warnings(const Scenario& scenario, const simulation::RunSetup& setup,
                           std::vector<std::string>& warnings);
 
-/// Pa, the largest stress of the waves of the records that shake a frame: what their velocities v make in the rock, ρ c v. 0: none does.
-double stress_left_out(const Scenario& scenario, const simulation::RunSetup& setup);
+/// Pa, the largest stress of the waves of the motions that shake a frame: what their velocities v make in the rock, ρ c v. 0: none does.
+double stress_left_out(const simulation::RunSetup& setup);
 
 }  // namespace keyblock::scenario

@@ -9,6 +9,7 @@
 #include "rockmass/intensity.h"
 #include "scenario/build.h"
 #include "scenario/inputs.h"
+#include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "scenario/sections.h"
@@ -47,6 +48,8 @@ class Plausibility {
     check_velocities();
     check_base();
     check_multipliers();
+    check_gravity();
+    check_tolerances();
     return std::move(warnings_);
   }
 
@@ -140,6 +143,32 @@ class Plausibility {
     warn_of("joints", scenario_.joints);
     for (const JointSetSpec& spec : scenario_.joint_sets) warn_of(spec.path, spec.joints);
     for (const TraceMapSpec& spec : scenario_.trace_maps) warn_of(spec.path, spec.joints);
+  }
+
+  // As a tilt it is at most 45°: `tilt` turns it farther, and says so.
+  void check_gravity() {
+    const Vec2 g = scenario_.gravity;
+    if (scenario_.positions.contains("tilt") || norm(g) == 0.0) return;
+    if (g.y > 0.0) {
+      warn("gravity = [{}, {}]{}: pulls upwards", g.x, g.y, place_text(scenario_, "gravity"));
+    } else if (std::abs(g.x) > -g.y) {
+      warn("gravity = [{}, {}]{}: pulls sideways more than downwards", g.x, g.y,
+           place_text(scenario_, "gravity"));
+    }
+  }
+
+  // Blocks that lack a per cent of their weight move, and are said to stand.
+  void check_tolerances() {
+    constexpr double loose = 1e-3;
+    for (const Stage& stage : scenario_.stages) {
+      const std::string key = join_path(join_path("stage", stage.name), "tolerance");
+      if (stage.kind == StageKind::settle && stage.tolerance > loose)
+        warn(
+            "{} = {}{}: blocks that lack so much of their weight are said to be in equilibrium, and limits "
+            "come out too high; "
+            "usual is at most {}",
+            key, stage.tolerance, place_text(scenario_, key), loose);
+    }
   }
 
   void check_excavated() {
@@ -306,6 +335,7 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
       warnings.push_back(path + ": holds every block; no rock is left");
   }
   if (!scenario.domain) return;
+  add_joint_warnings(scenario, model, warnings);
   for (std::size_t k = 0; k < scenario.trace_maps.size(); ++k) {
     const rockmass::TraceSource source{rockmass::TraceSource::Kind::trace_map, static_cast<int>(k)};
     Box map;

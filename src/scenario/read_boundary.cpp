@@ -21,11 +21,12 @@ Rule speed(std::string_view meaning, bool required, std::string_view fallback) {
   return {.meaning = meaning, .unit = "m/s", .required = required, .above = 0.0, .fallback = fallback};
 }
 
-/// A pressure wave is faster than a shear wave, by √2 at least where Poisson's ratio is not negative.
+/// A solid keeps its volume (bulk modulus above 0) only where v_p² > 4/3 v_s². Poisson's ratio is not negative where v_p ≥ √2 v_s.
 void check_speeds(TableReader& t, const std::optional<double>& vs, const std::optional<double>& vp) {
-  if (!vs || !vp || *vp > *vs) return;
-  t.fail("vp", fmt::format("{} m/s, not more than vs = {} m/s", *vp, *vs),
-         "a speed of pressure waves above that of shear waves");
+  constexpr double least_ratio = 1.1547;  // √(4/3)
+  if (!vs || !vp || *vp > least_ratio * *vs) return;
+  t.fail("vp", fmt::format("{} m/s, {:.4g} of vs = {} m/s", *vp, *vp / *vs, *vs),
+         "a speed of pressure waves above 1.155 of that of shear waves: below, the rock would be no solid");
 }
 
 void read_layer(TableReader& t, RockLayerSpec& layer) {

@@ -164,7 +164,8 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"step", &AcceptedWarnings::step},
     {"damping", &AcceptedWarnings::damping},
     {"closed-box", &AcceptedWarnings::closed_box},
-    {"late-falls", &AcceptedWarnings::late_falls}};
+    {"late-falls", &AcceptedWarnings::late_falls},
+    {"lost-joints", &AcceptedWarnings::lost_joints}};
 
 void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
   std::vector<std::string> words;

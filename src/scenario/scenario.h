@@ -166,6 +166,7 @@ struct AcceptedWarnings {
   bool damping = false;        ///< of damping beyond critical, or of what nobody asked to be damped
   bool closed_box = false;     ///< of a record that shakes a frame
   bool late_falls = false;     ///< of what hangs loose when the shaking begins
+  bool lost_joints = false;    ///< of joints that bound no block
 };
 
 struct Scenario {

@@ -104,6 +104,31 @@ void warn_of_damping(const Scenario& scenario, const std::vector<GroundMotion>& 
       is_fast ? to : from, damping.ratio_at(worst), worst, is_fast ? ", and steps take long" : ""));
 }
 
+/// Of ∫|a|² dt, what is over at a time.
+double share_of_shaking(const GroundMotion& motion, double end) {
+  const std::vector<double>& times = motion.times();
+  const std::vector<Vec2>& a = motion.accelerations();
+  double before = 0.0, all = 0.0;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const double part = 0.5 * (squared_norm(a[k - 1]) + squared_norm(a[k])) * (times[k] - times[k - 1]);
+    all += part;
+    if (times[k] <= end) before += part;
+  }
+  return all > 0.0 ? before / all : 1.0;
+}
+
+/// A stage that ends before half of the shaking.
+void warn_of_short_stage(const Stage& stage, const GroundMotion& motion, std::vector<std::string>& warnings) {
+  constexpr double enough = 0.5;
+  if (!stage.duration || *stage.duration >= motion.duration()) return;
+  const double share = share_of_shaking(motion, *stage.duration);
+  if (share < enough)
+    warnings.push_back(fmt::format(
+        "{}.duration: {:.4g} s of the {:.4g} s of '{}', with {:.2g} % of its Arias intensity; the rest of "
+        "the shaking is left out",
+        join_path("stage", stage.name), *stage.duration, motion.duration(), motion.name(), 100.0 * share));
+}
+
 }  // namespace
 
 void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMotion>& motions,
@@ -115,6 +140,7 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
     if (!scenario.accepted.step && !seen[k])
       warn_of_step(scenario, scenario.motions[k], motions[k], warnings);
     seen[k] = true;
+    warn_of_short_stage(stage, motions[k], warnings);
     if (scenario.si_units) warn_of_peak(stage, scenario.motions[k], motions[k], warnings);
   }
   warn_of_damping(scenario, motions, warnings);

@@ -125,7 +125,7 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
                    contacts_worth_threads / lane_count, [&](std::size_t group) {
                      const std::size_t c = group * lane_count;
                      const auto at_c = [&](const std::vector<double>& numbers) { return load(&numbers[c]); };
-                     const Lanes zero{}, normal = springs.normal_forces(c), w = at_c(springs.w);
+                     const Lanes zero{}, normal = springs.bearings(c), w = at_c(springs.w);
                      // Only what the new bound does to the shear force counts: a contact that holds under both bounds is settled.
                      const Lanes wanted = springs.strengths(c, normal),
                                  change = contact::shear_spring(at_c(springs.ks), wanted).force(w) -
@@ -136,7 +136,7 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
   const double error = sum(errors), scale = sum(scales);
   const double ratio = scale > 0.0 ? std::sqrt(error / scale) : 0.0;
   if (ratio <= tolerance) return false;
-  const auto bound = [&](std::size_t c) { return springs.strength(c, springs.force(c).normal); };
+  const auto bound = [&](std::size_t c) { return springs.strength(c, springs.bearing(c)); };
   const bool first = bound_steps_.empty();
   bound_steps_.resize(springs.size());
   // Contacts may hand bounds on in a ring, where a mechanism begins to move, and the share of each is wrong then. If many updates of
@@ -213,7 +213,7 @@ bool LawUpdates::renew_bonds(const StepSystem& system, Iterate& iterate) {
   using step_numbers::settled_strength;
   SpringArray& springs = system.springs();
   return for_bonds(system, [&](std::size_t c) {
-    const double strength = springs.strength(c, springs.force(c).normal), bound = springs.bound[c],
+    const double strength = springs.strength(c, springs.bearing(c)), bound = springs.bound[c],
                  elastic = std::abs(springs.ks[c] * springs.w[c]);
     if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled_strength * bound)
       return false;
@@ -236,7 +236,7 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
     contact.memory.bonded = false;
     iterate.change_spring(system, c, [&] {
       springs.constant[c] = 0.0;
-      springs.set_law(c, contact.friction_coefficient * std::max(0.0, normal), false);
+      springs.set_law(c, contact.friction_coefficient * std::max(0.0, springs.bearing(c)), false);
     });
     iterate.let_go_of_faces(system, c);
     return true;

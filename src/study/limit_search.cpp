@@ -281,6 +281,11 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   request.finds_moving =
       !request.criterion.collapse && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
+  if (warnings != nullptr && request.realizations > 1 && read.joint_sets.empty())
+    warnings->push_back(
+        fmt::format("--realizations {}: nothing is random without a [[joint_set]]; all limits are the same, "
+                    "and their interval says nothing",
+                    request.realizations));
   check_since(request, read.stages);
   check_ends(plan, request);
   plan.realizations = request.realizations;

@@ -26,6 +26,13 @@ struct Stone {
   Scene scene;
 };
 
+/// N per thickness, of all contacts that share the pressure of faces.
+double force_of_faces(const contact::CandidateList& list) {
+  double sum = 0.0;
+  for (const contact::Memory& memory : list.memory) sum += memory.in_face ? memory.normal_force : 0.0;
+  return sum;
+}
+
 /// N per thickness: how much less a vertex of the stone presses, at the end of the step or where it comes to lie, than the spring of a corner at its depth in the floor, where the step that
 /// has met it may have let it in by Intrusions::most_share.
 double lacking_force(const Simulator& s) {
@@ -33,14 +40,17 @@ double lacking_force(const Simulator& s) {
   const contact::CandidateList& list = s.state.contacts;
   const double k = stiffness * contact::Tolerances(s.model.block_size).least_length,
                met = dynamics::Intrusions::most_share * std::sqrt(s.model.blocks[1].area);
+  const double of_faces = force_of_faces(list);
   double lacking = 0.0;
   for (int v = surface.block_begin[1]; v < surface.block_begin[2]; ++v) {
     const double depth = -surface.position[at(v)].y;
     double force = 0.0;
     for (std::size_t c = 0; c < list.tracked.size(); ++c) {
-      if (list.pairs[at(list.tracked[c])].vertex == v)
-        force =
-            std::max(list.memory[c].normal_force, list.memory[c].stiffness * (depth - list.memory[c].offset));
+      const contact::Memory& memory = list.memory[c];
+      if (list.pairs[at(list.tracked[c])].vertex != v) continue;
+      // Contacts beside it bear a part of what presses on it.
+      force = memory.in_face ? of_faces
+                             : std::max(memory.normal_force, memory.stiffness * (depth - memory.offset));
     }
     if (depth > met) lacking = std::max(lacking, k * (depth - met) - force);
   }

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,8 +14,11 @@
 namespace keyblock::scenario {
 namespace {
 
+using testing::AllOf;
+using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 std::vector<std::string> warnings_of(const std::string& text,
@@ -75,11 +79,28 @@ TEST(Warnings, OfUnusualValuesOfWhatHoldsAndSurroundsTheRock) {
   };
   const std::string spring =
       "spring=[{ name = \"K\", from = [0.5, 0.5], to = [1.5, 1.5], stiffness = 2e8, yield = 1e5 }]";
-  EXPECT_THAT(warned({spring}), IsEmpty());
+  EXPECT_THAT(warned({spring}), Not(Contains(HasSubstr("usual is"))));
   EXPECT_THAT(warned({spring, "spring.K.stiffness=200"}),
-              UnorderedElementsAre(HasSubstr("kN/m per m? That is 2e+05 N/m per m")));
-  EXPECT_THAT(warned({spring, "spring.K.yield=100"}),
-              UnorderedElementsAre(HasSubstr("in kN/m? That is 1e+05 N/m")));
+              Contains(HasSubstr("kN/m per m? That is 2e+05 N/m per m")));
+  EXPECT_THAT(warned({spring, "spring.K.yield=100"}), Contains(HasSubstr("in kN/m? That is 1e+05 N/m")));
+}
+
+TEST(Warnings, OfGravityThatDoesNotPullDown) {
+  EXPECT_THAT(warnings_of(two_blocks, {"gravity=[0, 9.81]"}),
+              UnorderedElementsAre(HasSubstr("pulls upwards")));
+  EXPECT_THAT(warnings_of(two_blocks, {"gravity=[9.81, 0]"}),
+              UnorderedElementsAre(HasSubstr("pulls sideways")));
+  EXPECT_THAT(warnings_of(two_blocks, {"gravity=[4.905, -8.5]"}), IsEmpty());
+}
+
+TEST(Warnings, OfALooseEquilibrium) {
+  const auto warned = [](double tolerance) {
+    return warnings_of(
+        two_blocks,
+        {fmt::format("stage=[{{ name = \"s\", kind = \"settle\", tolerance = {} }}]", tolerance)});
+  };
+  EXPECT_THAT(warned(0.05), UnorderedElementsAre(HasSubstr("stage.s.tolerance = 0.05")));
+  EXPECT_THAT(warned(1e-3), IsEmpty());
 }
 
 TEST(Warnings, OfARuleThatMakesEnergy) {
@@ -131,7 +152,8 @@ TEST(Warnings, ThatAreAcceptedAreNamed) {
       mistakes(two_blocks, {"accept_warnings=['plane-stres']"}),
       HasSubstr(
           "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
-          "\"free-boundary\", \"step\", \"damping\", \"closed-box\" or \"late-falls\"; did you mean "
+          "\"free-boundary\", \"step\", \"damping\", \"closed-box\", \"late-falls\" or \"lost-joints\"; did "
+          "you mean "
           "'plane-stress'?"));
   EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
 }
@@ -341,7 +363,19 @@ TEST(Warnings, OfTraceMapsElsewhere) {
               UnorderedElementsAre(
                   HasSubstr("no trace meets the domain; the map reaches from [100, 100] to [101, 102]")));
   std::ofstream(map) << "trace,x,y\n1,1,1\n1,101,102\n";
-  EXPECT_THAT(warnings_of(text), IsEmpty());
+  EXPECT_THAT(warnings_of(text), UnorderedElementsAre(HasSubstr("trace_map.map: 19 % of its")));
+  EXPECT_THAT(warnings_of(text, {"accept_warnings=['plane-stress', 'order-1', 'lost-joints']"}), IsEmpty());
+}
+
+TEST(Warnings, OfTracesThatEndShortOfOthers) {
+  const std::string map = "[[trace_map]]\nname = \"map\"\nlines = [[[0, 2], [2.9, 2]], [[3, 0], [3, 4]]]\n";
+  const std::string jointed = "[domain]\nx = [0, 4]\ny = [0, 4]\n" + map +
+                              two_blocks.substr(0, two_blocks.find("[[block]]")) +
+                              two_blocks.substr(two_blocks.find("[[stage]]"));
+  EXPECT_THAT(
+      warnings_of(jointed),
+      UnorderedElementsAre(AllOf(HasSubstr("is 0.1 m short of another trace: [cutting] snapping = 0.11"))));
+  EXPECT_THAT(warnings_of(jointed, {"cutting.snapping=0.11"}), IsEmpty());
 }
 
 TEST(Warnings, OfBlocksThatOverlap) {

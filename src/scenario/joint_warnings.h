@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scenario/build.h"
+
+namespace keyblock::scenario {
+
+/// What of the joints bounds blocks: "J1 62 %, faults 100 %", the share of the length of each set and map inside the domain. The rest ends in
+/// rock or bounds no block. It is not in the model: blocks do not break there. Empty without such joints.
+std::string joints_in_model(const Scenario& scenario, const cutting::BlockSystem& system);
+
+/// Maps of which more than 5 % is lost, added to `warnings`, with the traces that end just short of another one.
+void add_joint_warnings(const Scenario& scenario, const BlockModel& model,
+                        std::vector<std::string>& warnings);
+
+}  // namespace keyblock::scenario
