@@ -150,6 +150,23 @@ std::string result_text(const RunRecord& run) {
       depths_text(damage));
 }
 
+/// Stages before a shaking one that were to last until all is still, and were not long enough.
+std::vector<std::string> rests_that_were_too_short(const RunRecord& run) {
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k + 1 < run.stages.size(); ++k) {
+    const StageRecord& stage = run.stages[k];
+    if (!stage.stage.until_still || stage.still || stage.interrupted ||
+        run.stages[k + 1].stage.kind != StageKind::shake)
+      continue;
+    texts.push_back(
+        fmt::format("stage \"{}\" ended after {:.4g} s while rock still moved: what comes down later counts "
+                    "as the earthquake's; a longer "
+                    "duration tells the two apart",
+                    stage.stage.name, stage.duration));
+  }
+  return texts;
+}
+
 std::vector<std::string> warnings(const RunRecord& run) {
   std::vector<std::string> texts;
   for (const StageRecord& stage : run.stages) {
@@ -167,6 +184,7 @@ std::vector<std::string> warnings(const RunRecord& run) {
       texts.push_back(fmt::format("stage \"{}\" is {}", stage.stage.name, simulation::verdict_text(stage)));
     }
   }
+  for (const std::string& text : rests_that_were_too_short(run)) texts.push_back(text);
   if (run.open_close.unconverged_steps > 0) {
     texts.push_back(fmt::format("{} steps did not converge", run.open_close.unconverged_steps));
   }

@@ -64,8 +64,8 @@ double weight_taken_out(const RunSetup& setup, std::size_t stage) {
 
 void warn_of_later_changes(const RunSetup& setup, std::vector<std::string>& warnings) {
   const auto change = simulation::last_planned_change(setup);
-  if (!change || !is_dynamic(setup)) return;
-  double end = 0.0;
+  if (!change) return;
+  double end = 0.0;  // s; static stages take no time
   for (const Stage& stage : setup.stages) {
     if (stage.kind == StageKind::settle) continue;
     end +=

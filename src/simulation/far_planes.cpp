@@ -22,8 +22,8 @@ constexpr double steepest_plane = 10.5 * std::numbers::pi / 180.0;  // 10°, and
 constexpr double end_stretch = 4.0;  // blocks, over which a joint dips as it does at a side
 constexpr double least_mobilized =
     0.5;  // of a plane: what never comes near its strength stays in the compliance
-constexpr double near = 0.1,
-                 far = 0.6;        // of a block: how far apart pieces of one joint are, across and along
+constexpr double across_gap = 0.1,
+                 along_gap = 0.6;  // of a block: how far apart pieces of one joint are, across and along
 constexpr double straight = 0.98;  // cosine of the turn from a piece to the next
 
 std::string name_of(const RunSetup& setup, cutting::EdgeLabel label) {
@@ -72,7 +72,7 @@ class Finder {
                             std::abs(course.end_dip) <= steepest_plane;
       const bool ends_above =
           course.side == ColumnSide::right &&
-          course.end_height >= column_heights(setup_, ColumnSide::left).ground - near * size_;
+          course.end_height >= column_heights(setup_, ColumnSide::left).ground - across_gap * size_;
       if (!is_plane || ends_above) {
         hold(course, found.held);
       } else if (course.side == ColumnSide::left && course.mobilized >= least_mobilized) {
@@ -103,8 +103,8 @@ class Finder {
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
       const Vec2 start = left ? pieces_[k].from : pieces_[k].to;
       const bool meets = std::abs(start.x - side_x(side)) <= 1e-6 * box_.size().x &&
-                         std::abs((left ? pieces_[k].to : pieces_[k].from).x - start.x) > near * size_;
-      if (meets && start.y > box_.min.y + near * size_ && start.y < top - near * size_)
+                         std::abs((left ? pieces_[k].to : pieces_[k].from).x - start.x) > across_gap * size_;
+      if (meets && start.y > box_.min.y + across_gap * size_ && start.y < top - across_gap * size_)
         courses.push_back(follow(side, k));
     }
   }
@@ -124,16 +124,16 @@ class Finder {
   /// The piece by which the joint of another goes on.
   [[nodiscard]] std::optional<std::size_t> next(ColumnSide side, std::size_t last) const {
     std::optional<std::size_t> found;
-    double nearest = far * size_;
+    double nearest = along_gap * size_;
     const Vec2 from = end(side, last), along = way(side, last);
     const auto& order = side == ColumnSide::left ? by_left_ : by_right_;
     const auto begin_x = [&](std::size_t k) { return begin(side, k).x; };
     auto candidate = std::ranges::lower_bound(order, from.x - nearest, {}, begin_x);
-    for (; candidate != order.end() && begin_x(*candidate) <= from.x + far * size_; ++candidate) {
+    for (; candidate != order.end() && begin_x(*candidate) <= from.x + along_gap * size_; ++candidate) {
       const std::size_t k = *candidate;
       const Vec2 gap = begin(side, k) - from;
       if (!(pieces_[k].label == pieces_[last].label) || k == last || norm(gap) > nearest ||
-          std::abs(cross(along, gap)) > near * size_ || dot(along, way(side, k)) < straight ||
+          std::abs(cross(along, gap)) > across_gap * size_ || dot(along, way(side, k)) < straight ||
           dot(along, end(side, k) - from) <= 0.0)
         continue;
       nearest = norm(gap);

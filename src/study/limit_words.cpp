@@ -18,7 +18,7 @@ using Status = Bisection::Status;
 
 constexpr std::size_t most_lines = 20;  // of realizations, in the text
 constexpr double told_way = 0.001;      // m, that blocks which stand have moved by
-constexpr int least_digits = 3, most_digits = 9, digits_of_others = 4;
+constexpr int least_digits = 3, most_digits = 9, digits_of_others = 4, digits_to_run_again = 2;
 
 /// What a limit over a key is; `_` stands for a name, which takes the place of `{}`.
 struct Subject {
@@ -101,10 +101,14 @@ struct Limit {
   const LimitResult& result;
   const Bisection::Bracket& bracket;
 
-  [[nodiscard]] std::string text(double value) const {
-    return quantity(value, result.unit, digits_of(bracket));
+  [[nodiscard]] std::string middle() const {
+    return quantity(bracket.middle(), result.unit, digits_of(bracket));
   }
-  [[nodiscard]] std::string middle() const { return text(bracket.middle()); }
+  /// An end of the bracket. Where outcomes come and go with the key, near enough for a run of the same one.
+  [[nodiscard]] std::string end(double value) const {
+    const int more = result.request.scan > 1 ? digits_to_run_again : 0;
+    return quantity(value, result.unit, digits_of(bracket) + more);
+  }
 };
 
 /// "It ends to hold at 7.0 and holds again from 9.1 on."
@@ -120,6 +124,15 @@ std::string other_limits(const LimitResult& result, const RealizationLimit& limi
                         Limit{result, all[k]}.middle());
   }
   return fmt::format(" There are {} limits: beyond the first the criterion{}.", all.size(), text);
+}
+
+/// What a scan does not see.
+std::string scan_text(const LimitResult& result, const RealizationLimit& limit) {
+  const LimitRequest& request = result.request;
+  if (request.scan <= 1 || !limit.found()) return {};
+  return fmt::format(
+      " The scan looked every {}: what holds in a narrower range is not seen, and --scan looks more often.",
+      quantity(std::abs(request.to - request.from) / request.scan, result.unit, least_digits));
 }
 
 /// What blocks do before the criterion holds.
@@ -140,9 +153,8 @@ std::string found_text(const LimitResult& result, const RealizationLimit& limit)
   const Limit words{result, bracket};
   const auto at = [&](double value) {
     const LimitTrial* trial = limit.trial_at(value);
-    return trial == nullptr
-               ? std::string()
-               : fmt::format("at {} {}", words.text(value), outcome_text(result.request, *trial));
+    return trial == nullptr ? std::string()
+                            : fmt::format("at {} {}", words.end(value), outcome_text(result.request, *trial));
   };
   return fmt::format("{} is {}{}: {}, {}.", capital(subject_of(result.request.key)), words.middle(),
                      pga_text(limit), at(bracket.not_met), at(bracket.met));
@@ -230,7 +242,8 @@ std::string answer_text(const LimitResult& result) {
     const RealizationLimit& limit = result.realizations.front();
     const std::string text = one_text(result, limit), already = already_text(result, limit);
     return text + (text.ends_with('.') || (already.empty() && limit.state.limits.empty()) ? "" : ".") +
-           other_limits(result, limit) + (already.empty() ? "" : " But " + already + ".");
+           other_limits(result, limit) + scan_text(result, limit) +
+           (already.empty() ? "" : " But " + already + ".");
   }
   const LimitQuantile median = result.median();
   if (!result.complete || !std::isfinite(median.limit.value)) return {};

@@ -86,6 +86,16 @@ TEST(OutcomeText, SaysWhatToBeWaryOf) {
               HasSubstr("note: stage \"first earthquake\" was interrupted\nnote: 3 steps did not"));
 }
 
+TEST(OutcomeText, SaysThatARestWasTooShort) {
+  RunRecord run = settled_and_shaken();
+  run.stages[0].stage.kind = StageKind::rest;
+  run.stages[0].stage.until_still = true;
+  run.stages[0].duration = 0.1;
+  EXPECT_THAT(outcome_text(run, 45), HasSubstr("ended after 0.1 s while rock still moved"));
+  run.stages[0].still = true;
+  EXPECT_THAT(outcome_text(run, 45), Not(HasSubstr("while rock still moved")));
+}
+
 TEST(OutcomeText, SaysWhatFellAndFromWhere) {
   RunRecord run = settled_and_shaken();
   simulation::Damage& damage = run.stages[1].damage;

@@ -170,6 +170,9 @@ TEST(LimitWords, TheAnswerIsASentenceWithUnits) {
       "(50 "
       "kN/m) have fallen, the heaviest “upper” (30 kN/m). There are 2 limits: beyond the first the criterion "
       "ceases to hold at 6.95.");
+  result.request.scan = 8;
+  EXPECT_NE(answer_text(result).find(" The scan looked every 1: what holds in a narrower range is not seen"),
+            std::string::npos);
 }
 
 TEST(LimitWords, WhereNothingFallsItIsSaidWhatMoves) {
