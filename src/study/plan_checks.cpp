@@ -14,7 +14,7 @@ namespace keyblock::study {
 namespace {
 
 constexpr std::size_t least_digits = 4, hash_digits = 10;
-constexpr std::string_view variants[] = {"", "friction-", "friction+", "released", still_variant};
+constexpr std::string_view known_variants[] = {"", "friction-", "friction+", "released", still_variant};
 
 bool has_only(std::string_view text, std::string_view letters) {
   return text.find_first_not_of(letters) == std::string_view::npos;
@@ -31,7 +31,7 @@ std::string mistake_in_run(const PlannedRun& run, const Plan& plan) {
   if (!is_run_key(run.key)) return fmt::format("the key \"{}\" of a run", run.key);
   if (run.realization < 0 || !run.key.starts_with(fmt::format("r{:04}-", run.realization)))
     return fmt::format("the run {} as one of realization {}", run.key, run.realization);
-  if (std::find(std::begin(variants), std::end(variants), run.variant) == std::end(variants))
+  if (std::find(std::begin(known_variants), std::end(known_variants), run.variant) == std::end(known_variants))
     return fmt::format("the variant \"{}\" of a run", run.variant);
   return fits_axes(run, plan.axes) ? ""
                                    : fmt::format("values of the run {} that do not fit the axes", run.key);
