@@ -1,5 +1,7 @@
 #include "job/check.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "scenario/far_rock.h"
@@ -23,10 +25,10 @@ Checked check(const scenario::Scenario& scenario, int realization) {
         scenario::build_setup(scenario, realization, checked.blocks, &checked.warnings);
     simulation::build_model(setup);
     for (const auto& [name, value] : setup.ground) {
-      if (name == "boundary") checked.notes.push_back(name + ": " + value);
+      if (name == "boundary") checked.notes.push_back(fmt::format("{}: {}", name, value));
     }
     for (const auto& [name, value] : scenario::boundary_facts(setup))
-      checked.notes.push_back(name + ": " + value);
+      checked.notes.push_back(fmt::format("{}: {}", name, value));
     if (const auto reason = simulation::yields_without_limit(setup))
       checked.warnings.push_back("a run ends at once: " + *reason);
   }

@@ -262,19 +262,8 @@ class Plausibility {
       if (stage.kind == StageKind::settle) settled = true;
       if (stage.kind == StageKind::shake && !settled) {
         warn("{}: shakes before the rock has settled{}", path, excavated ? " after an excavation" : "");
-      } else if (stage.kind == StageKind::shake && before != nullptr && has_opening() &&
-                 !scenario_.accepted.late_falls) {
-        if (before->kind == StageKind::settle)
-          warn(
-              "{}: what hangs loose comes down during the shaking, and counts as the earthquake's; a stage "
-              "of "
-              "kind \"rest\" with until = \"still\" before it tells the two apart",
-              path);
-        if (before->kind == StageKind::rest && !before->until_still)
-          warn(
-              "{}: what hangs loose and is not down after {} s of '{}' counts as the earthquake's; "
-              "until = \"still\" there waits for it",
-              path, before->duration.value_or(0.0), before->name);
+      } else if (stage.kind == StageKind::shake && before != nullptr) {
+        check_late_falls(path, *before);
       }
       before = &stage;
     }
@@ -284,6 +273,21 @@ class Plausibility {
                                     [&](const Stage& stage) { return stage.motion == index; });
       if (!used) warn("{}: no stage uses it", motion.path);
     }
+  }
+
+  // Of a stage that shakes, after another one.
+  void check_late_falls(const std::string& path, const Stage& before) {
+    if (!has_opening() || scenario_.accepted.late_falls) return;
+    if (before.kind == StageKind::settle)
+      warn(
+          "{}: what hangs loose comes down during the shaking, and counts as the earthquake's; a stage of "
+          "kind \"rest\" with until = \"still\" before it tells the two apart",
+          path);
+    if (before.kind == StageKind::rest && !before.until_still)
+      warn(
+          "{}: what hangs loose and is not down after {} s of '{}' counts as the earthquake's; "
+          "until = \"still\" there waits for it",
+          path, before.duration.value_or(0.0), before.name);
   }
 
   // What is not released still holds the wall, as if rock were there that is not.

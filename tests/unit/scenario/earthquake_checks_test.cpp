@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +91,7 @@ std::vector<std::string> warned_of_ground(const std::vector<std::string>& overri
 
 std::string said_of(const simulation::RunSetup& setup) {
   std::string all;
-  for (const auto& [name, value] : setup.ground) all += name + ": " + value + "\n";
+  for (const auto& [name, value] : setup.ground) all += fmt::format("{}: {}\n", name, value);
   return all;
 }
 
