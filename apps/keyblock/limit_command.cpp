@@ -135,56 +135,61 @@ std::string default_criteria() {
   return text;
 }
 
-}  // namespace
-
-void add_limit(CLI::App& app) {
-  auto arguments = std::make_shared<LimitArguments>();
-  study::LimitRequest& request = arguments->request;
-  CLI::App* command = app.add_subcommand(
-      "limit",
-      "Bisection over a number of the scenario for the value at which rock first falls, moves or collapses");
-  add_scenario_file(*command, arguments->scenario);
-  command->add_option("--key", request.key, "Key path of the number, as for --set")
+/// What is looked for, and where.
+void add_search_options(CLI::App& command, LimitArguments& arguments) {
+  study::LimitRequest& request = arguments.request;
+  command.add_option("--key", request.key, "Key path of the number, as for --set")
       ->required()
       ->type_name("KEY");
-  command->add_option("--from", request.from, "A value at which the criterion does not hold")
+  command.add_option("--from", request.from, "A value at which the criterion does not hold")
       ->required()
       ->type_name("A");
-  command->add_option("--to", request.to, "A value at which it holds")->required()->type_name("B");
+  command.add_option("--to", request.to, "A value at which it holds")->required()->type_name("B");
   command
-      ->add_option(
-          "--until", arguments->until,
+      .add_option(
+          "--until", arguments.until,
           "What is to hold at the end of the last stage: fallen (area of fallen rock), moved (largest "
           "displacement), collapsed (the blocks do not stand), or a measure of summary.json by its name; "
           "default: by the model, see below")
       ->type_name("CRITERION");
   command
-      ->add_option(
-          "--above", arguments->above,
+      .add_option(
+          "--above", arguments.above,
           "It holds when the measure is above this; default: 0, for moved loosened_distance of [damage]")
       ->type_name("X");
   command
-      ->add_option("--since", request.since,
-                   "Stage at whose end the measure begins: what came down before does not count; default: it "
-                   "begins at the first excavation")
+      .add_option("--since", request.since,
+                  "Stage at whose end the measure begins: what came down before does not count; default: it "
+                  "begins at the first excavation")
       ->type_name("STAGE");
   command
-      ->add_option("--tolerance", request.tolerance,
-                   "Where the bisection ends: width of the bracket over the larger of its ends")
+      .add_option("--tolerance", request.tolerance,
+                  "Where the bisection ends: width of the bracket over the larger of its ends")
       ->capture_default_str()
       ->type_name("T");
   command
-      ->add_option("--scan", request.scan,
-                   "Look at N equal parts of the way before the bisection, and find all limits that show; "
-                   "default: 8 for the scale of a motion, which need not be monotone, else 1")
+      .add_option("--scan", request.scan,
+                  "Look at N equal parts of the way before the bisection, and find all limits that show; "
+                  "default: 8 for the scale of a motion, which need not be monotone, else 1")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N");
   command
-      ->add_option("--realizations", request.realizations,
-                   "A limit for each of realizations 0 … N-1, their median and other quantiles")
+      .add_option("--realizations", request.realizations,
+                  "A limit for each of realizations 0 … N-1, their median and other quantiles")
       ->check(CLI::Range(1, 100000).description(""))
       ->capture_default_str()
       ->type_name("N");
+}
+
+}  // namespace
+
+void add_limit(CLI::App& app) {
+  auto arguments = std::make_shared<LimitArguments>();
+  CLI::App* command = app.add_subcommand(
+      "limit",
+      "Bisection over a number of the scenario for the value at which rock first falls, moves or collapses");
+  add_scenario_file(*command, arguments->scenario);
+  add_search_options(*command, *arguments);
   command
       ->add_option("-o,--output", arguments->folder,
                    "Folder of the limit: limit.json, limits.csv, report.html, runs/")

@@ -19,9 +19,10 @@ struct Memory {
   bool in_face = false;  ///< it shared the pressure of a face with others (JointFaces)
   double offset = 0.0;   ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
                          ///< negative: the closure of a joint that carries in-situ stress
-  double stiffness = 0.0;     ///< N/m per thickness, of the normal spring in the last step
-  double shear = 0.0;         ///< m, elastic shear displacement
-  double normal_force = 0.0;  ///< N per thickness, compression positive
+  double stiffness = 0.0;  ///< N/m per thickness, of the normal spring in the last step
+  double shear = 0.0;      ///< m, elastic shear displacement
+  /// N per thickness, compression positive; of the pressure of a face what the contact bears (JointPressure), never its nodal force.
+  double normal_force = 0.0;
   /// N per thickness; times μ it bounds the friction of the next step. It is the normal force, negative in the tension of a bond, and the part of
   /// it that the bounds of the steps before have missed while the contact slid, as a force over the last step. So friction loses no impulse.
   double bounding_force = 0.0;

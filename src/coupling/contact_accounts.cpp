@@ -61,6 +61,17 @@ void ContactAccounts::enter(EnergyLedger& ledger) const {
   ledger.numerical += sum(balance.numerical) + sum(rotation) - sum(stored_before);
 }
 
+/// Where a contact shares the pressure of faces, its own normal spring has what is left of its stiffness. first: the number of the first contact.
+contact::LawLanes laws_in_step(std::span<const contact::Contact> contacts, const SpringArray& springs,
+                               std::size_t first) {
+  contact::LawLanes law = contact::laws_of(contacts);
+  for (std::size_t i = 0; i < contacts.size() && !springs.faces.empty(); ++i) {
+    if (springs.faces.has(first + i))
+      law.normal_stiffness[i] = springs.kn[first + i] * springs.faces.elastic_share(first + i);
+  }
+  return law;
+}
+
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
 ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::size_t count,
                               std::span<contact::Memory> remembered) {
@@ -69,11 +80,7 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   const std::span<const Row> rows = std::span(attempt.problem.rows()).subspan(first, count);
   const SpringArray& springs = attempt.problem.springs();
   const auto at_first = [&](const std::vector<double>& numbers) { return load(&numbers[first]); };
-  contact::LawLanes law = contact::laws_of(contacts);
-  for (std::size_t i = 0; i < count && !springs.faces.empty(); ++i) {
-    if (springs.faces.has(first + i))
-      law.normal_stiffness[i] = springs.kn[first + i] * springs.faces.elastic_share(first + i);
-  }
+  const contact::LawLanes law = laws_in_step(contacts, springs, first);
   contact::MemoryLanes memory = contact::memories_of(contacts);
   Lanes moved_normal{}, moved_shear{}, rotated_normal{}, rotated_shear{};
   if (drive.moves_contacts()) {

@@ -81,7 +81,7 @@ class RockColumn {
 
   /// Numbers that its motion takes: those of rest are zero.
   [[nodiscard]] std::size_t memory_size() const {
-    return 8 * height_.size() + numbers_of_plane * planes_.size();
+    return memory_of_nodes() + numbers_of_plane * planes_.size();
   }
   /// A step of length dt, s, under an acceleration of the frame, m/s². before and after: of memory_size; they may be the same.
   void step(std::span<const double> before, double dt, const Integrator& rule, Vec2 acceleration,
@@ -127,6 +127,8 @@ class RockColumn {
 
  private:
   struct Tridiagonal;
+  /// Numbers of the nodes: x and y of displacement, velocity, acceleration and force; those of planes follow.
+  [[nodiscard]] std::size_t memory_of_nodes() const { return 8 * height_.size(); }
   /// One part of a step; before and after may be the same.
   void step_once(std::span<const double> before, double dt, const Integrator& rule, Vec2 acceleration,
                  std::span<double> after) const;

@@ -34,7 +34,7 @@ class RockColumn::Slide {
  public:
   Slide(const RockColumn& column, std::span<const double> before, std::span<Tridiagonal> systems)
       : column_(column),
-        memory_(before.subspan(8 * column.height_.size(), numbers_of_plane * column.planes_.size())),
+        memory_(before.subspan(column.memory_of_nodes(), numbers_of_plane * column.planes_.size())),
         systems_(systems),
         tau_(column.planes_.size(), 0.0) {
     for (std::size_t j = 0; j < column.planes_.size(); ++j) {
@@ -60,7 +60,7 @@ class RockColumn::Slide {
     }
     systems_[0].right = std::move(x);
     systems_[1].right = std::move(y);
-    write(after.subspan(8 * column_.height_.size()));
+    write(after.subspan(column_.memory_of_nodes()));
   }
 
  private:
@@ -213,7 +213,7 @@ void RockColumn::solve_planes(std::span<const double> before, std::span<Tridiago
 
 RockPlaneState RockColumn::plane(std::span<const double> memory, std::size_t k) const {
   const RockPlane& plane = planes_[k];
-  const double* m = &memory[8 * height_.size() + numbers_of_plane * k];
+  const double* m = &memory[memory_of_nodes() + numbers_of_plane * k];
   const double s = std::sin(plane.dip), c = std::cos(plane.dip), r = sideways_[k];
   return {.slip = (m[slip_before] + m[slip_in_x]) / c,
           .largest_slip = m[largest],
@@ -226,7 +226,7 @@ RockPlaneState RockColumn::plane(std::span<const double> memory, std::size_t k) 
 void RockColumn::rest(std::span<double> memory, std::span<double> moved) const {
   const std::span<const double> now = displacements(memory);
   for (std::size_t k = 0; k < now.size(); ++k) moved[k] += now[k];
-  const std::size_t nodes = 8 * height_.size();
+  const std::size_t nodes = memory_of_nodes();
   std::fill_n(memory.begin(), nodes, 0.0);
   for (std::size_t k = 0; k < planes_.size(); ++k) {
     const std::span<double> m = memory.subspan(nodes + numbers_of_plane * k, numbers_of_plane);

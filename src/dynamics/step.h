@@ -122,8 +122,6 @@ class Stepper {
   /// After excavation: forgets the contacts of blocks that are gone.
   void remove_absent(State& state);
 
-  /// m/s², acceleration of the ground that static steps from now on stand for: each block has the inertia force of it as a load. None before.
-  void set_static_ground(Vec2 acceleration) { static_ground_ = acceleration; }
   /// One dynamic step of length dt, s.
   StepReport advance(State& state, double dt, const GroundAcceleration* ground);
   /// One static step: velocities are zero before and after. A trial may not be taken (StepReport::taken). Afterwards balance() is known.
@@ -157,6 +155,7 @@ class Stepper {
   Verdict solve(State& state, Drive& drive, const SolverOptions& options, Attempts& attempts,
                 StepReport& report);
   bool attempt(State& state, Drive& drive, const SolverOptions& options, StepReport& report);
+  [[nodiscard]] Drive static_drive(const State& state, std::span<const double> inertia_scale) const;
   void accept(State& state, const Drive& drive, StepReport& report);
   void substep(State& state, double t0, double t1, const GroundAcceleration* ground, int halvings,
                StepReport& report);
@@ -181,7 +180,6 @@ class Stepper {
   bool quiet_ = false;             ///< no contact changed its branch in it
   std::vector<Vec2> prescribed_;   ///< m, per block, in the step; empty: no fixed block is moved
   std::vector<double> travel_;     ///< m, per block, of static steps
-  Vec2 static_ground_;             ///< m/s²
 };
 
 }  // namespace keyblock::dynamics

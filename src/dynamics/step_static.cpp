@@ -82,17 +82,23 @@ int farthest_block(const Model& model, linalg::BlockSolver& solver) {
 
 }  // namespace
 
-int Stepper::find_unstable_block(State& state, const std::vector<bool>& left_out) {
-  if (model_.unknowns > most_unknowns) return -1;
+/// A static step of length 1.
+Drive Stepper::static_drive(const State& state, std::span<const double> inertia_scale) const {
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;
-  drive.ground_acceleration = static_ground_;
+  drive.ground_acceleration = model_.static_ground;
   drive.step = 1.0;
+  drive.inertia_scale = inertia_scale;
+  return drive;
+}
+
+int Stepper::find_unstable_block(State& state, const std::vector<bool>& left_out) {
+  if (model_.unknowns > most_unknowns) return -1;
+  std::vector<double> scale(model_.blocks.size());
+  Drive drive = static_drive(state, scale);
   drive.rule = rules_.rule();
   drive.prescribed = prescribed_;
-  std::vector<double> scale(model_.blocks.size());
-  drive.inertia_scale = scale;
   StepMatrix matrix;
   for (double shift = least_shift; shift <= most_shift; shift *= more_shift) {
     for (std::size_t b = 0; b < scale.size(); ++b) {
@@ -115,12 +121,8 @@ StepReport Stepper::relax(State& state, const StaticStep& static_step) {
   StepReport report;
   history_.forget();
   const SolverOptions options = options_of(static_step, model_.solver);
-  Drive drive;
-  drive.end_time = state.time;
-  drive.is_static = true;
-  drive.ground_acceleration = static_ground_;
+  Drive drive = static_drive(state, static_step.inertia_scale);
   drive.is_trial = static_step.is_trial;
-  drive.inertia_scale = static_step.inertia_scale;
   drive.step = static_step.step;
   for (;; drive.step *= 0.5) {
     report.converged = attempt(state, drive, options, report) &&
@@ -146,13 +148,8 @@ StepReport Stepper::relax(State& state, const StaticStep& static_step) {
 
 /// Contacts are those that the next static step would begin with.
 const StepProblem& Stepper::find_forces(State& state) {
-  Drive drive;
-  drive.end_time = state.time;
-  drive.is_static = true;
-  drive.ground_acceleration = static_ground_;
-  drive.step = 1.0;
   const std::vector<double> scale(model_.blocks.size(), 1.0);
-  drive.inertia_scale = scale;
+  Drive drive = static_drive(state, scale);
   predict(state, drive);
   find(state, drive);
   build(state, drive, false);

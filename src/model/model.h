@@ -71,7 +71,9 @@ struct Model {
   std::vector<std::shared_ptr<const Coupling>> couplings;  ///< all except contacts
   std::vector<PrescribedMotion> motions;
   std::optional<InSituStress> in_situ;
-  Vec2 gravity;             ///< m/s²
+  Vec2 gravity;  ///< m/s²
+  /// m/s², acceleration of the ground that static steps stand for: each block has the inertia force of it as a load.
+  Vec2 static_ground;
   double block_size = 1.0;  ///< m, √(mean area of the blocks that move)
   SolverOptions solver;
 

@@ -12,7 +12,7 @@ namespace keyblock::scenario {
 /// Rock with weight that a dynamic stage takes out over a compliant base: nothing carries the change, and the model rises.
 std::vector<Diagnostic> dynamic_mistakes(const Scenario& scenario, const simulation::RunSetup& setup);
 
-/// Records that shake a closed box, loads that change after the end of the run, damping that waves do not have, springs that the rule of
+/// Motions that shake a closed box, loads that change after the end of the run, damping that waves do not have, springs that the rule of
 /// time integration damps.
 void add_dynamic_warnings(const Scenario& scenario, const simulation::RunSetup& setup,
                           std::vector<std::string>& warnings);

@@ -159,17 +159,14 @@ class Facts {
                                                                       : "rollers";
       add("boundary", fmt::format("{} base, {} at the sides, {}", spec.compliant ? "compliant" : "rigid",
                                   sides, spec.overburden ? "overburden" : "free top"));
-    } else if (scenario_.domain && scenario_.domain->frame && record_shakes()) {
+    } else if (scenario_.domain && scenario_.domain->frame && is_shaken()) {
       add(around_the_model, "closed box: wave stress left out");
     }
   }
 
-  [[nodiscard]] bool record_shakes() const {
-    return std::any_of(scenario_.stages.begin(), scenario_.stages.end(), [&](const simulation::Stage& stage) {
-      if (stage.motion < 0) return false;
-      const MotionSpec& spec = scenario_.motions[static_cast<std::size_t>(stage.motion)];
-      return !spec.sine_x && !spec.sine_y;
-    });
+  [[nodiscard]] bool is_shaken() const {
+    return std::ranges::any_of(scenario_.stages,
+                               [](const simulation::Stage& stage) { return stage.motion >= 0; });
   }
 
   /// The motions that stages apply, once each.

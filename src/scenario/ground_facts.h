@@ -12,7 +12,7 @@ struct GroundFact {
   friend bool operator==(const GroundFact&, const GroundFact&) = default;
 };
 
-/// The fact that a record shakes a closed box.
+/// The fact that a motion shakes a closed box.
 inline constexpr const char* around_the_model = "around the model";
 
 /// The openings, the rock, its joints, and what acts on it: as given, with defaults in their place.

@@ -348,6 +348,13 @@ Scenario parse_scenario(const std::filesystem::path& file, const std::vector<std
   return parse_scenario_text(read_file(file, largest_scenario), file, overrides);
 }
 
+Box box_of_model(const Scenario& scenario) {
+  Box box;
+  if (scenario.domain) box.add(scenario.domain->box());
+  for (const BlockSpec& block : scenario.blocks) box.add(bounds(block.polygon));
+  return box;
+}
+
 SourcePosition Scenario::where(const std::string& key_path) const {
   const SourcePosition position = nearest_position(positions, key_path);
   return position.file.empty() ? SourcePosition{file, 1, 1} : position;

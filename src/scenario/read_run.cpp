@@ -71,6 +71,62 @@ void read_install(TableReader& t, Stage& stage, const Scenario& scenario) {
   }
 }
 
+/// Until when a dynamic stage lasts.
+void read_stillness(TableReader& t, Stage& stage, bool dynamic, bool shake) {
+  t.word("until", stage.until_still, stage_ends,
+         only(dynamic, "kind = \"shake\" or \"rest\"",
+              {.meaning =
+                   "`still`: the stage ends before its duration, once nothing moves, slips or turns "
+                   "any more. It does not end before a planned load, prescribed displacement or pressure is "
+                   "constant, nor before the shaking is over."}));
+  const bool still = t.documenting() || stage.until_still;
+  t.number(
+      "still_time", stage.still_time,
+      only(still, "until = \"still\"", {.meaning = "So long nothing may move.", .unit = "s", .above = 0.0}));
+  t.number("still_distance", stage.still_distance,
+           only(still, "until = \"still\"",
+                {.meaning = "How far a point of a block may go in that time.",
+                 .unit = "m",
+                 .above = 0.0,
+                 .fallback = "a twentieth of [damage] slip"}));
+  t.number(
+      "still_acceleration", stage.still_acceleration,
+      only(t.documenting() || (stage.until_still && shake), "until = \"still\" and kind = \"shake\"",
+           {.meaning = "The shaking is over when its acceleration stays below this and below a twentieth of "
+                       "the largest.",
+            .unit = "m/s²",
+            .above = 0.0}));
+}
+
+/// What a static stage is loaded by beside gravity, and how it ends.
+void read_equilibrium(TableReader& t, Stage& stage, bool settle) {
+  t.number(
+      "k_h", stage.k_h,
+      only(settle, "kind = \"settle\"",
+           {.meaning =
+                "Horizontal seismic coefficient: every block is pushed to the right by this share of its "
+                "weight, to the left where it is negative, as long as the stage lasts.",
+            .at_least = -10.0,
+            .at_most = 10.0}));
+  t.number(
+      "k_v", stage.k_v,
+      only(settle, "kind = \"settle\"",
+           {.meaning = "Vertical seismic coefficient, likewise: upwards, downwards where it is negative.",
+            .at_least = -10.0,
+            .at_most = 10.0}));
+  const std::string settle_steps = std::to_string(simulation::default_settle_steps);
+  t.integer("max_steps", stage.max_steps,
+            only(settle, "kind = \"settle\"",
+                 {.meaning = "Most static steps; the stage ends without equilibrium when they are used up.",
+                  .at_least = 1.0,
+                  .fallback = settle_steps}));
+  t.number("tolerance", stage.tolerance,
+           only(settle, "kind = \"settle\"",
+                {.meaning = "Equilibrium: largest residual of a block over its weight.",
+                 .above = 0.0,
+                 .below = 1.0}));
+}
+
 void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
   t.name("name", stage.name, "stage", {.meaning = "Name in results and key paths.", .required = true});
   const bool known = t.word(
@@ -102,55 +158,8 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .required = known && stage.kind == StageKind::rest,
                  .above = 0.0,
                  .fallback = "that of the motion; required to rest"}));
-  const bool dynamic = any || stage.kind != StageKind::settle;
-  t.word("until", stage.until_still, stage_ends,
-         only(dynamic, "kind = \"shake\" or \"rest\"",
-              {.meaning =
-                   "`still`: the stage ends before its duration, once nothing moves, slips or turns "
-                   "any more. It does not end before a planned load, prescribed displacement or pressure is "
-                   "constant, nor before the shaking is over."}));
-  const bool still = t.documenting() || stage.until_still;
-  t.number(
-      "still_time", stage.still_time,
-      only(still, "until = \"still\"", {.meaning = "So long nothing may move.", .unit = "s", .above = 0.0}));
-  t.number("still_distance", stage.still_distance,
-           only(still, "until = \"still\"",
-                {.meaning = "How far a point of a block may go in that time.",
-                 .unit = "m",
-                 .above = 0.0,
-                 .fallback = "a twentieth of [damage] slip"}));
-  t.number(
-      "still_acceleration", stage.still_acceleration,
-      only(t.documenting() || (stage.until_still && shake), "until = \"still\" and kind = \"shake\"",
-           {.meaning = "The shaking is over when its acceleration stays below this and below a twentieth of "
-                       "the largest.",
-            .unit = "m/s²",
-            .above = 0.0}));
-  t.number(
-      "k_h", stage.k_h,
-      only(settle, "kind = \"settle\"",
-           {.meaning =
-                "Horizontal seismic coefficient: every block is pushed to the right by this share of its "
-                "weight, to the left where it is negative, as long as the stage lasts.",
-            .at_least = -10.0,
-            .at_most = 10.0}));
-  t.number(
-      "k_v", stage.k_v,
-      only(settle, "kind = \"settle\"",
-           {.meaning = "Vertical seismic coefficient, likewise: upwards, downwards where it is negative.",
-            .at_least = -10.0,
-            .at_most = 10.0}));
-  const std::string settle_steps = std::to_string(simulation::default_settle_steps);
-  t.integer("max_steps", stage.max_steps,
-            only(settle, "kind = \"settle\"",
-                 {.meaning = "Most static steps; the stage ends without equilibrium when they are used up.",
-                  .at_least = 1.0,
-                  .fallback = settle_steps}));
-  t.number("tolerance", stage.tolerance,
-           only(settle, "kind = \"settle\"",
-                {.meaning = "Equilibrium: largest residual of a block over its weight.",
-                 .above = 0.0,
-                 .below = 1.0}));
+  read_stillness(t, stage, any || stage.kind != StageKind::settle, shake);
+  read_equilibrium(t, stage, settle);
 }
 
 void check_step_count(TableReader& t, const Scenario& scenario) {

@@ -212,4 +212,7 @@ struct Scenario {
   [[nodiscard]] double stiffness_by_penalty() const { return solver.penalty * rock.young.value_or(0.0); }
 };
 
+/// m, real coordinates: of the domain and the blocks that are given one by one.
+Box box_of_model(const Scenario& scenario);
+
 }  // namespace keyblock::scenario

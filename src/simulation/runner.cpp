@@ -187,7 +187,7 @@ void Runner::orders_changed() {
   put_loads(now_.control, setup_, model_);
   stepper_.emplace(model_, team_, profile_, options_.stop);
   stepper_->resume(now_.mechanics);
-  if (stage_) stepper_->set_static_ground(seismic_acceleration(stage_->record.stage, model_));
+  if (stage_) model_.static_ground = seismic_acceleration(stage_->record.stage, model_);
   reporter_.orders_changed();
 }
 
@@ -246,7 +246,7 @@ void Runner::begin_settling() {
   const Stage& stage = stage_->record.stage;
   stage_->most_steps = stage.max_steps.value_or(default_settle_steps);
   stage_->settler.emplace(model_, setup_.time_step, stage.tolerance);
-  stepper_->set_static_ground(seismic_acceleration(stage, model_));
+  model_.static_ground = seismic_acceleration(stage, model_);
   if (now_.stage_step > 0) {
     stage_->settler->restore(now_.settler);
     return;

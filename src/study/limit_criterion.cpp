@@ -42,16 +42,6 @@ constexpr LimitDefault defaults[] = {
     {LimitModel::tunnel, LimitEnd::in_motion, "an opening in motion", "fallen", comes_down},
     {LimitModel::tunnel, LimitEnd::shaken, "an opening that is shaken", "fallen", comes_down}};
 
-Box box_of_rock(const scenario::Scenario& scenario) {
-  Box box;
-  if (scenario.domain) {
-    box.add(Vec2{scenario.domain->x.first, scenario.domain->y.first});
-    box.add(Vec2{scenario.domain->x.second, scenario.domain->y.second});
-  }
-  for (const scenario::BlockSpec& block : scenario.blocks) box.add(bounds(block.polygon));
-  return box;
-}
-
 }  // namespace
 
 std::string LimitCriterion::text() const {
@@ -99,7 +89,7 @@ LimitCriterion limit_criterion(const std::string& name, std::optional<double> ab
 
 LimitModel limit_model(const scenario::Scenario& scenario) {
   if (scenario.excavations.empty()) return LimitModel::structure;
-  Box rock = box_of_rock(scenario);
+  Box rock = scenario::box_of_model(scenario);
   const double near = at_the_edge * std::max(rock.size().x, rock.size().y);
   const auto reaches_edge = [&](const scenario::ExcavationSpec& spec) {
     const Box opening = bounds(Polygon{scenario::excavation_outline(spec), {}});

@@ -107,16 +107,6 @@ void list_runs(Plan& plan, const std::vector<std::string>& variants) {
   }
 }
 
-Box box_of_model(const Scenario& scenario) {
-  Box box;
-  if (scenario.domain) {
-    box.add(Vec2{scenario.domain->x.first, scenario.domain->y.first});
-    box.add(Vec2{scenario.domain->x.second, scenario.domain->y.second});
-  }
-  for (const scenario::BlockSpec& block : scenario.blocks) box.add(bounds(block.polygon));
-  return box;
-}
-
 /// The last stage before the shaking, where that is before the stage `measured`.
 std::string stage_before_shaking(const Scenario& scenario, const std::string& measured) {
   const auto last = simulation::last_before_shaking(scenario.stages);
@@ -212,7 +202,7 @@ void keep_places(const std::vector<PlannedRun>& earlier, Plan& plan) {
 }
 
 MapGrid map_grid(const Scenario& scenario) {
-  const Box model = box_of_model(scenario);
+  const Box model = scenario::box_of_model(scenario);
   Box box;
   for (const scenario::ExcavationSpec& spec : scenario.excavations) {
     for (const Vec2 p : scenario::excavation_outline(spec)) box.add(p);

@@ -31,7 +31,8 @@ std::string mistake_in_run(const PlannedRun& run, const Plan& plan) {
   if (!is_run_key(run.key)) return fmt::format("the key \"{}\" of a run", run.key);
   if (run.realization < 0 || !run.key.starts_with(fmt::format("r{:04}-", run.realization)))
     return fmt::format("the run {} as one of realization {}", run.key, run.realization);
-  if (std::find(std::begin(known_variants), std::end(known_variants), run.variant) == std::end(known_variants))
+  if (std::find(std::begin(known_variants), std::end(known_variants), run.variant) ==
+      std::end(known_variants))
     return fmt::format("the variant \"{}\" of a run", run.variant);
   return fits_axes(run, plan.axes) ? ""
                                    : fmt::format("values of the run {} that do not fit the axes", run.key);

@@ -20,6 +20,8 @@ constexpr std::array<int, 9> resolutions{2000, 1400, 1000, 850, 700, 500, 320, 2
 constexpr std::size_t largest_size = 12'000;
 /// Room around the openings, as a share of their size: about 1.3 widths from the centre of a single one.
 constexpr double room = 0.8;
+/// Beyond the rock, as a share of its size.
+constexpr double edge = 0.02;
 
 constexpr std::string_view style =
     "<style>.r{fill:#e4e1d8;stroke:#6b6f73}.x{fill:#d3d5d7;stroke:#6b6f73}.l{fill:#e69f00;stroke:#33373b}"
@@ -49,8 +51,7 @@ class Drawing {
       if (window_.min.x > window_.max.x)
         for (const Vec2 p : model.vertices) window_.add(p);
     } else {
-      const Vec2 size = window_.size();
-      window_ = window_.grown(room * std::max(size.x, size.y));
+      show_around_openings(rock);
     }
     if (window_.min.x > window_.max.x) window_ = {{0.0, 0.0}, {1.0, 1.0}};
   }
@@ -93,6 +94,16 @@ class Drawing {
   }
 
  private:
+  /// The openings, and what is around them. What lies in front of a slope is open to the edge of the rock: beyond it there is nothing to show.
+  void show_around_openings(Box rock) {
+    const Vec2 size = window_.size();
+    rock.add(window_);
+    rock = rock.grown(edge * std::max(rock.size().x, rock.size().y));
+    window_ = window_.grown(room * std::max(size.x, size.y));
+    window_.min = {std::max(window_.min.x, rock.min.x), std::max(window_.min.y, rock.min.y)};
+    window_.max = {std::min(window_.max.x, rock.max.x), std::min(window_.max.y, rock.max.y)};
+  }
+
   /// None: excavated, not drawn.
   [[nodiscard]] std::optional<Class> class_of(std::size_t block) const {
     if (model_.blocks[block].fixed) return Class::fixed;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -83,6 +84,29 @@ TEST(JointPressure, OfStraightFacesDoesNotDependOnTheContacts) {
 }
 
 // An even pressure has the weights of the rule: it does its work on any order.
+// Of a joint that is open at one end some nodal forces pull. What contacts bear never does, and has the same sum and moment.
+TEST(JointPressure, IsBorneByContactsThatPress) {
+  for (const int points : {3, 5}) {
+    const EdgeDivision& division = divided(points);
+    const JointPressure joint(full_stiffness, division, false);
+    for (const double open_from : {0.3, 0.6, 0.9, 2.0}) {
+      SCOPED_TRACE(testing::Message() << points << " points, open from " << open_from);
+      std::vector<double> y, force(division.points.size()), bearing(force.size());
+      for (const double s : division.points) y.push_back(1e-3 * (open_from - s));
+      joint.forces(y, force, bearing);
+      double sum = 0.0, moment = 0.0;
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        EXPECT_GE(bearing[i], 0.0);
+        sum += bearing[i] - force[i];
+        moment += (bearing[i] - force[i]) * division.points[i];
+      }
+      EXPECT_NEAR(sum, 0.0, 1e-9 * full_stiffness * 1e-3);
+      EXPECT_NEAR(moment, 0.0, 1e-9 * full_stiffness * 1e-3);
+      EXPECT_EQ(*std::ranges::min_element(force) < 0.0, open_from < 1.0);
+    }
+  }
+}
+
 TEST(JointPressure, OfEvenPressureHasTheWeightsOfTheRule) {
   for (const int points : {3, 5}) {
     const JointPressure joint(full_stiffness, divided(points), false);
