@@ -95,11 +95,10 @@ void tell_result(const study::LimitResult& result, const std::string& folder) {
 }
 
 void run_limit(LimitArguments arguments) {
-  std::vector<std::string> warnings;
   study::Plan plan =
       study::plan_limit(study::read_scenario_text(arguments.scenario.file, arguments.scenario.overrides),
-                        KEYBLOCK_VERSION, arguments.request, arguments.until, arguments.above, &warnings);
-  print_warnings(arguments.scenario, warnings);
+                        KEYBLOCK_VERSION, arguments.request, arguments.until, arguments.above);
+  print_warnings(arguments.scenario, plan.warnings);
   const auto lock = study::lock_study(arguments.folder);
   StudyDisplay display = StudyDisplay::to_standard_error("limit");
   study::LimitOptions options;

@@ -56,11 +56,11 @@ const RockLayer& layer_at(std::span<const RockLayer> layers, double height) {
 }
 
 RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double ground,
-                       std::optional<Vec2> dashpots, double fastest, double viscosity,
+                       std::optional<Vec2> dashpots, double fastest, ColumnDamping damping,
                        std::span<const RockPlane> planes)
     : layers_(layers.begin(), layers.end()),
       dashpots_(dashpots),
-      viscosity_(viscosity),
+      damping_(damping),
       planes_(planes.begin(), planes.end()) {
   std::stable_sort(planes_.begin(), planes_.end(),
                    [](const RockPlane& a, const RockPlane& b) { return a.height < b.height; });
@@ -115,7 +115,10 @@ void RockColumn::step_once(std::span<const double> before, double dt, const Inte
   Tridiagonal systems[] = {Tridiagonal(n), Tridiagonal(n)};
   for (const int axis : {0, 1}) {
     Tridiagonal& system = systems[axis];
-    assemble(before, coasting, at(axis), rule.inertia() / (dt * dt), 1.0 + viscosity_ / dt,
+    assemble(before, coasting, at(axis),
+             {.inertia = rule.inertia() / (dt * dt),
+              .drag = damping_.drag * rule.end_velocity_share() / dt,
+              .viscous = 1.0 + damping_.viscosity / dt},
              along(frame, at(axis)), system);
     if (dashpots_) {
       const double dashpot = along(*dashpots_, at(axis));
@@ -145,9 +148,13 @@ void RockColumn::step_once(std::span<const double> before, double dt, const Inte
 
 /// What elements do: inertia, stiffness, and the body force in the acceleration of the frame.
 void RockColumn::assemble(std::span<const double> before, std::span<const Motion> coasting, std::size_t axis,
-                          double inertia, double viscous, double frame, Tridiagonal& system) const {
+                          const StepFactors& factors, double frame, Tridiagonal& system) const {
   const std::size_t n = height_.size();
-  const auto owed = [&](std::size_t k) { return -coasting[k].force[static_cast<int>(axis)]; };
+  const double of_mass = factors.inertia + factors.drag;
+  const auto owed = [&](std::size_t k) {
+    const int lane = static_cast<int>(axis);
+    return -coasting[k].force[lane] - damping_.drag * coasting[k].velocity[lane];
+  };
   for (std::size_t e = 0; e + 1 < n; ++e) {
     if (is_link(e)) continue;
     const double length = height_[e + 1] - height_[e], mass = density_[e] * length,
@@ -156,11 +163,11 @@ void RockColumn::assemble(std::span<const double> before, std::span<const Motion
                                      before[place(displacement, n, e) + axis]);
     for (const std::size_t k : {e, e + 1}) {
       const std::size_t other = k == e ? e + 1 : e;
-      system.diagonal[k] += own_mass * mass * inertia + viscous * stiffness;
+      system.diagonal[k] += own_mass * mass * of_mass + factors.viscous * stiffness;
       system.right[k] +=
           mass * (own_mass * owed(k) + shared_mass * owed(other) - 0.5 * frame) + (k == e ? pull : -pull);
     }
-    system.beside[e] = shared_mass * mass * inertia - viscous * stiffness;
+    system.beside[e] = shared_mass * mass * of_mass - factors.viscous * stiffness;
   }
 }
 
@@ -204,8 +211,8 @@ std::vector<double> RockColumn::strained(std::span<const double> before, double 
                                          std::span<const double> after) const {
   const std::span<const double> from = displacements(before), to = displacements(after);
   std::vector<double> of_nodes(to.begin(), to.end());
-  for (std::size_t k = 0; k < of_nodes.size() && viscosity_ > 0.0; ++k)
-    of_nodes[k] += viscosity_ / dt * (to[k] - from[k]);
+  for (std::size_t k = 0; k < of_nodes.size() && damping_.viscosity > 0.0; ++k)
+    of_nodes[k] += damping_.viscosity / dt * (to[k] - from[k]);
   return of_nodes;
 }
 

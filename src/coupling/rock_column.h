@@ -61,6 +61,12 @@ struct RockPlaneState {
   bool opened = false;        ///< at any time
 };
 
+/// What takes energy out of the waves of a column.
+struct ColumnDamping {
+  double viscosity = 0.0;  ///< s, β of its stress G (γ + β ∂γ/∂t), and likewise of that by compression
+  double drag = 0.0;       ///< 1/s, a of the force −a m v on masses that move relative to the frame
+};
+
 /// Rock beside the model, as far away as if there were none: a column of linear elements from the base to the ground, in which waves go up
 /// and down, u_x by shear and u_y by compression. It moves relative to the same frame as the model and feels the same body force −ρ a. At
 /// its base are dashpots, which stand for the half-space below, or it is fixed.
@@ -75,9 +81,9 @@ struct RockPlaneState {
 class RockColumn {
  public:
   /// Layers from above; the last one goes down to the base. dashpots: Pa s/m in x and y; none: it is fixed. fastest: Hz, for which elements
-  /// are short enough. viscosity: s, β of its stress G (γ + β ∂γ/∂t), and likewise of that by compression.
+  /// are short enough.
   RockColumn(std::span<const RockLayer> layers, double base, double ground, std::optional<Vec2> dashpots,
-             double fastest, double viscosity = 0.0, std::span<const RockPlane> planes = {});
+             double fastest, ColumnDamping damping = {}, std::span<const RockPlane> planes = {});
 
   /// Numbers that its motion takes: those of rest are zero.
   [[nodiscard]] std::size_t memory_size() const {
@@ -127,6 +133,12 @@ class RockColumn {
 
  private:
   struct Tridiagonal;
+  /// Of the increment D, in the forces of a step.
+  struct StepFactors {
+    double inertia = 0.0;  ///< 1/s², of mass
+    double drag = 0.0;     ///< 1/s², of mass, by ColumnDamping::drag
+    double viscous = 1.0;  ///< of stiffness
+  };
   /// Numbers of the nodes: x and y of displacement, velocity, acceleration and force; those of planes follow.
   [[nodiscard]] std::size_t memory_of_nodes() const { return 8 * height_.size(); }
   /// One part of a step; before and after may be the same.
@@ -143,14 +155,14 @@ class RockColumn {
                     std::span<double> after) const;
   void add_elements(const RockLayer& rock, double bottom, double top, double longest);
   void assemble(std::span<const double> before, std::span<const Motion> coasting, std::size_t axis,
-                double inertia, double viscous, double frame, Tridiagonal& system) const;
+                const StepFactors& factors, double frame, Tridiagonal& system) const;
 
   std::vector<RockLayer> layers_;
   std::vector<double> height_;                  ///< m, of nodes
   std::vector<double> density_;                 ///< kg/m³, of elements; 0: a plane, without extent
   std::array<std::vector<double>, 2> modulus_;  ///< Pa, of elements, in x and in y
   std::optional<Vec2> dashpots_;
-  double viscosity_;               ///< s
+  ColumnDamping damping_;
   std::vector<RockPlane> planes_;  ///< from below
   std::vector<std::size_t> link_;  ///< the elements that they are
   std::vector<double> sideways_;   ///< of the rock that they are in, sideways over upright

@@ -48,7 +48,8 @@ class RockColumn::Slide {
     }
   }
 
-  /// The increments of the nodes in the right sides of the systems; the planes in their memory.
+  /// The increments of the nodes in the right sides of the systems; the planes in their memory. What the slip still changes by after
+  /// most_solutions is missing in what lifts the rock in this step; the next one begins with it.
   void solve(std::span<double> after) {
     std::vector<double> x, y;
     double change = 0.0, size = 0.0;

@@ -91,7 +91,7 @@ struct Model {
 
 /// β, s: by which stiffness damps the rock and its joints, in dynamic steps.
 inline double stiffness_damping(const Model& model) {
-  return model.solver.damping ? model.solver.damping->stiffness_time() : 0.0;
+  return model.solver.stiffness_time();
 }
 
 }  // namespace keyblock::dynamics

@@ -78,6 +78,9 @@ struct SolverOptions {
   int max_multiplier_updates = 200;
   LinearSolver linear = LinearSolver::automatic;
   Accelerators accelerators;
+
+  /// β, s: by which stiffness damps the rock and its joints, in dynamic steps.
+  [[nodiscard]] double stiffness_time() const { return damping ? damping->stiffness_time() : 0.0; }
 };
 
 }  // namespace keyblock::dynamics

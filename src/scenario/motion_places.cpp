@@ -16,8 +16,8 @@ using dynamics::RockColumn;
 using loading::GroundMotion;
 
 constexpr double same_depth = 0.05;  // share by which the depth of a record and of the base may differ
-constexpr double ratio = 0.02;       // of critical, of the column that a record moves
-constexpr double parts = 4.0;        // of a step of the run, in which it does
+constexpr double ratio = 0.01;       // of critical, of the column that a record moves, at its first frequency
+constexpr int parts = 4;             // of a sample, in which it does
 
 double least_step(const GroundMotion& motion, double step) {
   for (std::size_t k = 1; k < motion.times().size(); ++k) {
@@ -30,26 +30,33 @@ double least_step(const GroundMotion& motion, double step) {
 /// The column that a record at its base moves.
 class RecordColumn {
  public:
-  RecordColumn(const simulation::Boundary& boundary, double base, double ground)
+  /// viscosity: s, that of the rock of the model.
+  RecordColumn(const simulation::Boundary& boundary, double base, double ground, double viscosity)
       : boundary_(boundary),
-        column_(boundary.layers, base, ground, std::nullopt, boundary.fastest, viscosity(base, ground)),
+        column_(boundary.layers, base, ground, std::nullopt, boundary.fastest,
+                {.viscosity = viscosity, .drag = drag(base, ground)}),
         base_(column_.place_of(base)) {}
 
-  GroundMotion outcrop_of(const GroundMotion& record, double dt) const {
+  /// sampling: s, of the outcrop, whose acceleration is that of the time around each sample.
+  GroundMotion outcrop_of(const GroundMotion& record, double sampling) const {
     const auto rule = dynamics::Integrator::average_acceleration();
-    std::vector<double> memory(column_.memory_size(), 0.0), times{0.0};
+    const double dt = sampling / parts;
+    std::vector<double> memory(column_.memory_size(), 0.0), after(memory.size()), times{0.0};
     std::vector<Vec2> accelerations{{}};
-    Vec2 before = record.velocity(0.0);
-    for (double k = 0.0; (k + 0.5) * dt < record.duration(); ++k) {
-      std::vector<double> after(memory.size());
-      column_.step(memory, dt, rule, record.mean(k * dt, (k + 1.0) * dt), after);
+    Vec2 of_record, now, last_but_one;  // m/s; of the ground at the base, and of the outcrop
+    for (int k = 0; (k + 0.5) * dt < record.duration(); ++k) {
+      const double end = (k + 1) * dt;
+      const Vec2 acceleration = record.mean(k * dt, end), before = now;
+      column_.step(memory, dt, rule, acceleration, after);
       const RockColumn::Stress stress = column_.stress(column_.strained(memory, dt, after), base_);
-      memory = std::move(after);
-      const Vec2 now = record.velocity((k + 1.0) * dt) -
-                       Vec2{stress.xy / boundary_.dashpots.x, stress.yy / boundary_.dashpots.y};
-      times.push_back((k + 0.5) * dt);
-      accelerations.push_back((now - before) / dt);
-      before = now;
+      std::swap(memory, after);
+      of_record += dt * acceleration;
+      now = of_record - Vec2{stress.xy / boundary_.dashpots.x, stress.yy / boundary_.dashpots.y};
+      if (k % parts == 0 && k > 0) {
+        times.push_back(k * dt);
+        accelerations.push_back((now - last_but_one) / (2.0 * dt));
+      }
+      last_but_one = before;
     }
     if (times.back() < record.duration()) {
       times.push_back(record.duration());
@@ -59,8 +66,8 @@ class RecordColumn {
   }
 
  private:
-  /// s, β of the ratio at the first frequency of shear.
-  [[nodiscard]] double viscosity(double base, double ground) const {
+  /// 1/s, a = 2 ζ ω₁ with ω₁ = π/2T, T: s that waves of shear take from the base to the ground.
+  [[nodiscard]] double drag(double base, double ground) const {
     double travel = 0.0, high = ground;
     for (std::size_t k = 0; k < boundary_.layers.size(); ++k) {
       const double low = std::max(base, k + 1 < boundary_.layers.size() ? boundary_.layers[k + 1].top : base);
@@ -68,7 +75,7 @@ class RecordColumn {
       travel += (high - low) / boundary_.layers[k].speeds().x;
       high = low;
     }
-    return ratio * 4.0 * travel / std::numbers::pi;
+    return ratio * std::numbers::pi / travel;
   }
 
   const simulation::Boundary& boundary_;
@@ -105,8 +112,8 @@ void take_to_base(const Scenario& scenario, simulation::RunSetup& setup) {
     }
     if (depth < (1.0 - same_depth) * of_model)
       fail_at_depth(scenario, spec, of_model, "a record at the base of the model or deeper");
-    motion = RecordColumn(*setup.boundary, ground - depth, ground)
-                 .outcrop_of(motion, least_step(motion, setup.time_step) / parts);
+    motion = RecordColumn(*setup.boundary, ground - depth, ground, setup.solver.stiffness_time())
+                 .outcrop_of(motion, least_step(motion, setup.time_step));
   }
 }
 

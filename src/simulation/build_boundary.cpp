@@ -93,9 +93,10 @@ class Builder {
       std::vector<dynamics::RockPlane> planes;
       for (const FarPlane& plane : boundary_.planes)
         planes.push_back(plane.at_side[side == ColumnSide::left ? 0 : 1]);
-      far_.push_back({RockColumn(boundary_.layers_at(side), outside_.box().min.y, height, dashpots,
-                                 boundary_.fastest, dynamics::stiffness_damping(model_), planes),
-                      x});
+      far_.push_back(
+          {RockColumn(boundary_.layers_at(side), outside_.box().min.y, height, dashpots, boundary_.fastest,
+                      {.viscosity = dynamics::stiffness_damping(model_)}, planes),
+           x});
     };
     const double left = outside_.ground(Side::left), right = outside_.ground(Side::right);
     add(ColumnSide::left, left, outside_.box().min.x);

@@ -208,8 +208,7 @@ class Finder {
     const ColumnHeights heights = column_heights(setup_, side);
     const RockColumn column(boundary.layers_at(side), heights.base, heights.ground,
                             boundary.compliant ? std::optional(boundary.dashpots) : std::nullopt,
-                            boundary.fastest,
-                            setup_.solver.damping ? setup_.solver.damping->stiffness_time() : 0.0);
+                            boundary.fastest, {.viscosity = setup_.solver.stiffness_time()});
     struct Watched {
       Course* course;
       RockPlane plane;

@@ -339,7 +339,7 @@ void Runner::end_stage() {
   reporter_.frame(now_);
   if (!is_within_step_) reporter_.contacts(now_, *stepper_);
   if (record.equilibrium_reached && !is_within_step_)
-    record.unstable_block = stepper_->find_unstable_block(now_.mechanics, stage_->settler->which_move());
+    record.unstable_block = find_unstable_block(stage_->settler->which_move());
   gauge_.describe(now_.mechanics, record);
   record.release = opening_.end_stage(now_.mechanics);
   record.blocks_by_order = blocks_by_order(model_);

@@ -86,6 +86,8 @@ class Runner {
   void after_step(const dynamics::StepReport& report, const StageOutlook& outlook);
   [[nodiscard]] bool stage_is_over() const;
   void end_stage();
+  /// Of an equilibrium that is not stable, the block that goes farthest; −1: it is stable.
+  [[nodiscard]] int find_unstable_block(const std::vector<bool>& which_move);
   void checkpoint();
   void end();
   template <typename Work>

@@ -80,6 +80,7 @@ struct LimitResult {
   LimitRequest request;
   std::string unit;                                         ///< of the key
   std::vector<std::pair<std::string, std::string>> ground;  ///< ground and loads: names and values
+  std::vector<std::string> warnings;                        ///< of the scenario and the search
   double confidence = 0.95;
   bool complete = false;  ///< every bisection has ended
   std::vector<RealizationLimit> realizations;

@@ -153,6 +153,7 @@ std::string limit_json(const LimitResult& result) {
                             {"interval", interval}}},
                           {"quantiles", quantiles},
                           {"ground", results::ground_json(result.ground)},
+                          {"warnings", result.warnings},
                           {"met_share", shares_json(result)},
                           {"realizations", realizations}};
   return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -31,7 +31,7 @@ constexpr std::string_view page_style = R"(<style>
 @media (prefers-color-scheme:dark){:root{--page:#16181b;--paper:#1e2125;--ink:#e6e8ea;--muted:#a2abb3;--line:#373c42;--accent:#6fb1f5;--bad:#ff8a80}}
 body{font:16px/1.5 system-ui,"Segoe UI","Noto Sans","DejaVu Sans",sans-serif;background:var(--page);color:var(--ink);margin:0 auto;max-width:1300px;padding:16px}
 section{background:var(--paper);border:1px solid var(--line);border-radius:8px;padding:12px 16px;margin:16px 0;overflow-x:auto}
-a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}p.how{color:var(--muted)}.screen{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,520px),1fr));gap:0 16px;align-items:start}
+a{color:var(--accent)}h1{font-size:1.5em}h2{font-size:1.15em;margin:.3em 0}p.answer{font-size:1.2em}p.how{color:var(--muted)}.warning{border-left:3px solid var(--bad);padding-left:10px}.screen{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,520px),1fr));gap:0 16px;align-items:start}
 table{border-collapse:collapse}td,th{padding:3px 12px 3px 0;text-align:right;border-bottom:1px solid var(--line)}th{color:var(--muted);font-weight:normal}
 .plot{width:100%;max-width:720px}.plot text{font-size:13px;fill:var(--muted)}.axis{stroke:var(--muted)}.threshold{stroke:var(--muted);stroke-dasharray:5 4}
 .line{stroke:var(--accent);stroke-width:2}.bracket{fill:var(--accent);fill-opacity:.18}.no{fill:none;stroke:var(--accent);stroke-width:2}.yes{fill:var(--bad)}
@@ -296,20 +296,27 @@ std::string ground_table(const LimitResult& result) {
   return "<section><h2>Ground and loads</h2><table>" + rows + "</table></section>";
 }
 
+std::string warning_list(const LimitResult& result) {
+  std::string texts;
+  for (const std::string& warning : result.warnings)
+    texts += fmt::format("<p class=\"warning\"><b>warning:</b> {}</p>", xml_text(warning));
+  return texts;
+}
+
 }  // namespace
 
 std::string limit_page(const fs::path& directory, const LimitResult& result) {
   return fmt::format(
       "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Limit: "
-      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}</section><div "
+      "{0}</title>{1}</head><body><h1>{0}</h1><section><h2>Limit of {2}</h2>{3}{12}</section><div "
       "class=\"screen\"><div><section>{4}"
       "</section>{11}</div>{5}</div>{10}{6}<p>keyblock {7}, {8}, seed {9}; <a "
       "href=\"limit.json\">limit.json</a></p></body></html>\n",
       xml_text(result.title.empty() ? result.scenario : result.title), page_style,
       xml_text(result.request.key), words(result), Plot(result).draw(), drawings(directory, result),
       trial_table(directory, result), xml_text(result.version), xml_text(result.scenario), result.seed,
-      SharePlot(result).draw(), ground_table(result));
+      SharePlot(result).draw(), ground_table(result), warning_list(result));
 }
 
 }  // namespace keyblock::study

@@ -253,6 +253,7 @@ LimitResult empty_limit(const Plan& plan, const LimitRequest& request) {
   result.request = request;
   result.unit = scenario::key_unit(request.key);
   for (const scenario::GroundFact& fact : plan.ground) result.ground.emplace_back(fact.name, fact.value);
+  result.warnings = plan.warnings;
   result.confidence = plan.confidence;
   return result;
 }
@@ -271,9 +272,10 @@ LimitCriterion chosen_criterion(const scenario::Scenario& scenario, const std::s
 }  // namespace
 
 Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitRequest& request,
-                const std::string& until, std::optional<double> above, std::vector<std::string>* warnings) {
+                const std::string& until, std::optional<double> above) {
   check_request(request);
-  Plan plan = make_plan(scenario, version, warnings);
+  std::vector<std::string> warnings;
+  Plan plan = make_plan(scenario, version, &warnings);
   const scenario::Scenario read = scenario::parse_scenario_text(plan.text, plan.scenario, plan.overrides,
                                                                 scenario::StudyTable::leave_out);
   request.criterion = chosen_criterion(read, until, above);
@@ -281,11 +283,12 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
   request.finds_moving =
       !request.criterion.collapse && std::string_view(limit_default(read).criterion) != "fallen";
   if (request.scan == 0) request.scan = scan_of(request.key);
-  if (warnings != nullptr && request.realizations > 1 && read.joint_sets.empty())
-    warnings->push_back(
+  if (request.realizations > 1 && read.joint_sets.empty())
+    warnings.push_back(
         fmt::format("--realizations {}: nothing is random without a [[joint_set]]; all limits are the same, "
                     "and their interval says nothing",
                     request.realizations));
+  plan.warnings = std::move(warnings);
   check_since(request, read.stages);
   check_ends(plan, request);
   plan.realizations = request.realizations;

@@ -15,8 +15,7 @@ namespace keyblock::study {
 /// model, limit_default) and `above`, its scan where it has none; its `since` is checked. Throws InputError for what is wrong with the
 /// scenario, also with the key at both ends of the interval, and with the request.
 Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitRequest& request,
-                const std::string& until, std::optional<double> above,
-                std::vector<std::string>* warnings = nullptr);
+                const std::string& until, std::optional<double> above);
 
 struct LimitOptions {
   WorkerOptions workers;

@@ -211,6 +211,12 @@ std::string quantiles_text(const LimitResult& result) {
   return text + "\n";
 }
 
+/// Whether a key pushes to one side or the other by its sign: coefficients of an earthquake, gravity and loads along an axis, inclination.
+bool has_two_ways(const std::string& key) {
+  if (key == "tilt" || key.ends_with(".k_h") || key.ends_with(".k_v")) return true;
+  return key.ends_with("]") && (key.starts_with("gravity[") || key.starts_with("load["));
+}
+
 }  // namespace
 
 std::string quantity(double value, const std::string& unit, int digits) {
@@ -281,8 +287,15 @@ std::string not_met_hint(const LimitResult& result) {
   if (!already.empty()) return already;
   if (limit.trials.front().state_hash == limit.trials.back().state_hash)
     return "both runs are the same to the last bit: the key has no effect on this model";
-  if (result.request.criterion.collapse) return "move --to farther; --scan N looks between the ends";
-  return "move --to farther, lower --above, let the last stage last longer, or ask --until collapsed";
+  // What pushes the wrong way holds the more, the farther --to is.
+  const std::string other_way =
+      has_two_ways(result.request.key)
+          ? fmt::format(", or give it the other sign: {} acts to the other side then", result.request.key)
+          : "";
+  if (result.request.criterion.collapse)
+    return "move --to farther" + other_way + "; --scan N looks between the ends";
+  return "move --to farther" + other_way +
+         ", lower --above, let the last stage last longer, or ask --until collapsed";
 }
 
 }  // namespace keyblock::study

@@ -65,6 +65,7 @@ struct Plan {
   MapGrid grid;
   std::vector<Ring> outlines;
   std::vector<scenario::GroundFact> ground;  ///< of all combinations
+  std::vector<std::string> warnings;  ///< of a limit: what seems wrong with the scenario and the search
 
   std::vector<PlannedRun> runs;
 

@@ -128,6 +128,13 @@ class DefaultCriterion(Limit):
             page = (self.folder / name / "report.html").read_text()
             for words in ("The factor of safety is 1.45", "Ground and loads", "Just beyond the limit", "friction φ"):
                 self.assertIn(words, page)
+            self.assertEqual(self.found(name)["warnings"], [])
+
+    def test_warnings_of_the_scenario_are_on_the_page(self):
+        self.limit(*self.slope(), "--set", "rock.density=26", "--key", "joints.strength_factor", "--from", 1, "--to", 3)
+        (warning,) = [text for text in self.found()["warnings"] if "rock.density" in text]
+        self.assertIn("usual is", warning)
+        self.assertIn('<p class="warning"><b>warning:</b> ', (self.folder / "out/report.html").read_text())
 
     def test_the_page_on_slopes_says_what_the_program_says(self):
         self.keyblock("new", "slope", "--force")
@@ -165,6 +172,8 @@ class DefaultCriterion(Limit):
         words = self.slope()
         self.limit(*words, "--key", "stage.excavated.k_h", "--from", 0, "--to", -0.5, out="k_h")
         self.check_bracket(-math.tan(math.radians(10)), 0.005, out="k_h")
+        said = self.limit(*words, "--key", "stage.excavated.k_h", "--from", 0, "--to", 0.5, out="uphill", expect=1).stderr
+        self.assertIn("or give it the other sign", said)
         self.limit(*words, "--key", "gravity[0]", "--from", 0, "--to", -5, out="g")
         self.check_bracket(-9.81 * math.tan(math.radians(10)), 0.005, out="g")
         self.assertEqual(self.found("g")["unit"], "m/s²")

@@ -5,6 +5,7 @@
 
 #include "../scene.h"
 #include "simulation/run.h"
+#include "simulation/standing.h"
 #include "simulation/verdict.h"
 
 namespace keyblock::simulation {
@@ -85,6 +86,41 @@ StageRecord settle(RunSetup setup) {
   setup.stages = {stage("settle", StageKind::settle)};
   RunObserver nobody;
   return run(setup, {}, nobody).stages[0];
+}
+
+/// How a straight column of 20 m × 1 m stands under a share of its buckling load, Euler: π² E h³ / (48 L²).
+Standing column_under(double share, int order, bool automatic = false) {
+  Scene scene(1e9, 30.0);
+  scene.rectangle({0.0, 0.0}, 1.0, 20.0, 0.0, false, order);
+  RunSetup setup = scene.setup;
+  setup.properties[0].material.poisson = 0.0;
+  setup.properties[0].automatic_order = automatic;
+  setup.gravity = {0.0, 0.0};
+  setup.time_step = 1.0;
+  loading::Support support;
+  support.block = "b0";
+  support.is_edge = true;
+  support.points = {{0.0, 0.0}, {1.0, 0.0}};
+  support.stiffness = 1e13;
+  setup.supports.push_back(support);
+  loading::Load load;
+  load.block = "b0";
+  load.is_line = true;
+  load.from = {1.0, 20.0};
+  load.to = {0.0, 20.0};
+  load.value = load.value_end = {0.0, -share * std::numbers::pi * std::numbers::pi * 1e9 / (48.0 * 400.0)};
+  setup.loads.push_back(load);
+  return standing_of(settle(setup), {}, false);
+}
+
+// Blocks of low orders, which the program may have chosen, bend too little or not at all, and balance under any load.
+TEST(Settling, AColumnBeyondItsBucklingLoadDoesNotStandAtAnyOrder) {
+  for (const int order : {1, 2, 3}) {
+    EXPECT_EQ(column_under(0.95, order), Standing::stands) << order;
+    EXPECT_EQ(column_under(1.05, order), Standing::unstable) << order;
+  }
+  EXPECT_EQ(column_under(0.95, 1, true), Standing::stands);
+  EXPECT_EQ(column_under(1.05, 1, true), Standing::unstable);
 }
 
 // Without gravity, a block that only its neighbour loads is in balance when the neighbour is.
