@@ -17,7 +17,7 @@ namespace keyblock::dynamics {
 ///
 /// δ matters where a contact presses, or comes to press by δ only. There are two measures: δ itself, and the work N δ of the normal force,
 /// which is done on no block. An attempt in which δ is too large is made again with g + δ in place of g, until δ is what it was made with.
-/// Where blocks turn so far that forces have other directions at the end, the step is too long (docs/theory.md, section "Rotation"). So it
+/// Where blocks turn so far that forces have other directions at the end, the step is too long (docs/theory.md, section 6, "Blocks that turn"). So it
 /// is where a block turns that springs hold to the ground, whatever touches it.
 class RotationCorrection {
  public:

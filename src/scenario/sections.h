@@ -18,7 +18,7 @@ void read_rock_mass(TableReader& root, Scenario& scenario);
 void read_shapes(TableReader& root, Scenario& scenario);
 /// [boundary], after [domain], [rock] and what is built into them.
 void read_boundary(TableReader& root, Scenario& scenario);
-/// [in_situ], [[motion]], [[load]], [[support]].
+/// [in_situ], [[motion]], [[load]], [[support]], [[spring]].
 void read_loading(TableReader& root, Scenario& scenario);
 /// One [[motion]].
 void read_motion(TableReader& t, MotionSpec& motion);
