@@ -199,6 +199,30 @@ std::vector<std::string> warnings(const RunRecord& run) {
   return texts;
 }
 
+/// "most loaded: bolt 3, 118 kN/m tension, 98 % of its limit, in "shaking"; 2 of 12 springs have yielded"
+std::string most_loaded(const RunRecord& run) {
+  std::string text;
+  for (const char* kind : {"spring", "support"}) {
+    const simulation::ElementRecord* most = nullptr;
+    long count = 0, yielded = 0;
+    for (const simulation::ElementRecord& e : run.elements) {
+      if (e.kind != kind) continue;
+      ++count;
+      yielded += e.has_yielded() ? 1 : 0;
+      const auto load = [](const auto& of) { return std::pair(of.utilization(), of.peak_force); };
+      if (most == nullptr || load(e) > load(*most)) most = &e;
+    }
+    if (most == nullptr || most->peak_stage.empty()) continue;
+    text += fmt::format("most loaded {}: {}, {:.4g} kN/m in \"{}\"", kind, most->name, most->peak_force / 1e3,
+                        most->peak_stage);
+    if (std::isfinite(most->limit))
+      text += fmt::format(", {:.0f} % of its limit", 100.0 * most->utilization());
+    if (yielded > 0) text += fmt::format("; {} of {} {}s have reached theirs", yielded, count, kind);
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string outcome_text(const RunRecord& run, std::size_t block_count) {
@@ -214,6 +238,7 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
   text += aligned(rows);
   text += split_at_shaking(run);
   text += result_text(run);
+  text += most_loaded(run);
   for (const std::string& error : simulation::computation_errors(run))
     text += "error of the computation: " + error + "\n";
   for (const std::string& warning : warnings(run)) text += "note: " + warning + "\n";

@@ -110,6 +110,11 @@ class Result:
         return tables.steps(self._file)
 
     @property
+    def elements(self) -> Any:
+        """Springs and supports: what each carries at the end and carried at the most. None without."""
+        return tables.elements(self.summary.get("elements") or [])
+
+    @property
     def release(self) -> Any:
         """Ground reaction of excavations that were opened in parts: closure over the share released. None without."""
         return tables.release(self.stages)

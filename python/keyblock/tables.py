@@ -64,6 +64,31 @@ def steps(file: ResultFile) -> Any:
     return table(columns, time, {name: file.unit(f"steps/{name}") for name in names})
 
 
+def elements(rows: Sequence[Mapping[str, Any]]) -> Any:
+    """Springs and supports: a row each, with what it carries at the end of the run and carried at the most; None where there are none.
+
+    N per metre of thickness, of springs tension is positive; m; s. NaN where there is no limit. Without pandas: a dictionary of arrays.
+    """
+    if not rows:
+        return None
+    columns: dict[str, np.ndarray] = {}
+    for name, first in rows[0].items():
+        if name in ("from", "to"):
+            for axis in (0, 1):
+                columns[f"{name}_{'xy'[axis]}"] = np.array([row[name][axis] for row in rows], dtype=float)
+        elif isinstance(first, bool):
+            columns[name] = np.array([row[name] for row in rows], dtype=bool)
+        elif name in ("name", "kind", "peak_stage"):
+            columns[name] = np.array([row[name] for row in rows], dtype=object)
+        else:
+            columns[name] = np.array([np.nan if row[name] is None else row[name] for row in rows], dtype=float)
+    if not _optional.has("pandas"):
+        return columns
+    import pandas
+
+    return pandas.DataFrame(columns)
+
+
 def release(stages: Sequence[Mapping[str, Any]]) -> Any:
     """Ground reaction: a row for each equilibrium of an excavation that was opened in parts; None where there is none.
 

@@ -131,6 +131,19 @@ def test_release_is_that_of_the_exported_table(heading_folder, tunnel):
         assert run.release.attrs["units"]["crown"] == "m"
 
 
+def test_elements_are_those_of_the_exported_table(tmp_path, tunnel):
+    pandas = optional("pandas")
+    assert tunnel.elements is None
+    keyblock("run", ROOT / "verification/scenarios/hanging_block.toml", "-o", "hung", folder=tmp_path)
+    keyblock("export", "hung", "--format", "csv", folder=tmp_path)
+    with kb.open(tmp_path / "hung") as run:
+        table = pandas.read_csv(tmp_path / "hung/csv/elements.csv")
+        # A block that is let go on a spring pulls at it with twice its weight.
+        assert run.elements.peak_force_n_m[0] == pytest.approx(2 * 9.81 * 2600.0, rel=0.01)
+        for name in ("force_n_m", "elongation_m", "peak_force_n_m", "from_y"):
+            assert list(run.elements[name]) == list(table[name])
+
+
 def test_energy_and_steps(tunnel, exported):
     optional("pandas")
     rows = rows_of(exported / "steps.csv")

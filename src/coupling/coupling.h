@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,23 @@ struct State;
 struct MaterialPoint {
   int block = 0;
   std::vector<double> phi;  ///< N values
+};
+
+/// A part of a coupling that users know and that carries a force: a spring between two points, a support.
+struct Element {
+  const char* kind = "";  ///< "spring", "support": as in the scenario
+  std::string name;       ///< that of the scenario, or kind[k] by its place there
+  double limit = 0.0;     ///< N per thickness, the largest force; infinite: none
+};
+
+/// What an element carries.
+struct Carried {
+  Vec2 from, to;  ///< m, its ends, or those of the stretch that it supports
+  double force =
+      0.0;  ///< N per thickness; of springs tension is positive, of supports it is the size of the resultant
+  double elongation = 0.0;  ///< m, since it was put in; of supports the mean way of what they support
+  double yielded = 0.0;     ///< m of it, that does not come back
+  bool present = false;
 };
 
 /// What some rows of a step are, that all of the problem asks for.
@@ -118,6 +136,14 @@ class Coupling {
   [[nodiscard]] virtual double stored_energy(const Model& /*model*/, const State& /*state*/, double /*time*/,
                                              std::span<const double> /*memory*/) const {
     return 0.0;
+  }
+
+  /// What users see of it; always the same, in the order of the scenario.
+  [[nodiscard]] virtual std::vector<Element> elements() const { return {}; }
+  /// Of each element, where blocks are.
+  [[nodiscard]] virtual std::vector<Carried> carried(const Model& /*model*/, const State& /*state*/,
+                                                     std::span<const double> /*memory*/) const {
+    return {};
   }
 
   /// How the ground moves at a place, where the model does not disturb it. Places are those before the run.

@@ -7,6 +7,7 @@
 #include "coupling/attempt.h"
 #include "coupling/block_terms.h"
 #include "model/turn.h"
+#include "model/vertex_field.h"
 
 namespace keyblock::dynamics {
 
@@ -68,6 +69,37 @@ double GroundSprings::stored_energy(const Model& model, const State& state, doub
     sum += 0.5 * spring.stiffness * stretch * stretch;
   }
   return sum;
+}
+
+std::vector<Element> GroundSprings::elements() const {
+  std::vector<Element> all;
+  for (const SupportedPlace& place : places_) all.push_back({"support", place.name, HUGE_VAL});
+  return all;
+}
+
+std::vector<Carried> GroundSprings::carried(const Model& model, const State& state,
+                                            std::span<const double> /*memory*/) const {
+  std::vector<Carried> all(places_.size());
+  std::vector<Vec2> force(places_.size()), stiffness(places_.size());
+  for (const GroundSpring& spring : springs_) {
+    if (!model.moves(at(spring.block))) continue;
+    const double stretch = along_axis(model, spring, state.position) - spring.target(state.time);
+    (spring.axis == 0 ? force[spring.support].x : force[spring.support].y) += spring.stiffness * stretch;
+    (spring.axis == 0 ? stiffness[spring.support].x : stiffness[spring.support].y) += spring.stiffness;
+  }
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const Block& block = model.blocks[at(places_[k].block)];
+    const auto position = [&](const std::vector<double>& phi) {
+      return field_at(phi.data(), block.size, &state.position[block.first]);
+    };
+    const auto way = [](double f, double s) { return s > 0.0 ? f / s : 0.0; };
+    all[k] = {.from = position(places_[k].from),
+              .to = position(places_[k].to),
+              .force = norm(force[k]),
+              .elongation = norm(Vec2{way(force[k].x, stiffness[k].x), way(force[k].y, stiffness[k].y)}),
+              .present = model.moves(at(places_[k].block))};
+  }
+  return all;
 }
 
 void GroundSprings::add_held_blocks(std::vector<int>& blocks) const {

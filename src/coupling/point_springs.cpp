@@ -105,10 +105,11 @@ CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const dou
                  before = stretch_of(k, norm(chord(attempt.model, state, k)), memory);
     const SpringArray::Force force = rows.force(c);
     const Vec2 on_points = row.gradient(force);  // that stretches the spring
-    const double elastic = force.shear / stiffness, yielded = rows.w[c] - elastic;
+    const double elastic = force.shear / stiffness, beyond = rows.w[c] - elastic;
     const double stored_before = 0.5 * stiffness * before * before,
-                 stored = 0.5 * stiffness * elastic * elastic, dissipated = std::abs(force.shear * yielded);
-    memory[k] += yielded;
+                 stored = 0.5 * stiffness * elastic * elastic, dissipated = std::abs(force.shear * beyond);
+    memory[k] += beyond;
+    if (std::abs(force.shear) >= springs_[k].yield) memory[yielded(k)] += beyond;
     state.support_energy += stored;
     state.ledger.friction += dissipated;
     state.ledger.input += dot(on_points, row.moved);
@@ -126,6 +127,27 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
     sum += 0.5 * stiffness_of(model, k) * stretch * stretch;
   }
   return sum;
+}
+
+std::vector<Element> PointSprings::elements() const {
+  std::vector<Element> all;
+  for (const PointSpring& spring : springs_) all.push_back({"spring", spring.name, spring.yield});
+  return all;
+}
+
+std::vector<Carried> PointSprings::carried(const Model& model, const State& state,
+                                           std::span<const double> memory) const {
+  std::vector<Carried> all;
+  const std::vector<Now> springs = now(model, state, memory);
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    Carried& one = all.emplace_back(Carried{.from = springs[k].from, .to = springs[k].to});
+    if (!springs[k].is_there) continue;
+    one.present = true;
+    one.force = springs[k].force;
+    one.yielded = memory[yielded(k)];
+    one.elongation = stretch_of(k, springs[k].length, memory) + one.yielded;
+  }
+  return all;
 }
 
 void PointSprings::add_rounding_forces(const Model& model, double extent, std::span<double> force) const {

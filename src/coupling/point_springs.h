@@ -11,6 +11,7 @@ namespace keyblock::dynamics {
 
 /// A straight spring between material points of two blocks.
 struct PointSpring {
+  std::string name;
   double stiffness = 0.0;  ///< N/m per thickness
   double yield =
       0.0;  ///< N per thickness, largest force in tension and compression; infinite: it never yields
@@ -22,7 +23,8 @@ struct PointSpring {
 ///
 ///     T = clamp(k (length now − length without force − p), ±yield)
 ///
-/// with p the elongation that has yielded, in the memory. A spring that a stage installs begins with the p that leaves it no force. The normal spring acts across the line with T/L where T pulls: by that the force
+/// with p the elongation that leaves no force, in the memory: what has yielded, what it was long when a stage installed it, and what pretension
+/// asked for. The memory has what has yielded beside it. The normal spring acts across the line with T/L where T pulls: by that the force
 /// turns with the line within the step. Lengths are those of the positions at the start of the step, so that nothing drifts.
 class PointSprings final : public Coupling {
  public:
@@ -45,7 +47,7 @@ class PointSprings final : public Coupling {
 
   [[nodiscard]] std::span<const MaterialPoint> points() const override { return points_; }
   void add_pairs(BlockPairs& pairs) const override;
-  [[nodiscard]] std::size_t memory_size() const override { return springs_.size(); }
+  [[nodiscard]] std::size_t memory_size() const override { return 2 * springs_.size(); }
 
   [[nodiscard]] std::size_t rows() const override { return springs_.size(); }
   RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
@@ -56,6 +58,9 @@ class PointSprings final : public Coupling {
                          std::span<double> memory, State& state) const override;
   [[nodiscard]] double stored_energy(const Model& model, const State& state, double time,
                                      std::span<const double> memory) const override;
+  [[nodiscard]] std::vector<Element> elements() const override;
+  [[nodiscard]] std::vector<Carried> carried(const Model& model, const State& state,
+                                             std::span<const double> memory) const override;
   void add_rounding_forces(const Model& model, double extent, std::span<double> force) const override;
 
  private:
@@ -70,6 +75,8 @@ class PointSprings final : public Coupling {
   [[nodiscard]] double force_of(const Model& model, std::size_t k, double stretch) const {
     return std::clamp(stiffness_of(model, k) * stretch, -springs_[k].yield, springs_[k].yield);
   }
+  /// Place in the memory, of what a spring has yielded.
+  [[nodiscard]] std::size_t yielded(std::size_t k) const { return springs_.size() + k; }
   /// From the second end to the first, m.
   [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
   /// m, that has not yielded, of a spring of this length.

@@ -3,6 +3,7 @@
 #include "core/checked_json.h"
 #include "report/page_data.h"
 #include "report/page_template.h"
+#include "results/elements_json.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
 #include "results/summary.h"
@@ -116,6 +117,7 @@ ordered_json run_json(const results::RunData& data) {
           {"errors", simulation::computation_errors(run)},
           {"max_area_change", run.max_area_change},
           {"made_ratio", run.made_ratio},
+          {"elements", results::elements_json(run.elements, data.model.origin)},
           {"energy", results::energy_json(run.energy)},
           {"stages", stages},
           {"interrupted", run.interrupted},

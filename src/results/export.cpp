@@ -11,6 +11,7 @@
 #include "cutting/edge_name.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
+#include "results/elements_json.h"
 #include "results/export_folder.h"
 #include "results/record_fields.h"
 
@@ -170,6 +171,8 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
                                            out.write("steps.csv", step_table(data))};
   if (!data.model.history_names.empty())
     files.push_back(out.write("histories.csv", histories_csv(data.model.history_names, data.histories)));
+  if (const std::string elements = element_table(data.run.elements, data.model.origin); !elements.empty())
+    files.push_back(out.write("elements.csv", elements));
   if (const std::string releases = release_table(data); !releases.empty())
     files.push_back(out.write("release.csv", releases));
   return files;

@@ -5,6 +5,7 @@
 
 #include "core/checked_json.h"
 #include "core/error.h"
+#include "results/elements_json.h"
 #include "results/json_parts.h"
 
 namespace keyblock::results {
@@ -262,6 +263,7 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"energy", energy_json(run.energy)},
                           {"made_ratio", run.made_ratio},
                           {"planes", planes_json(run.planes, {})},
+                          {"elements", elements_json(run.elements, {})},
                           {"interrupted", run.interrupted}};
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -282,6 +284,7 @@ simulation::RunRecord read_run_json(const std::string& text) {
     run.energy = read_energy(json.at("energy"));
     run.made_ratio = json.contains("made_ratio") ? number(json.at("made_ratio")) : 0.0;
     if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
+    if (json.contains("elements")) run.elements = read_elements(json.at("elements"));
     json.at("interrupted").get_to(run.interrupted);
     return run;
   });

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/checked_json.h"
+#include "results/elements_json.h"
 #include "results/json_parts.h"
 #include "results/record_json.h"
 #include "simulation/computation_errors.h"
@@ -210,6 +211,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"errors", simulation::computation_errors(run)},
       {"max_area_change", run.max_area_change},
       {"boundary", boundary(model, run)},
+      {"elements", elements_json(run.elements, model.origin)},
       {"damping", damping(model)},
       {"energy", energy_json(run.energy)},
       {"energy_warnings", simulation::energy_warnings(run)},

@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::uint8_t vtk_triangle = 5, vtk_polygon = 7;
 
-template <class T>
-std::span<const T> view(const std::vector<T>& values) {
-  return values;
-}
-
 Vec2 place(const simulation::ModelRecord& model, const simulation::Frame& frame, std::size_t vertex) {
   const auto [ux, uy] = frame.displacement[vertex];
   return model.vertices[vertex] + Vec2{ux, uy};

@@ -7,11 +7,6 @@
 namespace keyblock::results {
 namespace {
 
-template <class T>
-std::span<const T> view(const std::vector<T>& values) {
-  return values;
-}
-
 void add(std::vector<double>& values, Vec2 v) {
   values.insert(values.end(), {v.x, v.y, 0.0});
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,11 @@ class VtkBlocks {
   const simulation::ModelRecord& model_;
   std::vector<std::optional<Triangles>> triangles_;  ///< by block; of those that were asked for
 };
+
+template <class T>
+std::span<const T> view(const std::vector<T>& values) {
+  return values;
+}
 
 /// The stretch of joint of each contact.
 std::string vtk_contact_lines(const RunData& data, const JointLocator& locator,

@@ -111,14 +111,19 @@ void add_loads(const RunSetup& setup, Model& model) {
   }
 }
 
-/// Springs of a share of a support's stiffness at a point of block b.
-void add_ground_springs(const loading::Support& support, const Block& block, std::size_t b, Vec2 where,
+/// Springs of a share of the stiffness of support k at a point of block b.
+void add_ground_springs(const RunSetup& setup, std::size_t k, const Block& block, std::size_t b, Vec2 where,
                         double stiffness, std::vector<dynamics::GroundSpring>& springs) {
+  const loading::Support& support = setup.supports[k];
   for (int axis = 0; axis < 2; ++axis) {
     if (!(axis == 0 ? support.along_x : support.along_y)) continue;
-    dynamics::GroundSpring spring{
-        static_cast<int>(b),           axis,      std::vector<double>(at(block.size)),
-        axis == 0 ? where.x : where.y, stiffness, axis == 0 ? support.motion_x : support.motion_y};
+    dynamics::GroundSpring spring{static_cast<int>(b),
+                                  k,
+                                  axis,
+                                  std::vector<double>(at(block.size)),
+                                  axis == 0 ? where.x : where.y,
+                                  stiffness,
+                                  axis == 0 ? support.motion_x : support.motion_y};
     block.basis.evaluate(where, spring.phi.data());
     springs.push_back(std::move(spring));
   }
@@ -126,6 +131,7 @@ void add_ground_springs(const loading::Support& support, const Block& block, std
 
 void add_supports(const RunSetup& setup, Model& model) {
   std::vector<dynamics::GroundSpring> springs;
+  std::vector<dynamics::SupportedPlace> places;
   for (std::size_t k = 0; k < setup.supports.size(); ++k) {
     const loading::Support& support = setup.supports[k];
     const std::string key = fmt::format("support[{}]", k);
@@ -134,8 +140,15 @@ void add_supports(const RunSetup& setup, Model& model) {
     for (const Vec2 p : support.points) require_on_block(block.reference, p, key, support.block);
     const double stiffness = support.stiffness.value_or(1000.0 * block.material.young);
     const auto add = [&](Vec2 where, double share) {
-      add_ground_springs(support, block, b, where, stiffness * share, springs);
+      add_ground_springs(setup, k, block, b, where, stiffness * share, springs);
     };
+    const auto phi_at = [&](Vec2 where) {
+      std::vector<double> phi(at(block.size));
+      block.basis.evaluate(where, phi.data());
+      return phi;
+    };
+    places.push_back(
+        {key, static_cast<int>(b), phi_at(support.points.front()), phi_at(support.points.back())});
     if (!support.is_edge) {
       for (const Vec2 p : support.points) add(p, 1.0);
     } else {
@@ -147,7 +160,8 @@ void add_supports(const RunSetup& setup, Model& model) {
     }
   }
   if (!springs.empty())
-    model.couplings.push_back(std::make_shared<dynamics::GroundSprings>(std::move(springs)));
+    model.couplings.push_back(
+        std::make_shared<dynamics::GroundSprings>(std::move(springs), std::move(places)));
 }
 
 void add_springs(const RunSetup& setup, Model& model) {
@@ -161,8 +175,8 @@ void add_springs(const RunSetup& setup, Model& model) {
           static_cast<int>(block), std::vector<double>(at(model.blocks[block].size))});
       model.blocks[block].basis.evaluate(p, point.phi.data());
     }
-    springs.push_back(
-        {spring.stiffness, spring.yield.value_or(HUGE_VAL), norm(spring.from - spring.to), spring.staged});
+    springs.push_back({spring.name.empty() ? fmt::format("spring[{}]", k) : spring.name, spring.stiffness,
+                       spring.yield.value_or(HUGE_VAL), norm(spring.from - spring.to), spring.staged});
   }
   if (!springs.empty())
     model.couplings.push_back(

@@ -5,6 +5,7 @@
 #include "model/state.h"
 #include "simulation/control.h"
 #include "simulation/damage.h"
+#include "simulation/elements.h"
 #include "simulation/order_control.h"
 #include "simulation/record.h"
 #include "simulation/settle.h"
@@ -24,6 +25,7 @@ struct RunState {
   Settler::Memory settler;  ///< of the stage at hand, if it is a settle stage
   Stillness::Memory still;  ///< of the stage at hand, if it ends when all is still
   ControlMemory control;
+  std::vector<ElementPeak> peaks;  ///< of all elements; empty before the first step
   int stage = 0;
   long stage_step = 0;          ///< steps done in it
   double stage_start = 0.0;     ///< s, simulated time at which it began

@@ -239,6 +239,15 @@ bool are_overlaps(const RunRecord& record, std::size_t blocks) {
       [&](const OverlapRecord* o) { return is_known(o->block_a) && is_known(o->block_b); });
 }
 
+/// Largest forces of all elements, or of none before the first step.
+bool are_peaks(const std::vector<ElementPeak>& peaks, const RunSetup& setup, const Model& model) {
+  return (peaks.empty() || peaks.size() == element_count(model)) &&
+         std::ranges::all_of(peaks, [&](const ElementPeak& p) {
+           return std::isfinite(p.force) && p.force >= 0.0 && std::isfinite(p.time) &&
+                  (p.stage == -1 || is_place(static_cast<int>(p.stage), setup.stages.size()));
+         });
+}
+
 /// Of each support that a stage installs, whether it is there.
 bool are_supports(std::span<const std::uint8_t> installed, const RunSetup& setup) {
   return installed.size() == setup.staged_supports.size() && are_flags(installed);
@@ -272,6 +281,7 @@ std::string mistake_in_state(const RunState& state, const RunSetup& setup, const
   if (!are_walls(state.mechanics, setup, model) || !is_opening(state, setup, model))
     return "loads on walls that cannot be";
   if (!are_supports(state.mechanics.installed, setup)) return "supports that are not of this run";
+  if (!are_peaks(state.peaks, setup, model)) return "forces of elements that are not of this run";
   if (!is_damage(state.damage, setup, model)) return "measures of damage that cannot be";
   const bool settles = state.stage_step > 0 && setup.stages[at(state.stage)].kind == StageKind::settle;
   if (settles && !is_settler(state.settler, blocks)) return "a settling stage that cannot be";

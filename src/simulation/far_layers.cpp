@@ -84,12 +84,12 @@ class Strips {
   }
 
   [[nodiscard]] std::string gap(bool right) const {
-    constexpr int parts = 10;
+    constexpr int pieces = 10;
     const Box& box = boxes_[right ? 1 : 0];
     const Sides side{right ? std::size_t{1} : std::size_t{0}};
     if (sample(side, box.min.y, box.max.y).filled() >= least_filled) return "";
-    double worst = HUGE_VAL, from = box.min.y, height = box.size().y / parts;
-    for (int k = 0; k < parts; ++k) {
+    double worst = HUGE_VAL, from = box.min.y, height = box.size().y / pieces;
+    for (int k = 0; k < pieces; ++k) {
       const double low = box.min.y + k * height, filled = sample(side, low, low + height).filled();
       if (filled >= worst) continue;
       worst = filled;

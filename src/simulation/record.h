@@ -13,6 +13,7 @@
 #include "cutting/block_system.h"
 #include "geometry/vec2.h"
 #include "simulation/boundary.h"
+#include "simulation/element_record.h"
 #include "simulation/stage.h"
 
 /// What a run tells the outside: plain data, written to the result file and drawn in the report.
@@ -324,7 +325,8 @@ struct RunRecord {
   Energy energy;
   double made_ratio = 0.0;  ///< energy that the time integration has made, over the largest other term
   std::vector<StageRecord> stages;
-  std::vector<PlaneRecord> planes;  ///< beside the model, from left to right and from below
+  std::vector<PlaneRecord> planes;      ///< beside the model, from left to right and from below
+  std::vector<ElementRecord> elements;  ///< springs and supports, at the end
   bool interrupted = false;
   Profile profile;  ///< of this run; of the part after resuming, if it was resumed
 };

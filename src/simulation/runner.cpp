@@ -174,6 +174,7 @@ void Runner::end() {
   record.energy = energy();
   record.made_ratio = made_ratio(model_, record.energy);
   record.planes = planes_beside(setup_, model_, now_.mechanics);
+  record.elements = element_records(model_, now_.mechanics, now_.peaks, setup_.stages);
   record.interrupted = record.interrupted || is_set(options_.stop) || now_.stage < std::ssize(setup_.stages);
   record.profile = profile_;
   observer_.end(record);
@@ -305,6 +306,7 @@ void Runner::after_step(const dynamics::StepReport& report, const StageOutlook& 
   const bool ends_stage = outlook.steps_left == 0;
   count(now_, report);
   keep_audit(report.audit, setup_, now_);
+  keep_peaks(model_, now_.mechanics, now_.stage, now_.peaks);
   opening_.drop_moved(gauge_, now_.mechanics);
   check_converging(setup_, now_);
   check_state(setup_, now_);

@@ -150,6 +150,8 @@ export interface Header {
     /** Energy that the time integration made, over the largest other term. */
     made_ratio: number | null;
     energy: Record<string, number | null>;
+    /** Springs and supports. Pages of earlier versions do not have them. */
+    elements?: ElementAtEnd[];
     stages: Stage[];
     interrupted: boolean;
     /** There is no record of the end: the run was killed, or still goes on. */
@@ -162,6 +164,23 @@ export interface Header {
   /** The smallest number of steps from one row of a stage to the next; 0 where there are none. */
   steps_between_rows: number;
   arrays: ArrayEntry[];
+}
+
+/** A spring or a support: what it carries at the end, and carried at the most. */
+export interface ElementAtEnd {
+  name: string;
+  kind: string;
+  present: boolean;
+  /** Of springs tension is positive. */
+  force_n_m: number;
+  elongation_m: number;
+  yielded_m: number;
+  peak_force_n_m: number;
+  peak_time_s: number;
+  peak_stage: string | null;
+  limit_n_m: number | null;
+  utilization: number | null;
+  has_yielded: boolean;
 }
 
 /** Where an array lies in the unpacked bytes. */

@@ -14,7 +14,7 @@ import { releasePlots } from "./release_plots";
 import { damagePlots, historyPlots, motionPlots, solverPlots } from "./run_plots";
 import { resultSection } from "./result";
 import { Run } from "./run";
-import { cuttingFacts, movingTable, programFacts, qualityTable, stageTable } from "./tables";
+import { cuttingFacts, elementTable, movingTable, programFacts, qualityTable, stageTable } from "./tables";
 import { start } from "./start";
 
 function head(header: Header): HTMLElement {
@@ -90,6 +90,20 @@ function build(run: Run, main: HTMLElement): void {
     resultSection(run, final?.element ?? null, movingTable(run, showBlock)),
   ];
   if (run.stages.length > 0) parts.push(section("stages", "Stages", stageTable(run)));
+  const elements = elementTable(run);
+  if (elements)
+    parts.push(
+      section(
+        "elements",
+        "Springs and supports",
+        elements,
+        h(
+          "p",
+          { class: "hint" },
+          "Per metre of thickness. Of springs tension is positive; of supports the force is the size of the resultant.",
+        ),
+      ),
+    );
   const damage = damageTables(run);
   if (damage.length > 0) parts.push(section("damage", "Damage by stage", ...damage));
   const release = track(releasePlots(run, clock));

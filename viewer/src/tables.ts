@@ -101,6 +101,39 @@ export function stageTable(run: Run): HTMLElement {
   return tableBox("Stages as they were run", [head], rows);
 }
 
+/** Springs and supports; null where there are none. */
+export function elementTable(run: Run): HTMLElement | null {
+  const elements = run.header.run.elements ?? [];
+  if (elements.length === 0) return null;
+  const head = [
+    column("Name", "", true),
+    column("Kind", "", true),
+    column("Largest force", "kN/m"),
+    column("In stage", "", true),
+    column("Of its limit", "%"),
+    column("Force at the end", "kN/m"),
+    column("Elongation"),
+    column("Yielded"),
+  ];
+  const kilo = (n: number) => significant(n / 1e3, 4);
+  const rows = elements.map((e) => [
+    h("th", { scope: "row" }, e.name),
+    h("td", { class: "text" }, e.kind),
+    h("td", {}, kilo(e.peak_force_n_m)),
+    h("td", { class: "text" }, e.peak_stage ?? "–"),
+    h(
+      "td",
+      {},
+      e.utilization === null ? "–" : significant(100 * e.utilization, 3),
+      e.has_yielded ? h("span", { class: "sub" }, "reached") : null,
+    ),
+    h("td", {}, e.present ? kilo(e.force_n_m) : "not there"),
+    h("td", {}, length(e.elongation_m, 2)),
+    h("td", {}, e.yielded_m === 0 ? "–" : length(e.yielded_m, 2)),
+  ]);
+  return tableBox("What each carries, and carried at the most", [head], rows);
+}
+
 /** Blocks left moving by static stages, each with a button that shows it. */
 export function movingTable(run: Run, show: (block: number, stage: number) => void): HTMLElement | null {
   const stages = marginalStages(run).filter(({ stage }) => stage.moving.length > 0);

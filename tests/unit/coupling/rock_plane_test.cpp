@@ -41,7 +41,7 @@ struct Sine {
 std::vector<RockPlaneState> shaken(const std::vector<RockPlane>& planes, double step, double amplitude = 4.0,
                                    Sine along_y = {0.0, 1.0, 1.0}) {
   const RockLayer layer = rock();
-  const RockColumn column(std::span(&layer, 1), 0.0, ground, layer.impedance(), 25.0, 0.0, planes);
+  const RockColumn column(std::span(&layer, 1), 0.0, ground, layer.impedance(), 25.0, {}, planes);
   const Integrator rule = Integrator::generalized_alpha(0.0);
   const Sine along_x{amplitude, 3.0, 3.0};
   std::vector<double> memory(column.memory_size(), 0.0);
@@ -100,7 +100,7 @@ TEST(RockPlane, SlipsDownhill) {
 TEST(RockPlane, Rests) {
   const RockLayer layer = rock();
   const std::vector<RockPlane> planes{plane(5.0, 10.0)};
-  const RockColumn column(std::span(&layer, 1), 0.0, ground, layer.impedance(), 25.0, 0.0, planes);
+  const RockColumn column(std::span(&layer, 1), 0.0, ground, layer.impedance(), 25.0, {}, planes);
   std::vector<double> memory(column.memory_size(), 0.0), moved(2 * column.heights().size(), 0.0);
   for (int k = 0; k < 100; ++k)
     column.step(memory, 0.002, Integrator::generalized_alpha(0.0), {4.0, 0.0}, memory);

@@ -1,0 +1,84 @@
+#include "results/elements_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "core/checked_json.h"
+#include "results/csv.h"
+
+namespace keyblock::results {
+
+using nlohmann::ordered_json;
+using simulation::element_fields;
+using simulation::ElementRecord;
+
+namespace {
+ordered_json number_or_null(double x) {
+  return std::isfinite(x) ? ordered_json(x) : ordered_json();
+}
+ordered_json place(Vec2 p) {
+  return {p.x, p.y};
+}
+Vec2 read_place(const ordered_json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>()};
+}
+}  // namespace
+
+ordered_json elements_json(const std::vector<ElementRecord>& elements, Vec2 origin) {
+  ordered_json json = ordered_json::array();
+  for (const ElementRecord& e : elements) {
+    ordered_json one{{"name", e.name},
+                     {"kind", e.kind},
+                     {"present", e.present},
+                     {"from", place(e.from + origin)},
+                     {"to", place(e.to + origin)}};
+    for (const auto& field : element_fields) one[field.name] = number_or_null(e.*field.number);
+    one["peak_stage"] = e.peak_stage.empty() ? ordered_json() : ordered_json(e.peak_stage);
+    one["utilization"] = std::isfinite(e.limit) ? ordered_json(e.utilization()) : ordered_json();
+    one["has_yielded"] = e.has_yielded();
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+std::vector<ElementRecord> read_elements(const ordered_json& json) {
+  std::vector<ElementRecord> elements;
+  for (const ordered_json& one : json) {
+    ElementRecord e;
+    e.name = one.at("name").get<std::string>();
+    e.kind = one.at("kind").get<std::string>();
+    one.at("present").get_to(e.present);
+    e.from = read_place(one.at("from"));
+    e.to = read_place(one.at("to"));
+    for (const auto& field : element_fields) {
+      const ordered_json& value = one.at(field.name);
+      e.*field.number = value.is_null() ? HUGE_VAL : value.get<double>();
+    }
+    if (!one.at("peak_stage").is_null()) e.peak_stage = one.at("peak_stage").get<std::string>();
+    elements.push_back(std::move(e));
+  }
+  return elements;
+}
+
+std::string element_table(const std::vector<ElementRecord>& elements, Vec2 origin) {
+  if (elements.empty()) return {};
+  std::string text = "name,kind,present,from_x,from_y,to_x,to_y";
+  for (const auto& field : element_fields) text += fmt::format(",{}", field.name);
+  text += ",peak_stage\n";
+  auto out = std::back_inserter(text);
+  for (const ElementRecord& e : elements) {
+    const Vec2 from = e.from + origin, to = e.to + origin;
+    fmt::format_to(out, "{},{},{},{},{},{},{}", csv_field(e.name), e.kind, e.present ? 1 : 0, from.x, from.y,
+                   to.x, to.y);
+    for (const auto& field : element_fields) {
+      const double value = e.*field.number;
+      text += std::isfinite(value) ? fmt::format(",{}", value) : ",";
+    }
+    fmt::format_to(out, ",{}\n", csv_field(e.peak_stage));
+  }
+  return text;
+}
+
+}  // namespace keyblock::results
