@@ -18,8 +18,8 @@ import json
 import logging
 import os
 import sys
+import weakref
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +29,7 @@ from ._compiled import core as _core
 from ._sealed import Sealed
 from .progress import Progress as _Shown
 from .progress import words_of_run
-from .record import did_you_mean
+from .simulated_contacts import Contacts
 from .steering import JointStrength, SimulatedBlocks, Springs, Strengths, read_only
 
 if TYPE_CHECKING:
@@ -112,42 +112,6 @@ def _is_full(cell: Any) -> bool:
     return True
 
 
-@dataclass(frozen=True)
-class Contacts:
-    """Contacts after a step: copies, one element each. Forces in N per metre thickness, lengths in m."""
-
-    block_a: np.ndarray  #: the block with the vertex
-    block_b: np.ndarray  #: the block with the edge
-    state: np.ndarray  #: 0 open, 1 sliding, 2 locked
-    position: np.ndarray  #: (n, 2)
-    normal: np.ndarray  #: (n, 2), unit vectors out of block_b
-    length: np.ndarray
-    gap: np.ndarray  #: negative where the contact is pressed
-    slip: np.ndarray  #: since the excavation: the magnitude
-    shear_displacement: np.ndarray  #: the same with its sign: of block_a along (−normal y, normal x)
-    normal_force: np.ndarray  #: compression positive
-    shear_force: np.ndarray
-    joint_code: np.ndarray  #: place in `joint_names`
-    joint_names: list[str]  #: of joint sets, trace maps and excavations; "domain"; "" for edges of blocks of the scenario
-
-    @property
-    def joint(self) -> np.ndarray:
-        """What each contact's edge is a piece of, by name."""
-        return np.array(self.joint_names, dtype=object)[self.joint_code]
-
-    def __len__(self) -> int:
-        return len(self.block_a)
-
-    def of(self, joint: str) -> Contacts:
-        """Those of one joint set, trace map or excavation."""
-        if joint not in self.joint_names:
-            raise KeyError(f"no joint set {joint!r}{did_you_mean(joint, [name for name in self.joint_names if name])}")
-        codes = [code for code, name in enumerate(self.joint_names) if name == joint]
-        chosen = np.isin(self.joint_code, codes)
-        columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Contacts(**{name: column if name == "joint_names" else column[chosen] for name, column in columns.items()})
-
-
 class Simulation(Sealed):
     """A run that is taken step by step. Between steps it can be looked at and changed; what changes it belongs in a controller where the
     run is to be resumed. Arrays stay valid as long as they are kept, also after the simulation has gone.
@@ -172,6 +136,8 @@ class Simulation(Sealed):
         """`folder`: where results go, None: nowhere. `threads`: any number gives the same bits. `resume`: goes on from the checkpoint in
         the folder, with the same controllers. `replace`: results of other input there may go. Throws InputError, RunError."""
         self._blocks: SimulatedBlocks | None = None
+        self._contacts: weakref.ref[Contacts] | None = None
+        self._names: list[str] | None = None
         self._folder = "" if folder is None else os.fspath(folder)
         self._controllers = [c if isinstance(c, Controller) else Controller(c) for c in controllers]
         self._core = _core.Simulation.begin(
@@ -191,7 +157,8 @@ class Simulation(Sealed):
     def _of_study(cls, core: _core.Simulation, controllers: Sequence[Controller]) -> Simulation:
         """That of a run which a study takes step by step."""
         simulation = cls.__new__(cls)
-        simulation._blocks, simulation._folder, simulation._controllers, simulation._core = None, "", list(controllers), core
+        simulation._blocks = simulation._contacts = simulation._names = None
+        simulation._folder, simulation._controllers, simulation._core = "", list(controllers), core
         return simulation
 
     # ── going on ──
@@ -199,6 +166,7 @@ class Simulation(Sealed):
     def advance(self, steps: int = 1) -> int:
         """Takes steps of the plan, over the ends of stages; returns how many, which are fewer at the end of the run. Throws RunError where
         the run cannot go on, and what a controller throws."""
+        self._leave_contacts()
         return self._core.advance(steps, self._after_step if self._controllers else None, None)
 
     def advance_to(self, time: float) -> int:
@@ -211,6 +179,7 @@ class Simulation(Sealed):
     def run(self, progress: Callable[[Progress], Any] | bool | str | None = None) -> dict[str, Any]:
         """All that is left of the run; then finish(). `progress`: a function of a Progress; True for a bar in a notebook and a line elsewhere;
         "notebook" or "line" for one of them. Ctrl-C and exceptions of controllers end it in good order and come back."""
+        self._leave_contacts()
         with _Shown(progress, words_of_run) as shown:
             try:
                 self._core.advance(sys.maxsize, self._after_step if self._controllers else None, shown.call)
@@ -256,9 +225,19 @@ class Simulation(Sealed):
 
     def _after_step(self) -> None:
         step = self._core.step
-        for each in self._controllers:
-            if step % each.every == 0:
-                each(self)
+        try:
+            for each in self._controllers:
+                if step % each.every == 0:
+                    each(self)
+        finally:
+            self._leave_contacts()
+
+    def _leave_contacts(self) -> None:
+        """Contacts that somebody still has stay as they are when the simulation goes on."""
+        contacts = self._contacts and self._contacts()
+        self._contacts = None
+        if contacts is not None:
+            contacts._complete()
 
     # ── what it is like ──
 
@@ -352,8 +331,20 @@ class Simulation(Sealed):
 
     @property
     def contacts(self) -> Contacts:
-        """After the last step; none before the first one."""
-        return Contacts(**{name: read_only(of) if isinstance(of, np.ndarray) else of for name, of in self._core.contacts.items()})
+        """After the last step; none before the first one. Only columns that are looked at are copied."""
+        known = self._contacts and self._contacts()
+        if known is not None and known._step == self._core.step:
+            return known
+        if self._names is None:
+            self._names = self._core.joint_names
+        contacts = Contacts(self._core, self._names)
+        self._contacts = weakref.ref(contacts)
+        return contacts
+
+    @property
+    def contact_strengths(self) -> dict[tuple[int, int], tuple[float | None, float | None, float | None]]:
+        """Those that Contacts.set_strength has given: by vertex and edge, friction (degrees), cohesion and tension (Pa); None: that of the joint."""
+        return {(vertex, edge): (friction, cohesion, tension) for vertex, edge, friction, cohesion, tension in self._core.contact_strengths}
 
     @property
     def stress(self) -> np.ndarray:

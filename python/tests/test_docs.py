@@ -48,6 +48,8 @@ RUNS = {
     "kb.run_study(": lambda n: len(n["study"].table()) > 1 and (n["study"].table().status == "done").all(),
     "scenario.simulate() as sim": lambda n: n["sim"].done and 0.90 < n["contacts"].slip.max() < 0.91 and n["contacts"].shear_displacement.min() < -0.9,
     "def weaken(sim)": lambda n: n["weak"]["state_hash"] != n["held"]["state_hash"] and displacement(n["weak"]) > 1.5 > displacement(n["held"]),
+    # The equation of motion with 20° up to 5 mm, and then with the friction by the slip at every fifth step of 5 ms: 1.22229 m.
+    "def soften(sim)": lambda n: displacement(n["softened"]) == pytest.approx(1.22229, abs=2e-4),
     "kb.Motion(step=0.01": lambda n: n["scenario"].motion["sine"].x[1][1] == n["motion"].x[1] and len(n["scenario"].motion["sine"].x) == 200,
     "def hold(sim)": lambda n: 0.0 < displacement(n["slow"]) < 0.5 * displacement(n["held"]),
     "kb.run_table(": lambda n: sorted(n["table"]["joints.friction"]) == [10.0, 20.0, 30.0]

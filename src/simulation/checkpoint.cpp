@@ -171,6 +171,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.control.motion_scale);
   archive(s.control.forces);
   archive(s.control.spring_stiffness);
+  archive(s.control.contact_strengths);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);
