@@ -224,6 +224,7 @@ def find_limit(
     tolerance: float,
     realizations: int,
     resume: bool,
+    scan: int,
     workers: int,
     command: list[str],
     progress: Callable[[int, int], Any] | None,

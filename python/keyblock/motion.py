@@ -117,7 +117,7 @@ def _step_of(traces: list[Any]) -> float:
 
 def _common_window(traces: list[Any], step: float) -> tuple[list[int], int]:
     """First sample of each trace, and how many are common to all."""
-    starts = [getattr(trace.stats, "starttime", None) for trace in traces]
+    starts: list[Any] = [getattr(trace.stats, "starttime", None) for trace in traces]
     if all(start is None for start in starts):
         begins = [0] * len(traces)
     elif any(start is None for start in starts):

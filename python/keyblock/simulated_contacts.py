@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +48,7 @@ class Contacts(Sealed):
         slipped[slipped.slip > 5e-3].set_strength(friction=10.0)
     """
 
-    def __init__(self, core: _core.Simulation, joint_names: list[str], of: Contacts | None = None, chosen: np.ndarray | None = None) -> None:
+    def __init__(self, core: _core.Simulation, joint_names: Sequence[str], of: Contacts | None = None, chosen: np.ndarray | None = None) -> None:
         """Of all contacts, or of those `chosen` of other ones."""
         self._core, self._of, self._chosen = core, of, chosen
         self._step, self._names = core.step, tuple(joint_names)

@@ -234,7 +234,7 @@ class Simulation(Sealed):
 
     def _leave_contacts(self) -> None:
         """Contacts that somebody still has stay as they are when the simulation goes on."""
-        contacts = self._contacts and self._contacts()
+        contacts = None if self._contacts is None else self._contacts()
         self._contacts = None
         if contacts is not None:
             contacts._complete()
@@ -263,14 +263,14 @@ class Simulation(Sealed):
         return names[min(self._core.stage, len(names) - 1)]
 
     @property
-    def stages(self) -> list[str]:
+    def stages(self) -> tuple[str, ...]:
         """Names of all stages."""
-        return self._core.stages
+        return tuple(self._core.stages)
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> tuple[str, ...]:
         """What seems odd in the input."""
-        return self._core.warnings
+        return tuple(self._core.warnings)
 
     @property
     def state_hash(self) -> str:
@@ -332,7 +332,7 @@ class Simulation(Sealed):
     @property
     def contacts(self) -> Contacts:
         """After the last step; none before the first one. Only columns that are looked at are copied."""
-        known = self._contacts and self._contacts()
+        known = None if self._contacts is None else self._contacts()
         if known is not None and known._step == self._core.step:
             return known
         if self._names is None:
@@ -342,9 +342,9 @@ class Simulation(Sealed):
         return contacts
 
     @property
-    def contact_strengths(self) -> dict[tuple[int, int], tuple[float | None, float | None, float | None]]:
+    def contact_strengths(self) -> Mapping[tuple[int, int], tuple[float | None, float | None, float | None]]:
         """Those that Contacts.set_strength has given: by vertex and edge, friction (degrees), cohesion and tension (Pa); None: that of the joint."""
-        return {(vertex, edge): (friction, cohesion, tension) for vertex, edge, friction, cohesion, tension in self._core.contact_strengths}
+        return MappingProxyType({(vertex, edge): (friction, cohesion, tension) for vertex, edge, friction, cohesion, tension in self._core.contact_strengths})
 
     @property
     def stress(self) -> np.ndarray:
@@ -391,9 +391,9 @@ class Simulation(Sealed):
         self._core.set_force(self.blocks.index_of(block), [float(f) for f in force], where, int(slot))
 
     @property
-    def forces(self) -> list[tuple[int, int, tuple[float, float]]]:
+    def forces(self) -> tuple[tuple[int, int, tuple[float, float]], ...]:
         """Those that apply_force has put: block, slot, force."""
-        return [(block, slot, tuple(force)) for block, slot, force in self._core.forces]
+        return tuple((block, slot, (force[0], force[1])) for block, slot, force in self._core.forces)
 
     def set_load_factor(self, load: int, factor: float) -> None:
         """Factor on a load, by its place among [[load]], beside its own."""

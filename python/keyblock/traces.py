@@ -88,8 +88,9 @@ class TraceMap:
             free = name if self._is_named else _free_name(name, there)
             if free in there:
                 raise DataError(f"the scenario has a trace map {free!r} already; give another name")
-            shape = {"points": lines[0]} if len(lines) == 1 else {"lines": lines}
-            tables.append({"name": free, **shape, **keys, **self.properties.get(name, {})})
+            shape: dict[str, Any] = {"points": lines[0]} if len(lines) == 1 else {"lines": lines}
+            own: dict[str, Any] = dict(self.properties[name]) if name in self.properties else {}
+            tables.append({"name": free, **shape, **keys, **own})
         scenario.trace_map.extend(tables)
 
     def _lines_by_set(self) -> dict[str, list[np.ndarray]]:

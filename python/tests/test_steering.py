@@ -29,13 +29,13 @@ def test_a_force_carries_a_block_and_its_work_is_in_the_balance() -> None:
     assert stone.velocity == pytest.approx([0.0, 9.81 * 0.1], rel=1e-6, abs=1e-9)
     assert sim.energy["input"] == pytest.approx(2.0 * weight * 0.5 * 9.81 * 0.1**2, rel=0.02)
     assert abs(balance(sim)) < 1e-6 * sim.energy["input"]
-    assert sim.forces == [(1, 0, (0.0, 2.0 * weight))]
+    assert sim.forces == ((1, 0, (0.0, 2.0 * weight)),)
     stone.apply_force([0.0, weight])  # takes the place of the first one
     before = stone.velocity.copy()
     sim.advance(50)
     assert stone.velocity == pytest.approx(before, rel=1e-6, abs=1e-9)
     stone.apply_force([0.0, 0.0])
-    assert sim.forces == []
+    assert sim.forces == ()
 
 
 def test_a_force_at_a_corner_turns_a_block_about_its_mass_centre() -> None:
@@ -372,3 +372,32 @@ def test_looking_at_contacts_copies_nothing_else() -> None:
     contacts = sim.contacts
     contacts.slip.max()
     assert set(contacts._columns) == {"slip"}
+
+
+def test_what_can_only_be_looked_at_says_so() -> None:
+    scenario = falling_block()
+    sim, blocks = scenario.simulate(), scenario.cut()
+    for call in (
+        lambda: sim.stages.append("more"),
+        lambda: setattr(sim, "stages", ["more"]),
+        lambda: sim.forces.append((1, 0, (0.0, 1.0))),
+        lambda: setattr(blocks[0], "name", "other"),
+        lambda: setattr(blocks[0], "nmae", "other"),
+        lambda: blocks[0].rings.append([]),
+        lambda: blocks[0].edges[0].append(""),
+        lambda: blocks.append(blocks[0]),
+        lambda: setattr(blocks, "areas", 0.0),
+    ):
+        with pytest.raises(AttributeError):
+            call()
+    with pytest.raises(TypeError, match="scenario.block"):
+        blocks[0] = blocks[1]
+    for array in (blocks[0].polygon, blocks[0].rings[0], blocks.areas):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+    with pytest.raises(TypeError):
+        sim.contact_strengths[(1, 2)] = (10.0, None, None)
+    moved = blocks[1].polygon.copy() + [0.0, 1.0]  # how one goes on from there
+    scenario.block["stone"].outer = moved
+    assert scenario.cut()[1].polygon[:, 1].min() == pytest.approx(blocks[1].polygon[:, 1].min() + 1.0)
+    assert len(blocks[:1]) == 1 and blocks[1] in blocks and [b.name for b in reversed(blocks)] == ["stone", "floor"]
