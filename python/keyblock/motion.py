@@ -79,6 +79,8 @@ class Motion:
 
 def _samples(values: Any, name: str) -> np.ndarray:
     _refuse_gaps(values, name)
+    if np.asarray(values).dtype.kind in "bcSU":
+        raise DataError(f"{name}: accelerations that are real numbers, not {np.asarray(values).dtype}")
     array = np.asarray(values, dtype=float)
     if array.ndim != 1 or len(array) < 2:
         raise DataError(f"{name}: a list of at least two accelerations, not an array of shape {array.shape}")

@@ -108,6 +108,8 @@ class Contacts(Sealed):
 
     def __getitem__(self, which: Any) -> Contacts:
         """Those of a mask, of places, or of a slice: `contacts[contacts.slip > 5e-3]`."""
+        if isinstance(which, str):
+            raise TypeError(f"columns are attributes: contacts.{which}")
         is_mask = isinstance(which, np.ndarray) and which.dtype == bool and which.shape == (self._size,)
         places = np.flatnonzero(which) if is_mask else np.arange(self._size)[which]
         if places.ndim != 1:

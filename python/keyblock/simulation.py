@@ -12,6 +12,7 @@ Units are SI, forces and energies per metre of thickness, coordinates local ones
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import inspect
 import json
@@ -19,7 +20,7 @@ import logging
 import os
 import sys
 import weakref
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -47,8 +48,12 @@ class Controller(Sealed):
     step on. What it has to remember between steps must follow from the simulation, or a resumed run goes another way."""
 
     def __init__(self, function: Callable[[Simulation], Any], every: int = 1, name: str | None = None) -> None:
-        if not callable(function):
-            raise TypeError("a controller is a function of a Simulation")
+        if not callable(function) or isinstance(function, type):
+            raise TypeError(f"a controller is a function of a Simulation, and not {function!r}")
+        if any(is_other(function) for is_other in (inspect.iscoroutinefunction, inspect.isgeneratorfunction, inspect.isasyncgenfunction)):
+            raise TypeError(f"{_name_of(function)} is a coroutine or a generator, which would not run; a controller is a plain function")
+        if not isinstance(every, (int, np.integer)) or isinstance(every, bool):
+            raise TypeError(f"every: a whole number of steps, and not {every!r}")
         if every < 1:
             raise ValueError("every: at least 1")
         self._function = function
@@ -75,6 +80,12 @@ def controller(function: Callable[[Simulation], Any] | None = None, *, every: in
     return lambda f: Controller(f, every, name)
 
 
+def controllers_of(given: Any) -> list[Controller]:
+    if isinstance(given, (str, bytes, Controller)) or callable(given) or not isinstance(given, Iterable):
+        raise TypeError(f"controllers: a list of functions, as controllers=[weaken], and not {given!r}")
+    return [c if isinstance(c, Controller) else Controller(c) for c in given]
+
+
 def _name_of(function: Callable[..., Any]) -> str:
     try:
         place = os.path.basename(inspect.getsourcefile(function) or "") if inspect.isroutine(function) else ""
@@ -94,13 +105,15 @@ def _source_of(function: Callable[..., Any]) -> str:
 
 def _held_values(function: Callable[..., Any]) -> str:
     """What a function closes over, as far as it is plain: `make(8000)` and `make(6000)` are two controllers."""
+    if isinstance(function, functools.partial):
+        return f"{_source_of(function.func)}\n{_held_values(function.func)}{function.args!r}{sorted(function.keywords.items())!r}\n"
     plain = (bool, int, float, complex, str, bytes, type(None))
     names = getattr(getattr(function, "__code__", None), "co_freevars", ())
     values = [cell.cell_contents for cell in getattr(function, "__closure__", None) or () if _is_full(cell)]
     held = [f"{name}={value!r}" for name, value in zip(names, values) if isinstance(value, plain)]
     held += [f"{value!r}" for value in (getattr(function, "__defaults__", None) or ()) if isinstance(value, plain)]
-    if not inspect.isroutine(function):
-        held += [f"{name}={value!r}" for name, value in sorted(vars(function).items()) if isinstance(value, plain)] if hasattr(function, "__dict__") else []
+    holder = getattr(function, "__self__", None) if inspect.isroutine(function) else function
+    held += [f"{name}={value!r}" for name, value in sorted(getattr(holder, "__dict__", {}).items()) if isinstance(value, plain)]
     return "".join(f"{text}\n" for text in held)
 
 
@@ -139,7 +152,7 @@ class Simulation(Sealed):
         self._contacts: weakref.ref[Contacts] | None = None
         self._names: list[str] | None = None
         self._folder = "" if folder is None else os.fspath(folder)
-        self._controllers = [c if isinstance(c, Controller) else Controller(c) for c in controllers]
+        self._controllers = controllers_of(controllers)
         self._core = _core.Simulation.begin(
             scenario._core,
             folder=self._folder,
@@ -166,11 +179,15 @@ class Simulation(Sealed):
     def advance(self, steps: int = 1) -> int:
         """Takes steps of the plan, over the ends of stages; returns how many, which are fewer at the end of the run. Throws RunError where
         the run cannot go on, and what a controller throws."""
+        if steps < 0:
+            raise ValueError(f"steps: at least 0, and not {steps}")
         self._leave_contacts()
         return self._core.advance(steps, self._after_step if self._controllers else None, None)
 
     def advance_to(self, time: float) -> int:
         """Steps until the simulated time, s, is reached. Static steps take none."""
+        if not time >= 0.0:
+            raise ValueError(f"time: s, at least 0, and not {time}")
         taken = 0
         while self.time < time and not self.done:
             taken += self.advance()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -196,11 +198,71 @@ def test_a_velocity_that_is_refused_leaves_the_view_alive() -> None:
     assert view is not None and np.array_equal(view, sim.velocity) and view.any()
 
 
+class Threshold:
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def look(self, sim: kb.Simulation) -> None:
+        pass
+
+    __call__ = look
+
+
+def look(threshold: float, sim: kb.Simulation) -> None:
+    pass
+
+
 def test_controllers_with_other_values_are_other_controllers() -> None:
     def make(threshold: float) -> kb.Controller:
         return kb.controller(lambda sim: sim.time > threshold)
 
-    assert make(1.0).hash == make(1.0).hash != make(2.0).hash
+    for of in (make, lambda t: kb.Controller(partial(look, t)), lambda t: kb.Controller(Threshold(t).look), lambda t: kb.Controller(Threshold(t))):
+        assert of(1.0).hash == of(1.0).hash != of(2.0).hash
+
+
+async def never_awaited(sim: kb.Simulation) -> None:
+    sim.stop()
+
+
+def never_begun(sim: kb.Simulation) -> Iterator[None]:
+    sim.stop()
+    yield
+
+
+def test_controllers_that_would_not_run_are_refused() -> None:
+    for wrong in (never_awaited, never_begun):
+        with pytest.raises(TypeError, match="would not run"):
+            falling_block().run(controllers=[wrong])
+    for wrong in ("weaken", 3, Threshold):
+        with pytest.raises(TypeError, match="a controller is a function"):
+            falling_block().run(controllers=[wrong])
+    for wrong in (look, "weaken", kb.controller(lambda sim: None), 3):
+        with pytest.raises(TypeError, match=r"controllers=\[weaken\]"):
+            falling_block().run(controllers=wrong)
+    for every in (2.5, "5", True):
+        with pytest.raises(TypeError, match="whole number"):
+            kb.Controller(lambda sim: None, every)
+    sim = falling_block().simulate()
+    with pytest.raises(ValueError, match="at least 0"):
+        sim.advance(-1)
+    for time in (-1.0, float("nan")):
+        with pytest.raises(ValueError, match="at least 0"):
+            sim.advance_to(time)
+
+
+def test_mistakes_are_told_in_words_of_python(tmp_path: Path) -> None:
+    falling_block().run(tmp_path / "out")
+    other = falling_block()
+    other.joints.friction = 20.0
+    with pytest.raises(kb.InputError, match="replace=True") as caught:
+        other.run(tmp_path / "out")
+    assert "--" not in str(caught.value) and "replace=True" in caught.value.diagnostics[0].expected
+    with pytest.raises(kb.InputError, match="stop: found 10, as start") as caught:
+        kb.find_limit(falling_block(), tmp_path / "limit", "joints.friction", 10, 10)
+    assert caught.value.diagnostics[0].file == "stop"
+    assert len(kb.run_table(tmp_path / "out")) == 1
+    with pytest.raises(kb.NoResultError, match="no folders"):
+        kb.run_table([])
 
 
 @pytest.mark.parametrize("way", ["finish", "close", "with", "exception", "controller"])
