@@ -1,7 +1,11 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <memory>
+
 namespace keyblock::python {
+
+class Stepped;
 
 /// Nothing but the module makes objects of this class: `Class.__new__(Class)` would be one without a value, and its first use would break
 /// the interpreter.
@@ -14,6 +18,8 @@ void seal(Class& of) {
 void bind_errors(pybind11::module_& module);
 void bind_scenario(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
+/// Contacts of a simulation: column by column, so that only what is looked at is copied.
+void bind_contacts(pybind11::class_<Stepped, std::shared_ptr<Stepped>>& simulation);
 void bind_study(pybind11::module_& module);
 
 }  // namespace keyblock::python

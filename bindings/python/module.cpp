@@ -1,6 +1,9 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bindings.h"
 #include "keyblock/keyblock.h"
@@ -22,9 +25,41 @@ PyObject* make_error(py::module_& module, const char* name, const char* meaning,
   return error;
 }
 
+/// Options of the command line, as they are called in Python: `--force` is replace=True, and of others the dashes go.
+std::string in_python(std::string words) {
+  constexpr std::pair<std::string_view, std::string_view> options[] = {{"--force", "replace=True"},
+                                                                       {"--resume", "resume=True"},
+                                                                       {"--set", "a set value,"},
+                                                                       {"--from", "start"},
+                                                                       {"--to", "stop"},
+                                                                       {"--", ""}};
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  for (const auto& [option, argument] : options) {
+    for (std::size_t at = 0; (at = words.find(option, at)) != std::string::npos;) {
+      const std::size_t end = at + option.size();
+      const bool goes_on = end < words.size() && is_letter(words[end]),
+                 begins = at == 0 || words[at - 1] == ' ' || words[at - 1] == '(';
+      if (begins && goes_on == (option == "--")) {
+        words.replace(at, option.size(), argument);
+        at += argument.size();
+      } else {
+        at = end;
+      }
+    }
+  }
+  return words;
+}
+
 void raise(const InputError& error) {
-  py::object value = py::reinterpret_borrow<py::object>(input_error)(error.what());
-  value.attr("diagnostics") = py::cast(error.diagnostics());
+  std::vector<Diagnostic> diagnostics = error.diagnostics();
+  for (Diagnostic& diagnostic : diagnostics) {
+    if (diagnostic.where.file.starts_with("--")) diagnostic.where.file = in_python(diagnostic.where.file);
+    diagnostic.found = in_python(diagnostic.found);
+    diagnostic.expected = in_python(diagnostic.expected);
+    diagnostic.hint = in_python(diagnostic.hint);
+  }
+  py::object value = py::reinterpret_borrow<py::object>(input_error)(in_python(error.what()));
+  value.attr("diagnostics") = py::cast(diagnostics);
   PyErr_SetObject(input_error, value.ptr());
 }
 

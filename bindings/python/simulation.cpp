@@ -10,198 +10,20 @@
 #include <thread>
 #include <utility>
 
+#include "array_of.h"
 #include "bindings.h"
 #include "keyblock/study.h"
-#include "shared_array.h"
+#include "stepped.h"
 
 namespace py = pybind11;
 
 namespace keyblock::python {
 namespace {
 
-/// The numbers themselves, which the array owns from now on.
-template <typename Number>
-py::array_t<Number> array_of(std::vector<Number> values, std::size_t columns = 1) {
-  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size() / columns)};
-  if (columns > 1) shape.push_back(static_cast<py::ssize_t>(columns));
-  auto* owner = new std::vector<Number>(std::move(values));
-  const py::capsule keep(owner, [](void* p) { delete static_cast<std::vector<Number>*>(p); });
-  return py::array_t<Number>(shape, owner->data(), keep);
-}
-
-/// A Simulation that Python may call from any thread at any time: what does not fit the moment is refused. Every call holds the
-/// interpreter's lock; a step gives it back meanwhile.
-class Stepped {
- public:
-  Stepped(const Scenario& scenario, const RunOptions& options)
-      : own_(begin(scenario, options)), simulation_(&*own_) {}
-  /// Of a run that a study takes step by step.
-  explicit Stepped(Simulation& of) : simulation_(&of) {}
-
-  /// Steps that were taken: fewer than asked for when the run has come to its end.
-  long advance(long steps, const py::object& after_step, const py::object& progress);
-  std::string finish() {
-    const Stepping now(*this);
-    const py::gil_scoped_release free;
-    return simulation_->finish();
-  }
-  void close() {
-    const Stepping now(*this);
-    const py::gil_scoped_release free;
-    simulation_->close();
-  }
-  void stop() noexcept {
-    if (simulation_ != nullptr) simulation_->stop();
-  }
-
-  [[nodiscard]] const Simulation& at_rest() const {
-    check_access();
-    return *simulation_;
-  }
-  Simulation& at_rest() {
-    check_access();
-    return *simulation_;
-  }
-  /// Calls a function of Python within a step that somebody else has taken.
-  void steer(const py::object& function) {
-    const Stepping now(*this);
-    call(function);
-  }
-  /// The run has ended: nothing can be asked of it any more.
-  void release() { simulation_ = nullptr; }
-  py::array_t<double> velocity() {
-    check_access();
-    return velocity_.array(simulation_->velocity(), 1, true);
-  }
-  py::array_t<double> vertices() {
-    check_access();
-    return vertices_.array(simulation_->vertices(), 2, false);
-  }
-  void set_velocity(const py::array_t<double, py::array::c_style | py::array::forcecast>& values) {
-    check_access();
-    simulation_->set_velocity({values.data(), static_cast<std::size_t>(values.size())});
-    velocity_.refresh(simulation_->velocity());
-  }
-
- private:
-  static Simulation begin(const Scenario& scenario, const RunOptions& options) {
-    const Scenario own = scenario;  // other threads of Python may change it meanwhile
-    const py::gil_scoped_release free;
-    return Simulation(own, options);
-  }
-
-  /// While it lives, this thread is in a step.
-  class Stepping {
-   public:
-    explicit Stepping(Stepped& of) : of_(of) {
-      of_.check_there();
-      if (of_.stepping_) throw std::runtime_error("the simulation is within a step");
-      of_.stepping_ = std::this_thread::get_id();
-    }
-    ~Stepping() { of_.stepping_.reset(); }
-    Stepping(const Stepping&) = delete;
-    Stepping& operator=(const Stepping&) = delete;
-
-   private:
-    Stepped& of_;
-  };
-
-  void check_there() const {
-    if (simulation_ == nullptr) throw std::runtime_error("the run has ended");
-  }
-  void check_access() const {
-    check_there();
-    if (stepping_ && !(in_callback_ && *stepping_ == std::this_thread::get_id()))
-      throw std::runtime_error("the simulation is within a step of another thread");
-  }
-  /// Velocities that Python has written come into force.
-  void take_over() {
-    if (!velocity_.differs(simulation_->velocity())) return;
-    try {
-      simulation_->set_velocity(velocity_.values());
-    } catch (...) {
-      velocity_.put(simulation_->velocity());
-      throw;
-    }
-  }
-  void refresh() {
-    velocity_.refresh(simulation_->velocity());
-    vertices_.refresh(simulation_->vertices());
-  }
-  void call(const py::object& function) {
-    const py::gil_scoped_acquire lock;
-    refresh();
-    in_callback_ = true;
-    try {
-      function();
-      take_over();
-    } catch (...) {
-      in_callback_ = false;
-      throw;
-    }
-    in_callback_ = false;
-  }
-
-  std::optional<Simulation> own_;
-  Simulation* simulation_;  ///< null: the run has ended
-  std::optional<std::thread::id> stepping_;
-  bool in_callback_ = false;
-  SharedArray<double> velocity_, vertices_;
-};
-
-long Stepped::advance(long steps, const py::object& after_step, const py::object& progress) {
-  const Stepping now(*this);
-  take_over();
-  simulation_->after_step(after_step.is_none() ? std::function<void()>() : [&] { call(after_step); });
-  simulation_->on_progress(progress.is_none() ? std::function<void(const Progress&)>()
-                                              : [&](const Progress& at) {
-                                                  const py::gil_scoped_acquire lock;
-                                                  progress(py::cast(at));
-                                                });
-  const long first = simulation_->step();
-  try {
-    for (bool more = true; more && simulation_->step() - first < steps;) {
-      {
-        const py::gil_scoped_release free;
-        more = simulation_->advance();
-      }
-      refresh();
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    }
-  } catch (...) {
-    refresh();
-    simulation_->after_step({});
-    simulation_->on_progress({});
-    throw;
-  }
-  simulation_->after_step({});
-  simulation_->on_progress({});
-  return simulation_->step() - first;
-}
-
 py::dict by_name(const std::vector<std::pair<std::string, double>>& values) {
   py::dict named;
   for (const auto& [name, value] : values) named[name.c_str()] = value;
   return named;
-}
-
-py::dict contact_table(const Stepped& stepped) {
-  Contacts c = stepped.at_rest().contacts();
-  py::dict table;
-  table["block_a"] = array_of(std::move(c.block_a));
-  table["block_b"] = array_of(std::move(c.block_b));
-  table["state"] = array_of(std::move(c.state));
-  table["position"] = array_of(std::move(c.position), 2);
-  table["normal"] = array_of(std::move(c.normal), 2);
-  table["length"] = array_of(std::move(c.length));
-  table["gap"] = array_of(std::move(c.gap));
-  table["slip"] = array_of(std::move(c.slip));
-  table["shear_displacement"] = array_of(std::move(c.shear_displacement));
-  table["normal_force"] = array_of(std::move(c.normal_force));
-  table["shear_force"] = array_of(std::move(c.shear_force));
-  table["joint_code"] = array_of(std::move(c.joint));
-  table["joint_names"] = py::cast(c.joint_names);
-  return table;
 }
 
 void bind_values(py::module_& module) {
@@ -310,7 +132,6 @@ void bind_simulation(py::module_& module) {
                              [](const Stepped& s) { return array_of(s.at_rest().centroids(), 2); })
       .def_property_readonly("block_velocities",
                              [](const Stepped& s) { return array_of(s.at_rest().block_velocities(), 2); })
-      .def_property_readonly("contacts", &contact_table)
       .def_property_readonly("block_facts",
                              [](const Stepped& s) {
                                py::list blocks;
@@ -363,6 +184,7 @@ void bind_simulation(py::module_& module) {
       .def("set_spring_force",
            [](Stepped& s, std::size_t spring, double value) { s.at_rest().set_spring_force(spring, value); })
       .def("set_motion_scale", [](Stepped& s, double factor) { s.at_rest().set_motion_scale(factor); });
+  bind_contacts(simulation);
   seal(simulation);
 }
 

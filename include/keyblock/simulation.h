@@ -37,18 +37,49 @@ struct JointStrength {
   double tension = 0.0;   ///< Pa
 };
 
+/// Strength of a single contact, by its vertex and edge.
+struct ContactStrength {
+  std::int32_t vertex = 0, edge = 0;
+  std::optional<double> friction;           ///< degrees
+  std::optional<double> cohesion, tension;  ///< Pa
+};
+
 /// Contacts between blocks after a step, one element each in every list.
 struct Contacts {
   std::vector<std::int32_t> block_a, block_b;  ///< the block with the vertex, and the block with the edge
-  std::vector<std::uint8_t> state;             ///< 0 open, 1 sliding, 2 locked
-  std::vector<double> position, normal;        ///< m; unit vector out of block_b; x and y in turn
-  std::vector<double> length, gap;             ///< m; gap negative where the contact is pressed
-  std::vector<double> slip;                    ///< m, since the excavation: the magnitude
+  std::vector<std::int32_t> vertex, edge;  ///< of all blocks, as in Simulation::vertices(); empty in Results
+  std::vector<std::uint8_t> state;         ///< 0 open, 1 sliding, 2 locked
+  std::vector<double> position, normal;    ///< m; unit vector out of block_b; x and y in turn
+  std::vector<double> length, gap;         ///< m; gap negative where the contact is pressed
+  std::vector<double> slip;                ///< m, since the excavation: the magnitude
   std::vector<double>
       shear_displacement;  ///< m, the same with its sign: of block_a along (-normal y, normal x)
   std::vector<double> normal_force, shear_force;  ///< N per metre thickness, compression positive
+  std::vector<double> friction;                   ///< degrees, as it acted; empty in Results, as the next two
+  std::vector<double> cohesion, tension;          ///< Pa; 0 where there is no bond, or none any more
   std::vector<std::int32_t> joint;                ///< place in joint_names
   std::vector<std::string> joint_names;           ///< as in Block::edges
+};
+
+/// Lists of Contacts, by their names.
+enum class ContactColumn : std::uint8_t {
+  block_a,
+  block_b,
+  vertex,
+  edge,
+  state,
+  position,
+  normal,
+  length,
+  gap,
+  slip,
+  shear_displacement,
+  normal_force,
+  shear_force,
+  friction,
+  cohesion,
+  tension,
+  joint
 };
 
 /// What of a block stays the same in a run.
@@ -151,6 +182,9 @@ class KEYBLOCK_API Simulation {
   [[nodiscard]] std::vector<std::size_t> first_coefficient() const;
   /// None before the first step.
   [[nodiscard]] Contacts contacts() const;
+  /// These lists alone, and joint_names; the others stay empty. Much cheaper than all of them.
+  [[nodiscard]] Contacts contacts(const std::vector<ContactColumn>& columns) const;
+  [[nodiscard]] std::size_t contact_count() const;
   /// Pa, mean of every block: xx, yy, xy in turn; tension positive.
   [[nodiscard]] std::vector<double> stress() const;
   /// Of every block: 0 in place, 1 loosened, 2 fallen, 3 excavated.
@@ -169,6 +203,14 @@ class KEYBLOCK_API Simulation {
   /// Of a joint set, a trace map, "joints" (all others) or "frame". Throws InputError for an unknown name.
   [[nodiscard]] JointStrength strength(const std::string& joint) const;
   void set_strength(const std::string& joint, const JointStrength& strength);
+  /// Of single contacts, beside what was given of them before. It acts from the next step on and stays with vertex and edge, also while they
+  /// do not touch; cohesion and tension act where the bond holds. Strengths of joints that are set do not touch it. Throws InputError for what
+  /// is no contact of two blocks, and for strengths that are negative or no number.
+  void set_contact_strengths(const std::vector<ContactStrength>& strengths);
+  /// Those contacts have the strength of their joints again; vertices and edges count alone.
+  void forget_contact_strengths(const std::vector<ContactStrength>& contacts);
+  /// What was given, ascending by vertex, then edge.
+  [[nodiscard]] std::vector<ContactStrength> contact_strengths() const;
   /// Factor on the load of this number, in the order of the scenario, beside its own. Throws InputError for an unknown one.
   void set_load_factor(std::size_t load, double factor);
   /// A force on a block, N per metre thickness, in the place of the one of this slot before; zero takes it away. `place`: where it acts, m, in

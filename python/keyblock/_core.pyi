@@ -1,7 +1,7 @@
 """Types of the compiled part. Use the package `keyblock`."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, final
 
 import numpy as np
@@ -184,7 +184,21 @@ class Simulation:
     @property
     def forces(self) -> list[tuple[int, int, list[float]]]: ...
     @property
-    def contacts(self) -> dict[str, Any]: ...
+    def contact_count(self) -> int: ...
+    @property
+    def joint_names(self) -> list[str]: ...
+    def contact_columns(self, names: Sequence[str]) -> list[np.ndarray]: ...
+    @property
+    def contact_strengths(self) -> list[tuple[int, int, float | None, float | None, float | None]]: ...
+    def set_contact_strengths(
+        self,
+        vertices: np.ndarray,
+        edges: np.ndarray,
+        friction: np.ndarray | None,
+        cohesion: np.ndarray | None,
+        tension: np.ndarray | None,
+    ) -> None: ...
+    def forget_contact_strengths(self, vertices: np.ndarray, edges: np.ndarray) -> None: ...
     @property
     def energy(self) -> dict[str, float]: ...
 
@@ -210,6 +224,7 @@ def find_limit(
     tolerance: float,
     realizations: int,
     resume: bool,
+    scan: int,
     workers: int,
     command: list[str],
     progress: Callable[[int, int], Any] | None,

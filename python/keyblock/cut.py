@@ -2,26 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._optional import need
+from ._sealed import Sealed
+from .steering import read_only
 
 if TYPE_CHECKING:
     from . import _core
 
 
-class CutBlock:
-    """One block. Lengths in m, real coordinates."""
+class CutBlock(Sealed):
+    """One block, to be looked at: other blocks come from another scenario. Lengths in m, real coordinates."""
 
     def __init__(self, core: _core.Block) -> None:
-        self.name: str = core.name
-        self.area: float = core.area
-        self.excavations: list[str] = core.excavations
-        self.rings: list[np.ndarray] = [np.array(ring) for ring in core.rings]
-        self.edges: list[list[str]] = core.edges
+        self._name, self._area = core.name, core.area
+        self._excavations = tuple(core.excavations)
+        self._rings = tuple(read_only(np.array(ring)) for ring in core.rings)
+        self._edges = tuple(tuple(ring) for ring in core.edges)
+
+    @property
+    def name(self) -> str:
+        """Of the scenario; empty where it was cut."""
+        return self._name
+
+    @property
+    def area(self) -> float:
+        """m²"""
+        return self._area
+
+    @property
+    def excavations(self) -> tuple[str, ...]:
+        """Those that hold it."""
+        return self._excavations
+
+    @property
+    def rings(self) -> tuple[np.ndarray, ...]:
+        """(n, 2) each: the outer one, then the holes."""
+        return self._rings
+
+    @property
+    def edges(self) -> tuple[tuple[str, ...], ...]:
+        """Of each ring, what each edge is a piece of: it runs from the corner of its number to the next."""
+        return self._edges
 
     @property
     def polygon(self) -> np.ndarray:
@@ -29,7 +55,7 @@ class CutBlock:
         return self.rings[0]
 
     @property
-    def holes(self) -> list[np.ndarray]:
+    def holes(self) -> tuple[np.ndarray, ...]:
         """Inner rings, clockwise."""
         return self.rings[1:]
 
@@ -37,17 +63,20 @@ class CutBlock:
         return f"<block {self.name!r} of {self.area:.3g} m2, {len(self.polygon)} corners>"
 
 
-class CutBlocks:
-    """The blocks of one realization, as a list."""
+class CutBlocks(Sealed, Sequence[CutBlock]):
+    """The blocks of one realization, as a sequence to be looked at."""
 
     def __init__(self, core: list[_core.Block]) -> None:
-        self._blocks = [CutBlock(block) for block in core]
+        self._blocks = tuple(CutBlock(block) for block in core)
 
     def __len__(self) -> int:
         return len(self._blocks)
 
-    def __getitem__(self, k: int) -> CutBlock:
+    def __getitem__(self, k: Any) -> Any:
         return self._blocks[k]
+
+    def __setitem__(self, k: Any, block: Any) -> None:
+        raise TypeError("blocks that were cut can only be looked at; set blocks of the scenario: scenario.block[0].outer = …")
 
     def __iter__(self) -> Iterator[CutBlock]:
         return iter(self._blocks)
@@ -60,7 +89,7 @@ class CutBlocks:
     @property
     def areas(self) -> np.ndarray:
         """(blocks,), m²."""
-        return np.array([block.area for block in self])
+        return read_only(np.array([block.area for block in self]))
 
     @property
     def excavations(self) -> list[str]:

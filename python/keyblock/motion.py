@@ -79,6 +79,8 @@ class Motion:
 
 def _samples(values: Any, name: str) -> np.ndarray:
     _refuse_gaps(values, name)
+    if np.asarray(values).dtype.kind in "bcSU":
+        raise DataError(f"{name}: accelerations that are real numbers, not {np.asarray(values).dtype}")
     array = np.asarray(values, dtype=float)
     if array.ndim != 1 or len(array) < 2:
         raise DataError(f"{name}: a list of at least two accelerations, not an array of shape {array.shape}")
@@ -117,7 +119,7 @@ def _step_of(traces: list[Any]) -> float:
 
 def _common_window(traces: list[Any], step: float) -> tuple[list[int], int]:
     """First sample of each trace, and how many are common to all."""
-    starts = [getattr(trace.stats, "starttime", None) for trace in traces]
+    starts: list[Any] = [getattr(trace.stats, "starttime", None) for trace in traces]
     if all(start is None for start in starts):
         begins = [0] * len(traces)
     elif any(start is None for start in starts):

@@ -40,11 +40,15 @@ def run_table(folders: Iterable[str | os.PathLike[str]] | str | os.PathLike[str]
 
 def _run_folders(folders: Any) -> list[Path]:
     if isinstance(folders, (str, os.PathLike)):
+        if (Path(folders) / "summary.json").exists():
+            return [Path(folders)]
         inside = sorted(path.parent for path in Path(folders).glob("*/summary.json"))
         if not inside:
             raise NoResultError(f"{folders}: no folder with runs that have ended")
         return inside
     paths = [Path(folder) for folder in folders]
+    if not paths:
+        raise NoResultError("no folders of runs were given")
     for path in paths:
         if not (path / "summary.json").exists():
             raise NoResultError(f"{path}: no run that has ended")

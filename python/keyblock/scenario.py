@@ -402,7 +402,9 @@ class Tables:
             raise IndexError(f"{self._path} has {len(names)} elements")
         return which % len(names)
 
-    def __getitem__(self, which: int | str) -> Table:
+    def __getitem__(self, which: Any) -> Any:
+        if isinstance(which, slice):
+            return [self[k] for k in range(*which.indices(len(self)))]
         return Table(self._scenario, f"{self._path}[{self._place(which)}]")
 
     def __setitem__(self, which: int | str, values: Mapping[str, Any]) -> None:

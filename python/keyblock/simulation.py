@@ -12,14 +12,15 @@ Units are SI, forces and energies per metre of thickness, coordinates local ones
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import inspect
 import json
 import logging
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+import weakref
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +30,7 @@ from ._compiled import core as _core
 from ._sealed import Sealed
 from .progress import Progress as _Shown
 from .progress import words_of_run
-from .record import did_you_mean
+from .simulated_contacts import Contacts
 from .steering import JointStrength, SimulatedBlocks, Springs, Strengths, read_only
 
 if TYPE_CHECKING:
@@ -47,8 +48,12 @@ class Controller(Sealed):
     step on. What it has to remember between steps must follow from the simulation, or a resumed run goes another way."""
 
     def __init__(self, function: Callable[[Simulation], Any], every: int = 1, name: str | None = None) -> None:
-        if not callable(function):
-            raise TypeError("a controller is a function of a Simulation")
+        if not callable(function) or isinstance(function, type):
+            raise TypeError(f"a controller is a function of a Simulation, and not {function!r}")
+        if any(is_other(function) for is_other in (inspect.iscoroutinefunction, inspect.isgeneratorfunction, inspect.isasyncgenfunction)):
+            raise TypeError(f"{_name_of(function)} is a coroutine or a generator, which would not run; a controller is a plain function")
+        if not isinstance(every, (int, np.integer)) or isinstance(every, bool):
+            raise TypeError(f"every: a whole number of steps, and not {every!r}")
         if every < 1:
             raise ValueError("every: at least 1")
         self._function = function
@@ -75,6 +80,12 @@ def controller(function: Callable[[Simulation], Any] | None = None, *, every: in
     return lambda f: Controller(f, every, name)
 
 
+def controllers_of(given: Any) -> list[Controller]:
+    if isinstance(given, (str, bytes, Controller)) or callable(given) or not isinstance(given, Iterable):
+        raise TypeError(f"controllers: a list of functions, as controllers=[weaken], and not {given!r}")
+    return [c if isinstance(c, Controller) else Controller(c) for c in given]
+
+
 def _name_of(function: Callable[..., Any]) -> str:
     try:
         place = os.path.basename(inspect.getsourcefile(function) or "") if inspect.isroutine(function) else ""
@@ -94,13 +105,15 @@ def _source_of(function: Callable[..., Any]) -> str:
 
 def _held_values(function: Callable[..., Any]) -> str:
     """What a function closes over, as far as it is plain: `make(8000)` and `make(6000)` are two controllers."""
+    if isinstance(function, functools.partial):
+        return f"{_source_of(function.func)}\n{_held_values(function.func)}{function.args!r}{sorted(function.keywords.items())!r}\n"
     plain = (bool, int, float, complex, str, bytes, type(None))
     names = getattr(getattr(function, "__code__", None), "co_freevars", ())
     values = [cell.cell_contents for cell in getattr(function, "__closure__", None) or () if _is_full(cell)]
     held = [f"{name}={value!r}" for name, value in zip(names, values) if isinstance(value, plain)]
     held += [f"{value!r}" for value in (getattr(function, "__defaults__", None) or ()) if isinstance(value, plain)]
-    if not inspect.isroutine(function):
-        held += [f"{name}={value!r}" for name, value in sorted(vars(function).items()) if isinstance(value, plain)] if hasattr(function, "__dict__") else []
+    holder = getattr(function, "__self__", None) if inspect.isroutine(function) else function
+    held += [f"{name}={value!r}" for name, value in sorted(getattr(holder, "__dict__", {}).items()) if isinstance(value, plain)]
     return "".join(f"{text}\n" for text in held)
 
 
@@ -110,42 +123,6 @@ def _is_full(cell: Any) -> bool:
     except ValueError:
         return False
     return True
-
-
-@dataclass(frozen=True)
-class Contacts:
-    """Contacts after a step: copies, one element each. Forces in N per metre thickness, lengths in m."""
-
-    block_a: np.ndarray  #: the block with the vertex
-    block_b: np.ndarray  #: the block with the edge
-    state: np.ndarray  #: 0 open, 1 sliding, 2 locked
-    position: np.ndarray  #: (n, 2)
-    normal: np.ndarray  #: (n, 2), unit vectors out of block_b
-    length: np.ndarray
-    gap: np.ndarray  #: negative where the contact is pressed
-    slip: np.ndarray  #: since the excavation: the magnitude
-    shear_displacement: np.ndarray  #: the same with its sign: of block_a along (−normal y, normal x)
-    normal_force: np.ndarray  #: compression positive
-    shear_force: np.ndarray
-    joint_code: np.ndarray  #: place in `joint_names`
-    joint_names: list[str]  #: of joint sets, trace maps and excavations; "domain"; "" for edges of blocks of the scenario
-
-    @property
-    def joint(self) -> np.ndarray:
-        """What each contact's edge is a piece of, by name."""
-        return np.array(self.joint_names, dtype=object)[self.joint_code]
-
-    def __len__(self) -> int:
-        return len(self.block_a)
-
-    def of(self, joint: str) -> Contacts:
-        """Those of one joint set, trace map or excavation."""
-        if joint not in self.joint_names:
-            raise KeyError(f"no joint set {joint!r}{did_you_mean(joint, [name for name in self.joint_names if name])}")
-        codes = [code for code, name in enumerate(self.joint_names) if name == joint]
-        chosen = np.isin(self.joint_code, codes)
-        columns = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Contacts(**{name: column if name == "joint_names" else column[chosen] for name, column in columns.items()})
 
 
 class Simulation(Sealed):
@@ -172,8 +149,10 @@ class Simulation(Sealed):
         """`folder`: where results go, None: nowhere. `threads`: any number gives the same bits. `resume`: goes on from the checkpoint in
         the folder, with the same controllers. `replace`: results of other input there may go. Throws InputError, RunError."""
         self._blocks: SimulatedBlocks | None = None
+        self._contacts: weakref.ref[Contacts] | None = None
+        self._names: list[str] | None = None
         self._folder = "" if folder is None else os.fspath(folder)
-        self._controllers = [c if isinstance(c, Controller) else Controller(c) for c in controllers]
+        self._controllers = controllers_of(controllers)
         self._core = _core.Simulation.begin(
             scenario._core,
             folder=self._folder,
@@ -191,7 +170,8 @@ class Simulation(Sealed):
     def _of_study(cls, core: _core.Simulation, controllers: Sequence[Controller]) -> Simulation:
         """That of a run which a study takes step by step."""
         simulation = cls.__new__(cls)
-        simulation._blocks, simulation._folder, simulation._controllers, simulation._core = None, "", list(controllers), core
+        simulation._blocks = simulation._contacts = simulation._names = None
+        simulation._folder, simulation._controllers, simulation._core = "", list(controllers), core
         return simulation
 
     # ── going on ──
@@ -199,10 +179,15 @@ class Simulation(Sealed):
     def advance(self, steps: int = 1) -> int:
         """Takes steps of the plan, over the ends of stages; returns how many, which are fewer at the end of the run. Throws RunError where
         the run cannot go on, and what a controller throws."""
+        if steps < 0:
+            raise ValueError(f"steps: at least 0, and not {steps}")
+        self._leave_contacts()
         return self._core.advance(steps, self._after_step if self._controllers else None, None)
 
     def advance_to(self, time: float) -> int:
         """Steps until the simulated time, s, is reached. Static steps take none."""
+        if not time >= 0.0:
+            raise ValueError(f"time: s, at least 0, and not {time}")
         taken = 0
         while self.time < time and not self.done:
             taken += self.advance()
@@ -211,6 +196,7 @@ class Simulation(Sealed):
     def run(self, progress: Callable[[Progress], Any] | bool | str | None = None) -> dict[str, Any]:
         """All that is left of the run; then finish(). `progress`: a function of a Progress; True for a bar in a notebook and a line elsewhere;
         "notebook" or "line" for one of them. Ctrl-C and exceptions of controllers end it in good order and come back."""
+        self._leave_contacts()
         with _Shown(progress, words_of_run) as shown:
             try:
                 self._core.advance(sys.maxsize, self._after_step if self._controllers else None, shown.call)
@@ -256,9 +242,19 @@ class Simulation(Sealed):
 
     def _after_step(self) -> None:
         step = self._core.step
-        for each in self._controllers:
-            if step % each.every == 0:
-                each(self)
+        try:
+            for each in self._controllers:
+                if step % each.every == 0:
+                    each(self)
+        finally:
+            self._leave_contacts()
+
+    def _leave_contacts(self) -> None:
+        """Contacts that somebody still has stay as they are when the simulation goes on."""
+        contacts = None if self._contacts is None else self._contacts()
+        self._contacts = None
+        if contacts is not None:
+            contacts._complete()
 
     # ── what it is like ──
 
@@ -284,14 +280,14 @@ class Simulation(Sealed):
         return names[min(self._core.stage, len(names) - 1)]
 
     @property
-    def stages(self) -> list[str]:
+    def stages(self) -> tuple[str, ...]:
         """Names of all stages."""
-        return self._core.stages
+        return tuple(self._core.stages)
 
     @property
-    def warnings(self) -> list[str]:
+    def warnings(self) -> tuple[str, ...]:
         """What seems odd in the input."""
-        return self._core.warnings
+        return tuple(self._core.warnings)
 
     @property
     def state_hash(self) -> str:
@@ -352,8 +348,20 @@ class Simulation(Sealed):
 
     @property
     def contacts(self) -> Contacts:
-        """After the last step; none before the first one."""
-        return Contacts(**{name: read_only(of) if isinstance(of, np.ndarray) else of for name, of in self._core.contacts.items()})
+        """After the last step; none before the first one. Only columns that are looked at are copied."""
+        known = None if self._contacts is None else self._contacts()
+        if known is not None and known._step == self._core.step:
+            return known
+        if self._names is None:
+            self._names = self._core.joint_names
+        contacts = Contacts(self._core, self._names)
+        self._contacts = weakref.ref(contacts)
+        return contacts
+
+    @property
+    def contact_strengths(self) -> Mapping[tuple[int, int], tuple[float | None, float | None, float | None]]:
+        """Those that Contacts.set_strength has given: by vertex and edge, friction (degrees), cohesion and tension (Pa); None: that of the joint."""
+        return MappingProxyType({(vertex, edge): (friction, cohesion, tension) for vertex, edge, friction, cohesion, tension in self._core.contact_strengths})
 
     @property
     def stress(self) -> np.ndarray:
@@ -400,9 +408,9 @@ class Simulation(Sealed):
         self._core.set_force(self.blocks.index_of(block), [float(f) for f in force], where, int(slot))
 
     @property
-    def forces(self) -> list[tuple[int, int, tuple[float, float]]]:
+    def forces(self) -> tuple[tuple[int, int, tuple[float, float]], ...]:
         """Those that apply_force has put: block, slot, force."""
-        return [(block, slot, tuple(force)) for block, slot, force in self._core.forces]
+        return tuple((block, slot, (force[0], force[1])) for block, slot, force in self._core.forces)
 
     def set_load_factor(self, load: int, factor: float) -> None:
         """Factor on a load, by its place among [[load]], beside its own."""

@@ -25,9 +25,9 @@ def file_of_controllers(folder: str | os.PathLike[str]) -> Path:
 
 def run_steered(folder: str, workers: int, controllers: Sequence[Any], progress: Callable[[int, int], Any] | None) -> None:
     """Does all runs that are missing, `workers` at a time. A fork that is killed is one failed run."""
-    from .simulation import Controller
+    from .simulation import controllers_of
 
-    made = [c if isinstance(c, Controller) else Controller(c) for c in controllers]
+    made = controllers_of(controllers)
     _check_same(Path(folder), made)
     forks = multiprocessing.get_context("fork")
     running: dict[Any, int] = {}

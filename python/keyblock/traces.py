@@ -45,7 +45,7 @@ class TraceMap:
         sets; rows of one name are one set. `properties`: columns of strengths and stiffnesses, such as ["friction", "cohesion"], or
         {"friction": "phi"} where a column has another name; the rows of a set must agree. Rows without a geometry are left out, with a
         warning that names them."""
-        labels = [_DEFAULT] * len(frame) if name is None else [str(value) for value in _column(frame, name)]
+        told = [_DEFAULT] * len(frame) if name is None else list(_column(frame, name))
         columns = dict(properties) if isinstance(properties, Mapping) else {key: key for key in properties}
         values = {key: list(_column(frame, column)) for key, column in columns.items()}
         index = list(getattr(frame, "index", range(len(frame))))
@@ -53,10 +53,12 @@ class TraceMap:
         names: list[str] = []
         of_sets: dict[str, dict[str, float]] = {}
         without = []
-        for k, (label, geometry) in enumerate(zip(labels, frame.geometry)):
+        for k, (label, geometry) in enumerate(zip(map(str, told), frame.geometry)):
             if geometry is None or getattr(geometry, "is_empty", False):
                 without.append(index[k])
                 continue
+            if _is_missing(told[k]):
+                raise DataError(f"row {index[k]!r}: no value in column {name!r}, which names its set")
             for part in getattr(geometry, "geoms", [geometry]):
                 if part.geom_type not in ("LineString", "LinearRing"):
                     raise DataError(f"row {index[k]!r}, {label}: a {part.geom_type}, and traces are lines")
@@ -88,8 +90,9 @@ class TraceMap:
             free = name if self._is_named else _free_name(name, there)
             if free in there:
                 raise DataError(f"the scenario has a trace map {free!r} already; give another name")
-            shape = {"points": lines[0]} if len(lines) == 1 else {"lines": lines}
-            tables.append({"name": free, **shape, **keys, **self.properties.get(name, {})})
+            shape: dict[str, Any] = {"points": lines[0]} if len(lines) == 1 else {"lines": lines}
+            own: dict[str, Any] = dict(self.properties[name]) if name in self.properties else {}
+            tables.append({"name": free, **shape, **keys, **own})
         scenario.trace_map.extend(tables)
 
     def _lines_by_set(self) -> dict[str, list[np.ndarray]]:
@@ -124,6 +127,10 @@ def _agree(of_set: dict[str, float], row: dict[str, Any], label: str, index: Any
             continue
         if of_set.setdefault(key, float(value)) != float(value):
             raise DataError(f"row {index!r}: {key} {value} of set {label!r}, which has {of_set[key]} before; give it a set of its own")
+
+
+def _is_missing(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and value != value)
 
 
 def _line(points: Any, k: int) -> np.ndarray:

@@ -156,3 +156,9 @@ def test_saved_paths_count_from_the_new_file(tmp_path: Path) -> None:
     second = kb.Scenario.load(tmp_path / "b/s.toml")
     second.check()
     assert second.motion["m"].x.file == "../a/record.csv"
+
+
+def test_only_real_numbers_are_accelerations() -> None:
+    for wrong in (np.ones(5) * 1j, [True, False], ["1", "2"]):
+        with pytest.raises(kb.DataError, match="real numbers"):
+            kb.Motion(0.01, wrong)

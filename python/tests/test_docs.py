@@ -48,6 +48,8 @@ RUNS = {
     "kb.run_study(": lambda n: len(n["study"].table()) > 1 and (n["study"].table().status == "done").all(),
     "scenario.simulate() as sim": lambda n: n["sim"].done and 0.90 < n["contacts"].slip.max() < 0.91 and n["contacts"].shear_displacement.min() < -0.9,
     "def weaken(sim)": lambda n: n["weak"]["state_hash"] != n["held"]["state_hash"] and displacement(n["weak"]) > 1.5 > displacement(n["held"]),
+    # The equation of motion with 20° up to 5 mm, and then with the friction by the slip at every fifth step of 5 ms: 1.22229 m.
+    "def soften(sim)": lambda n: displacement(n["softened"]) == pytest.approx(1.22229, abs=2e-4),
     "kb.Motion(step=0.01": lambda n: n["scenario"].motion["sine"].x[1][1] == n["motion"].x[1] and len(n["scenario"].motion["sine"].x) == 200,
     "def hold(sim)": lambda n: 0.0 < displacement(n["slow"]) < 0.5 * displacement(n["held"]),
     "kb.run_table(": lambda n: sorted(n["table"]["joints.friction"]) == [10.0, 20.0, 30.0]
@@ -117,3 +119,41 @@ def test_blocks_of_the_page_on_runs(tmp_path, monkeypatch, capsys):
     said = capsys.readouterr().out
     assert "mine.toml 3 9 rock.young" in said and "weaken" in said
     assert {"stone.png", "blocks.pdf", "out"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_blocks_of_the_page_on_the_result_file(tunnel_folder, tmp_path, monkeypatch, capsys):
+    """What plain h5py and xarray read by the page is what the package reads."""
+    optional("xarray"), optional("netCDF4")
+    import h5py
+    import keyblock
+    import numpy as np
+
+    (tmp_path / "out").symlink_to(tunnel_folder.parent, target_is_directory=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", ["read.py", "out/tunnel"])
+    script, rings, netcdf = (match["code"] for match in BLOCK.finditer((ROOT / "docs/result-file.md").read_text()))
+    names: dict[str, object] = {}
+    exec(compile(script, "docs/result-file.md", "exec"), names)  # noqa: S102
+    said = capsys.readouterr().out.splitlines()
+    with keyblock.open("out/tunnel") as run, h5py.File("out/tunnel/result.h5") as names["f"]:
+        last = run.frames.at()
+        fallen = np.flatnonzero(last.status == 2)
+        assert f"- seed {run.summary.seed} - realization {run.summary.realization}" in said[0]
+        number = re.fullmatch(r"largest displacement (\S+) m", said[1])
+        assert number and float(number[1]) == pytest.approx(np.hypot(*last.displacement.T).max(), rel=1e-6)
+        assert said[2:] == [
+            f"block {b} has fallen; it has {len(run.blocks[int(b)].outline)} vertices and {len(run.rings(int(b))) - 1} holes" for b in fallen
+        ]
+        exec(compile(rings, "docs/result-file.md", "exec"), names)  # noqa: S102
+        for b in range(len(run.blocks)):
+            assert area_of(names["outlines"](b)) == pytest.approx(run.blocks.area[b], rel=1e-9)
+        exec(compile(netcdf, "docs/result-file.md", "exec"), names)  # noqa: S102
+        frames = names["frames"]
+        assert float(frames.stress.isel(stress_component=1).max()) == max(float(frame.stress[:, 1].max()) for frame in run.frames)
+        assert {"time", "block", "vertex", "component"} <= set(frames.dims) and frames.stress.attrs["units"] == "Pa"
+        frames.close()
+
+
+def area_of(rings) -> float:
+    """m², of a block: holes run the other way."""
+    return 0.5 * sum(float(sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in zip(ring, [*ring[1:], ring[0]]))) for ring in rings)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -29,13 +31,13 @@ def test_a_force_carries_a_block_and_its_work_is_in_the_balance() -> None:
     assert stone.velocity == pytest.approx([0.0, 9.81 * 0.1], rel=1e-6, abs=1e-9)
     assert sim.energy["input"] == pytest.approx(2.0 * weight * 0.5 * 9.81 * 0.1**2, rel=0.02)
     assert abs(balance(sim)) < 1e-6 * sim.energy["input"]
-    assert sim.forces == [(1, 0, (0.0, 2.0 * weight))]
+    assert sim.forces == ((1, 0, (0.0, 2.0 * weight)),)
     stone.apply_force([0.0, weight])  # takes the place of the first one
     before = stone.velocity.copy()
     sim.advance(50)
     assert stone.velocity == pytest.approx(before, rel=1e-6, abs=1e-9)
     stone.apply_force([0.0, 0.0])
-    assert sim.forces == []
+    assert sim.forces == ()
 
 
 def test_a_force_at_a_corner_turns_a_block_about_its_mass_centre() -> None:
@@ -196,11 +198,71 @@ def test_a_velocity_that_is_refused_leaves_the_view_alive() -> None:
     assert view is not None and np.array_equal(view, sim.velocity) and view.any()
 
 
+class Threshold:
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def look(self, sim: kb.Simulation) -> None:
+        pass
+
+    __call__ = look
+
+
+def look(threshold: float, sim: kb.Simulation) -> None:
+    pass
+
+
 def test_controllers_with_other_values_are_other_controllers() -> None:
     def make(threshold: float) -> kb.Controller:
         return kb.controller(lambda sim: sim.time > threshold)
 
-    assert make(1.0).hash == make(1.0).hash != make(2.0).hash
+    for of in (make, lambda t: kb.Controller(partial(look, t)), lambda t: kb.Controller(Threshold(t).look), lambda t: kb.Controller(Threshold(t))):
+        assert of(1.0).hash == of(1.0).hash != of(2.0).hash
+
+
+async def never_awaited(sim: kb.Simulation) -> None:
+    sim.stop()
+
+
+def never_begun(sim: kb.Simulation) -> Iterator[None]:
+    sim.stop()
+    yield
+
+
+def test_controllers_that_would_not_run_are_refused() -> None:
+    for wrong in (never_awaited, never_begun):
+        with pytest.raises(TypeError, match="would not run"):
+            falling_block().run(controllers=[wrong])
+    for wrong in ("weaken", 3, Threshold):
+        with pytest.raises(TypeError, match="a controller is a function"):
+            falling_block().run(controllers=[wrong])
+    for wrong in (look, "weaken", kb.controller(lambda sim: None), 3):
+        with pytest.raises(TypeError, match=r"controllers=\[weaken\]"):
+            falling_block().run(controllers=wrong)
+    for every in (2.5, "5", True):
+        with pytest.raises(TypeError, match="whole number"):
+            kb.Controller(lambda sim: None, every)
+    sim = falling_block().simulate()
+    with pytest.raises(ValueError, match="at least 0"):
+        sim.advance(-1)
+    for time in (-1.0, float("nan")):
+        with pytest.raises(ValueError, match="at least 0"):
+            sim.advance_to(time)
+
+
+def test_mistakes_are_told_in_words_of_python(tmp_path: Path) -> None:
+    falling_block().run(tmp_path / "out")
+    other = falling_block()
+    other.joints.friction = 20.0
+    with pytest.raises(kb.InputError, match="replace=True") as caught:
+        other.run(tmp_path / "out")
+    assert "--" not in str(caught.value) and "replace=True" in caught.value.diagnostics[0].expected
+    with pytest.raises(kb.InputError, match="stop: found 10, as start") as caught:
+        kb.find_limit(falling_block(), tmp_path / "limit", "joints.friction", 10, 10)
+    assert caught.value.diagnostics[0].file == "stop"
+    assert len(kb.run_table(tmp_path / "out")) == 1
+    with pytest.raises(kb.NoResultError, match="no folders"):
+        kb.run_table([])
 
 
 @pytest.mark.parametrize("way", ["finish", "close", "with", "exception", "controller"])
@@ -253,3 +315,151 @@ def test_a_folder_is_let_go(way: str, tmp_path: Path) -> None:
         assert set(plain) >= {"frames", "contacts"} and again.summary.steps == resumed["steps"]
     opened.close()
     assert resumed["state_hash"] == falling_block().run()["state_hash"]
+
+
+def held_on_slope(**keys: object) -> kb.Scenario:
+    """A block on a slope of 30°, held by friction of 40°."""
+    scenario = kb.Scenario.load(ROOT / "examples/03-block-on-incline.toml")
+    scenario.joints.friction = 40.0
+    for key, value in keys.items():
+        scenario[key.replace("__", ".")] = value
+    return scenario
+
+
+SOLVERS: list[dict[str, object]] = [{}, {"rock__order": 2}, {"rock__order": 3}, {"solver__face_contacts": 3}, {"joints__normal_stiffness": 1e9},
+                                    {"solver__contact": "augmented-lagrangian"}]
+
+
+@pytest.mark.parametrize("keys", SOLVERS, ids=str)
+def test_the_strength_of_single_contacts(keys: dict[str, object], tmp_path: Path) -> None:
+    """All contacts of a block with 10°: it slides as by Coulomb's law, while the strength of the joints stays."""
+    held = held_on_slope(**keys).run()
+    assert held["stages"][-1]["damage"]["displacement_max_m"] < 1e-3
+
+    @kb.controller
+    def weaken(sim: kb.Simulation) -> None:
+        if sim.step == 2:
+            sim.contacts.set_strength(friction=10.0)
+
+    sim = held_on_slope(**keys).simulate(tmp_path / "out", controllers=[weaken])
+    while not sim.done and sim.step < 100:
+        sim.advance()
+    assert sim.strength["joints"].friction == pytest.approx(40.0)
+    assert sim.contacts.friction == pytest.approx(np.full(len(sim.contacts), 10.0))
+    assert all(given == (pytest.approx(10.0), None, None) for given in sim.contact_strengths.values())
+    before, time = np.hypot(*sim.block_velocities[1]), sim.time
+    sim.advance(50)
+    grows = (np.hypot(*sim.block_velocities[1]) - before) / (sim.time - time)
+    assert grows == pytest.approx(9.81 * (0.5 - np.cos(np.pi / 6) * np.tan(np.radians(10.0))), rel=5e-3)
+    assert abs(balance(sim)) < 1e-3 * sim.energy["friction"]
+    sim.contacts.reset_strength()
+    assert sim.contact_strengths == {}
+    sim.advance(1)
+    assert sim.contacts.friction == pytest.approx(np.full(len(sim.contacts), 40.0))
+
+
+def test_strengths_of_contacts_stay_in_checkpoints(tmp_path: Path) -> None:
+    (tmp_path / "tunnel.toml").write_text(TUNNEL)
+    scenario = kb.Scenario.load(tmp_path / "tunnel.toml")
+
+    @kb.controller(every=3)
+    def weaken(sim: kb.Simulation) -> None:
+        contacts = sim.contacts
+        moved = contacts[contacts.slip > 1e-5]
+        moved.set_strength(friction=20.0, cohesion=np.zeros(len(moved)))
+        contacts[:2].reset_strength()
+
+    whole = scenario.run(controllers=[weaken])
+    assert whole["state_hash"] == scenario.run(controllers=[weaken], threads=2)["state_hash"] != scenario.run()["state_hash"]
+    steps = whole["steps"]
+    with scenario.simulate(tmp_path / "out", controllers=[weaken]) as sim:
+        sim.advance(steps * 3 // 4)
+    resumed = scenario.run(tmp_path / "out", controllers=[weaken], resume=True)
+    assert resumed["state_hash"] == whole["state_hash"]
+
+
+def test_strengths_of_contacts_that_cannot_be_are_refused() -> None:
+    sim = held_on_slope().simulate()
+    assert len(sim.contacts) == 0 and len(sim.contacts.of("")) == 0
+    sim.advance(3)
+    contacts = sim.contacts
+    with pytest.raises(kb.InputError, match="degrees, from 0 to less than 90"):
+        contacts.set_strength(friction=90.0)
+    with pytest.raises(kb.InputError, match="at least 0"):
+        contacts.set_strength(cohesion=-1.0)
+    with pytest.raises(kb.InputError, match="finite number"):
+        contacts.set_strength(tension=float("nan"))
+    with pytest.raises(ValueError, match=f"one for each of {len(contacts)} contacts"):
+        contacts.set_strength(friction=[1.0] * (len(contacts) + 1))
+    with pytest.raises(TypeError, match="friction, cohesion or tension"):
+        contacts.set_strength()
+    with pytest.raises(TypeError, match="mask"):
+        contacts[0]
+    with pytest.raises(TypeError, match="columns"):
+        list(contacts)
+    with pytest.raises(IndexError):
+        contacts[np.ones(len(contacts) + 1, dtype=bool)]
+    with pytest.raises(AttributeError, match="did you mean 'friction'"):
+        contacts.fricton = 3.0
+    with pytest.raises(AttributeError, match="only be read"):
+        contacts.friction = 3.0
+    with pytest.raises(ValueError, match="read-only"):
+        contacts.friction[:] = 3.0
+    assert sim.contact_strengths == {}
+
+
+def test_contacts_that_are_kept_stay_as_they_were() -> None:
+    """Columns are copied when they are asked for: also then they are those of their step."""
+    twin, sim = held_on_slope().simulate(), held_on_slope().simulate()
+    for each in (twin, sim):
+        each.strength["joints"].friction = 10.0
+        each.advance(5)
+    kept, wanted = sim.contacts, twin.contacts.slip.copy()
+    part = kept[kept.block_a == 1]
+    assert sim.contacts is kept
+    sim.advance(20)
+    assert np.array_equal(kept.slip, wanted) and np.array_equal(part.slip, wanted[kept.block_a == 1])
+    assert sim.contacts.slip.max() > kept.slip.max()
+    inside: list[kb.simulation.Contacts] = []
+    sim = held_on_slope().simulate(controllers=[lambda now: inside.append(now.contacts)])
+    sim.advance(6)
+    twin = held_on_slope().simulate()
+    for contacts in inside:
+        twin.advance()
+        assert np.array_equal(contacts.normal_force, twin.contacts.normal_force)
+
+
+def test_looking_at_contacts_copies_nothing_else() -> None:
+    (sim := held_on_slope().simulate()).advance(3)
+    contacts = sim.contacts
+    contacts.slip.max()
+    assert set(contacts._columns) == {"slip"}
+
+
+def test_what_can_only_be_looked_at_says_so() -> None:
+    scenario = falling_block()
+    sim, blocks = scenario.simulate(), scenario.cut()
+    for call in (
+        lambda: sim.stages.append("more"),
+        lambda: setattr(sim, "stages", ["more"]),
+        lambda: sim.forces.append((1, 0, (0.0, 1.0))),
+        lambda: setattr(blocks[0], "name", "other"),
+        lambda: setattr(blocks[0], "nmae", "other"),
+        lambda: blocks[0].rings.append([]),
+        lambda: blocks[0].edges[0].append(""),
+        lambda: blocks.append(blocks[0]),
+        lambda: setattr(blocks, "areas", 0.0),
+    ):
+        with pytest.raises(AttributeError):
+            call()
+    with pytest.raises(TypeError, match="scenario.block"):
+        blocks[0] = blocks[1]
+    for array in (blocks[0].polygon, blocks[0].rings[0], blocks.areas):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+    with pytest.raises(TypeError):
+        sim.contact_strengths[(1, 2)] = (10.0, None, None)
+    moved = blocks[1].polygon.copy() + [0.0, 1.0]  # how one goes on from there
+    scenario.block["stone"].outer = moved
+    assert scenario.cut()[1].polygon[:, 1].min() == pytest.approx(blocks[1].polygon[:, 1].min() + 1.0)
+    assert len(blocks[:1]) == 1 and blocks[1] in blocks and [b.name for b in reversed(blocks)] == ["stone", "floor"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -36,6 +38,43 @@ def mypy(*words: object, cwd: Path) -> str:
         timeout=300,
     )
     return done.stdout + done.stderr
+
+
+def test_the_package_is_checked(tmp_path: Path) -> None:
+    said = mypy("--ignore-missing-imports", str(ROOT / "python/keyblock"), cwd=tmp_path)
+    assert said == "", said
+
+
+def test_stubs_are_those_of_the_module() -> None:
+    """_core.pyi has the classes, functions and arguments that the compiled module has, and no others."""
+    core = optional("keyblock._core")
+    stub = ast.parse((ROOT / "python/keyblock/_core.pyi").read_text())
+
+    def arguments(function: ast.FunctionDef) -> list[str]:
+        each = function.args
+        return [a.arg for a in (*each.posonlyargs, *each.args, *each.kwonlyargs) if a.arg != "self"]
+
+    def check(where: str, thing: object, functions: dict[str, ast.FunctionDef], others: set[str]) -> None:
+        public = {name for name in dir(thing) if not name.startswith("_")} - set(dir(Exception))
+        assert public == (set(functions) | others) - set(dir(Exception)), where
+        for name, function in functions.items():
+            said = (getattr(thing, name).__doc__ or "").splitlines()[:1]
+            told = re.findall(r"[(,] *(\w+):", said[0]) if said and said[0].startswith(f"{name}(") else []
+            if told and not any(re.fullmatch(r"arg\d+|self", each) for each in told[1:]):
+                assert [each for each in told if each not in ("self", "arg0")] == arguments(function), f"{where}.{name}"
+
+    functions = {each.name: each for each in stub.body if isinstance(each, ast.FunctionDef)}
+    classes = {each.name: each for each in stub.body if isinstance(each, ast.ClassDef)}
+    values = {each.target.id for each in stub.body if isinstance(each, ast.AnnAssign) and isinstance(each.target, ast.Name)}
+    check("_core", core, {name: each for name, each in functions.items() if not name.startswith("_")}, set(classes) | {v for v in values if not v.startswith("_")})
+    for name, of in classes.items():
+        if issubclass(getattr(core, name), Exception):  # what they have, each object gets
+            continue
+        parts = [each for each in of.body if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]
+        properties = {each.name for each in parts if any("property" in ast.dump(d) or "setter" in ast.dump(d) for d in each.decorator_list)}
+        methods = {each.name: each for each in parts if each.name not in properties}
+        fields = {each.target.id for each in of.body if isinstance(each, ast.AnnAssign) and isinstance(each.target, ast.Name)}
+        check(name, getattr(core, name), methods, properties | fields)
 
 
 def test_scripts_are_checked(tmp_path: Path) -> None:

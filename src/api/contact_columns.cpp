@@ -4,45 +4,94 @@
 
 namespace keyblock::api {
 
-ContactColumns::ContactColumns(const simulation::ModelRecord& model, std::size_t count)
-    : names_{model.joint_set_names, model.trace_map_names, model.excavation_names} {
-  contacts_.joint_names = names_.all();
-  for (auto* column : {&contacts_.block_a, &contacts_.block_b, &contacts_.joint}) column->resize(count);
-  for (auto* column : {&contacts_.position, &contacts_.normal}) column->resize(2 * count);
-  for (auto* column : {&contacts_.length, &contacts_.gap, &contacts_.slip, &contacts_.shear_displacement,
-                       &contacts_.normal_force, &contacts_.shear_force})
-    column->resize(count);
-  contacts_.state.resize(count);
+using Record = simulation::ContactRecord;
+
+std::vector<ContactColumn> all_contact_columns() {
+  std::vector<ContactColumn> all;
+  for (std::size_t k = 0; k < column_count; ++k) all.push_back(static_cast<ContactColumn>(k));
+  return all;
 }
 
-void ContactColumns::add(std::span<const simulation::ContactRecord> some) {
-  if (count_ + some.size() > contacts_.state.size()) throw std::out_of_range("more contacts than announced");
-  // A column at a time, so that each is written in one go.
-  const auto fill = [&](auto& column, const auto& value) {
-    auto* to = column.data() + count_;
-    for (const simulation::ContactRecord& c : some) *to++ = value(c);
-  };
-  const auto fill_points = [&](std::vector<double>& column, Vec2 simulation::ContactRecord::*value) {
-    double* to = column.data() + 2 * count_;
-    for (const simulation::ContactRecord& c : some) {
-      *to++ = (c.*value).x;
-      *to++ = (c.*value).y;
-    }
-  };
-  using Record = simulation::ContactRecord;
-  fill(contacts_.block_a, [](const Record& c) { return c.block_a; });
-  fill(contacts_.block_b, [](const Record& c) { return c.block_b; });
-  fill(contacts_.state, [](const Record& c) { return static_cast<std::uint8_t>(c.state); });
-  fill_points(contacts_.position, &Record::position);
-  fill_points(contacts_.normal, &Record::normal);
-  fill(contacts_.length, [](const Record& c) { return c.length; });
-  fill(contacts_.gap, [](const Record& c) { return c.gap; });
-  fill(contacts_.slip, [](const Record& c) { return c.slip(); });
-  fill(contacts_.shear_displacement, [](const Record& c) { return c.shear_displacement; });
-  fill(contacts_.normal_force, [](const Record& c) { return c.normal_force; });
-  fill(contacts_.shear_force, [](const Record& c) { return c.shear_force; });
-  fill(contacts_.joint, [&](const Record& c) { return names_.code_of(c.label); });
+std::vector<ContactColumn> kept_contact_columns() {
+  std::vector<ContactColumn> kept = all_contact_columns();
+  using enum ContactColumn;
+  std::erase_if(kept, [](ContactColumn column) {
+    return column == vertex || column == edge || column == friction || column == cohesion ||
+           column == tension;
+  });
+  return kept;
+}
+
+ContactColumns::ContactColumns(const simulation::ModelRecord& model, std::size_t count,
+                               std::span<const ContactColumn> wanted)
+    : names_{model.joint_set_names, model.trace_map_names, model.excavation_names}, of_all_(count) {
+  contacts_.joint_names = names_.all();
+  for (const ContactColumn column : wanted) wanted_.set(static_cast<std::size_t>(column));
+}
+
+simulation::ContactParts ContactColumns::parts() const {
+  using enum ContactColumn;
+  const auto wants_any = [&](const auto&... columns) { return (wants(columns) || ...); };
+  return {.places = wants_any(block_a, block_b, vertex, edge, position, normal, length, joint),
+          .slips = wants_any(slip, shear_displacement),
+          .forces = wants_any(state, gap, normal_force, shear_force),
+          .strengths = wants_any(friction, cohesion, tension)};
+}
+
+// A column at a time, so that each is written in one go.
+template <typename Number, typename Value>
+void ContactColumns::fill(ContactColumn column, std::vector<Number>& to, Records some, const Value& value) {
+  if (!wants(column)) return;
+  to.resize(of_all_);
+  Number* at = to.data() + count_;
+  for (const Record& record : some) *at++ = static_cast<Number>(value(record));
+}
+
+void ContactColumns::fill_points(ContactColumn column, std::vector<double>& to, Records some,
+                                 Vec2 Record::*value) {
+  if (!wants(column)) return;
+  to.resize(2 * of_all_);
+  double* at = to.data() + 2 * count_;
+  for (const Record& record : some) {
+    *at++ = (record.*value).x;
+    *at++ = (record.*value).y;
+  }
+}
+
+void ContactColumns::add(Records some) {
+  if (count_ + some.size() > of_all_) throw std::out_of_range("more contacts than announced");
+  add_places(some);
+  add_mechanics(some);
   count_ += some.size();
+}
+
+void ContactColumns::add_places(Records some) {
+  const auto of = [](auto Record::*value) { return [value](const Record& record) { return record.*value; }; };
+  Contacts& c = contacts_;
+  fill(ContactColumn::block_a, c.block_a, some, of(&Record::block_a));
+  fill(ContactColumn::block_b, c.block_b, some, of(&Record::block_b));
+  fill(ContactColumn::vertex, c.vertex, some, of(&Record::vertex));
+  fill(ContactColumn::edge, c.edge, some, of(&Record::edge));
+  fill_points(ContactColumn::position, c.position, some, &Record::position);
+  fill_points(ContactColumn::normal, c.normal, some, &Record::normal);
+  fill(ContactColumn::length, c.length, some, of(&Record::length));
+  fill(ContactColumn::joint, c.joint, some,
+       [&](const Record& record) { return names_.code_of(record.label); });
+}
+
+void ContactColumns::add_mechanics(Records some) {
+  const auto of = [](auto Record::*value) { return [value](const Record& record) { return record.*value; }; };
+  Contacts& c = contacts_;
+  fill(ContactColumn::state, c.state, some, of(&Record::state));
+  fill(ContactColumn::gap, c.gap, some, of(&Record::gap));
+  fill(ContactColumn::slip, c.slip, some, [](const Record& record) { return record.slip(); });
+  fill(ContactColumn::shear_displacement, c.shear_displacement, some, of(&Record::shear_displacement));
+  fill(ContactColumn::normal_force, c.normal_force, some, of(&Record::normal_force));
+  fill(ContactColumn::shear_force, c.shear_force, some, of(&Record::shear_force));
+  fill(ContactColumn::friction, c.friction, some,
+       [](const Record& record) { return degrees_of(record.friction); });
+  fill(ContactColumn::cohesion, c.cohesion, some, of(&Record::cohesion));
+  fill(ContactColumn::tension, c.tension, some, of(&Record::tension));
 }
 
 }  // namespace keyblock::api

@@ -50,7 +50,7 @@ std::size_t Results::contact_snapshots() const {
 
 ContactSnapshot Results::contacts(std::size_t k) const {
   const simulation::ContactFrame& of = parts_->data.contacts.at(k);
-  api::ContactColumns columns(parts_->data.model, of.contacts.size());
+  api::ContactColumns columns(parts_->data.model, of.contacts.size(), api::kept_contact_columns());
   columns.add(of.contacts);
   return {of.time, of.stage, of.step, columns.take()};
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "api/contact_columns.h"
 #include "api/simulation_parts.h"
 #include "simulation/refuse.h"
 
@@ -10,7 +11,28 @@ namespace {
 
 using simulation::refuse;
 
-constexpr double degrees = 180.0 / std::numbers::pi;
+/// Of an angle in degrees.
+double coefficient_of(double friction) {
+  if (!(friction >= 0.0 && friction < 90.0))
+    refuse("friction", std::to_string(friction), "degrees, from 0 to less than 90");
+  return std::tan(friction / (180.0 / std::numbers::pi));
+}
+
+double number_of(const char* key, std::optional<double> value) {
+  if (value && std::isnan(*value)) refuse(key, "nan", "a finite number, at least 0");
+  return value.value_or(contact::ContactStrength::of_joint);
+}
+
+std::vector<contact::ContactStrength> strengths_of(const std::vector<ContactStrength>& given) {
+  std::vector<contact::ContactStrength> strengths;
+  strengths.reserve(given.size());
+  for (const ContactStrength& s : given) {
+    const double friction = s.friction ? coefficient_of(*s.friction) : contact::ContactStrength::of_joint;
+    strengths.push_back(
+        {s.vertex, s.edge, friction, number_of("cohesion", s.cohesion), number_of("tension", s.tension)});
+  }
+  return strengths;
+}
 
 }  // namespace
 
@@ -23,17 +45,23 @@ JointStrength Simulation::strength(const std::string& joint) const {
   if (law == nullptr)
     refuse("joint", "\"" + joint + "\"",
            "the name of a joint set or of a trace map, \"joints\" or \"frame\"");
-  return {std::atan(law->friction_coefficient) * degrees, law->cohesion, law->tension};
+  return {api::degrees_of(law->friction_coefficient), law->cohesion, law->tension};
 }
 
 void Simulation::set_strength(const std::string& joint, const JointStrength& strength) {
-  if (!(strength.friction >= 0.0 && strength.friction < 90.0))
-    refuse("friction", std::to_string(strength.friction), "degrees, from 0 to less than 90");
+  const double given = coefficient_of(strength.friction);
   // What was read and is set again changes no bit.
   const bool same = strength.friction == this->strength(joint).friction;
-  const double coefficient = same ? parts_->runner().control().law(joint)->friction_coefficient
-                                  : std::tan(strength.friction / degrees);
+  const double coefficient = same ? parts_->runner().control().law(joint)->friction_coefficient : given;
   parts_->runner().control().set_strength(joint, {coefficient, strength.cohesion, strength.tension});
+}
+
+void Simulation::set_contact_strengths(const std::vector<ContactStrength>& strengths) {
+  parts_->runner().control().set_contact_strengths(strengths_of(strengths));
+}
+
+void Simulation::forget_contact_strengths(const std::vector<ContactStrength>& contacts) {
+  parts_->runner().control().forget_contact_strengths(strengths_of(contacts));
 }
 
 void Simulation::set_load_factor(std::size_t load, double factor) {

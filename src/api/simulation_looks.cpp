@@ -154,12 +154,32 @@ std::vector<AppliedForce> Simulation::forces() const {
   return forces;
 }
 
-Contacts Simulation::contacts() const {
-  if (parts_->runner().state().step == 0) return {};
+std::size_t Simulation::contact_count() const {
   const simulation::Runner& runner = parts_->runner();
-  api::ContactColumns columns(parts_->listener.model, runner.contact_count());
-  runner.each_contact([&](std::span<const simulation::ContactRecord> some) { columns.add(some); });
-  return columns.take();
+  return runner.state().step == 0 ? 0 : runner.contact_count();
+}
+
+Contacts Simulation::contacts() const {
+  return contacts(api::all_contact_columns());
+}
+
+Contacts Simulation::contacts(const std::vector<ContactColumn>& columns) const {
+  api::ContactColumns made(parts_->listener.model, contact_count(), columns);
+  if (contact_count() > 0)
+    parts_->runner().each_contact([&](std::span<const simulation::ContactRecord> some) { made.add(some); },
+                                  made.parts());
+  return made.take();
+}
+
+std::vector<ContactStrength> Simulation::contact_strengths() const {
+  const auto given = [](double value) {
+    return contact::ContactStrength::is_given(value) ? std::optional(value) : std::nullopt;
+  };
+  std::vector<ContactStrength> strengths;
+  for (const contact::ContactStrength& s : parts_->runner().control().contact_strengths())
+    strengths.push_back({s.vertex, s.edge, given(api::degrees_of(s.friction_coefficient)), given(s.cohesion),
+                         given(s.tension)});
+  return strengths;
 }
 
 std::vector<std::pair<std::string, double>> Simulation::energy() const {

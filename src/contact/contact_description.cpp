@@ -95,6 +95,20 @@ void ContactDescription::find_law(const Surface& surface, const Contact& contact
   of_contact.friction = law.friction_coefficient;
   of_contact.cohesion = bonded ? law.cohesion : 0.0;
   of_contact.tension = bonded ? law.tension : 0.0;
+  if (strengths_ == nullptr || strengths_->empty()) return;
+  if (const ContactStrength* own = strengths_->find(contact.vertex, contact.edge))
+    put_strength(*own, contact, of_contact);
+}
+
+void ContactDescription::put_strength(const ContactStrength& strength, const Contact& contact,
+                                      SpringLaw& of_contact) {
+  const auto put = [](double value, double& to) {
+    if (ContactStrength::is_given(value)) to = value;
+  };
+  put(strength.friction_coefficient, of_contact.friction);
+  if (!contact.memory.bonded) return;
+  put(strength.cohesion, of_contact.cohesion);
+  put(strength.tension, of_contact.tension);
 }
 
 bool ContactDescription::describe(const Surface& surface, const Corners& corners,

@@ -5,6 +5,7 @@
 
 #include "contact/contact.h"
 #include "contact/contact_geometry.h"
+#include "contact/contact_strengths.h"
 #include "contact/joint_faces.h"
 
 namespace keyblock::contact {
@@ -17,6 +18,8 @@ class ContactDescription {
   ContactDescription(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
       : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
   void set_laws(std::vector<JointLaw> laws) { laws_ = std::move(laws); }
+  /// Strengths of single contacts, which have to outlive this; what is in them at the time counts.
+  void use_strengths(const ContactStrengths& strengths) { strengths_ = &strengths; }
   /// The faces of joints that the contacts of a step share, after they have been described.
   void find_faces(const Surface& surface, std::span<Contact> contacts, JointFaces& faces) const {
     if (JointFaces::are_there(laws_)) faces.find(surface, tolerances_, laws_, penalty_, contacts);
@@ -41,10 +44,12 @@ class ContactDescription {
   };
   void find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
                 SpringLaw& of_contact) const;
+  static void put_strength(const ContactStrength& strength, const Contact& contact, SpringLaw& of_contact);
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
   std::vector<double> penalty_;
+  const ContactStrengths* strengths_ = nullptr;  ///< null: of no contact
 };
 
 }  // namespace keyblock::contact

@@ -33,6 +33,8 @@ class Detection {
       : tolerances_(tolerances), description_(tolerances, std::move(laws), std::move(penalty)) {}
   /// Laws of joints from the next step on, as many as there were.
   void set_laws(std::vector<JointLaw> laws) { description_.set_laws(std::move(laws)); }
+  /// As ContactDescription.
+  void use_strengths(const ContactStrengths& strengths) { description_.use_strengths(strengths); }
   /// Has all pairs searched in each step: slower, and the same contacts.
   void leave_out_steady_pairs() { steady_pairs_.switch_off(); }
 

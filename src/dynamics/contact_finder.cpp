@@ -19,6 +19,7 @@ ContactFinder::ContactFinder(const Model& model, ThreadTeam& team)
       tolerances_(model.block_size),
       candidates_(tolerances_),
       detection_(tolerances_, model.laws, penalties(model)) {
+  detection_.use_strengths(model_.contact_strengths);
   if (!model.solver.accelerators.steady_pairs) detection_.leave_out_steady_pairs();
 }
 

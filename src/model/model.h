@@ -7,6 +7,7 @@
 #include "block/basis.h"
 #include "block/elasticity.h"
 #include "block/pose.h"
+#include "contact/contact_strengths.h"
 #include "contact/surface.h"
 #include "contact/tolerances.h"
 #include "loading/time_table.h"
@@ -64,6 +65,7 @@ struct Model {
   std::vector<Vec2> reference;    ///< position of its vertices
   std::vector<int> outline_edge;  ///< of its edges: the edge of a polygon it lies on; all count, ring by ring
   std::vector<contact::JointLaw> laws;
+  contact::ContactStrengths contact_strengths;  ///< of a program that steers the run; empty: those of laws
   std::vector<GeneralizedLoad> loads;
   std::vector<double> load_scale;  ///< factor on each load, of a program that steers the run; empty: 1
   std::vector<double>

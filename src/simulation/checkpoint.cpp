@@ -15,7 +15,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0017;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0018;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -172,6 +172,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   archive(s.control.forces);
   archive(s.control.spring_stiffness);
   archive(s.peaks);
+  archive(s.control.contact_strengths);
   archive(s.stage);
   archive(s.stage_step);
   archive(s.stage_start);

@@ -110,6 +110,7 @@ void restore(const ControlMemory& memory, const RunSetup& setup, dynamics::Model
   for (std::size_t k = 0; k < memory.strengths.size(); ++k) put(memory.strengths[k], model.laws[k]);
   put_loads(memory, setup, model);
   model.spring_stiffness = memory.spring_stiffness;
+  put_contact_strengths(memory, model);
 }
 
 std::string mistake_in_control(const ControlMemory& memory, const dynamics::Model& model) {
@@ -130,7 +131,7 @@ std::string mistake_in_control(const ControlMemory& memory, const dynamics::Mode
                                  [](double k) { return std::isfinite(k) && k >= 0.0; }) &&
                      std::all_of(memory.forces.begin(), memory.forces.end(),
                                  [&](const AppliedForce& f) { return is_force(f, model); }) &&
-                     std::isfinite(memory.motion_scale);
+                     std::isfinite(memory.motion_scale) && are_contact_strengths(memory, model);
   return known ? "" : "changes of another model";
 }
 

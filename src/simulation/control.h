@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "contact/contact_strengths.h"
 #include "contact/surface.h"
 #include "dynamics/step.h"
 #include "geometry/vec2.h"
@@ -46,7 +47,8 @@ struct ControlMemory {
   std::vector<double> load_scale;   ///< factor on each load
   double motion_scale = 1.0;        ///< factor on ground motions, beside that of the stage
   std::vector<AppliedForce> forces;
-  std::vector<double> spring_stiffness;  ///< N/m per thickness, of all springs
+  std::vector<double> spring_stiffness;                     ///< N/m per thickness, of all springs
+  std::vector<contact::ContactStrength> contact_strengths;  ///< ascending by vertex, then edge
 };
 
 /// Changes a running model between two of its steps, for programs that steer a run: servo control, weakening by slip, staged support. All
@@ -62,6 +64,14 @@ class Control {
   /// Friction, cohesion and tension of joints, the names as for law(). A bond that has broken stays broken. Throws InputError for an
   /// unknown name, and for strengths that are negative or no number.
   void set_strength(std::string_view name, const Strength& strength);
+  /// Of single contacts, beside what was given before: what is not a number stays as it was. Throws InputError for what are no vertex and edge
+  /// of two blocks, and for strengths that are negative or infinite.
+  void set_contact_strengths(std::span<const contact::ContactStrength> strengths);
+  /// Those contacts have the strength of their joints again; vertices and edges count alone.
+  void forget_contact_strengths(std::span<const contact::ContactStrength> contacts);
+  [[nodiscard]] const std::vector<contact::ContactStrength>& contact_strengths() const {
+    return memory_.contact_strengths;
+  }
   /// Factor on the load of this index, in the order of the scenario. Throws InputError for an unknown one, and for what is no number.
   void set_load_scale(std::size_t load, double factor);
   /// Factor on ground motions; the records of stages keep the motion as it was planned. Throws InputError for what is no number, where a
@@ -89,6 +99,7 @@ class Control {
   template <class Change>
   void with_input(const Change& change);
   void check_spring(std::size_t spring) const;
+  void check_contact(const contact::ContactStrength& strength) const;
   [[nodiscard]] std::size_t law_index(std::string_view name) const;
 
   const RunSetup& setup_;
@@ -102,6 +113,10 @@ class Control {
 void restore(const ControlMemory& memory, const RunSetup& setup, dynamics::Model& model);
 /// Forces and factors of loads, after the model has got other loads.
 void put_loads(const ControlMemory& memory, const RunSetup& setup, dynamics::Model& model);
+/// Those of single contacts.
+void put_contact_strengths(const ControlMemory& memory, dynamics::Model& model);
+/// Whether those of a checkpoint are such.
+bool are_contact_strengths(const ControlMemory& memory, const dynamics::Model& model);
 /// Number of the springs between points.
 std::size_t spring_count(const dynamics::Model& model);
 /// What is wrong with what a checkpoint holds, or empty.

@@ -8,28 +8,28 @@
 namespace keyblock::simulation {
 namespace {
 
-struct Part {
+struct NamedPart {
   WallPart part;
   const char* name;
   double Damage::*depth;
 };
-constexpr Part parts[] = {{WallPart::crown, "crown", &Damage::fallen_depth_crown},
-                          {WallPart::left, "left", &Damage::fallen_depth_left},
-                          {WallPart::right, "right", &Damage::fallen_depth_right},
-                          {WallPart::invert, "invert", &Damage::fallen_depth_invert}};
+constexpr NamedPart wall_parts[] = {{WallPart::crown, "crown", &Damage::fallen_depth_crown},
+                                    {WallPart::left, "left", &Damage::fallen_depth_left},
+                                    {WallPart::right, "right", &Damage::fallen_depth_right},
+                                    {WallPart::invert, "invert", &Damage::fallen_depth_invert}};
 
 }  // namespace
 
 const char* wall_part_name(WallPart part) {
-  const auto found =
-      std::find_if(std::begin(parts), std::end(parts), [&](const Part& p) { return p.part == part; });
-  return found == std::end(parts) ? nullptr : found->name;
+  const auto found = std::find_if(std::begin(wall_parts), std::end(wall_parts),
+                                  [&](const NamedPart& p) { return p.part == part; });
+  return found == std::end(wall_parts) ? nullptr : found->name;
 }
 
 WallPart wall_part_of(std::string_view name) {
-  const auto found =
-      std::find_if(std::begin(parts), std::end(parts), [&](const Part& p) { return p.name == name; });
-  return found == std::end(parts) ? WallPart::none : found->part;
+  const auto found = std::find_if(std::begin(wall_parts), std::end(wall_parts),
+                                  [&](const NamedPart& p) { return p.name == name; });
+  return found == std::end(wall_parts) ? WallPart::none : found->part;
 }
 
 void set_extremes(std::span<const FallenBlock> fallen, Damage& damage) {
@@ -42,7 +42,7 @@ void set_extremes(std::span<const FallenBlock> fallen, Damage& damage) {
   damage.largest_fallen_weight = largest->weight;
   if (std::isnan(damage.fallen_depth)) return;
   damage.fallen_depth = 0.0;
-  for (const Part& p : parts) {
+  for (const NamedPart& p : wall_parts) {
     double& depth = damage.*p.depth;
     depth = 0.0;
     for (const FallenBlock& block : fallen)

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -27,10 +26,7 @@ void JointGauge::start(std::span<const contact::Contact> contacts) {
 }
 
 void JointGauge::restore(std::vector<Piece> pieces) {
-  pieces_ = std::move(pieces);
-  of_vertex_.assign(model_.surface.position.size() + 1, 0);
-  for (const Piece& piece : pieces_) ++of_vertex_[at(piece.vertex) + 1];
-  std::partial_sum(of_vertex_.begin(), of_vertex_.end(), of_vertex_.begin());
+  pieces_.assign(std::move(pieces), model_.surface.position.size());
 }
 
 JointGauge::Offset JointGauge::offset(const Piece& piece) const {
@@ -48,7 +44,7 @@ bool JointGauge::in_place(const Piece& piece, std::span<const BlockStatus> statu
 }
 
 void JointGauge::watch(std::span<const BlockStatus> status) {
-  for (Piece& piece : pieces_) {
+  for (Piece& piece : pieces_.all()) {
     if (!in_place(piece, status)) continue;
     const Offset now = offset(piece);
     piece.slip_ever = std::max(piece.slip_ever, std::abs(now.slip));
@@ -61,7 +57,7 @@ int JointGauge::hinges(std::span<const BlockStatus> status) const {
     bool open = false, closed = false;
   };
   std::map<std::pair<int, int>, Ends> joints;
-  for (const Piece& piece : pieces_) {
+  for (const Piece& piece : pieces_.all()) {
     if (!in_place(piece, status)) continue;
     const std::pair<int, int> blocks =
         std::minmax(model_.surface.block[at(piece.vertex)], model_.surface.block[at(piece.edge)]);
@@ -76,7 +72,7 @@ int JointGauge::hinges(std::span<const BlockStatus> status) const {
 void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) const {
   damage.hinges = hinges(status);
   double length = 0.0, slip_length = 0.0;
-  for (const Piece& piece : pieces_) {
+  for (const Piece& piece : pieces_.all()) {
     damage.slip_max_ever = std::max(damage.slip_max_ever, piece.slip_ever);
     damage.opening_max_ever = std::max(damage.opening_max_ever, piece.opening_ever);
     if (piece.slip_ever > setup_.damage.slip) damage.slipped_length_ever += piece.length;
@@ -94,15 +90,9 @@ void JointGauge::measure(std::span<const BlockStatus> status, Damage& damage) co
   damage.slip_mean = length > 0.0 ? slip_length / length : 0.0;
 }
 
-const JointGauge::Piece* JointGauge::piece_at(int vertex, int edge) const {
-  for (int k = of_vertex_[at(vertex)]; k < of_vertex_[at(vertex) + 1]; ++k)
-    if (pieces_[at(k)].edge == edge) return &pieces_[at(k)];
-  return nullptr;
-}
-
 void JointGauge::slips(std::span<const contact::Contact> contacts, std::span<double> slips) const {
   std::fill(slips.begin(), slips.end(), 0.0);
-  if (of_vertex_.empty()) return;
+  if (pieces_.empty()) return;
   const std::span<const Vec2> position = model_.surface.position;
   in_lanes(static_cast<int>(contacts.size()), [&](int first, int count) {
     std::array<double, lane_count> along_x, along_y, apart_x{}, apart_y{};
@@ -110,7 +100,7 @@ void JointGauge::slips(std::span<const contact::Contact> contacts, std::span<dou
     along_y.fill(0.0);
     for (int k = 0; k < count; ++k) {
       const contact::Contact& c = contacts[at(first + k)];
-      const Piece* piece = piece_at(c.vertex, c.edge);
+      const Piece* piece = pieces_.find(c.vertex, c.edge);
       if (piece == nullptr) continue;
       const Vec2 a = position[at(c.edge)], b = position[at(model_.surface.next[at(c.edge)])],
                  apart = position[at(c.vertex)] - lerp(a, b, piece->along);

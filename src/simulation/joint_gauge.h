@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "contact/detection.h"
+#include "contact/vertex_edge_list.h"
 #include "model/model.h"
 #include "simulation/record.h"
 #include "simulation/setup.h"
@@ -34,7 +35,7 @@ class JointGauge {
   /// m. Slip of the piece at each contact, by its vertex and edge; 0 for contacts made later.
   void slips(std::span<const contact::Contact> contacts, std::span<double> slips) const;
 
-  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_.all(); }
   /// Takes pieces that ascend by vertex, then edge.
   void restore(std::vector<Piece> pieces);
 
@@ -45,14 +46,11 @@ class JointGauge {
   /// Pairs of blocks with a piece of joint in place that is open beyond the limit, and one that is not.
   [[nodiscard]] int hinges(std::span<const BlockStatus> status) const;
   [[nodiscard]] Offset offset(const Piece& piece) const;
-  /// Null where there is none.
-  [[nodiscard]] const Piece* piece_at(int vertex, int edge) const;
   [[nodiscard]] bool in_place(const Piece& piece, std::span<const BlockStatus> status) const;
 
   const RunSetup& setup_;
   const dynamics::Model& model_;
-  std::vector<Piece> pieces_;   ///< ascending by vertex, then edge
-  std::vector<int> of_vertex_;  ///< where the pieces of each vertex begin; empty before there are pieces
+  contact::VertexEdgeList<Piece> pieces_;
 };
 
 }  // namespace keyblock::simulation

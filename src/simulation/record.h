@@ -112,8 +112,20 @@ struct ContactRecord {
   double normal_force = 0.0;        ///< N per metre thickness, compression positive
   double shear_force = 0.0;         ///< the same; against perpendicular(normal) on block_a
   cutting::EdgeLabel label;         ///< of the edge
+  // Of a running model alone; results do not keep them.
+  int vertex = 0, edge = 0;              ///< of the surface
+  double friction = 0.0;                 ///< coefficient
+  double cohesion = 0.0, tension = 0.0;  ///< Pa, of a bond
 
   [[nodiscard]] double slip() const { return std::abs(shear_displacement); }  ///< m
+};
+
+/// What contacts are asked for that takes time; what is not asked for stays 0.
+struct ContactParts {
+  bool places = true;     ///< blocks, vertex, edge with its label, position, normal, length
+  bool slips = true;      ///< shear displacement
+  bool forces = true;     ///< state, gap, forces
+  bool strengths = true;  ///< friction, cohesion, tension
 };
 
 /// Receives contacts, some at a time.

@@ -42,6 +42,25 @@ std::vector<ColumnRecord> columns_of(const dynamics::Model& model) {
   return columns;
 }
 
+void put_forces(std::span<const dynamics::ContactForce> forces, std::span<ContactRecord> to) {
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const dynamics::ContactForce& force = forces[k];
+    to[k].state = static_cast<ContactState>(force.state);
+    to[k].gap = force.gap;
+    to[k].normal_force = force.normal;
+    to[k].shear_force = force.shear;
+  }
+}
+
+void put_strengths(std::span<const contact::Contact> contacts, std::span<ContactRecord> to) {
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const contact::Contact& c = contacts[k];
+    to[k].friction = c.friction_coefficient;
+    to[k].cohesion = c.length > 0.0 ? c.cohesion / c.length : 0.0;
+    to[k].tension = c.length > 0.0 ? c.tension / c.length : 0.0;
+  }
+}
+
 }  // namespace
 
 Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads)
@@ -178,33 +197,42 @@ ContactFrame Recorder::contacts(const dynamics::State& state, const dynamics::St
   return frame;
 }
 
-void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts& take) const {
+void Recorder::each_contact(const dynamics::Stepper& stepper, const TakeContacts& take,
+                            ContactParts parts) const {
   constexpr std::size_t at_a_time = 64;
   std::array<dynamics::ContactForce, at_a_time> forces;
   std::array<ContactRecord, at_a_time> records;
   std::array<double, at_a_time> slips;
   const auto contacts = stepper.contacts();
-  const contact::Surface& surface = model_.surface;
   for (std::size_t first = 0; first < stepper.force_count(); first += at_a_time) {
     const std::size_t count = std::min(at_a_time, stepper.force_count() - first);
-    stepper.forces(first, std::span(forces).first(count));
-    gauge_.joints().slips(contacts.subspan(first, count), std::span(slips).first(count));
-    for (std::size_t k = 0; k < count; ++k) {
-      const contact::Contact& c = contacts[first + k];
-      ContactRecord& row = records[k];
-      row.block_a = c.block_a;
-      row.block_b = c.block_b;
-      row.state = static_cast<ContactState>(forces[k].state);
-      row.position = surface.position[at(c.vertex)];
-      row.normal = c.normal;
-      row.length = c.length;
-      row.gap = forces[k].gap;
-      row.shear_displacement = slips[k];
-      row.normal_force = forces[k].normal;
-      row.shear_force = forces[k].shear;
-      row.label = labels_[at(c.edge)];
+    const auto some = contacts.subspan(first, count);
+    if (parts.places) put_places(some, records);
+    if (parts.strengths) put_strengths(some, records);
+    if (parts.forces) {
+      stepper.forces(first, std::span(forces).first(count));
+      put_forces(std::span(forces).first(count), records);
+    }
+    if (parts.slips) {
+      gauge_.joints().slips(some, std::span(slips).first(count));
+      for (std::size_t k = 0; k < count; ++k) records[k].shear_displacement = slips[k];
     }
     take(std::span(records).first(count));
+  }
+}
+
+void Recorder::put_places(std::span<const contact::Contact> contacts, std::span<ContactRecord> to) const {
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const contact::Contact& c = contacts[k];
+    ContactRecord& row = to[k];
+    row.block_a = c.block_a;
+    row.block_b = c.block_b;
+    row.vertex = c.vertex;
+    row.edge = c.edge;
+    row.position = model_.surface.position[at(c.vertex)];
+    row.normal = c.normal;
+    row.length = c.length;
+    row.label = labels_[at(c.edge)];
   }
 }
 

@@ -22,7 +22,8 @@ class Recorder {
   [[nodiscard]] ContactFrame contacts(const dynamics::State& state, const dynamics::Stepper& stepper,
                                       int stage) const;
   /// Gives the contacts of the last step in their order, some at a time: so few that they stay in the nearest cache.
-  void each_contact(const dynamics::Stepper& stepper, const TakeContacts& take) const;
+  void each_contact(const dynamics::Stepper& stepper, const TakeContacts& take,
+                    ContactParts parts = {}) const;
   /// Velocities of the history points, m/s. frame: how what displacements are relative to has moved (frame_motion()).
   [[nodiscard]] std::vector<Vec2> velocities(const dynamics::State& state,
                                              const dynamics::GroundMove& frame) const;
@@ -39,6 +40,7 @@ class Recorder {
   void orders_changed();
 
  private:
+  void put_places(std::span<const contact::Contact> contacts, std::span<ContactRecord> to) const;
   struct Point {
     std::optional<std::size_t> block;  ///< none: rock far away
     Vec2 reference;

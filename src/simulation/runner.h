@@ -60,7 +60,9 @@ class Runner {
   /// orders of blocks.
   [[nodiscard]] std::size_t contact_count() const { return stepper_->force_count(); }
   /// The contacts of the last step, some at a time.
-  void each_contact(const TakeContacts& take) const { reporter_.recorder().each_contact(*stepper_, take); }
+  void each_contact(const TakeContacts& take, ContactParts parts = {}) const {
+    reporter_.recorder().each_contact(*stepper_, take, parts);
+  }
   [[nodiscard]] Energy energy() const;
   /// Measures of damage so far, without a look of the run's own; none before the first excavation.
   [[nodiscard]] std::optional<Damage> damage() const;

@@ -71,6 +71,20 @@ def poke(chance, things, kept):
     del kept[:-30]
 
 
+def weaken(chance, sim):
+    """Strengths of contacts: right ones, and places that are none."""
+    import numpy as np
+
+    size = chance.randint(0, 4)
+    places = [np.array([chance.choice([-1, 0, 1, 3, 4, 5, 7, 8, 2**31 - 1, -(2**31)]) for _ in range(size)], dtype=np.int32) for _ in range(2)]
+    values = [chance.choice([None, np.full(size, chance.choice([0.0, 10.0, 89.9, 90.0, -1.0, float("nan"), float("inf"), 1e300]))]) for _ in range(3)]
+    sim._core.set_contact_strengths(*places, *values)
+    if chance.random() < 0.5:
+        sim.contacts.set_strength(friction=chance.choice([5.0, anything(chance)]))
+    if chance.random() < 0.3:
+        sim._core.forget_contact_strengths(*places)
+
+
 def one(seed):
     import numpy as np
 
@@ -98,6 +112,9 @@ def one(seed):
     views = [sim.vertices, sim.velocity, sim.contacts]
     things = [sim.blocks, sim.blocks[1], sim.springs, sim.strength["joints"], scenario.rock, scenario.stage, scenario.stage[0], scenario.load]
     things += [*sim.springs, scenario, sim, scenario._core, sim._core, core.Scenario, core.Simulation, core.Block, core.InputError, kb.Motion, kb.TraceMap, kb.Controller, *scenario._core.cut()]
+    if chance.random() < 0.7:
+        safely(lambda: sim.advance(chance.randint(1, 30)))
+        safely(lambda: things.extend([sim.contacts, sim.contacts[:3], sim.contacts[sim.contacts.gap < 0.0], sim.contacts.of("")]))
     threads = []
     if chance.random() < 0.5:
         threads = [threading.Thread(target=lambda: [safely(lambda: poke(chance, [sim, sim._core], kept)) for _ in range(100)]) for _ in range(2)]
@@ -107,6 +124,8 @@ def one(seed):
         safely(lambda: poke(chance, things, kept))
         if chance.random() < 0.2:
             safely(lambda: sim.advance(chance.randint(1, 5)))
+        if chance.random() < 0.1:
+            safely(lambda: weaken(chance, sim))
         if chance.random() < 0.05:
             safely(lambda: views[1].__setitem__(slice(None), chance.choice([0.0, 1e9, float("nan"), -1.0])))
     for thread in threads:

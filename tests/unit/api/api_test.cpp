@@ -185,6 +185,39 @@ TEST(Api, ForcesCarryBlocks) {
   EXPECT_TRUE(run.springs().empty());
 }
 
+TEST(Api, SingleContactsHaveStrengthsOfTheirOwn) {
+  Scenario scenario = Scenario::parse(falling);
+  scenario.set("block[1].outer", "[[0.5, 0.0], [1.5, 0.0], [1.5, 1.0], [0.5, 1.0]]");
+  scenario.set("gravity", "[4.0, -9.81]");
+  Simulation held(scenario), freed(scenario);
+  held.advance();
+  freed.advance();
+  const Contacts contacts =
+      freed.contacts({ContactColumn::vertex, ContactColumn::edge, ContactColumn::friction});
+  ASSERT_EQ(contacts.vertex.size(), freed.contact_count());
+  EXPECT_TRUE(contacts.slip.empty());
+  EXPECT_NEAR(contacts.friction[0], 30.0, 1e-12);
+  std::vector<ContactStrength> strengths;
+  for (std::size_t k = 0; k < contacts.vertex.size(); ++k)
+    strengths.push_back({contacts.vertex[k], contacts.edge[k], 0.0, {}, {}});
+  const double before = freed.block_velocities()[2];
+  freed.set_contact_strengths(strengths);
+  while (held.advance()) {
+  }
+  while (freed.advance()) {
+  }
+  EXPECT_NEAR(held.block_velocities()[2], 0.0, 1e-3);
+  EXPECT_NEAR(freed.block_velocities()[2] - before, 4.0 * 0.098, 2e-3);
+  EXPECT_EQ(freed.contact_strengths().size(), strengths.size());
+  EXPECT_EQ(freed.contact_strengths()[0].friction, 0.0);
+  EXPECT_FALSE(freed.contact_strengths()[0].cohesion);
+  EXPECT_THROW(freed.set_contact_strengths({{0, 1, 30.0, {}, {}}}), InputError);  // of one block
+  EXPECT_THROW(freed.set_contact_strengths({{-1, 5, 30.0, {}, {}}}), InputError);
+  EXPECT_THROW(freed.set_contact_strengths({{5, 0, -1.0, {}, {}}}), InputError);
+  freed.forget_contact_strengths(strengths);
+  EXPECT_TRUE(freed.contact_strengths().empty());
+}
+
 TEST(Api, ResultsHaveContactsHistoriesAndEnergies) {
   const FreshFolder folder;
   RunOptions options;

@@ -112,6 +112,10 @@ TEST(Control, WhatWasChangedIsInCheckpoints) {
       runner.control().set_strength("joints", {0.3, 0.0, 0.0});
       runner.control().set_load_scale(0, 1.5);
       runner.control().set_motion_scale(0.5);
+      const int stone = runner.model().surface.block_begin[1];
+      const std::vector<contact::ContactStrength> given{
+          {stone + 1, 2, 0.1}, {stone, 2, 0.2, 1e3}, {stone, 2, 0.4}};
+      runner.control().set_contact_strengths(given);
     };
     return options;
   };
@@ -125,6 +129,10 @@ TEST(Control, WhatWasChangedIsInCheckpoints) {
   options.resume = true;
   Runner runner(setup, steered(options), nobody);
   EXPECT_EQ(runner.control().law("J1")->cohesion, 1e3);
+  ASSERT_EQ(runner.control().contact_strengths().size(), 2U);
+  EXPECT_EQ(runner.control().contact_strengths()[0].friction_coefficient, 0.4);
+  EXPECT_EQ(runner.control().contact_strengths()[0].cohesion, 1e3);
+  EXPECT_EQ(runner.model().contact_strengths.all().size(), 2U);
   run_to_the_end(runner);
   EXPECT_EQ(runner.finish().state_hash, whole);
 }
