@@ -327,7 +327,10 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.end_time = t1;
   drive.owed_share = state.last_step / drive.step;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
-  if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
+  if (ground != nullptr) {
+    drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
+    drive.ground_before = ground->at(t0);
+  }
   SolverOptions options = model_.solver;
   if (stiffness_damping(model_) > drive.step) options.max_iterations *= step_numbers::damped_patience;
   const bool converged =
