@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 
 #include "contact/contact.h"
@@ -20,6 +21,9 @@ struct Drive {
   /// Static only: the step is tried, to see how far blocks go. Π is bounded from below whatever its inertia.
   bool is_trial = false;
   std::span<const Integrator> rule;  ///< of each block
+  /// Of each block, whether it strikes another one in the step; and m/s, approach from which on a contact of two such blocks is an impact.
+  std::span<const std::uint8_t> in_impact;
+  double impact_speed = 0.0;
   /// m, of each block: what a fixed block is moved by in the step; empty when none is.
   std::span<const Vec2> prescribed;
   /// m, of each contact: by how much more than linear in D its vertex is from the point of the edge at the end of the step, as its blocks
