@@ -12,6 +12,7 @@
 #include "simulation/before_shaking.h"
 #include "simulation/computation_errors.h"
 #include "simulation/energy_warnings.h"
+#include "simulation/fallen.h"
 #include "simulation/verdict.h"
 #include "terminal.h"
 
@@ -132,7 +133,8 @@ std::string depths_text(const simulation::Damage& damage) {
 }
 
 /// What has come of it all by the end; empty where there is nothing to say.
-std::string result_text(const RunRecord& run) {
+std::string result_text(const RunRecord& run, std::string_view scenario,
+                        std::span<const std::string> openings) {
   if (run.stages.empty()) return {};
   const StageRecord& last = run.stages.back();
   const simulation::Damage& damage = last.damage;
@@ -142,12 +144,15 @@ std::string result_text(const RunRecord& run) {
         "and a block turned by up to {} degrees\n",
         one_line(last.stage.name, 40, true), standing_text(last), damage.displacement_max,
         damage.rotation_max < least_rotation ? "0" : fmt::format("{:.3g}", damage.rotation_max));
-  if (damage.fallen_blocks == 0 || std::isnan(damage.equivalent_pressure)) return {};
-  return fmt::format(
-      "fallen: {:.3g} kN per m of tunnel, {:.3g} kPa over the width of the opening (a dead weight); "
-      "largest block {:.3g} kN/m; from behind the {}\n",
-      1e-3 * damage.fallen_weight, 1e-3 * damage.equivalent_pressure, 1e-3 * damage.largest_fallen_weight,
+  if (damage.fallen_blocks == 0 || std::isnan(damage.largest_block_pressure)) return {};
+  std::string text = fmt::format(
+      "fallen: {:.3g} kN per m of tunnel; largest block {:.3g} kN/m, {:.3g} kPa over its own width; from "
+      "behind the {}\n",
+      1e-3 * damage.fallen_weight, 1e-3 * damage.largest_fallen_weight, 1e-3 * damage.largest_block_pressure,
       depths_text(damage));
+  const std::string search = simulation::pressure_search(scenario, openings, damage);
+  if (!search.empty()) text += fmt::format("the support pressure that holds it: {}\n", search);
+  return text;
 }
 
 /// Stages before a shaking one that were to last until all is still, and were not long enough.
@@ -225,7 +230,8 @@ std::string most_loaded(const RunRecord& run) {
 
 }  // namespace
 
-std::string outcome_text(const RunRecord& run, std::size_t block_count) {
+std::string outcome_text(const RunRecord& run, std::size_t block_count, std::string_view scenario,
+                         std::span<const std::string> openings) {
   std::vector<Row> rows{heading};
   for (const StageRecord& stage : run.stages) rows.push_back(row(stage));
   const double per_step = run.steps > 0 ? 1000.0 * run.wall_time / static_cast<double>(run.steps) : 0.0;
@@ -237,7 +243,7 @@ std::string outcome_text(const RunRecord& run, std::size_t block_count) {
       1000.0 * run.max_overlap.depth, 100.0 * run.energy.residual_ratio, run.state_hash);
   text += aligned(rows);
   text += split_at_shaking(run);
-  text += result_text(run);
+  text += result_text(run, scenario, openings);
   text += most_loaded(run);
   for (const std::string& error : simulation::computation_errors(run))
     text += "error of the computation: " + error + "\n";

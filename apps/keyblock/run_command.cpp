@@ -61,6 +61,12 @@ job::RecordedRun::Options options_of(const RunArguments& arguments) {
   return options;
 }
 
+std::vector<std::string> opening_names(const simulation::RunSetup& setup) {
+  std::vector<std::string> names;
+  for (const simulation::Excavation& opening : setup.excavations) names.push_back(opening.name);
+  return names;
+}
+
 void run_scenario(RunArguments arguments) {
   if (!arguments.solver.empty()) arguments.scenario.overrides.push_back("solver.linear=" + arguments.solver);
   std::vector<std::string> warnings;
@@ -87,7 +93,9 @@ void run_scenario(RunArguments arguments) {
   run.start();
   while (!run.runner().done()) run.advance();
   const simulation::RunRecord record = run.finish();
-  std::cout << "\n" << outcome_text(record, setup.system.blocks.size());
+  std::cout << "\n"
+            << outcome_text(record, setup.system.blocks.size(), arguments.scenario.file,
+                            opening_names(setup));
   if (arguments.profile) std::cout << "\n" << profile_text(record) << "\n";
   say_where_report_is(arguments);
   if (record.interrupted) {

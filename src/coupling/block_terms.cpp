@@ -30,6 +30,10 @@ constexpr double geometric_floor = 0.05;
 /// wrongly; smaller: more iterations for digits that nobody sees.
 constexpr double motion_share = 1e-3;
 
+/// Of the inertia of a step, what holds the shape of a block that strikes another one: what its strain would take up, and give back in later
+/// steps or not, is no part of Drive::in_impact. Larger: digits are lost.
+constexpr double rigid_share = 1e3;
+
 double floor_of(const Drive& drive, double inertia) {
   return drive.is_static && !drive.is_trial ? HUGE_VAL : geometric_floor * inertia;
 }
@@ -65,6 +69,7 @@ void BlockTerms::begin(const Model& model) {
   h_.assign(used, 0.0);
   b_.assign(model.coefficients, 0.0);
   inertia_.assign(model.blocks.size(), 0.0);
+  rigid_.assign(model.blocks.size(), 0.0);
   viscous_.assign(model.blocks.size(), 0.0);
   weight_.assign(model.blocks.size(), 0.0);
   stress_.assign(model.blocks.size(), 0.0);
@@ -169,7 +174,31 @@ void BlockTerms::build_blocks(const State& state, const Drive& drive) {
                       [&](auto size) { build_block(size, i, state, drive, acceleration, pressed); });
     }
     finish_blocks(pressed);
+    for (std::size_t i = begin; i < end; ++i) {
+      rigid_[i] = 0.0;
+      if (drive.in_impact.empty() || drive.in_impact[i] == 0 || !model_->moves(i)) continue;
+      rigid_[i] = rigid_share * inertia_[i];
+      make_rigid(i, state);
+    }
   });
+}
+
+/// Adds what resists all motion of a block but that of a rigid body: of coefficients beyond the mean, all but the turn.
+void BlockTerms::make_rigid(std::size_t i, const State& state) {
+  const Block& block = model_->blocks[i];
+  const int n = 2 * block.size, stride = linalg::padded_rows(n);
+  const double* position = &state.position[block.first];
+  double* h = &h_[h_first_[i]];
+  std::vector<double> turn(at(n));
+  double squared = 0.0;
+  for (std::size_t k = 0; k < at(n); ++k) {
+    turn[k] = turn_of(1.0, position, k);
+    squared += turn[k] * turn[k];
+  }
+  for (int c = 2; c < n; ++c) {
+    h[c * stride + c] += rigid_[i];
+    for (int r = 2; r < n; ++r) h[c * stride + r] -= rigid_[i] * turn[at(c)] * turn[at(r)] / squared;
+  }
 }
 
 /// Loads, and what residuals are measured by. A load whose time has not come, or is over, measures nothing, except in static steps without
@@ -328,6 +357,17 @@ BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const d
   loss.damping = viscous_[i] * model_->blocks[i].elasticity.material_work(position, d);
   loss.numerical = 0.5 * (of_motion - loss.damping);
   loss.numerical += of_both - 0.5 * of_turn;
+  if (rigid_[i] > 0.0) {
+    // What holds the shape stores nothing.
+    double held = 0.0, along = 0.0, squared = 0.0;
+    for (int k = 2; k < 2 * size; ++k) {
+      const double t = turn_of(1.0, position, at(k));
+      held += d[k] * d[k];
+      along += d[k] * t;
+      squared += t * t;
+    }
+    loss.numerical += 0.5 * rigid_[i] * (held - along * along / squared);
+  }
   if (is_static_) {
     for (int k = 0; k < 2 * size; ++k) strained[k] = d[k] - turn[k];
     loss.numerical -= model_->blocks[i].elasticity.beyond_second_order(position, strained);

@@ -101,6 +101,7 @@ class BlockTerms {
   void finish_block(Size size, std::size_t i, const double* geometric);
   void finish_blocks(PressedBlocks& pressed);
   void build_blocks(const State& state, const Drive& drive);
+  void make_rigid(std::size_t block, const State& state);
   void add_loads(const State& state, const Drive& drive);
   [[nodiscard]] double largest_of_right(std::size_t i) const;
   template <typename Size>
@@ -115,6 +116,8 @@ class BlockTerms {
   std::vector<double> h_;             ///< H of each, columns of padded_rows(2N)
   std::vector<double> b_;
   std::vector<double> inertia_;
+  std::vector<double>
+      rigid_;  ///< per block that strikes another one: what its change of shape is held with; else 0
   std::vector<double> viscous_;     ///< per block, β/Δt: viscosity of the rock over its stiffness
   std::vector<double> body_force_;  ///< per block, Block::body_force
   std::vector<double> frequency_;   ///< rad/s, per block: its first elastic one, about

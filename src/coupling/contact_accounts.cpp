@@ -26,6 +26,7 @@ struct ContactAccounts {
   contact::SpringLanes::Balance balance;
   Lanes stored_before{};  ///< J per thickness, at the start
   Lanes input{};          ///< J per thickness, by what fixed blocks are moved
+  Lanes earlier{};        ///< J per thickness, of which: by forces at the start in place of those at the end
   Lanes rotation{};       ///< J per thickness, of the forces over Drive::rotation: no block gets it
   Lanes penetration{};    ///< m
   Lanes closed{};         ///< at the end: 1, else 0
@@ -42,6 +43,7 @@ void ContactAccounts::add(const ContactAccounts& other) {
   balance.numerical += other.balance.numerical;
   stored_before += other.stored_before;
   input += other.input;
+  earlier += other.earlier;
   rotation += other.rotation;
   penetration = largest(penetration, other.penetration);
   closed += other.closed;
@@ -50,7 +52,7 @@ void ContactAccounts::add(const ContactAccounts& other) {
 void ContactAccounts::leave_out_beyond(std::size_t count) {
   if (count >= lane_count) return;
   for (Lanes* lanes : {&balance.stored, &balance.friction, &balance.damping, &balance.numerical,
-                       &stored_before, &input, &rotation, &penetration, &closed})
+                       &stored_before, &input, &earlier, &rotation, &penetration, &closed})
     *lanes = where(first_lanes(count), *lanes, Lanes{});
 }
 
@@ -58,7 +60,7 @@ void ContactAccounts::enter(EnergyLedger& ledger) const {
   ledger.friction += sum(balance.friction);
   ledger.input += sum(input);
   ledger.damping += sum(balance.damping);
-  ledger.numerical += sum(balance.numerical) + sum(rotation) - sum(stored_before);
+  ledger.numerical += sum(balance.numerical) + sum(rotation) - sum(stored_before) + sum(earlier);
 }
 
 /// Where a contact shares the pressure of faces, its own normal spring has what is left of its stiffness. first: the number of the first contact.
@@ -116,6 +118,18 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
       .rotation = normal * rotated_normal - shear * rotated_shear,
       .penetration = s.penetration(y),
       .closed = where(closed, broadcast(1.0), zero)};
+  if (!drive.prescribed.empty()) {
+    // A bond's force has a sign, which the pressure that is remembered has not.
+    const Lanes at_start =
+        where(at_first(springs.low) < zero, law.normal_stiffness * law.depth, memory.normal_force);
+    Lanes of_start{};
+    for (std::size_t i = 0; i < count; ++i)
+      of_start[i] = 1.0 - drive.end_share_of_work(contacts[i], rows[i].unknown_a >= 0);
+    accounts.earlier =
+        of_start * ((law.shear_stiffness * memory.shear - shear) * (moved_shear - rotated_shear) -
+                    (at_start - normal) * (moved_normal - rotated_normal));
+    accounts.input += accounts.earlier;
+  }
   accounts.leave_out_beyond(count);
   // Of faces what the contact bears: what its nodal force is beyond that belongs to others.
   const Lanes borne = s.normal_force(y) + springs.faces.bearings(first),

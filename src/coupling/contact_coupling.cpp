@@ -54,6 +54,48 @@ Lanes ways_to_rest(const Model& model, const State& state, const Drive& drive, c
   return ways;
 }
 
+/// m/s, with which the sides of a contact approach at the start of the step.
+double approach(const State& state, const Drive& drive, const Points& points, const contact::Contact& contact,
+                const Row& row) {
+  return -dot(row.normal, relative_displacement(points, row, state.velocity) +
+                              drive.prescribed_between(contact) / drive.step);
+}
+
+/// Whether the sides of a contact are blocks that strike each other there in the step.
+bool meets_impact(const Model& model, const State& state, const Drive& drive, const Points& points,
+                  const contact::Contact& c, const Row& row) {
+  const auto strikes = [&](int b) { return model.moves(at(b)) && drive.in_impact[at(b)] != 0; };
+  const auto may_meet = [&](int b) { return strikes(b) || !model.moves(at(b)); };
+  if (!may_meet(c.block_a) || !may_meet(c.block_b) || !(strikes(c.block_a) || strikes(c.block_b)))
+    return false;
+  const double speed = approach(state, drive, points, c, row);
+  return speed > drive.impact_speed && -c.depth < speed * drive.step;
+}
+
+/// How contacts of blocks that strike each other are met, zero of all others.
+struct Impacts {
+  Lanes
+      held_off{};  ///< m, gap at which they are: D there is Δt v (θ − e)/(1 + θ), of which v′ = −e v is made
+  /// N/m per thickness, the least stiffness: blocks strike each other in one step, whatever the joint yields.
+  Lanes stiffness{};
+};
+
+Impacts impacts_of(const Model& model, const State& state, const Drive& drive, const Points& points,
+                   std::span<const contact::Contact> contacts, std::span<const Row> rows, Lanes mass) {
+  constexpr double stiff = 1000.0;  // of the inertia of the step: e is met to 0.2 %
+  Impacts impacts;
+  for (std::size_t i = 0; i < contacts.size() && !drive.in_impact.empty(); ++i) {
+    const contact::Contact& c = contacts[i];
+    if (!meets_impact(model, state, drive, points, c, rows[i])) continue;
+    const double speed = approach(state, drive, points, c, rows[i]), gap = -c.depth,
+                 theta = drive.rule[at(model.moves(at(c.block_a)) ? c.block_a : c.block_b)].inertia() - 1.0,
+                 way = drive.step * speed * (theta - model.solver.restitution) / (1.0 + theta);
+    impacts.held_off[i] = std::max(0.0, gap - std::max(0.0, way));
+    impacts.stiffness[i] = stiff * mass[i] / (drive.step * drive.step);
+  }
+  return impacts;
+}
+
 /// Of as many contacts as there are lanes, or fewer, with their rows; the first of them is contact `first`.
 void build_springs(const Model& model, const State& state, const Drive& drive,
                    std::span<const contact::Contact> contacts, std::size_t first, const CouplingRows& out) {
@@ -87,7 +129,8 @@ void build_springs(const Model& model, const State& state, const Drive& drive,
     if (count == lane_count) return store(&numbers[first], v);
     store_first(&numbers[first], v, static_cast<int>(count));
   };
-  keep(springs.kn, spring.normal_stiffness());
+  const Impacts impacts = impacts_of(model, state, drive, out.points, contacts, rows, mass);
+  keep(springs.kn, largest(spring.normal_stiffness(), impacts.stiffness));
   keep(springs.ks, spring.shear_stiffness());
   keep(springs.bound, bound);
   keep(springs.low, contact::normal_spring(Lanes{}, tensile).low);
@@ -104,7 +147,7 @@ void build_springs(const Model& model, const State& state, const Drive& drive,
                        SpringArray::codes_of(tensile | ~was(contact::State::open), none, forward, backward));
   const Lanes slipped = ways_to_rest(model, state, drive, out.points, contacts, rows);
   keep(springs.slipped, slipped);
-  Lanes y = spring.depth(), w = spring.shear() - slipped;
+  Lanes y = spring.depth() + impacts.held_off, w = spring.shear() - slipped;
   if (drive.moves_contacts()) {
     for (std::size_t i = 0; i < count; ++i) {
       y[i] -= dot(rows[i].normal, rows[i].moved);
@@ -145,7 +188,7 @@ RowFacts ContactCoupling::build(const Model& model, const State& state, const Dr
   } else {
     out.team.for_range(contacts_.size(), contacts_worth_threads, of_some);
   }
-  if (find_faces_) build_faces(model, drive, out);
+  if (find_faces_) build_faces(model, state, drive, out);
   return {may_break, lacks_room, has_distant};
 }
 
@@ -172,8 +215,10 @@ std::vector<double> ContactCoupling::dashpots_of_faces(const Model& model, const
 
 /// Normal springs of contacts that share the pressure of faces have what is left of their stiffness. Spring and dashpot of a face are one spring
 /// about a shifted origin, as those of a contact. All contacts of two blocks have the same dashpot for their stiffness then. Where a face is
-/// closed is a matter of all its contacts: those that are open are shifted with those that press.
-void ContactCoupling::build_faces(const Model& model, const Drive& drive, const CouplingRows& out) const {
+/// closed is a matter of all its contacts: those that are open are shifted with those that press. A face that is struck has no pressure: its
+/// contacts hold the blocks apart where the impact asks for it.
+void ContactCoupling::build_faces(const Model& model, const State& state, const Drive& drive,
+                                  const CouplingRows& out) const {
   const contact::JointFaces& faces = find_faces_();
   if (faces.empty()) return;
   SpringArray& springs = out.springs;
@@ -183,6 +228,10 @@ void ContactCoupling::build_faces(const Model& model, const Drive& drive, const 
   std::vector<std::uint8_t> presses(contacts_.size(), 0);
   for (const contact::JointFace& face : faces.all()) {
     const std::span<const std::size_t> of_face = faces.contacts_of(face);
+    const auto is_struck = [&](std::size_t c) {
+      return meets_impact(model, state, drive, out.points, contacts_[c], out.rows[c]);
+    };
+    if (!drive.in_impact.empty() && std::ranges::any_of(of_face, is_struck)) continue;
     const auto is_pressed = [&](std::size_t c) { return contacts_[c].depth > 0.0; };
     const bool shifts = face.pressure.pulls() || std::ranges::any_of(of_face, is_pressed);
     rows.clear();

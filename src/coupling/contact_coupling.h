@@ -48,7 +48,7 @@ class ContactCoupling final : public Coupling {
 
  private:
   RowFacts build_row(const Drive& drive, std::size_t c, const CouplingRows& out) const;
-  void build_faces(const Model& model, const Drive& drive, const CouplingRows& out) const;
+  void build_faces(const Model& model, const State& state, const Drive& drive, const CouplingRows& out) const;
   [[nodiscard]] std::vector<double> dashpots_of_faces(const Model& model, const Drive& drive,
                                                       const Points& points) const;
   void set_row_of_face(std::size_t c, double stiffness, double dashpot, bool shifts, const Drive& drive,

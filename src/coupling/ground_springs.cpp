@@ -42,12 +42,15 @@ CouplingTotals GroundSprings::account(const Attempt& attempt, std::span<const do
     const std::size_t b = at(spring.block);
     if (!model.moves(b)) continue;
     const double moved = along_axis(model, spring, attempt.increment),
-                 before = spring.target(drive.is_static ? drive.end_time : drive.end_time - drive.step),
-                 end = spring.target(drive.end_time);
+                 before = spring.target(drive.start_time()), end = spring.target(drive.end_time);
     const double stretch = along_axis(model, spring, state.position) + moved - end,
                  change = moved - (end - before);
     state.support_energy += 0.5 * spring.stiffness * stretch * stretch;
-    state.ledger.input -= spring.stiffness * stretch * (end - before);
+    // With the force at the start the spring was shorter by `change`.
+    const double earlier =
+        (1.0 - drive.end_share_of_work(spring.block)) * spring.stiffness * change * (end - before);
+    state.ledger.input -= spring.stiffness * stretch * (end - before) - earlier;
+    state.ledger.numerical += earlier;
     // BlockTerms::elastic_loss has taken ½ k moved² for a ground that stands still, and what the pose update takes out of D: the spring is
     // linear in D.
     const double* position = &state.position[model.blocks[b].first];

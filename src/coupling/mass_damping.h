@@ -24,9 +24,9 @@ class MassDamping {
   /// ground: m/s, velocity of the ground at each of the points, at the end of the step; empty: at rest.
   void add_terms(const Model& model, const State& state, const Drive& drive, std::span<const Vec2> ground,
                  BlockTerms& terms) const;
-  /// Into the ledger of energy, before blocks are moved.
+  /// Into the ledger of energy, before blocks are moved. ground_before: m/s, at the start of the step; empty: at rest.
   void account(const Attempt& attempt, std::span<const double> spin, std::span<const Vec2> ground,
-               State& state) const;
+               std::span<const Vec2> ground_before, State& state) const;
 
  private:
   struct Drag;
@@ -48,7 +48,7 @@ class FrameDamping final : public Coupling {
   }
   CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t /*first*/,
                          std::span<double> /*memory*/, State& state) const override {
-    damping_.account(attempt, spin, {}, state);
+    damping_.account(attempt, spin, {}, {}, state);
     return {};
   }
 

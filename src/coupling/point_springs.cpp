@@ -112,8 +112,12 @@ CouplingTotals PointSprings::account(const Attempt& attempt, std::span<const dou
     if (std::abs(force.shear) >= springs_[k].yield) memory[yielded(k)] += beyond;
     state.support_energy += stored;
     state.ledger.friction += dissipated;
-    state.ledger.input += dot(on_points, row.moved);
-    state.ledger.numerical += dot(on_points, attempt.relative[c]) - (stored - stored_before) - dissipated;
+    const int moving = row.unknown_a >= 0 ? end(k, 0).block : end(k, 1).block;
+    const double earlier = (1.0 - attempt.drive.end_share_of_work(moving)) *
+                           dot(row.gradient({0.0, stiffness * before}) - on_points, row.moved);
+    state.ledger.input += dot(on_points, row.moved) + earlier;
+    state.ledger.numerical +=
+        dot(on_points, attempt.relative[c]) - (stored - stored_before) - dissipated + earlier;
   }
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/index.h"
 #include "core/lanes.h"
@@ -12,7 +13,8 @@ namespace keyblock::dynamics {
 namespace {
 
 constexpr double elements_of_a_wave = 40.0;
-constexpr int parts_with_dip = 4;  // of a step, with planes that are not level
+constexpr double plane_apart = 1e-6;  // of the height of the column: planes of one place
+constexpr int parts_with_dip = 4;     // of a step, with planes that are not level
 constexpr int least_elements = 20, most_elements = 4000;
 
 enum Quantity : std::size_t { displacement, velocity, acceleration, force };
@@ -34,6 +36,20 @@ double along(Vec2 v, std::size_t axis) {
 Motion motion_at(std::span<const double> memory, std::size_t nodes, std::size_t node) {
   const auto both = [&](Quantity quantity) { return load_first(&memory[place(quantity, nodes, node)], 2); };
   return {both(velocity), both(acceleration), both(force)};
+}
+
+/// Of planes that are no farther apart than this, m, one remains: there is no rock between them that could move. planes: from below.
+void keep_weakest_of_a_height(std::vector<RockPlane>& planes, double apart) {
+  const auto strength = [](const RockPlane& p) { return p.cohesion + p.friction * std::max(0.0, p.normal); };
+  std::vector<RockPlane> kept;
+  for (const RockPlane& plane : planes) {
+    if (kept.empty() || plane.height - kept.back().height > apart) {
+      kept.push_back(plane);
+    } else if (strength(plane) < strength(kept.back())) {
+      kept.back() = plane;
+    }
+  }
+  planes = std::move(kept);
 }
 
 /// Mean of the consistent and the lumped mass of an element of mass 1: of a node with itself, and with the other one.
@@ -65,6 +81,7 @@ RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double gr
   std::stable_sort(planes_.begin(), planes_.end(),
                    [](const RockPlane& a, const RockPlane& b) { return a.height < b.height; });
   std::erase_if(planes_, [&](const RockPlane& p) { return p.height <= base || p.height >= ground; });
+  keep_weakest_of_a_height(planes_, plane_apart * (ground - base));
   height_.push_back(base);
   for (std::size_t k = layers_.size(); k-- > 0;) {
     const RockLayer& rock = layers_[k];
@@ -74,8 +91,9 @@ RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double gr
                  longest =
                      std::min(slowest / (elements_of_a_wave * fastest), (ground - base) / least_elements);
     double from = bottom;
-    for (const RockPlane& plane : planes_) {
-      if (plane.height <= from || plane.height >= top) continue;
+    // A plane at the end of a layer is the last thing in it.
+    while (link_.size() < planes_.size() && planes_[link_.size()].height <= top) {
+      const RockPlane& plane = planes_[link_.size()];
       add_elements(rock, from, plane.height, longest);
       from = plane.height;
       link_.push_back(density_.size());
@@ -84,7 +102,7 @@ RockColumn::RockColumn(std::span<const RockLayer> layers, double base, double gr
       density_.push_back(0.0);
       for (auto& modulus : modulus_) modulus.push_back(0.0);
     }
-    add_elements(rock, from, top, longest);
+    if (from < top) add_elements(rock, from, top, longest);
   }
 }
 

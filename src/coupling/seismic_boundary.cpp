@@ -143,16 +143,39 @@ class SeismicBoundary::Step {
     return law;
   }
   /// m/s, of the rock far away where the points of damping are.
-  [[nodiscard]] std::vector<Vec2> far_velocities() const {
-    std::vector<Vec2> velocities;
-    if (drive_.is_static) return velocities;
-    for (const FarPlace& place : of_.damped_) velocities.push_back(of_.far_ground(after_, place).velocity);
-    return velocities;
+  [[nodiscard]] std::vector<Vec2> far_velocities() const { return far_velocities(after_); }
+  /// The same at the start of the step.
+  [[nodiscard]] std::vector<Vec2> far_velocities_before() const { return far_velocities(memory_); }
+  /// Pa, what the point feels at the start of the step as it was at the end of the last one, dashpots (viscous) and all but them (dead).
+  struct AtStart {
+    Vec2 dead, viscous;
+  };
+  [[nodiscard]] AtStart at_start(const Law& law, std::size_t k) const {
+    const BoundaryPoint& p = of_.points_[k];
+    const Block& block = model_.blocks[at(p.point.block)];
+    Vec2 velocity = field_at(p.point.phi.data(), block.size, &state_.velocity[block.first]);
+    if (p.far >= 0) {
+      const std::size_t far = at(p.far);
+      velocity -=
+          of_.far_[far]
+              .column.motion(memory_of(std::span(of_.far_), of_.points_.size(), memory_, far), p.in_far)
+              .velocity;
+    }
+    AtStart start;
+    start.viscous = -by_axis(law.dashpot, velocity);
+    start.dead = p.traction + PointMemory::read(memory_, k).traction - start.viscous;
+    return start;
   }
   /// The memory after the step, except for what the points have.
   [[nodiscard]] std::span<double> after() { return after_; }
 
  private:
+  [[nodiscard]] std::vector<Vec2> far_velocities(std::span<const double> memory) const {
+    std::vector<Vec2> velocities;
+    if (drive_.is_static) return velocities;
+    for (const FarPlace& place : of_.damped_) velocities.push_back(of_.far_ground(memory, place).velocity);
+    return velocities;
+  }
   [[nodiscard]] std::span<double> far_after(std::size_t k) {
     return memory_of(of_.far_, of_.points_.size(), std::span<double>(after_), k);
   }
@@ -228,13 +251,22 @@ CouplingTotals SeismicBoundary::account(const Attempt& attempt, std::span<const 
     state.support_energy += 0.5 * p.length * dot(law.spring, by_axis(stretch, stretch));
     ledger.input += p.length * dot(law.dead, d);
     ledger.radiated -= p.length * dot(law.viscous(d), d);
+    const double of_start = 1.0 - attempt.drive.end_share_of_work(p.point.block);
+    if (of_start > 0.0 && p.absorbs) {
+      const Step::AtStart start = step.at_start(law, k);
+      const double dead = of_start * p.length * dot(start.dead - law.dead, d),
+                   viscous = of_start * p.length * dot(start.viscous - law.viscous(d), d);
+      ledger.input += dead;
+      ledger.radiated -= viscous;
+      ledger.numerical += dead + viscous;
+    }
     // BlockTerms::elastic_loss has taken both for springs that do not turn with their block.
     ledger.numerical -= p.length * (dot(law.spring, not_stretched) +
                                     law.share * dot(law.dashpot, 0.5 * by_axis(d, d) + not_stretched));
     m.traction = law.traction(d) - p.traction;
     m.write(step.after(), k);
   }
-  if (damping_) damping_->account(attempt, spin, step.far_velocities(), state);
+  if (damping_) damping_->account(attempt, spin, step.far_velocities(), step.far_velocities_before(), state);
   std::copy(step.after().begin(), step.after().end(), memory.begin());
   return {};
 }

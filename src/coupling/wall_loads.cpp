@@ -69,12 +69,23 @@ void WallLoads::add_weights(const Model& model, const State& state, const Drive&
 CouplingTotals WallLoads::account(const Attempt& attempt, std::span<const double> /*spin*/,
                                   std::size_t /*first*/, std::span<double> /*memory*/, State& state) const {
   const Model& model = attempt.model;
-  double work = 0.0;
-  for_forces(model, state, attempt.drive.end_time, [&](std::size_t b, std::size_t v, Vec2 force) {
+  const Drive& drive = attempt.drive;
+  double work = 0.0, earlier = 0.0;
+  const auto work_of = [&](std::size_t b, std::size_t v, Vec2 force) {
     const Block& block = model.blocks[b];
-    work += dot(force, field_at(phi_at(model.surface, v), block.size, &attempt.increment[block.first]));
+    return dot(force, field_at(phi_at(model.surface, v), block.size, &attempt.increment[block.first]));
+  };
+  const auto of_start = [&](std::size_t b) { return 1.0 - drive.end_share_of_work(static_cast<int>(b)); };
+  for_forces(model, state, drive.end_time, [&](std::size_t b, std::size_t v, Vec2 force) {
+    const double done = work_of(b, v, force);
+    work += done;
+    earlier -= of_start(b) * done;
   });
-  state.ledger.input += work;
+  for_forces(model, state, drive.start_time(), [&](std::size_t b, std::size_t v, Vec2 force) {
+    earlier += of_start(b) * work_of(b, v, force);
+  });
+  state.ledger.input += work + earlier;
+  state.ledger.numerical += earlier;
   return {};
 }
 

@@ -164,6 +164,7 @@ void Stepper::predict(const State& state, Drive& drive) {
   rules_.choose(model_, state, drive.is_static);
   prescribe(model_, state, drive.end_time, prescribed_);
   drive.rule = rules_.rule();
+  if (model_.solver.keeps_restitution) drive.in_impact = rules_.struck();
   drive.prescribed = prescribed_;
   motion_.predict(model_, state, drive, team_);
   earlier_attempt_.forget();
@@ -228,6 +229,7 @@ Verdict Stepper::check(const Attempt& attempt, const OpenCloseResult& result, bo
 Verdict Stepper::solve(State& state, Drive& drive, const SolverOptions& options, Attempts& attempts,
                        StepReport& report) {
   drive.rotation = rotation_.known();
+  drive.impact_speed = rules_.impact_speed();
   build(state, drive, attempts.same_contacts);
   linalg::BlockSolver& solver = choose_solver(state, drive.is_static, attempts.must_be_direct);
   if (!problem_.terms().has_weights()) {
@@ -327,7 +329,10 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.end_time = t1;
   drive.owed_share = state.last_step / drive.step;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
-  if (ground != nullptr) drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
+  if (ground != nullptr) {
+    drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);
+    drive.ground_before = ground->at(t0);
+  }
   SolverOptions options = model_.solver;
   if (stiffness_damping(model_) > drive.step) options.max_iterations *= step_numbers::damped_patience;
   const bool converged =

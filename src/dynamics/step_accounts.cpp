@@ -34,7 +34,31 @@ StepAccounts::BlockWork StepAccounts::work_of(const Attempt& attempt, std::size_
     });
   });
   work.input = -block.body_force() * dot(drive.ground_acceleration, {d[0], d[1]});
+  const double of_start = 1.0 - drive.rule[b].end_share_of_work();
+  if (of_start == 0.0) return work;
+  const double earlier =
+      -of_start * block.body_force() * dot(drive.ground_before - drive.ground_acceleration, {d[0], d[1]});
+  work.input += earlier;
+  work.numerical += earlier;
   return work;
+}
+
+void StepAccounts::account_for_loads(const Attempt& attempt, EnergyLedger& ledger) {
+  const Drive& drive = attempt.drive;
+  ledger.input += work_of_loads(attempt.model, drive.end_time, attempt.increment);
+  for (std::size_t l = 0; l < attempt.model.loads.size(); ++l) {
+    const GeneralizedLoad& load = attempt.model.loads[l];
+    const double of_start = 1.0 - drive.end_share_of_work(load.block);
+    if (!attempt.model.moves(at(load.block)) || of_start == 0.0) continue;
+    const double change =
+        attempt.model.load_factor(l, drive.start_time()) - attempt.model.load_factor(l, drive.end_time);
+    const std::size_t first = attempt.model.blocks[at(load.block)].first;
+    double earlier = 0.0;
+    for (std::size_t k = 0; k < load.force.size(); ++k)
+      earlier += of_start * change * load.force[k] * attempt.increment[first + k];
+    ledger.input += earlier;
+    ledger.numerical += earlier;
+  }
 }
 
 void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const double> spin, State& state) {
@@ -51,7 +75,7 @@ void StepAccounts::account_for_blocks(const Attempt& attempt, std::span<const do
     ledger.numerical += work.numerical;
     ledger.input += work.input;
   }
-  ledger.input += work_of_loads(model, attempt.drive.end_time, attempt.increment);
+  account_for_loads(attempt, ledger);
 }
 
 CouplingTotals account_for_couplings(const Attempt& attempt, std::span<const double> spin, State& state) {

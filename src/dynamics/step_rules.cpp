@@ -13,18 +13,23 @@ namespace {
 
 /// m/s, speed of approach from which on blocks strike each other: the speed of a fall by 0.005 of the block size. Without gravity it is a
 /// hundredth of the fastest block's speed, where that is more than noise.
-double impact_speed(const Model& model, std::span<const double> speed, double step) {
+double speed_of_impact(const Model& model, std::span<const double> speed, double step) {
   const double g = norm(model.gravity);
   if (g > 0.0) return 0.1 * std::sqrt(g * model.block_size);
   constexpr double share = 0.01, noise = 1e-6;  // noise: of the block size, way in a step
   return std::max(share * *std::max_element(speed.begin(), speed.end()), noise * model.block_size / step);
 }
 
+/// Multipliers know no contact that holds blocks off.
+bool parts_as_given(const SolverOptions& options) {
+  return options.keeps_restitution && options.contact == ContactMethod::penalty;
+}
+
 /// m/s, the least speed of approach of an impact. Multipliers are stiffer than any spring: what is left of a velocity into a contact would
 /// ring for ever.
 double least_speed(const Attempt& attempt, std::span<const double> speed) {
   const Model& model = attempt.model;
-  const double least = impact_speed(model, speed, attempt.drive.step);
+  const double least = speed_of_impact(model, speed, attempt.drive.step);
   if (model.solver.contact != ContactMethod::augmented_lagrangian) return least;
   return std::min(least, 1e-4 * norm(model.gravity) * attempt.drive.step);
 }
@@ -59,7 +64,22 @@ bool is_impact(const Attempt& attempt, std::size_t c, double least) {
                      attempt.drive.prescribed_between(contact) / step;
   if (-dot(row.normal, speed) <= least) return false;
   return attempt.model.solver.contact == ContactMethod::augmented_lagrangian ||
+         parts_as_given(attempt.model.solver) ||
          contact.normal_stiffness * step * step > reduced_mass(attempt.problem.points(), contact);
+}
+
+/// m/s, with which the sides of a contact approach at the start of the step.
+double approach(const Attempt& attempt, std::size_t c) {
+  const Row& row = attempt.problem.rows()[c];
+  return -dot(row.normal, attempt.problem.relative(row, attempt.state.velocity) +
+                              attempt.drive.prescribed_between(attempt.contacts[c]) / attempt.drive.step);
+}
+
+/// θ with which the blocks of a contact that approach at this speed, m/s, part as the restitution says.
+double theta_of_impact(const Attempt& attempt, std::size_t c, double speed) {
+  const double e = attempt.model.solver.restitution,
+               met = std::max(0.0, -attempt.contacts[c].depth) / (speed * attempt.drive.step);
+  return met >= 0.5 * (1.0 - e) ? 1.0 : (e + met) / (1.0 - met);
 }
 
 }  // namespace
@@ -70,28 +90,55 @@ void StepRules::choose(const Model& model, const State& state, bool is_static) {
   for (std::size_t b = 0; b < rule_.size(); ++b)
     rule_[b] = dynamic && state.acceleration_known[b] != 0 ? chosen : shi;
   std::fill(in_impact_.begin(), in_impact_.end(), std::uint8_t{0});
+  std::fill(struck_.begin(), struck_.end(), std::uint8_t{0});
 }
 
-void StepRules::slow(const Model& model, int block) {
+void StepRules::slow(const Model& model, int block, double theta, bool strikes) {
   const std::size_t b = at(block);
-  if (!model.moves(b) || in_impact_[b] != 0) return;
+  if (!model.moves(b)) return;
+  if (strikes && struck_[b] == 0) {
+    struck_[b] = 1;
+    found_ = true;
+  }
+  if (in_impact_[b] != 0 && rule_[b].inertia() <= 1.0 + theta) return;
   in_impact_[b] = 1;
-  rule_[b] = Integrator::shi(model.solver.restitution);
+  rule_[b] = Integrator::shi(theta);
   found_ = true;
+}
+
+/// Blocks that strike each other part by one rule.
+void StepRules::share_smallest(const Attempt& attempt) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const std::size_t c : fast_) {
+      const std::size_t a = at(attempt.contacts[c].block_a), b = at(attempt.contacts[c].block_b);
+      if (struck_[a] == 0 || struck_[b] == 0 || approach(attempt, c) <= impact_speed_) continue;
+      const double of_a = rule_[a].inertia(), of_b = rule_[b].inertia();
+      if (of_a == of_b) continue;
+      rule_[of_a > of_b ? a : b] = rule_[of_a > of_b ? b : a];
+      changed = true;
+    }
+  }
 }
 
 bool StepRules::meet_impacts(const Attempt& attempt, std::span<const double> speed) {
   const SolverOptions& options = attempt.model.solver;
   const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
-  if (attempt.drive.is_static || options.restitution >= elastic) return false;
+  const bool keeps = parts_as_given(options);
+  if (attempt.drive.is_static || (options.restitution >= elastic && !keeps)) return false;
   const double least = least_speed(attempt, speed);
+  impact_speed_ = speed_of_impact(attempt.model, speed, attempt.drive.step);
   find_fast(attempt, speed, least, fast_);
   found_ = false;
   for (const std::size_t c : fast_) {
     if (!is_impact(attempt, c, least)) continue;
-    slow(attempt.model, attempt.contacts[c].block_a);
-    slow(attempt.model, attempt.contacts[c].block_b);
+    const double with = approach(attempt, c);
+    const bool strikes = keeps && with > impact_speed_;
+    const double theta = strikes ? theta_of_impact(attempt, c, with) : options.restitution;
+    slow(attempt.model, attempt.contacts[c].block_a, theta, strikes);
+    slow(attempt.model, attempt.contacts[c].block_b, theta, strikes);
   }
+  if (found_ && keeps) share_smallest(attempt);
   return found_;
 }
 

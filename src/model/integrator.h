@@ -61,6 +61,12 @@ class Integrator {
     return family_ == Family::shi ? 1.0 + theta_ : gamma_ / beta_;
   }
 
+  /// The work of a force over a step is D times this share of the force at its end, and the rest of that at its start. Shi's rule makes D and
+  /// v′ of the force at the end alone. The others make v′ − v of forces that are, to second order, those in the middle of the step: the force at
+  /// the end would be half a step ahead of D, and what is out of phase with the motion, as that of the ground is, would do wrong work in the
+  /// first order of Δt.
+  [[nodiscard]] double end_share_of_work() const { return family_ == Family::shi ? 1.0 : 0.5; }
+
   /// D of a step with v′ = 0 is this share of Δt v, and the next of Δt² a.
   [[nodiscard]] double rest_share() const {
     return family_ == Family::shi ? theta_ / inertia_ : 1.0 - beta_ / gamma_;

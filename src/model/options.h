@@ -58,6 +58,8 @@ struct SolverOptions {
   /// Largest share of the speed of approach with which two blocks part after an impact that Δt does not resolve (ωΔt > 1,
   /// ω of the contact spring with its blocks), at more than `impact_speed`: θ of the two in the steps of the impact.
   double restitution = 0.5;
+  /// `restitution` is the share with which they part, wherever in a step they meet and however short it is, and not only the largest one.
+  bool keeps_restitution = false;
   /// Largest residual of a block over its weight for a step to count as converged.
   double tolerance = 1e-4;
   /// Open-close iterations of a minimization, of which a step has several, before the step is retried with half of Δt.

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/checked_json.h"
 #include "report/page_data.h"
 #include "report/page_template.h"
@@ -8,6 +10,7 @@
 #include "results/record_json.h"
 #include "results/summary.h"
 #include "simulation/computation_errors.h"
+#include "simulation/fallen.h"
 #include "simulation/verdict.h"
 
 namespace keyblock::report {
@@ -58,6 +61,15 @@ std::vector<std::pair<std::string, std::string>> ground_rows(const results::RunD
   return rows;
 }
 
+/// The command that finds the support pressure, by what had fallen at the last moment at which that is known.
+std::string pressure_search(const results::RunData& data) {
+  for (auto stage = data.run.stages.rbegin(); stage != data.run.stages.rend(); ++stage) {
+    if (!std::isnan(stage->damage.fallen_weight))
+      return simulation::pressure_search("SCENARIO.toml", data.model.excavation_names, stage->damage);
+  }
+  return {};
+}
+
 ordered_json model_json(const results::RunData& data) {
   const simulation::ModelRecord& model = data.model;
   ordered_json outlines = ordered_json::array();
@@ -80,6 +92,7 @@ ordered_json model_json(const results::RunData& data) {
           {"trace_maps", model.trace_map_names},
           {"excavations", model.excavation_names},
           {"excavation_outlines", outlines},
+          {"pressure_search", pressure_search(data)},
           {"histories", model.history_names},
           {"opening_width_m", results::or_null(model.opening_width)},
           {"slip_limit_m", results::or_null(model.slip_limit)},

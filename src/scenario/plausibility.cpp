@@ -39,6 +39,7 @@ class Plausibility {
     check_distributions();
     check_bonds();
     check_outlines();
+    check_fall_distance();
     check_automatic_order();
     check_excavated();
     check_in_situ();
@@ -192,6 +193,26 @@ class Plausibility {
         warn("{}: reaches beyond the domain", spec.path);
       }
     }
+  }
+
+  // What falls into an opening comes to lie on its floor.
+  void check_fall_distance() {
+    const double g = norm(scenario_.gravity);
+    if (!scenario_.damage.fall_distance || scenario_.excavations.empty() || g == 0.0) return;
+    double highest = -HUGE_VAL, lowest = HUGE_VAL;
+    for (const ExcavationSpec& spec : scenario_.excavations) {
+      for (const Vec2 p : excavation_outline(spec)) {
+        const double height = -dot(p, scenario_.gravity) / g;
+        highest = std::max(highest, height);
+        lowest = std::min(lowest, height);
+      }
+    }
+    if (*scenario_.damage.fall_distance >= highest - lowest)
+      warn(
+          "damage.fall_distance = {} m{}: openings are {:.4g} m high, and what falls into them does not "
+          "count "
+          "as fallen",
+          *scenario_.damage.fall_distance, place_text(scenario_, "damage.fall_distance"), highest - lowest);
   }
 
   void check_in_situ() {

@@ -339,10 +339,13 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver, bool without_g
            {.meaning = "Damping of every contact spring with its two blocks, as a share of critical.",
             .at_least = 0.0});
   read_damping(t, solver, without_ground);
-  t.number(
+  solver.keeps_restitution = t.number(
       "restitution", solver.restitution,
-      {.meaning = "Largest share of the speed of approach with which blocks part after an impact that the "
-                  "time step does not resolve.",
+      {.meaning =
+           "Share of the speed of approach with which blocks part after an impact, whatever the step "
+           "and the rule of integration. Where the key is not given, blocks part with 0 to 0.5 of it, "
+           "by the moment of the step at which they meet. With contact = \"augmented-lagrangian\" it is the "
+           "largest share.",
        .at_least = 0.0,
        .at_most = 1.0});
   t.integer(

@@ -55,8 +55,16 @@ void warn_of_step(const Scenario& scenario, const MotionSpec& spec, const Ground
   }
 }
 
-void warn_of_peak(const Stage& stage, const MotionSpec& spec, const GroundMotion& motion,
-                  std::vector<std::string>& warnings) {
+/// Why the peak of a motion is smaller than any that shakes.
+std::string reason_of_small_peak(const Scenario& scenario, const MotionSpec& spec) {
+  const char* units = "is the record in g, and was read as m/s2 or cm/s2?";
+  if (spec.components.empty() || !scenario.section_azimuth) return units;
+  return fmt::format("is section.azimuth = {:.4g}{} normal to the motion, or {}", *scenario.section_azimuth,
+                     place_text(scenario, "section.azimuth"), units);
+}
+
+void warn_of_peak(const Scenario& scenario, const Stage& stage, const MotionSpec& spec,
+                  const GroundMotion& motion, std::vector<std::string>& warnings) {
   if (stage.scale == 0.0) return;
   const double duration = stage.duration.value_or(motion.duration()),
                peak = loading::measure(motion, stage.scale, duration).peak,
@@ -68,7 +76,7 @@ void warn_of_peak(const Stage& stage, const MotionSpec& spec, const GroundMotion
                   join_path("stage", stage.name), spec.path, peak, in_g, stage.scale,
                   loading::least_usual_peak, loading::most_usual_peak,
                   in_g > loading::most_usual_peak ? "is the record in cm/s2, and was read as m/s2 or g?"
-                                                  : "is the record in g, and was read as m/s2 or cm/s2?"));
+                                                  : reason_of_small_peak(scenario, spec)));
 }
 
 /// Hz, between which damping is less than critical: the roots of ½ (α/ω + β ω) = 1.
@@ -141,7 +149,7 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
       warn_of_step(scenario, scenario.motions[k], motions[k], warnings);
     seen[k] = true;
     warn_of_short_stage(stage, motions[k], warnings);
-    if (scenario.si_units) warn_of_peak(stage, scenario.motions[k], motions[k], warnings);
+    if (scenario.si_units) warn_of_peak(scenario, stage, scenario.motions[k], motions[k], warnings);
   }
   warn_of_damping(scenario, motions, warnings);
 }

@@ -228,7 +228,13 @@ Damage DamageGauge::measure(const dynamics::State& state) {
     damage.fallen_weight += block.weight;
   }
   set_extremes(fallen_now, damage);
-  damage.equivalent_pressure = openings > 0.0 ? damage.fallen_weight / openings_.width() : not_a_number;
+  damage.largest_block_pressure = openings > 0.0 ? 0.0 : not_a_number;
+  for (const FallenBlock& block : fallen_now) {
+    if (openings == 0.0 || block.area < damage.largest_fallen_area) continue;
+    const Polygon& place = model_.blocks[static_cast<std::size_t>(block.block)].reference;
+    damage.largest_block_pressure = block.weight / width_along_wall(place, block.part, down());
+    break;
+  }
   joints_.watch(status_now);
   joints_.measure(status_now, damage);
   damage.closure_vertical = closure(reference_.height, model_, state, status_now);

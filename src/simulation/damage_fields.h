@@ -18,7 +18,7 @@ inline constexpr std::pair<const char*, int Damage::*> damage_counts[] = {
 inline constexpr std::pair<const char*, double Damage::*> damage_fields[] = {
     {"fallen_area_m2", &Damage::fallen_area},
     {"fallen_weight_n_m", &Damage::fallen_weight},
-    {"equivalent_pressure_pa", &Damage::equivalent_pressure},
+    {"largest_block_pressure_pa", &Damage::largest_block_pressure},
     {"largest_fallen_area_m2", &Damage::largest_fallen_area},
     {"largest_fallen_weight_n_m", &Damage::largest_fallen_weight},
     {"fallen_depth_m", &Damage::fallen_depth},

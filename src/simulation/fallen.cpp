@@ -1,5 +1,7 @@
 #include "simulation/fallen.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -49,6 +51,31 @@ void set_extremes(std::span<const FallenBlock> fallen, Damage& damage) {
       if (block.part == p.part) depth = std::max(depth, block.depth);
     damage.fallen_depth = std::max(damage.fallen_depth, depth);
   }
+}
+
+double width_along_wall(const Polygon& block, WallPart part, Vec2 down) {
+  const bool upright = part == WallPart::left || part == WallPart::right;
+  const Vec2 along = upright ? down : Vec2{-down.y, down.x};
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const Vec2 corner : block.outer) {
+    least = std::min(least, dot(along, corner));
+    most = std::max(most, dot(along, corner));
+  }
+  return most - least;
+}
+
+std::string pressure_search(std::string_view scenario, std::span<const std::string> openings,
+                            const Damage& damage) {
+  if (openings.empty() || !(damage.largest_block_pressure > 0.0)) return {};
+  const auto is_bare = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  const std::string& name = openings.front();
+  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), is_bare);
+  const std::string key =
+      bare ? fmt::format("excavation.{}.pressure", name) : fmt::format("\"excavation.'{}'.pressure\"", name);
+  return fmt::format("keyblock limit {} --key {} --from {:.0e} --to 0 -o pressure", scenario, key,
+                     10.0 * damage.largest_block_pressure);
 }
 
 }  // namespace keyblock::simulation

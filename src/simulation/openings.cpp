@@ -37,12 +37,6 @@ double Openings::area() const {
   return sum;
 }
 
-double Openings::width() const {
-  double sum = 0.0;
-  for (const Polygon& opening : openings_) sum += bounds(opening).size().x;
-  return sum;
-}
-
 double Openings::area_inside(const Polygon& block) const {
   double sum = 0.0;
   for (const Polygon& opening : openings_) {

@@ -15,8 +15,7 @@ class Openings {
   /// `open`: of every excavation, whether it is.
   void unite(std::span<const Excavation> excavations, std::span<const std::uint8_t> open);
 
-  [[nodiscard]] double area() const;   ///< m²
-  [[nodiscard]] double width() const;  ///< m, horizontal; of openings apart from each other the sum
+  [[nodiscard]] double area() const;  ///< m²
   /// m² of a polygon that lie inside.
   [[nodiscard]] double area_inside(const Polygon& block) const;
 

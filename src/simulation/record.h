@@ -195,10 +195,11 @@ struct FallenBlock {
 /// Measures as defined in the user guide; cumulative since the first excavation. NaN: there is no such number.
 struct Damage {
   int fallen_blocks = 0;
-  int hinges = 0;                    ///< joints in place that are open at one end and closed at another
-  double fallen_area = 0.0;          ///< m²
-  double fallen_weight = 0.0;        ///< N per metre of tunnel
-  double equivalent_pressure = 0.0;  ///< Pa; NaN without an opening
+  int hinges = 0;              ///< joints in place that are open at one end and closed at another
+  double fallen_area = 0.0;    ///< m²
+  double fallen_weight = 0.0;  ///< N per metre of tunnel
+  /// Pa, weight of the largest fallen block over its own width along the wall (width_along_wall); NaN without an opening.
+  double largest_block_pressure = 0.0;
   double largest_fallen_area = 0.0, largest_fallen_weight = 0.0;  ///< m², N per metre; of one block
   /// m, behind the outlines of openings, where there are any, else NaN.
   double fallen_depth = 0.0, fallen_depth_crown = 0.0, fallen_depth_left = 0.0, fallen_depth_right = 0.0,

@@ -17,7 +17,7 @@ SUMMARY_FIELDS = {
 STAGE_FIELDS = {
     "": "name kind steps duration pga_m_s2 pgv_m_s arias_m_s equilibrium standing largest_speed_m_s damage fallen",
     "equilibrium": "reached verdict worst_residual_ratio largest_way_m largest_way_share moving_blocks",
-    "damage": "fallen_blocks hinges fallen_area_m2 fallen_weight_n_m equivalent_pressure_pa largest_fallen_area_m2 "
+    "damage": "fallen_blocks hinges fallen_area_m2 fallen_weight_n_m largest_block_pressure_pa largest_fallen_area_m2 "
     "largest_fallen_weight_n_m fallen_depth_m fallen_depth_crown_m fallen_depth_left_m fallen_depth_right_m "
     "fallen_depth_invert_m opening_filled_ratio loosened_area_m2 displacement_max_m rotation_max_deg slip_max_m slip_max_ever_m "
     "slip_mean_m slipped_length_m slipped_length_ever_m opening_max_m opening_max_ever_m opened_length_m opened_length_ever_m "

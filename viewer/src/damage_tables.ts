@@ -25,7 +25,12 @@ const rockMeasures: Measure[] = [
   },
   { name: "Fallen area", unit: "m²", decimals: 2, of: (d) => d.fallen_area_m2 },
   { name: "Fallen weight", unit: "kN/m", decimals: 1, of: (d) => times(1e-3, d.fallen_weight_n_m) },
-  { name: "Equivalent pressure", unit: "kPa", decimals: 1, of: (d) => times(1e-3, d.equivalent_pressure_pa) },
+  {
+    name: "Largest block over its width",
+    unit: "kPa",
+    decimals: 1,
+    of: (d) => times(1e-3, d.largest_block_pressure_pa),
+  },
   { name: "Largest block", unit: "kN/m", decimals: 1, of: (d) => times(1e-3, d.largest_fallen_weight_n_m) },
   { name: "Depth, crown", unit: "m", decimals: 2, of: (d) => d.fallen_depth_crown_m },
   { name: "Depth, left wall", unit: "m", decimals: 2, of: (d) => d.fallen_depth_left_m },

@@ -10,7 +10,7 @@ export interface Damage {
   hinges: number;
   fallen_area_m2: number | null;
   fallen_weight_n_m: number | null;
-  equivalent_pressure_pa: number | null;
+  largest_block_pressure_pa: number | null;
   largest_fallen_area_m2: number | null;
   largest_fallen_weight_n_m: number | null;
   fallen_depth_m: number | null;
@@ -103,6 +103,8 @@ export interface Header {
     trace_maps: string[];
     excavations: string[];
     excavation_outlines: [number, number][][];
+    /** The command that finds the support pressure which holds the rock; empty where none is asked for. */
+    pressure_search?: string;
     histories: string[];
     opening_width_m: number | null;
     slip_limit_m: number | null;

@@ -80,18 +80,23 @@ function whatFalls(run: Run): HTMLElement | null {
       `${weight(damage.largest_fallen_weight_n_m)} (${significant(damage.largest_fallen_area_m2, 3)} m²${largest ? `, ${run.blockName(largest.block)}` : ""})`,
     ],
   ];
-  if (damage.equivalent_pressure_pa !== null)
-    facts.push(
-      ["Depth behind the wall", depths(damage) || "–"],
-      ["Equivalent pressure", `${significant(damage.equivalent_pressure_pa / 1e3, 3)} kPa`],
-    );
+  if (damage.fallen_depth_m !== null) facts.push(["Depth behind the wall", depths(damage) || "–"]);
+  if (damage.largest_block_pressure_pa !== null)
+    facts.push(["Largest block over its width", `${significant(damage.largest_block_pressure_pa / 1e3, 3)} kPa`]);
   const note =
-    damage.equivalent_pressure_pa === null
+    damage.fallen_depth_m === null
       ? "Weights are per metre of thickness."
-      : "Weights are per metre of tunnel; the pressure is the weight over the width of the opening. It is a dead weight, not a proof of what a support has to carry.";
+      : "Weights are per metre of tunnel. The weight of a block over its own width along the wall is what holds that block alone, without friction. The support pressure that holds all the rock is found by trying:";
+  const search = run.header.model.pressure_search;
   const list = factList(facts);
   list.classList.add("listed");
-  return h("div", { class: "falls" }, h("h3", {}, "What falls"), list, h("p", { class: "hint" }, note));
+  return h(
+    "div",
+    { class: "falls" },
+    h("h3", {}, "What falls"),
+    list,
+    h("p", { class: "hint" }, note, ...(search ? [" ", h("code", {}, search)] : [])),
+  );
 }
 
 /** One run tells of one rock mass. */

@@ -100,14 +100,15 @@ TEST(OutcomeText, SaysWhatFellAndFromWhere) {
   RunRecord run = settled_and_shaken();
   simulation::Damage& damage = run.stages[1].damage;
   damage.fallen_weight = 91.2e3;
-  damage.equivalent_pressure = 15.2e3;
+  damage.largest_block_pressure = 15.2e3;
   damage.largest_fallen_weight = 30.5e3;
   damage.fallen_depth = damage.fallen_depth_crown = 1.234;
   damage.fallen_depth_right = 0.4;
-  EXPECT_THAT(
-      outcome_text(run, 9),
-      HasSubstr("\nfallen: 91.2 kN per m of tunnel, 15.2 kPa over the width of the opening (a dead "
-                "weight); largest block 30.5 kN/m; from behind the crown 1.23 m, right wall 0.40 m\n"));
+  const std::string text = outcome_text(run, 9, "tunnel.toml", std::vector<std::string>{"adit"});
+  EXPECT_THAT(text, HasSubstr("\nfallen: 91.2 kN per m of tunnel; largest block 30.5 kN/m, 15.2 kPa over its "
+                              "own width; from behind the crown 1.23 m, right wall 0.40 m\n"));
+  EXPECT_THAT(text, HasSubstr("\nthe support pressure that holds it: keyblock limit tunnel.toml --key "
+                              "excavation.adit.pressure --from 2e+05 --to 0 -o pressure\n"));
   damage.fallen_blocks = 0;
   EXPECT_THAT(outcome_text(run, 9), Not(HasSubstr("fallen:")));
 }

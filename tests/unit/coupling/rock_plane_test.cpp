@@ -39,9 +39,9 @@ struct Sine {
 
 /// A column of 20 m on a half-space of the same rock, for 1.8 s under 3 cycles of 3 Hz along x.
 std::vector<RockPlaneState> shaken(const std::vector<RockPlane>& planes, double step, double amplitude = 4.0,
-                                   Sine along_y = {0.0, 1.0, 1.0}) {
-  const RockLayer layer = rock();
-  const RockColumn column(std::span(&layer, 1), 0.0, ground, layer.impedance(), 25.0, {}, planes);
+                                   Sine along_y = {0.0, 1.0, 1.0},
+                                   const std::vector<RockLayer>& layers = {rock()}) {
+  const RockColumn column(layers, 0.0, ground, layers.back().impedance(), 25.0, {}, planes);
   const Integrator rule = Integrator::generalized_alpha(0.0);
   const Sine along_x{amplitude, 3.0, 3.0};
   std::vector<double> memory(column.memory_size(), 0.0);
@@ -52,6 +52,20 @@ std::vector<RockPlaneState> shaken(const std::vector<RockPlane>& planes, double 
   std::vector<RockPlaneState> states;
   for (std::size_t k = 0; k < column.planes().size(); ++k) states.push_back(column.plane(memory, k));
   return states;
+}
+
+// A plane where one layer ends and the next begins is in the column, and so is one of two at the same height: the weaker one. Without it the
+// numbers of planes and of their elements were others, and the step read beyond the end of its memory.
+TEST(RockPlane, AtTheEndOfALayerOrOfAnotherPlane) {
+  const RockPlaneState alone = shaken({plane(5.0, 10.0)}, 0.002).front();
+  RockLayer lower = rock();
+  lower.top = ground - 5.0;
+  const std::vector<RockLayer> two{rock(), lower};
+  EXPECT_NEAR(shaken({plane(5.0, 10.0)}, 0.002, 4.0, {0.0, 1.0, 1.0}, two).front().largest_slip,
+              alone.largest_slip, 1e-3 * alone.largest_slip);
+  const std::vector<RockPlaneState> twice = shaken({plane(5.0, 30.0), plane(5.0, 10.0)}, 0.002);
+  ASSERT_EQ(twice.size(), 1U);
+  EXPECT_EQ(twice.front().largest_slip, alone.largest_slip);
 }
 
 // Known: a chain of 800 masses with a Coulomb joint, explicit.

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 #include <span>
+#include <utility>
 
 #include "../scene.h"
 #include "core/index.h"
@@ -41,6 +42,38 @@ TEST(Impact, ReboundsUpToTheRestitutionWhereTheStepDoesNotResolveIt) {
   EXPECT_LT(largest_rebound(0.5), 0.5);
   EXPECT_LT(largest_rebound(0.2), 0.2);
   EXPECT_GT(largest_rebound(1.0), 0.6);  // Shi's rule alone: by the moment within the step
+}
+
+/// What remains of the approach of two blocks, which meet at some moment of a step without gravity; and the share of momentum that is lost.
+std::pair<double, double> part(double restitution, double young, double step, double gap) {
+  Scene scene(young, 30.0);
+  scene.setup.gravity = {0.0, 0.0};
+  scene.setup.solver.restitution = restitution;
+  scene.setup.solver.keeps_restitution = true;
+  scene.rectangle({-1.0, 0.0}, 1.0, 1.0);
+  scene.rectangle({gap, 0.25}, 0.5, 0.5);
+  scene.setup.properties[0].velocity = {2.0, 0.0};
+  scene.setup.properties[1].velocity = {-3.0, 0.0};
+  Simulator s(scene);
+  s.run(gap / 5.0 + 6.0 * step, step);
+  const double momentum = s.velocity(0).x + 0.25 * s.velocity(1).x;
+  EXPECT_LT(std::abs(s.residual()), 1e-3 * dynamics::kinetic_energy(s.model, s.state) + 1e-3 * 2600.0);
+  return {(s.velocity(1).x - s.velocity(0).x) / 5.0, momentum / (2.0 - 0.75) - 1.0};
+}
+
+// Known: Newton's law of impact, and the balance of momentum. At any moment of the step, for soft and stiff blocks.
+TEST(Impact, PartsWithTheRestitutionThatIsGiven) {
+  for (const double e : {0.0, 0.3, 0.5, 0.8, 1.0}) {
+    for (const double step : {0.0002, 0.001, 0.002, 0.005}) {
+      for (const double moment : {0.02, 0.3, 0.55, 0.97}) {
+        for (const double young : {1e8, 5e10}) {
+          const auto [parts, lost] = part(e, young, step, 5.0 * step * (3.0 + moment));
+          EXPECT_NEAR(parts, e, 0.01) << step << ' ' << moment << ' ' << young;
+          EXPECT_NEAR(lost, 0.0, 1e-6);
+        }
+      }
+    }
+  }
 }
 
 // Without gravity there is no weight that a speed could be measured by; the fastest block is the measure.

@@ -23,7 +23,7 @@ simulation::Damage synthetic_damage(std::size_t stage, const std::vector<simulat
     damage.fallen_weight += block.weight;
   }
   simulation::set_extremes(fallen, damage);
-  damage.equivalent_pressure = damage.fallen_weight / opening.x;
+  damage.largest_block_pressure = damage.largest_fallen_weight / std::sqrt(damage.largest_fallen_area);
   damage.displacement_max = 1.9;
   damage.rotation_max = 38.0;
   damage.hinges = 11;

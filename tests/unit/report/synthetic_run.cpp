@@ -328,7 +328,7 @@ class Wall {
         stage.damage = damage_at(k);
       } else {
         stage.damage.slip_max = stage.damage.slip_max_ever = 1e-3 * static_cast<double>(k);
-        stage.damage.equivalent_pressure = stage.damage.fallen_depth = std::nan("");
+        stage.damage.largest_block_pressure = stage.damage.fallen_depth = std::nan("");
         stage.damage.rotation_max = 0.03 * static_cast<double>(k);
         stage.damage.hinges = k < 2 ? 0 : 4;
         stage.standing = simulation::Standing::stands;

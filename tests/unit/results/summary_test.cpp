@@ -51,7 +51,7 @@ TEST(Summary, HasEveryFieldOfTheContract) {
       EXPECT_TRUE(stage["fallen"][0].contains(key)) << key;
     }
     for (const char* key : {"fallen_blocks",          "fallen_area_m2",
-                            "fallen_weight_n_m",      "equivalent_pressure_pa",
+                            "fallen_weight_n_m",      "largest_block_pressure_pa",
                             "largest_fallen_area_m2", "largest_fallen_weight_n_m",
                             "fallen_depth_m",         "fallen_depth_crown_m",
                             "fallen_depth_left_m",    "fallen_depth_right_m",

@@ -68,7 +68,7 @@ void add_stages(study::RunResult& run, double scale, double severity, bool openi
     s.damage.fallen_weight = 25e3 * s.damage.fallen_area;
     s.damage.largest_fallen_area = 0.4 * s.damage.fallen_area;
     s.damage.largest_fallen_weight = 0.4 * s.damage.fallen_weight;
-    s.damage.equivalent_pressure = opening ? s.damage.fallen_weight / 5.5 : std::nan("");
+    s.damage.largest_block_pressure = opening ? 0.4 * s.damage.fallen_weight / 0.5 : std::nan("");
     s.damage.fallen_depth = opening ? 0.3 * s.damage.fallen_area : std::nan("");
     s.damage.fallen_blocks = static_cast<int>(s.damage.fallen_area / 0.2);
     s.damage.opening_filled_ratio = s.damage.fallen_area / 23.8;

@@ -11,8 +11,8 @@ import type { Selection } from "./selection";
 const whatFalls: [string, string][] = [
   ["fallen_area_m2", "Area"],
   ["fallen_weight_n_m", "Weight"],
-  ["equivalent_pressure_pa", "Equivalent pressure"],
   ["largest_fallen_weight_n_m", "Largest block"],
+  ["largest_block_pressure_pa", "Largest block over its width"],
   ["fallen_depth_m", "Depth behind the wall"],
 ];
 const whatMoves: [string, string][] = [

@@ -5,7 +5,7 @@ import type { Estimate, Quantity } from "./data";
 const shown: Record<string, { factor: number; unit: string }> = {
   fallen_weight_n_m: { factor: 1e-3, unit: "kN/m" },
   largest_fallen_weight_n_m: { factor: 1e-3, unit: "kN/m" },
-  equivalent_pressure_pa: { factor: 1e-3, unit: "kPa" },
+  largest_block_pressure_pa: { factor: 1e-3, unit: "kPa" },
   opening_filled_ratio: { factor: 100, unit: "%" },
   displacement_max_m: { factor: 1e3, unit: "mm" },
   slip_max_m: { factor: 1e3, unit: "mm" },
