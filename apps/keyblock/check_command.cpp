@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -42,7 +43,13 @@ Checked checked(const ScenarioArguments& arguments) {
                 .plan = {}};
   found.notes.insert(found.notes.begin(), of_run.notes.begin(), of_run.notes.end());
   // Every combination of values is looked at here.
-  if (scenario.study) found.plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION);
+  if (scenario.study) {
+    std::vector<std::string> of_study;
+    found.plan = study::make_plan(arguments.file, arguments.overrides, KEYBLOCK_VERSION, &of_study);
+    for (std::string& warning : of_study)
+      if (std::ranges::find(found.warnings, warning) == found.warnings.end())
+        found.warnings.push_back(std::move(warning));
+  }
   return found;
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t longest_failure = 4000;  // characters
 std::string study_bar_line(const std::string& name, const study::StudyProgress& p, const Terminal& terminal) {
   std::vector<Field> fields{{0, percent_text(p.fraction)}, {1, fmt::format("{}/{} done", p.done, p.total)}};
   if (p.failed > 0) fields.push_back({2, fmt::format("{} failed", p.failed)});
-  fields.push_back({4, fmt::format("{} running", p.running)});
+  if (p.running > 0) fields.push_back({4, fmt::format("{} running", p.running)});
   fields.push_back({3, "ETA " + clock_text(p.seconds_left)});
   return composed_line(name, p.fraction, std::move(fields), terminal);
 }
@@ -25,8 +25,8 @@ std::string study_bar_line(const std::string& name, const study::StudyProgress& 
 std::string study_log_line(const study::StudyProgress& p) {
   std::string text = fmt::format("{}/{} runs done, ", p.done, p.total);
   if (p.failed > 0) text += fmt::format("{} failed, ", p.failed);
-  return text + fmt::format("{} running, {:.0f} %, ETA {}", p.running, 100.0 * p.fraction,
-                            clock_text(p.seconds_left));
+  if (p.running > 0) text += fmt::format("{} running, ", p.running);
+  return text + fmt::format("{:.0f} %, ETA {}", 100.0 * p.fraction, clock_text(p.seconds_left));
 }
 
 StudyDisplay::StudyDisplay(std::string name, std::function<void(const std::string&)> write,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _optional, record
+from . import _fits, _optional, record
 from .errors import DamagedError, FormatError, NoResultError
 
 FORMAT = "keyblock result"
@@ -16,7 +16,7 @@ NEWEST_VERSION = 2
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # What h5py throws where a file does not hold what it says.
-_BROKEN = (KeyError, OSError, RuntimeError, ValueError, TypeError)
+_BROKEN = (KeyError, OSError, RuntimeError, ValueError, TypeError, IndexError, MemoryError)
 
 
 def text_of(value: Any) -> str:
@@ -70,18 +70,24 @@ class ResultFile:
         self._grows = bool(self._file.swmr_mode)
         try:
             self._check_format()
+            _fits.check(self)
         except BaseException:
             self.close()
             raise
 
     def _check_format(self) -> None:
         version = self.attribute("format_version")
-        if self.attribute("format") != FORMAT or version is None:
+        if self.attribute("format") != FORMAT or not isinstance(version, (int, np.integer)):
             raise FormatError(f"{self.path} is an HDF5 file, but no result of keyblock")
         if version > NEWEST_VERSION:
             raise FormatError(
                 f"{self.path} has format {version}, and this package reads formats up to {NEWEST_VERSION}: take a newer keyblock"
             )
+
+    @property
+    def grows(self) -> bool:
+        """Whether a run still writes it."""
+        return self._grows
 
     def close(self) -> None:
         self._file.close()
@@ -132,7 +138,7 @@ class ResultFile:
     @cached_property
     def _texts(self) -> dict[str, Any]:
         """Empty in files of earlier versions, whose texts have one length each."""
-        return record.parse(self.bytes_as_text("texts"), f"texts of {self.path}") if self.has("texts") else {}
+        return record.parse_record(self.bytes_as_text("texts"), f"texts of {self.path}") if self.has("texts") else {}
 
     def texts(self, name: str) -> list[str]:
         if not self._texts:
@@ -147,6 +153,10 @@ class ResultFile:
     def bytes_as_text(self, name: str) -> str:
         """Of a dataset that holds the bytes of a text."""
         return bytes(self.read(name)).partition(b"\0")[0].decode("utf-8", "replace")
+
+    def kind(self, name: str) -> str:
+        """Of the numbers of a dataset, as numpy has it: "f", "i", "u", or another letter."""
+        return str(self._dataset(name).dtype.kind)
 
     def shape(self, name: str) -> tuple[int, ...]:
         return tuple(self._dataset(name).shape)

@@ -50,8 +50,10 @@ class Blocks(Sequence[Block]):
     def __init__(self, file: ResultFile) -> None:
         self._file = file
         what = f"model/record of {file.path}"
-        self.record: record.Record = record.parse(file.texts("model/record")[0], what)
-        self.origin = np.asarray(self.record.origin, dtype=float)  #: (2,), m: real coordinates less local ones
+        with record.damaged(what):
+            self.record: record.Record = record.parse_record(file.texts("model/record")[0], what)
+            #: (2,), m: real coordinates less local ones
+            self.origin = np.asarray(self.record.origin, dtype=float).reshape(2)
         self.local = file.read("model/vertices")  #: (nv, 2), m: vertices in local coordinates
         self.names = file.texts("model/block_name")
         self.area = file.read("model/block_area")  #: (nb,), m²

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import difflib
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .errors import DamagedError, NoResultError
+from .errors import DamagedError, KeyblockError, NoResultError
 
 
 class Record(dict):
@@ -55,8 +57,27 @@ def parse(text: str, what: str) -> Any:
     """JSON text as records, lists, texts and numbers. Throws DamagedError, which names `what`."""
     try:
         return json.loads(text, object_hook=Record)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise DamagedError(f"{what} is damaged: it is no JSON ({error})") from None
+
+
+def parse_record(text: str, what: str) -> Record:
+    """The same of an object."""
+    found = parse(text, what)
+    if not isinstance(found, Record):
+        raise DamagedError(f"{what} is damaged: it is no object")
+    return found
+
+
+@contextmanager
+def damaged(what: str) -> Iterator[None]:
+    """Records that lack what is looked for in them are damaged, and DamagedError names `what`."""
+    try:
+        yield
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        if isinstance(error, KeyblockError):
+            raise
+        raise DamagedError(f"{what} is damaged: {error}") from None
 
 
 def read(path: Path) -> Any:

@@ -80,7 +80,7 @@ class Result:
     @cached_property
     def _summary(self) -> record.Record | None:
         text = self._file.bytes_as_text("summary")
-        return record.parse(text, f"summary of {self.path}") if text else None
+        return record.parse_record(text, f"summary of {self.path}") if text else None
 
     @property
     def summary(self) -> record.Record:

@@ -49,10 +49,15 @@ class Stage(record.Record):
 
 def read_stages(file: ResultFile, summary: record.Record | None, excavation_names: list[str]) -> list[Stage]:
     """All stages that have begun, in their order."""
+    with record.damaged(f"stages of {file.path}"):
+        return _read_stages(file, summary, excavation_names)
+
+
+def _read_stages(file: ResultFile, summary: record.Record | None, excavation_names: list[str]) -> list[Stage]:
     lines: dict[int, record.Record] = {}
     text = file.bytes_as_text("stages")
     for row in text.split("\n")[:-1]:  # a line without its end is in the making
-        found = record.parse(row, f"stages of {file.path}")
+        found = record.parse_record(row, f"stages of {file.path}")
         lines[found["index"]] = found
     told = summary["stages"] if summary else []
     stages = []

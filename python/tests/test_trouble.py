@@ -82,6 +82,48 @@ def test_datasets_that_are_missing_or_do_not_fit(copy):
         run.blocks
 
 
+def replace(file: h5py.File, name: str, data: object) -> None:
+    attributes = dict(file[name].attrs)
+    del file[name]
+    dataset = file.create_dataset(name, data=data)
+    for key in ("units", "unit", "description"):
+        if key in attributes:
+            dataset.attrs[key] = attributes[key]
+
+
+@pytest.mark.parametrize("how", ["one row less", "one row more", "flat", "empty"])
+def test_parts_that_do_not_fit_each_other_are_damaged(copy, how):
+    with h5py.File(copy / "result.h5") as file:
+        names = [f"{group}/{name}" for group in ("model", "frames", "contacts", "histories", "steps") for name in file[group]]
+    undamaged = (copy / "result.h5").read_bytes()
+    for name in names:
+        (copy / "result.h5").write_bytes(undamaged)
+        with h5py.File(copy / "result.h5", "r+") as file:
+            data = file[name][()]
+            if len(data) < 2 or data.dtype.kind not in "iuf":
+                continue
+            made = {"one row less": data[:-1], "one row more": np.concatenate([data, data[-1:]]), "flat": data.reshape(-1), "empty": data[:0]}[how]
+            if made.shape == data.shape:
+                continue
+            replace(file, name, made)
+        with pytest.raises(kb.DamagedError, match="damaged"), kb.open(copy) as run:
+            look_at_everything(run)
+
+
+@pytest.mark.parametrize("text", [b"[]", b"{}", b"[" * 100_000, b"7", b'{"stages": 1}'])
+def test_texts_that_hold_something_else_are_damaged(copy, text):
+    undamaged = (copy / "result.h5").read_bytes()
+    for name in ("summary", "texts"):
+        (copy / "result.h5").write_bytes(undamaged)
+        with h5py.File(copy / "result.h5", "r+") as file:
+            replace(file, name, np.frombuffer(text, dtype=np.uint8))
+        try:
+            with kb.open(copy) as run:
+                look_at_everything(run)
+        except kb.KeyblockError:
+            continue
+
+
 def test_a_file_that_is_cut_short(copy):
     file = copy / "result.h5"
     file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])

@@ -25,7 +25,9 @@ Checked check(const scenario::Scenario& scenario, int realization) {
         scenario::build_setup(scenario, realization, checked.blocks, &checked.warnings);
     simulation::build_model(setup);
     for (const auto& [name, value] : setup.ground) {
-      if (name == "boundary") checked.notes.push_back(fmt::format("{}: {}", name, value));
+      const bool is_turned = name == "gravity" && value.find("downwards") != std::string::npos;
+      if (name == "boundary" || is_turned || name.starts_with("earthquake"))
+        checked.notes.push_back(fmt::format("{}: {}", name, value));
     }
     for (const auto& [name, value] : scenario::boundary_facts(setup))
       checked.notes.push_back(fmt::format("{}: {}", name, value));

@@ -21,6 +21,14 @@ GroundMotion::GroundMotion(std::string name, std::vector<double> time, std::vect
   }
 }
 
+GroundMotion GroundMotion::scaled(double factor) const {
+  std::vector<Vec2> accelerations = acceleration_;
+  for (Vec2& a : accelerations) a = factor * a;
+  GroundMotion motion(name_, time_, std::move(accelerations));
+  motion.share_of_record_ = share_of_record_;
+  return motion;
+}
+
 Vec2 GroundMotion::at(double time) const {
   if (time_.empty() || time < 0.0 || time > time_.back()) return {};
   const auto next = std::upper_bound(time_.begin(), time_.end(), time);

@@ -23,6 +23,11 @@ class GroundMotion {
   [[nodiscard]] Vec2 displacement(double time) const;
   /// Largest |a| over time, m/s².
   [[nodiscard]] double peak() const;
+  /// Of ∫|a|² dt of the record that it was cut out of, the share that it has; 1 where nothing was cut off.
+  [[nodiscard]] double share_of_record() const { return share_of_record_; }
+  void set_share_of_record(double share) { share_of_record_ = share; }
+  /// The same motion with accelerations times `factor`.
+  [[nodiscard]] GroundMotion scaled(double factor) const;
   [[nodiscard]] const std::vector<double>& times() const { return time_; }
   [[nodiscard]] const std::vector<Vec2>& accelerations() const { return acceleration_; }
 
@@ -34,6 +39,7 @@ class GroundMotion {
   std::vector<Vec2> acceleration_;
   std::vector<Vec2> integral_;  ///< ∫₀^{time_k} a dt
   std::vector<Vec2> way_;       ///< its integral
+  double share_of_record_ = 1.0;
 };
 
 }  // namespace keyblock::loading

@@ -62,6 +62,12 @@ double peak_velocity(Vec2 v, Vec2 a, Vec2 b, double h) {
 
 }  // namespace
 
+ShakingMeasures measure_along(Vec2 direction, const GroundMotion& motion, double scale, double duration) {
+  std::vector<Vec2> part = motion.accelerations();
+  for (Vec2& a : part) a = dot(a, direction) * direction;
+  return measure(GroundMotion(motion.name(), motion.times(), std::move(part)), scale, duration);
+}
+
 ShakingMeasures measure(const GroundMotion& motion, double scale, double duration) {
   const std::vector<double>& t = motion.times();
   const std::vector<Vec2>& a = motion.accelerations();

@@ -28,6 +28,8 @@ struct ShakingMeasures {
   double arias_intensity = 0.0;  ///< m/s, sum of both components: π/(2g) ∫|a|² dt
 };
 ShakingMeasures measure(const GroundMotion& motion, double scale, double duration);
+/// The same of one direction of it: along the section, or upwards.
+ShakingMeasures measure_along(Vec2 direction, const GroundMotion& motion, double scale, double duration);
 
 /// s, 2π ∫|a| dt / ∫|da|, the period of a motion by the way that its acceleration goes: that of a sine, and in a record that of what is
 /// strong. A jump counts as far as it goes. 0 where nothing changes.

@@ -112,6 +112,16 @@ Samples cut(const Samples& all, double t0, double t1) {
   return part;
 }
 
+// ∫|a|² dt.
+double square_integral(const Samples& s) {
+  double squares = 0.0;
+  for (std::size_t k = 1; k < s.time.size(); ++k) {
+    const Vec2 a = s.value[k - 1], b = s.value[k];
+    squares += (s.time[k] - s.time[k - 1]) / 3.0 * (dot(a, a) + dot(a, b) + dot(b, b));
+  }
+  return squares;
+}
+
 // ∫a dt and ∫∫a dt dt over the whole of a piecewise linear function.
 std::pair<Vec2, Vec2> final_motion(const Samples& s) {
   Vec2 velocity, displacement;
@@ -202,10 +212,15 @@ GroundMotion project_motion(std::string name,
     fail("window", fmt::format("[{}, {}]", t0, t1),
          fmt::format("ascending times within the record, {} to {} s", start, end));
   }
-  Samples samples = cut(sum(curves), t0, t1);
+  const Samples record = sum(curves);
+  const double whole = square_integral(record);
+  Samples samples = cut(record, t0, t1);
+  const double share = whole > 0.0 ? square_integral(samples) / whole : 1.0;
   if (options.baseline != Baseline::none) correct(samples, options.baseline);
   for (Vec2& a : samples.value) a = options.scale * a;
-  return {std::move(name), std::move(samples.time), std::move(samples.value)};
+  GroundMotion motion(std::move(name), std::move(samples.time), std::move(samples.value));
+  motion.set_share_of_record(share);
+  return motion;
 }
 
 AccelerationTable sine_table(const Sine& sine) {

@@ -370,11 +370,13 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   setup.in_situ = in_situ_stress(scenario, simulation::boundary_box(setup).max.y);
   setup.time_step = scenario.time_step;
   setup.motions = read_motions(scenario, notes);
+  const std::vector<GroundFact> earthquakes = earthquake_facts(scenario, setup.motions);
   const std::vector<simulation::JointPiece> pieces = place_far_rock(scenario, setup);
   take_to_base(scenario, setup);
   place_far_planes(scenario, setup, pieces, notes);
   setup.files = input_files(scenario);
   for (const GroundFact& fact : ground_facts(scenario)) setup.ground.emplace_back(fact.name, fact.value);
+  for (const GroundFact& fact : earthquakes) setup.ground.emplace_back(fact.name, fact.value);
   if (std::string joints = joints_in_model(scenario, setup.system); !joints.empty())
     setup.ground.emplace_back("joints in the model, of their length", std::move(joints));
   for (auto& fact : boundary_facts(setup)) setup.ground.push_back(std::move(fact));

@@ -139,6 +139,37 @@ void warn_of_motion(const Scenario& scenario, const simulation::RunSetup& setup,
                     path, period, vs * period, vs * period / size, least_blocks));
 }
 
+/// Without a domain the base is where the lowest edges lie: what is a little higher stands on nothing.
+void warn_of_base(const simulation::RunSetup& setup, std::vector<std::string>& warnings) {
+  constexpr double near = 0.02, alike = 1e-9;  // of the height, of the size
+  const Box box = simulation::boundary_box(setup);
+  const double tolerance = alike * std::max(box.size().x, box.size().y), origin = setup.system.origin.y;
+  std::size_t on_base = 0, above = 0;
+  double gap = HUGE_VAL;
+  for (std::size_t b = 0; b < setup.system.blocks.size(); ++b) {
+    if (setup.properties[b].fixed) continue;
+    const Ring& ring = setup.system.blocks[b].polygon.outer;
+    double lowest = HUGE_VAL;
+    for (const Vec2 p : ring) lowest = std::min(lowest, p.y - box.min.y);
+    bool has_edge = false;
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      has_edge |= std::max(ring[k].y, ring[(k + 1) % ring.size()].y) - box.min.y <= tolerance;
+    if (has_edge) {
+      ++on_base;
+    } else if (lowest <= near * box.size().y) {
+      ++above;
+      gap = std::min(gap, lowest);
+    }
+  }
+  if (above > 0)
+    warnings.push_back(
+        fmt::format("boundary: the base is at {:.6g} m, where {} of the blocks given one by one {} an edge; "
+                    "{} more {} {:.2g} m "
+                    "above it, or on a corner, and {} not held by it",
+                    box.min.y + origin, on_base, on_base == 1 ? "has" : "have", above,
+                    above == 1 ? "lies" : "lie", gap, above == 1 ? "is" : "are"));
+}
+
 }  // namespace
 
 std::optional<simulation::Boundary> boundary_of(const Scenario& scenario) {
@@ -231,6 +262,7 @@ std::vector<std::pair<std::string, std::string>> boundary_facts(const simulation
 void add_boundary_warnings(const Scenario& scenario, const simulation::RunSetup& setup,
                            std::vector<std::string>& warnings) {
   if (!setup.boundary) return;
+  if (!setup.has_domain) warn_of_base(setup, warnings);
   for (const simulation::Stage& stage : setup.stages) {
     if (stage.kind == simulation::StageKind::shake) warn_of_motion(scenario, setup, stage, warnings);
   }

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "rockmass/section.h"
+#include "scenario/load_checks.h"
 #include "scenario/sections.h"
 
 namespace keyblock::scenario {
@@ -13,6 +16,9 @@ namespace {
 
 /// Values of a fact that are named; of more, the first and the last.
 constexpr std::size_t most_values = 4;
+/// Loads that are listed one by one.
+constexpr std::size_t most_loads = 6;
+constexpr double least_angle = 1e-6;  // ° that gravity is turned by
 
 std::string number(double x) {
   return fmt::format("{:.4g}", x);
@@ -24,6 +30,20 @@ std::string pressure(double pa, const char* per = "") {
   for (const auto& [size, name] : units)
     if (std::abs(pa) >= size) return fmt::format("{} {}{}", number(pa / size), name, per);
   return pa == 0.0 ? "0" : fmt::format("{} Pa{}", number(pa), per);
+}
+
+std::string force(double n) {
+  return std::abs(n) >= 1e6   ? number(n / 1e6) + " MN/m"
+         : std::abs(n) >= 1e3 ? number(n / 1e3) + " kN/m"
+                              : number(n) + " N/m";
+}
+
+/// The nearest of eight.
+const char* arrow(Vec2 v) {
+  constexpr std::array<const char*, 8> arrows{"→", "↗", "↑", "↖", "←", "↙", "↓", "↘"};
+  if (norm(v) == 0.0) return "";
+  const auto eighth = std::lround(std::atan2(v.y, v.x) / (0.25 * std::numbers::pi));
+  return arrows[static_cast<std::size_t>((eighth + 8) % 8)];
 }
 
 std::string length(const rockmass::Distribution& d) {
@@ -45,6 +65,7 @@ class Facts {
 
   std::vector<GroundFact> all() {
     for (const ExcavationSpec& spec : scenario_.excavations) opening(spec);
+    gravity();
     stress();
     rock();
     joints();
@@ -59,7 +80,7 @@ class Facts {
         add(quoted("seismic coefficients in", stage.name),
             fmt::format("k_h {}, k_v {}", number(stage.k_h), number(stage.k_v)));
     }
-    if (!scenario_.loads.empty()) add("loads", std::to_string(scenario_.loads.size()));
+    loads();
     if (!scenario_.supports.empty()) add("supports", std::to_string(scenario_.supports.size()));
     if (!scenario_.springs.empty()) add("springs", std::to_string(scenario_.springs.size()));
     return std::move(facts_);
@@ -75,6 +96,30 @@ class Facts {
                                                                    : "polygon";
     add(quoted("opening", spec.name),
         fmt::format("{}, {} m wide, {} m high", shape, number(box.size().x), number(box.size().y)));
+  }
+
+  void gravity() {
+    const Vec2 g = scenario_.gravity;
+    if (norm(g) == 0.0) return add("gravity", "none");
+    const double angle = std::atan2(g.x, -g.y) * 180.0 / std::numbers::pi;
+    std::string text = fmt::format("{} m/s² {}", number(norm(g)), arrow(g));
+    if (std::abs(angle) > least_angle)
+      text += fmt::format(", {}° from downwards, to the {}", number(std::abs(angle)),
+                          angle < 0.0 ? "left" : "right");
+    add("gravity", std::move(text));
+  }
+
+  void loads() {
+    const std::vector<loading::Load>& loads = scenario_.loads;
+    for (std::size_t k = 0; k < std::min(loads.size(), most_loads); ++k) {
+      const loading::Load& load = loads[k];
+      const Vec2 sum = resultant(scenario_, load);
+      std::string text = fmt::format("{} {}", force(norm(sum)), arrow(sum));
+      if (load.is_line) text += fmt::format(" along {} m", number(norm(load.to - load.from)));
+      if (!load.factor.empty()) text += ", at its largest over time";
+      add(fmt::format("load {} on “{}”", k + 1, load.block), std::move(text));
+    }
+    if (loads.size() > most_loads) add("more loads", std::to_string(loads.size() - most_loads));
   }
 
   void stress() {
@@ -161,6 +206,10 @@ class Facts {
                                   sides, spec.overburden ? "overburden" : "free top"));
     } else if (scenario_.domain && scenario_.domain->frame && is_shaken()) {
       add(around_the_model, "closed box: wave stress left out");
+    } else if (scenario_.domain) {
+      add(around_the_model, scenario_.domain->frame ? fmt::format("fixed frame, friction {}°",
+                                                                  number(scenario_.domain->frame_friction))
+                                                    : "free boundary");
     }
   }
 
@@ -182,6 +231,8 @@ class Facts {
 
   static std::string motion(const MotionSpec& spec) {
     std::vector<std::string> parts;
+    if (spec.pga) parts.push_back(fmt::format("brought to a horizontal peak of {} m/s²", number(*spec.pga)));
+    if (spec.pgv) parts.push_back(fmt::format("brought to a horizontal peak of {} m/s", number(*spec.pgv)));
     for (const MotionComponentSpec& component : spec.components)
       parts.push_back(component.file.filename().string());
     if (spec.window)

@@ -47,7 +47,7 @@ class MotionReader {
             "from a borehole is \"within\"",
             spec.path));
       try {
-        motions.push_back(spec.components.empty() ? tables(spec) : record(spec));
+        motions.push_back(to_target(spec, spec.components.empty() ? tables(spec) : record(spec)));
       } catch (const InputError& error) {
         for (Diagnostic diagnostic : error.diagnostics())
           mistakes_.push_back(placed(spec, std::move(diagnostic)));
@@ -97,6 +97,18 @@ class MotionReader {
     GroundMotion motion = loading::project_motion(spec.name, components, options);
     if (spec.window) warn_of_jumps(spec, motion);
     return motion;
+  }
+
+  /// The peak along the section is that of the target.
+  [[nodiscard]] GroundMotion to_target(const MotionSpec& spec, const GroundMotion& motion) const {
+    if (!spec.pga && !spec.pgv) return motion;
+    const loading::ShakingMeasures along = loading::measure_along({1.0, 0.0}, motion, 1.0, motion.duration());
+    const double found = spec.pga ? along.peak : along.peak_velocity;
+    if (!(found > 0.0))
+      fail(spec.path + (spec.pga ? ".pga" : ".pgv"),
+           "a target for a motion that does not shake along the section",
+           "a motion with a horizontal component in the section");
+    return motion.scaled((spec.pga ? *spec.pga : *spec.pgv) / found);
   }
 
   void warn_of_jumps(const MotionSpec& spec, const GroundMotion& motion) {

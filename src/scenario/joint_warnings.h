@@ -10,7 +10,8 @@ namespace keyblock::scenario {
 /// rock or bounds no block. It is not in the model: blocks do not break there. Empty without such joints.
 std::string joints_in_model(const Scenario& scenario, const cutting::BlockSystem& system);
 
-/// Maps of which more than 5 % is lost, added to `warnings`, with the traces that end just short of another one.
+/// Maps of which more than 5 % is lost, with the traces that end just short of another one, and sets of which more than 30 % is; maps that lie
+/// outside the domain, with what brings them into it; blocks as large as an opening. Added to `warnings`.
 void add_joint_warnings(const Scenario& scenario, const BlockModel& model,
                         std::vector<std::string>& warnings);
 

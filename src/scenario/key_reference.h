@@ -19,7 +19,9 @@ enum class KeyKind {
   rings,       ///< [[[x, y], …], …]
   lines,       ///< likewise, of two points or more
   rows,        ///< [[time, value], …]
-  references,  ///< names of other elements
+  references,  ///< names of other elements, or words
+  list,        ///< of whatever there may be
+  numbers,     ///< a table of numbers by name
   table,
   tables,  ///< list of them
   group,   ///< a table with a section of its own, or what stands in its place
@@ -31,7 +33,8 @@ struct KeyType {
   std::vector<std::string> words{};
   std::optional<double> above{}, at_least{}, at_most{}, below{};  ///< of numbers
   std::string group{};                                            ///< title of its section
-  bool required = false;                                          ///< whatever else is there
+  std::vector<KeyKind> kinds{};  ///< of `any` all that it may be, of `group` what may stand in its place
+  bool required = false;         ///< whatever else is there
 };
 
 /// One key of the scenario as the reference shows it.

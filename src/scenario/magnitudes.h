@@ -8,9 +8,9 @@ namespace keyblock::scenario {
 
 /// Where a value stands, for a warning: ` (line 14)`, ` (--set)`, or nothing where it is not in the file.
 std::string place_text(const Scenario& scenario, const std::string& key);
+std::string place_text(const SourcePosition& where);
 
-/// Values far from what is usual for rock in SI units, added to `warnings`, each with the unit in which it was probably
-/// meant. None where the units are others.
+/// Values far from what is usual for rock in SI units (usual.h), added to `warnings`. None where the units are others.
 void add_magnitude_warnings(const Scenario& scenario, std::vector<std::string>& warnings);
 
 }  // namespace keyblock::scenario

@@ -98,9 +98,7 @@ void take_to_base(const Scenario& scenario, simulation::RunSetup& setup) {
     const MotionSpec& spec = scenario.motions[k];
     GroundMotion& motion = setup.motions[k];
     if (spec.place == MotionPlace::inside || spec.place == MotionPlace::incident) {
-      std::vector<Vec2> twice = motion.accelerations();
-      for (Vec2& a : twice) a = 2.0 * a;
-      motion = GroundMotion(motion.name(), motion.times(), std::move(twice));
+      motion = motion.scaled(2.0);
     }
     if (spec.place != MotionPlace::within || !setup.boundary) continue;
     const auto [base, ground] = simulation::column_heights(setup, simulation::ColumnSide::left);

@@ -29,6 +29,7 @@ Reading read_document(const Value& document, const std::filesystem::path& file) 
   read_scenario(root, reading.scenario);
   root.finish();
   reading.mistakes = std::move(context.mistakes);
+  reading.scenario.unusual = std::move(context.unusual);
   reading.scenario.positions = std::move(context.positions);
   reading.scenario.file = file.string();
   return reading;

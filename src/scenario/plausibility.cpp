@@ -11,8 +11,10 @@
 #include "scenario/inputs.h"
 #include "scenario/joint_warnings.h"
 #include "scenario/key_path.h"
+#include "scenario/load_checks.h"
 #include "scenario/magnitudes.h"
 #include "scenario/sections.h"
+#include "scenario/shaking_checks.h"
 #include "simulation/base.h"
 
 namespace keyblock::scenario {
@@ -51,6 +53,8 @@ class Plausibility {
     check_multipliers();
     check_gravity();
     check_tolerances();
+    check_sizes();
+    add_load_warnings(scenario_, warnings_);
     return std::move(warnings_);
   }
 
@@ -169,6 +173,24 @@ class Plausibility {
             "come out too high; "
             "usual is at most {}",
             key, stage.tolerance, place_text(scenario_, key), loose);
+    }
+  }
+
+  // One of the blocks that are given is far larger or smaller than all others.
+  void check_sizes() {
+    constexpr double far = 100.0;
+    std::vector<double> sizes;  // m
+    for (const BlockSpec& block : scenario_.blocks) sizes.push_back(std::sqrt(area(block.polygon)));
+    if (sizes.size() < 3) return;
+    std::vector<double> sorted = sizes;
+    std::ranges::sort(sorted);
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      const bool is_large = sizes[k] == sorted.back() && sizes[k] > far * sorted[sorted.size() - 2],
+                 is_small = sizes[k] == sorted.front() && far * sizes[k] < sorted[1];
+      if (is_large || is_small)
+        warn("{}.outer: a block of {:.2g} m among others of {:.2g} to {:.2g} m; is it in another unit?",
+             scenario_.blocks[k].path, sizes[k], sorted[is_small ? 1 : 0],
+             sorted[sorted.size() - (is_large ? 2 : 1)]);
     }
   }
 
@@ -378,14 +400,44 @@ void add_block_warnings(const Scenario& scenario, const BlockModel& model,
   }
 }
 
+namespace {
+
+/// Thresholds that no run reaches.
+void warn_of_levels(const Scenario& scenario, std::vector<std::string>& warnings) {
+  double openings = 0.0;  // m²
+  for (const ExcavationSpec& spec : scenario.excavations)
+    openings += std::abs(signed_area(excavation_outline(spec)));
+  for (const LevelSpec& level : scenario.study->levels) {
+    if (level.measure.ends_with("_ratio") && level.threshold > 1.0)
+      warnings.push_back(fmt::format(
+          "study.level '{}': {} is a share, and never above {:.4g}; was it in per cent? That is {:.4g}",
+          level.name, level.measure, level.threshold, level.threshold / 100.0));
+    if (level.measure == "fallen_area_m2" && openings > 0.0 && level.threshold > openings)
+      warnings.push_back(
+          fmt::format("study.level '{}': {:.4g} m2 fallen are more than all openings hold, {:.4g} m2",
+                      level.name, level.threshold, openings));
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> study_warnings(const Scenario& scenario) {
-  if (!scenario.study || !scenario.joint_sets.empty()) return {};
+  std::vector<std::string> warnings;
+  if (!scenario.study) return warnings;
   const StudySpec& study = *scenario.study;
-  if (study.until)
-    return {"study.until: nothing is random without a [[joint_set]]; all realizations are the same"};
-  if (study.realizations == 1) return {};
-  return {fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
-                      study.realizations)};
+  if (scenario.joint_sets.empty() && study.until)
+    warnings.emplace_back(
+        "study.until: nothing is random without a [[joint_set]]; all realizations are the same");
+  else if (scenario.joint_sets.empty() && study.realizations != 1)
+    warnings.push_back(
+        fmt::format("study.realizations = {}: nothing is random without a [[joint_set]]; all are the same",
+                    study.realizations));
+  warn_of_levels(scenario, warnings);
+  if (!study.vary.empty()) {
+    std::vector<std::string> of_records;  // given where the scenario is read
+    add_study_scale_warnings(scenario, read_motions(scenario, of_records), warnings);
+  }
+  return warnings;
 }
 
 std::vector<std::string> plausibility_warnings(const Scenario& scenario) {

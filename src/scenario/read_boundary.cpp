@@ -18,7 +18,12 @@ constexpr Word<Sides> kinds_of_sides[] = {{"free-field", Sides::free_field},
                                           {"frame", Sides::frame}};
 
 Rule speed(std::string_view meaning, bool required, std::string_view fallback) {
-  return {.meaning = meaning, .unit = "m/s", .required = required, .above = 0.0, .fallback = fallback};
+  return {.meaning = meaning,
+          .unit = "m/s",
+          .required = required,
+          .above = 0.0,
+          .fallback = fallback,
+          .usual = &usual::speed};
 }
 
 /// A solid keeps its volume (bulk modulus above 0) only where v_p² > 4/3 v_s². Poisson's ratio is not negative where v_p ≥ √2 v_s.
@@ -34,8 +39,9 @@ void read_layer(TableReader& t, RockLayerSpec& layer) {
   t.number(
       "top", layer.top,
       {.meaning = "Height of its top; the first layer also holds above.", .unit = "m", .required = true});
-  t.number("density", layer.density,
-           {.meaning = "Density.", .unit = "kg/m³", .required = true, .above = 0.0});
+  t.number(
+      "density", layer.density,
+      {.meaning = "Density.", .unit = "kg/m³", .required = true, .above = 0.0, .usual = &usual::density});
   const bool vs = t.number("vs", layer.vs, speed("Speed of shear waves.", true, ""));
   const bool vp = t.number("vp", layer.vp, speed("Speed of pressure waves.", true, ""));
   if (vs && vp) check_speeds(t, layer.vs, layer.vp);
@@ -93,7 +99,8 @@ void read_boundary_keys(TableReader& t, Scenario& scenario) {
            below({.meaning = "Density of the half-space below.",
                   .unit = "kg/m³",
                   .above = 0.0,
-                  .fallback = of_model}));
+                  .fallback = of_model,
+                  .usual = &usual::density}));
   t.number("vs", boundary.vs, below(speed("Its speed of shear waves.", false, of_model)));
   t.number("vp", boundary.vp, below(speed("Its speed of pressure waves.", false, of_model)));
   check_speeds(t, boundary.vs, boundary.vp);
@@ -109,7 +116,8 @@ void read_boundary_keys(TableReader& t, Scenario& scenario) {
             .unit = "Hz",
             .above = 0.0,
             .applies = around,
-            .condition = "sides other than \"frame\""});
+            .condition = "sides other than \"frame\"",
+            .usual = &usual::frequency});
   const bool free_field = documenting || boundary.sides == Sides::free_field;
   t.boolean(
       "planes", boundary.planes,

@@ -12,11 +12,18 @@ constexpr Word<DampingKind> kinds_of_damping[] = {
 
 /// The keys of [solver] damping. without_ground: as of read_damping.
 void read_keys(TableReader& t, dynamics::RayleighDamping& damping, bool without_ground) {
-  t.number(
-      "ratio", damping.ratio,
-      {.meaning = "Share of critical damping, 0.02 for 2 %.", .required = true, .above = 0.0, .below = 1.0});
+  t.number("ratio", damping.ratio,
+           {.meaning = "Share of critical damping, 0.02 for 2 %.",
+            .required = true,
+            .above = 0.0,
+            .below = 1.0,
+            .usual = &usual::damping});
   t.number("frequency", damping.frequency,
-           {.meaning = "Where it has this ratio.", .unit = "Hz", .required = true, .above = 0.0});
+           {.meaning = "Where it has this ratio.",
+            .unit = "Hz",
+            .required = true,
+            .above = 0.0,
+            .usual = &usual::frequency});
   t.word(
       "kind", damping.kind, kinds_of_damping,
       {.meaning = "`stiffness`: of the strain of rock and joints, the more the faster they vibrate. `mass`: "

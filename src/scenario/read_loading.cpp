@@ -60,13 +60,18 @@ void read_in_situ(TableReader& t, Scenario& scenario) {
        .unit = "m",
        .required = !constant && !documenting,
        .at_least = 0.0,
-       .fallback = "required, or a constant stress"});
+       .fallback = "required, or a constant stress",
+       .usual = &usual::depth});
   t.number("k0", in_situ.k0,
            {.meaning = "Horizontal over vertical stress.",
             .required = !constant && !documenting,
             .at_least = 0.0,
-            .fallback = "required with depth"});
-  const Rule rule{.unit = "Pa", .applies = documenting || !by_depth, .condition = "neither depth nor k0"};
+            .fallback = "required with depth",
+            .usual = &usual::stress_ratio});
+  const Rule rule{.unit = "Pa",
+                  .applies = documenting || !by_depth,
+                  .condition = "neither depth nor k0",
+                  .usual = &usual::stress};
   const auto stress = [&](std::string_view meaning) {
     Rule r = rule;
     r.meaning = meaning;
@@ -103,17 +108,25 @@ void read_load(TableReader& t, Load& load, const Scenario& scenario) {
               of_point({.meaning = "Where the force acts.", .unit = "m", .required = true}))) {
     check_point(t, "point", block, load.from);
   }
-  t.point("force", load.value,
-          of_point({.meaning = "Force per unit thickness.", .unit = "N/m", .required = true}));
+  t.point(
+      "force", load.value,
+      of_point(
+          {.meaning = "Force per unit thickness.", .unit = "N/m", .required = true, .usual = &usual::force}));
   const bool from = t.point(
       "from", load.from,
       of_line({.meaning = "Start of a straight stretch of boundary.", .unit = "m", .required = true}));
   const bool to = t.point("to", load.to, of_line({.meaning = "Its end.", .unit = "m", .required = true}));
   if (from && to) check_stretch(t, block, load.from, load.to);
   t.point("traction", load.value,
-          of_line({.meaning = "Force per area at the start.", .unit = "Pa", .required = true}));
+          of_line({.meaning = "Force per area at the start.",
+                   .unit = "Pa",
+                   .required = true,
+                   .usual = &usual::traction}));
   if (!documenting) load.value_end = load.value;
-  Rule end{.meaning = "Force per area at the end; linear between.", .unit = "Pa", .fallback = "as traction"};
+  Rule end{.meaning = "Force per area at the end; linear between.",
+           .unit = "Pa",
+           .fallback = "as traction",
+           .usual = &usual::traction};
   t.point("traction_end", load.value_end, of_line(end));
   t.point(
       "traction_middle", load.value_middle,
@@ -121,7 +134,8 @@ void read_load(TableReader& t, Load& load, const Scenario& scenario) {
           {.meaning =
                "Force per area in the middle; then the traction is the parabola through the three values.",
            .unit = "Pa",
-           .fallback = "linear"}));
+           .fallback = "linear",
+           .usual = &usual::traction}));
   TimeRows rows;
   t.time_rows("time", rows, false,
               {.meaning = "Factor over time: rows `[[t, factor], …]`, linear between rows and held outside.",
@@ -130,9 +144,12 @@ void read_load(TableReader& t, Load& load, const Scenario& scenario) {
   load.factor = loading::TimeTable(std::move(rows));
 }
 
+constexpr KeyKind direction_words[] = {KeyKind::references};
+
 void read_directions(TableReader& t, Support& support) {
-  const Value* directions = t.any("directions", "array of \"x\", \"y\"",
-                                  {.meaning = "In which directions it holds.", .fallback = "[\"x\", \"y\"]"});
+  const Value* directions = t.any(
+      "directions", "array of \"x\", \"y\"",
+      {.meaning = "In which directions it holds.", .fallback = "[\"x\", \"y\"]", .kinds = direction_words});
   if (directions == nullptr) return;
   support.along_x = support.along_y = false;
   bool valid = directions->is(Value::Type::array) && !directions->items.empty();
@@ -156,7 +173,8 @@ loading::TimeTable read_ground_end(TableReader& t, std::string_view key, bool he
                           "outside.",
                .unit = "s, m",
                .applies = held || t.documenting(),
-               .condition = "this direction held"});
+               .condition = "this direction held",
+               .usual = &usual::way});
   return loading::TimeTable(std::move(rows));
 }
 
@@ -193,7 +211,8 @@ void read_support(TableReader& t, Support& support, const Scenario& scenario) {
            {.meaning = "Stiffness of the springs at a point, per unit thickness, or along a stretch.",
             .unit = "N/m per m; Pa/m",
             .above = 0.0,
-            .fallback = "1000 young"});
+            .fallback = "1000 young",
+            .usual = support.is_edge ? &usual::bed_stiffness : &usual::spring_stiffness});
   t.table("motion", {.meaning = "Prescribed displacement of the ground end of the springs."},
           [&](TableReader& m) {
             support.motion_x = read_ground_end(m, "x", support.along_x);
@@ -231,14 +250,16 @@ void read_spring(TableReader& t, Spring& spring, const Scenario& scenario) {
            {.meaning = "Force per elongation, per unit thickness.",
             .unit = "N/m per m",
             .required = true,
-            .above = 0.0});
+            .above = 0.0,
+            .usual = &usual::spring_stiffness});
   t.number(
       "yield", spring.yield,
       {.meaning = "Largest force, in tension and compression, per unit thickness. At it the spring yields "
                   "and keeps its elongation.",
        .unit = "N/m",
        .above = 0.0,
-       .fallback = "it never yields"});
+       .fallback = "it never yields",
+       .usual = &usual::yield});
 }
 
 }  // namespace
@@ -254,7 +275,7 @@ void read_loading(TableReader& root, Scenario& scenario) {
                           "y: rows, a sine, or a file."},
               [](TableReader& t, MotionSpec& motion) { read_motion(t, motion); });
   root.number("load_factor", scenario.load_factor,
-              {.meaning = "All [[load]] are multiplied by it.", .at_least = 0.0});
+              {.meaning = "All [[load]] are multiplied by it.", .at_least = 0.0, .usual = &usual::factor});
   root.tables(
       "load", scenario.loads,
       {.meaning = "A force at a point of a block, or a traction along a straight stretch of its boundary. "

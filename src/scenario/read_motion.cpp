@@ -55,7 +55,8 @@ void read_reading(TableReader& t, MotionComponentSpec& component, bool given,
                     .unit = "s",
                     .at_least = 1e-9,
                     .at_most = 1e6,
-                    .fallback = "times are in column 1"}));
+                    .fallback = "times are in column 1",
+                    .usual = &usual::step}));
   const bool unit = t.string("unit", reading.unit,
                              of_file({.meaning = "Unit of the samples: \"g\", \"cm/s2\", \"gal\", \"m/s2\", "
                                                  "\"mm/s2\". For a file that names none, and "
@@ -74,6 +75,8 @@ constexpr std::string_view file_meaning =
     "ESM, GeoNet, AFAD, CWA, USC, BHRC, UNAM, or a "
     "table (see the user guide).";
 
+constexpr KeyKind azimuth_kinds[] = {KeyKind::number, KeyKind::string};
+
 void read_component(TableReader& t, MotionComponentSpec& component) {
   component.path = t.path();
   t.file("file", component.file, {.meaning = file_meaning, .required = true});
@@ -85,7 +88,8 @@ void read_component(TableReader& t, MotionComponentSpec& component) {
       .unit = "°",
       .at_least = 0.0,
       .at_most = 360.0,
-      .fallback = "as the file says"};
+      .fallback = "as the file says",
+      .kinds = azimuth_kinds};
   if (azimuth != nullptr && azimuth->is_number()) {
     t.number("azimuth", component.azimuth, rule);
   } else if (const Value* found = t.any("azimuth", type, rule); found != nullptr) {
@@ -93,6 +97,8 @@ void read_component(TableReader& t, MotionComponentSpec& component) {
     if (!component.vertical) t.fail("azimuth", describe(*found), "a number from 0 to 360, or \"up\"");
   }
 }
+
+constexpr KeyKind direction_kinds[] = {KeyKind::rows};
 
 // One direction of a motion: rows, a sine or a file. A file becomes a component along the axis.
 void read_direction(TableReader& t, std::string_view key, loading::AccelerationTable& rows,
@@ -102,7 +108,9 @@ void read_direction(TableReader& t, std::string_view key, loading::AccelerationT
                 "rows and zero outside, or a sine, or a file.",
             .unit = "s, m/s²",
             .applies = applies,
-            .condition = "no components"};
+            .condition = "no components",
+            .kinds = direction_kinds,
+            .usual = &usual::acceleration};
   const Value* value = t.find(key);
   if (!t.documenting() && (value == nullptr || !value->is(Value::Type::table))) {
     if (t.time_rows(key, rows, true, rule) && rows.front().first < 0.0) {
@@ -124,10 +132,13 @@ void read_direction(TableReader& t, std::string_view key, loading::AccelerationT
       return r;
     };
     loading::Sine read;
-    s.number("amplitude", read.amplitude, of_sine({.meaning = "Amplitude of a sine.", .unit = "m/s²"}));
-    s.number("frequency", read.frequency, of_sine({.meaning = "Its frequency.", .unit = "Hz", .above = 0.0}));
-    s.number("cycles", read.cycles,
-             of_sine({.meaning = "Number of its cycles, whole or not.", .above = 0.0}));
+    s.number("amplitude", read.amplitude,
+             of_sine({.meaning = "Amplitude of a sine.", .unit = "m/s²", .usual = &usual::acceleration}));
+    s.number("frequency", read.frequency,
+             of_sine({.meaning = "Its frequency.", .unit = "Hz", .above = 0.0, .usual = &usual::frequency}));
+    s.number(
+        "cycles", read.cycles,
+        of_sine({.meaning = "Number of its cycles, whole or not.", .above = 0.0, .usual = &usual::cycles}));
     MotionComponentSpec component;
     component.path = s.path();
     component.vertical = key == "y";
@@ -137,6 +148,25 @@ void read_direction(TableReader& t, std::string_view key, loading::AccelerationT
     if (file && !documenting) motion.components.push_back(std::move(component));
     if (!file && !documenting) sine = read;
   });
+}
+
+/// A peak that the motion is brought to.
+void read_target(TableReader& t, MotionSpec& motion) {
+  t.number("pga", motion.pga,
+           {.meaning = "Target: the motion is multiplied so that its largest horizontal acceleration in the "
+                       "section, within the window, is this. In place of `scale` in the stages.",
+            .unit = "m/s²",
+            .above = 0.0,
+            .fallback = "as recorded",
+            .usual = &usual::peak_acceleration});
+  t.number("pgv", motion.pgv,
+           {.meaning = "Target, likewise: of the largest horizontal velocity in the section, from rest.",
+            .unit = "m/s",
+            .above = 0.0,
+            .fallback = "as recorded",
+            .applies = !motion.pga || t.documenting(),
+            .condition = "no pga",
+            .usual = &usual::peak_velocity});
 }
 
 bool has_file(const TableReader& t, std::string_view key) {
@@ -164,7 +194,9 @@ void read_motion(TableReader& t, MotionSpec& motion) {
             .above = 0.0,
             .fallback = "required with at = \"within\"",
             .applies = within || t.documenting(),
-            .condition = "at = \"within\""});
+            .condition = "at = \"within\"",
+            .usual = &usual::depth});
+  read_target(t, motion);
   const bool listed = t.find("components") != nullptr;
   const bool record = listed || has_file(t, "x") || has_file(t, "y");
   const bool documenting = t.documenting();

@@ -112,6 +112,8 @@ class ReleaseReader {
   bool has_mistake_ = false;
 };
 
+constexpr KeyKind share_kinds[] = {KeyKind::number, KeyKind::numbers};
+constexpr KeyKind pressure_kinds[] = {KeyKind::number, KeyKind::rows, KeyKind::numbers};
 constexpr std::string_view pressure_type = "number, rows [[time, value], …], or table of numbers by stage";
 
 bool is_pressure(const Value& value) {
@@ -135,6 +137,7 @@ void read_pressure_over_stages(TableReader& t, ExcavationSpec& spec, const Value
     t.context().positions[path] = item.key_where;
     if (is_pressure(item)) {
       spec.pressure_by_stage.emplace_back(item.key, item.number);
+      t.judge(item, path, item.number, &usual::wall_pressure);
     } else {
       t.fail_at(item, path, describe(item), "a number of at least 0, in Pa");
     }
@@ -151,7 +154,8 @@ void read_release(TableReader& t, Stage& stage, bool settles, const Scenario& sc
                 "`{ heading = 1.0, bench = 0.4 }`. It stays until a later stage raises it.",
             .fallback = "1 of what the stage excavates",
             .applies = settles,
-            .condition = "kind = \"settle\""};
+            .condition = "kind = \"settle\"",
+            .kinds = share_kinds};
   const Value* value = t.any("release", "number from 0 to 1, or table of these by excavation", rule);
   rule = {.meaning =
               "Equal parts in which it is released, each to equilibrium. Given, they count for a release of "
@@ -174,7 +178,9 @@ void read_pressure(TableReader& t, ExcavationSpec& spec) {
           "between rows, held outside), or `{ heading = 50e3, bench = 0.0 }` from each of these "
           "stages on. It presses across the wall as it lies at the moment.",
       .unit = "Pa",
-      .fallback = "0"};
+      .fallback = "0",
+      .kinds = pressure_kinds,
+      .usual = &usual::wall_pressure};
   const Value* value = t.find("pressure");
   if (value != nullptr && value->is(Value::Type::array)) {
     read_pressure_over_time(t, spec, rule);
@@ -183,6 +189,7 @@ void read_pressure(TableReader& t, ExcavationSpec& spec) {
       read_pressure_over_stages(t, spec, *value);
     } else if (is_pressure(*value)) {
       spec.pressure.constant = value->number;
+      t.judge(*value, join_path(t.path(), "pressure"), value->number, rule.usual);
     } else {
       t.fail("pressure", describe(*value), "a " + std::string(pressure_type) + ", of at least 0, in Pa");
     }

@@ -34,7 +34,8 @@ void read_section(TableReader& t, Scenario& scenario) {
                        "horizontal components of records.",
             .unit = "°",
             .at_least = 0.0,
-            .at_most = 360.0});
+            .at_most = 360.0,
+            .usual = &usual::angle});
 }
 
 // Cutting rounds to a grid of 2⁻⁴⁴ of the larger extent, and coordinates have 16 digits.
@@ -58,10 +59,12 @@ void check_extents(TableReader& t, const Domain& domain) {
 
 void read_domain(TableReader& t, Scenario& scenario) {
   Domain& domain = scenario.domain.emplace();
-  const bool wide =
-      t.interval("x", domain.x, {.meaning = "Horizontal extent of the rock.", .unit = "m", .required = true});
-  const bool high =
-      t.interval("y", domain.y, {.meaning = "Vertical extent, y upwards.", .unit = "m", .required = true});
+  const bool wide = t.interval(
+      "x", domain.x,
+      {.meaning = "Horizontal extent of the rock.", .unit = "m", .required = true, .usual = &usual::extent});
+  const bool high = t.interval(
+      "y", domain.y,
+      {.meaning = "Vertical extent, y upwards.", .unit = "m", .required = true, .usual = &usual::extent});
   if (wide && high) check_extents(t, domain);
   t.word("boundary", domain.frame, boundaries,
          {.meaning = "`frame`: fixed blocks around the domain, along which the rock can slide but not move "
@@ -72,7 +75,8 @@ void read_domain(TableReader& t, Scenario& scenario) {
             .at_least = 0.0,
             .below = 90.0,
             .applies = t.documenting() || domain.frame,
-            .condition = "boundary = \"frame\""});
+            .condition = "boundary = \"frame\"",
+            .usual = &usual::friction});
 }
 
 void check_variation(TableReader& t, const Distribution& distribution) {
@@ -82,6 +86,9 @@ void check_variation(TableReader& t, const Distribution& distribution) {
   t.fail("std", fmt::format("{:.3g} times the mean", variation),
          fmt::format("at most {} times the mean for \"lognormal\"", most_lognormal_variation));
 }
+
+constexpr KeyKind length_kinds[] = {KeyKind::number};
+constexpr KeyKind order_kinds[] = {KeyKind::integer, KeyKind::string};
 
 void read_distribution(TableReader& t, std::string_view key, Distribution& distribution, bool zero_allowed,
                        std::string_view meaning) {
@@ -94,7 +101,9 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
                   .group_meaning =
                       "A length that varies from joint to joint: a number (the same for all), or a "
                       "table such as `{ mean = 0.3, std = 0.1, distribution = \"normal\" }`. Mean and "
-                      "standard deviation are those before the distribution is cut off at zero."};
+                      "standard deviation are those before the distribution is cut off at zero.",
+                  .kinds = length_kinds,
+                  .usual = &usual::spacing};
   const Value* value = t.find(key);
   if (value != nullptr && value->is_number()) {
     t.number(key, distribution.mean, rule);
@@ -114,7 +123,8 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
               .unit = "m",
               .required = true,
               .above = zero_allowed && constant ? -HUGE_VAL : 0.0,
-              .at_least = zero_allowed && constant ? 0.0 : -HUGE_VAL});
+              .at_least = zero_allowed && constant ? 0.0 : -HUGE_VAL,
+              .usual = &usual::spacing});
     const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
     static const std::string std_text = fmt::format(
         "Standard deviation. `uniform`, `normal` and `lognormal` need it; the others do not use it. For "
@@ -126,7 +136,8 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
                                  .unit = "m",
                                  .required = needs_std && !t.documenting(),
                                  .at_least = 0.0,
-                                 .fallback = "required where used"});
+                                 .fallback = "required where used",
+                                 .usual = &usual::spacing});
     if (given) check_variation(d, distribution);
   });
 }
@@ -143,12 +154,14 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
             .required = defaults.friction_required,
             .at_least = 0.0,
             .below = 90.0,
-            .fallback = defaults.friction});
+            .fallback = defaults.friction,
+            .usual = &usual::friction});
   t.number("cohesion", joints.cohesion,
            {.meaning = "Cohesion of a joint in place, lost when it slips or opens.",
             .unit = "Pa",
             .at_least = 0.0,
-            .fallback = defaults.zero});
+            .fallback = defaults.zero,
+            .usual = &usual::strength});
   t.number(
       "tension", joints.tension,
       {.meaning =
@@ -156,17 +169,20 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
            "cohesion − tension · tan(friction): without cohesion the least shear breaks it.",
        .unit = "Pa",
        .at_least = 0.0,
-       .fallback = defaults.zero});
+       .fallback = defaults.zero,
+       .usual = &usual::strength});
   t.number("normal_stiffness", joints.normal_stiffness,
            {.meaning = "Normal stiffness of the joint.",
             .unit = "Pa/m",
             .above = 0.0,
-            .fallback = defaults.normal});
+            .fallback = defaults.normal,
+            .usual = &usual::stiffness});
   t.number("shear_stiffness", joints.shear_stiffness,
            {.meaning = "Shear stiffness of the joint. Given only where a normal stiffness is given, too.",
             .unit = "Pa/m",
             .above = 0.0,
-            .fallback = defaults.shear});
+            .fallback = defaults.shear,
+            .usual = &usual::stiffness});
 }
 
 constexpr JointDefaults joint_defaults{true, "0", "", "20 young per metre", "0.4 normal_stiffness"};
@@ -187,22 +203,28 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
             .unit = "°",
             .required = true,
             .at_least = 0.0,
-            .at_most = 90.0});
+            .at_most = 90.0,
+            .usual = &usual::angle});
   t.number("dip_direction", set.dip_direction,
            {.meaning =
                 "Direction in which the planes fall, clockwise from north. Toward +x they dip to the right.",
             .unit = "°",
             .required = true,
             .at_least = 0.0,
-            .at_most = 360.0});
+            .at_most = 360.0,
+            .usual = &usual::angle});
   t.number("dip_std", set.dip_std,
            {.meaning = "Scatter of the dip from joint to joint (normal distribution).",
             .unit = "°",
             .at_least = 0.0,
-            .at_most = 90.0});
-  t.number(
-      "dip_direction_std", set.dip_direction_std,
-      {.meaning = "Scatter of the dip direction, likewise.", .unit = "°", .at_least = 0.0, .at_most = 180.0});
+            .at_most = 90.0,
+            .usual = &usual::scatter});
+  t.number("dip_direction_std", set.dip_direction_std,
+           {.meaning = "Scatter of the dip direction, likewise.",
+            .unit = "°",
+            .at_least = 0.0,
+            .at_most = 180.0,
+            .usual = &usual::scatter});
   t.word("spacing_measure", set.spacing_measure, spacing_measures,
          {.meaning =
               "How spacing is measured: `true`, normal to the joint planes, or `trace`, between the traces "
@@ -300,19 +322,22 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
             .unit = "kg/m³",
             .required = required,
             .above = 0.0,
-            .fallback = inherited});
+            .fallback = inherited,
+            .usual = &usual::density});
   t.number("young", rock.young,
            {.meaning = "Young's modulus.",
             .unit = "Pa",
             .required = required,
             .above = 0.0,
-            .fallback = inherited});
+            .fallback = inherited,
+            .usual = &usual::young});
   t.number("poisson", rock.poisson,
            {.meaning = "Poisson's ratio.",
             .required = required,
             .at_least = 0.0,
             .below = 0.5,
-            .fallback = inherited});
+            .fallback = inherited,
+            .usual = &usual::poisson});
   t.word("state", rock.state, plane_states,
          {.meaning = "No stress, or no strain, normal to the section. A long tunnel is in plane strain.",
           .fallback = inherited});
@@ -322,7 +347,8 @@ void read_rock_keys(TableReader& t, RockKeys& rock, bool required) {
       t.any("order", std::string_view(order_text).substr(3),
             {.meaning = "Order of the displacement polynomial of a block: 1 has uniform strain, 2 bends, …; "
                         "\"auto\": chosen block by block while the rock settles, see [auto_order].",
-             .fallback = required ? "1" : inherited});
+             .fallback = required ? "1" : inherited,
+             .kinds = order_kinds});
   if (order == nullptr) return;
   if (order->is(Value::Type::string) && order->text == "auto") {
     rock.order = automatic_order;
@@ -359,7 +385,8 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
             {.meaning = "tan(friction), cohesion and tension of all joints, of sets and trace maps too, are "
                         "divided by it: the value at which rock just falls is a factor of safety. The "
                         "frame keeps its friction.",
-             .above = 0.0});
+             .above = 0.0,
+             .usual = &usual::strength_factor});
         check_stiffness(t, scenario.joints, {});
       });
   root.tables(

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "block/order.h"
+#include "core/index.h"
 #include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 
@@ -82,20 +83,23 @@ void read_stillness(TableReader& t, Stage& stage, bool dynamic, bool shake) {
   const bool still = t.documenting() || stage.until_still;
   t.number(
       "still_time", stage.still_time,
-      only(still, "until = \"still\"", {.meaning = "So long nothing may move.", .unit = "s", .above = 0.0}));
+      only(still, "until = \"still\"",
+           {.meaning = "So long nothing may move.", .unit = "s", .above = 0.0, .usual = &usual::interval}));
   t.number("still_distance", stage.still_distance,
            only(still, "until = \"still\"",
                 {.meaning = "How far a point of a block may go in that time.",
                  .unit = "m",
                  .above = 0.0,
-                 .fallback = "a twentieth of [damage] slip"}));
+                 .fallback = "a twentieth of [damage] slip",
+                 .usual = &usual::small_way}));
   t.number(
       "still_acceleration", stage.still_acceleration,
       only(t.documenting() || (stage.until_still && shake), "until = \"still\" and kind = \"shake\"",
            {.meaning = "The shaking is over when its acceleration stays below this and below a twentieth of "
                        "the largest.",
             .unit = "m/s²",
-            .above = 0.0}));
+            .above = 0.0,
+            .usual = &usual::acceleration}));
 }
 
 /// What a static stage is loaded by beside gravity, and how it ends.
@@ -107,13 +111,15 @@ void read_equilibrium(TableReader& t, Stage& stage, bool settle) {
                 "Horizontal seismic coefficient: every block is pushed to the right by this share of its "
                 "weight, to the left where it is negative, as long as the stage lasts.",
             .at_least = -10.0,
-            .at_most = 10.0}));
+            .at_most = 10.0,
+            .usual = &usual::coefficient}));
   t.number(
       "k_v", stage.k_v,
       only(settle, "kind = \"settle\"",
            {.meaning = "Vertical seismic coefficient, likewise: upwards, downwards where it is negative.",
             .at_least = -10.0,
-            .at_most = 10.0}));
+            .at_most = 10.0,
+            .usual = &usual::coefficient}));
   const std::string settle_steps = std::to_string(simulation::default_settle_steps);
   t.integer("max_steps", stage.max_steps,
             only(settle, "kind = \"settle\"",
@@ -125,6 +131,18 @@ void read_equilibrium(TableReader& t, Stage& stage, bool settle) {
                 {.meaning = "Equilibrium: largest residual of a block over its weight.",
                  .above = 0.0,
                  .below = 1.0}));
+}
+
+/// A target and a factor contradict each other.
+void check_scale(TableReader& t, const Stage& stage, const Scenario& scenario) {
+  if (t.find("scale") == nullptr || stage.motion < 0 || at(stage.motion) >= scenario.motions.size()) return;
+  const MotionSpec& motion = scenario.motions[at(stage.motion)];
+  if (!motion.pga && !motion.pgv) return;
+  const char* target = motion.pga ? "pga" : "pgv";
+  t.fail("scale",
+         fmt::format("a factor on '{}', which has {} = {}", motion.name, target,
+                     motion.pga ? *motion.pga : *motion.pgv),
+         fmt::format("one of the two: scale, or {} of the motion", target));
 }
 
 void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
@@ -149,15 +167,18 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
     const auto& names = t.context().list_names["motion"];
     stage.motion = static_cast<int>(std::find(names.begin(), names.end(), motion) - names.begin());
   }
-  t.number("scale", stage.scale,
-           only(shake, "kind = \"shake\"", {.meaning = "Factor on its accelerations."}));
+  t.number(
+      "scale", stage.scale,
+      only(shake, "kind = \"shake\"", {.meaning = "Factor on its accelerations.", .usual = &usual::factor}));
+  check_scale(t, stage, scenario);
   t.number("duration", stage.duration,
            only(any || stage.kind != StageKind::settle, "kind = \"shake\" or \"rest\"",
                 {.meaning = "Duration.",
                  .unit = "s",
                  .required = known && stage.kind == StageKind::rest,
                  .above = 0.0,
-                 .fallback = "that of the motion; required to rest"}));
+                 .fallback = "that of the motion; required to rest",
+                 .usual = &usual::duration}));
   read_stillness(t, stage, any || stage.kind != StageKind::settle, shake);
   read_equilibrium(t, stage, settle);
 }
@@ -236,34 +257,47 @@ void read_history(TableReader& t, simulation::History& history, const Scenario& 
 }
 
 void read_damage(TableReader& t, simulation::DamageLimits& damage) {
-  t.number("fall_distance", damage.fall_distance,
-           {.meaning = "How far a block has moved when it counts as fallen.",
+  t.number(
+      "fall_distance", damage.fall_distance,
+      {.meaning = "How far a block has moved when it counts as fallen.",
+       .unit = "m",
+       .above = 0.0,
+       .fallback = "5 % of the width of the opening; without an [[excavation]] half of √(area) of the block",
+       .usual = &usual::small_way});
+  t.number("loosened_distance", damage.loosened_distance,
+           {.meaning = "How far a block has moved when it counts as loosened.",
             .unit = "m",
             .above = 0.0,
-            .fallback =
-                "5 % of the width of the opening; without an [[excavation]] half of √(area) of the block"});
-  t.number("loosened_distance", damage.loosened_distance,
-           {.meaning = "How far a block has moved when it counts as loosened.", .unit = "m", .above = 0.0});
+            .usual = &usual::small_way});
   t.number("slip", damage.slip,
-           {.meaning = "Slip beyond which a joint counts as slipped.", .unit = "m", .above = 0.0});
+           {.meaning = "Slip beyond which a joint counts as slipped.",
+            .unit = "m",
+            .above = 0.0,
+            .usual = &usual::small_way});
   t.number("opening", damage.opening,
-           {.meaning = "Gap beyond which a joint counts as opened.", .unit = "m", .above = 0.0});
+           {.meaning = "Gap beyond which a joint counts as opened.",
+            .unit = "m",
+            .above = 0.0,
+            .usual = &usual::small_way});
 }
 
 void read_output(TableReader& t, simulation::OutputOptions& output) {
-  t.number("frame_interval", output.frame_interval,
-           {.meaning = "Between frames of dynamic stages.", .unit = "s", .above = 0.0});
+  t.number(
+      "frame_interval", output.frame_interval,
+      {.meaning = "Between frames of dynamic stages.", .unit = "s", .above = 0.0, .usual = &usual::interval});
   t.integer("settle_frame_interval", output.settle_frame_interval,
             {.meaning = "Between frames of static stages.", .unit = "steps", .at_least = 1.0});
   t.number("contact_interval", output.contact_interval,
            {.meaning = "Between snapshots of all contacts; always at the ends of stages.",
             .unit = "s",
-            .above = 0.0});
+            .above = 0.0,
+            .usual = &usual::interval});
   t.number("history_interval", output.history_interval,
            {.meaning = "Between rows of histories of dynamic stages; 0: every step. Static stages have a row "
                        "of every step.",
             .unit = "s",
-            .at_least = 0.0});
+            .at_least = 0.0,
+            .usual = &usual::interval});
 }
 
 void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic) {
@@ -334,10 +368,12 @@ void read_solver(TableReader& t, dynamics::SolverOptions& solver, bool without_g
       "rock_damping", solver.rock_damping,
       {.meaning = "Damping of the vibration of blocks, as a share of critical at the first elastic frequency "
                   "of each. Rigid motion is not slowed.",
-       .at_least = 0.0});
+       .at_least = 0.0,
+       .usual = &usual::damping});
   t.number("contact_damping", solver.contact_damping,
            {.meaning = "Damping of every contact spring with its two blocks, as a share of critical.",
-            .at_least = 0.0});
+            .at_least = 0.0,
+            .usual = &usual::damping});
   read_damping(t, solver, without_ground);
   solver.keeps_restitution = t.number(
       "restitution", solver.restitution,
@@ -388,7 +424,8 @@ void read_run(TableReader& root, Scenario& scenario) {
               .unit = "s",
               .required = true,
               .at_least = 1e-12,
-              .at_most = 1e6});
+              .at_most = 1e6,
+              .usual = &usual::step});
     check_step_count(t, scenario);
   });
   root.tables("history", scenario.histories,

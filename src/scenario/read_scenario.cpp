@@ -165,7 +165,13 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"damping", &AcceptedWarnings::damping},
     {"closed-box", &AcceptedWarnings::closed_box},
     {"late-falls", &AcceptedWarnings::late_falls},
-    {"lost-joints", &AcceptedWarnings::lost_joints}};
+    {"lost-joints", &AcceptedWarnings::lost_joints},
+    {"loads", &AcceptedWarnings::loads},
+    {"scale", &AcceptedWarnings::scale},
+    {"window", &AcceptedWarnings::window}};
+
+constexpr KeyKind word_list[] = {KeyKind::references};
+constexpr KeyKind gravity_kinds[] = {KeyKind::point, KeyKind::number};
 
 void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
   std::vector<std::string> words;
@@ -175,7 +181,8 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
       root.any("accept_warnings", type,
                {.meaning = "Warnings of choices that are meant: they are not given ([which they "
                            "are](user-guide.md#warnings)).",
-                .fallback = "[]"});
+                .fallback = "[]",
+                .kinds = word_list});
   if (list == nullptr) return;
   if (!list->is(Value::Type::array)) {
     root.fail("accept_warnings", describe(*list), "an " + type,
@@ -197,7 +204,10 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
 }
 
 void read_gravity(TableReader& root, Scenario& scenario) {
-  Rule rule{.meaning = "Acceleration of gravity; a single number is that downwards.", .unit = "m/s²"};
+  Rule rule{.meaning = "Acceleration of gravity; a single number is that downwards.",
+            .unit = "m/s²",
+            .kinds = gravity_kinds,
+            .usual = &usual::weight};
   const Value* given = root.find("gravity");
   if (root.documenting()) {
     rule.fallback = "[0, -9.81]";
@@ -216,7 +226,8 @@ void read_gravity(TableReader& root, Scenario& scenario) {
                   "gravity pulls to the left as well. Gravity alone is turned.",
        .unit = "°",
        .at_least = -180.0,
-       .at_most = 180.0});
+       .at_most = 180.0,
+       .usual = &usual::angle});
   if (tilt == 0.0) return;
   const double angle = tilt * std::numbers::pi / 180.0;
   const Vec2 g = scenario.gravity;

@@ -20,7 +20,8 @@ void read_circle(TableReader& t, ExcavationSpec& spec, const auto& rule) {
           rule(ExcavationShape::circle, {.meaning = "Centre.", .unit = "m", .required = true}));
   t.number(
       "diameter", spec.diameter,
-      rule(ExcavationShape::circle, {.meaning = "Diameter.", .unit = "m", .required = true, .above = 0.0}));
+      rule(ExcavationShape::circle,
+           {.meaning = "Diameter.", .unit = "m", .required = true, .above = 0.0, .usual = &usual::opening}));
 }
 
 void read_horseshoe(TableReader& t, ExcavationSpec& spec, const auto& rule) {
@@ -28,18 +29,25 @@ void read_horseshoe(TableReader& t, ExcavationSpec& spec, const auto& rule) {
   t.point("invert", spec.invert,
           rule(horseshoe, {.meaning = "Middle of the floor.", .unit = "m", .required = true}));
   t.number("width", spec.width,
-           rule(horseshoe, {.meaning = "Width of the floor.", .unit = "m", .required = true, .above = 0.0}));
-  t.number(
-      "wall_height", spec.wall_height,
-      rule(horseshoe,
-           {.meaning = "Height of the vertical walls.", .unit = "m", .required = true, .at_least = 0.0}));
+           rule(horseshoe, {.meaning = "Width of the floor.",
+                            .unit = "m",
+                            .required = true,
+                            .above = 0.0,
+                            .usual = &usual::opening}));
+  t.number("wall_height", spec.wall_height,
+           rule(horseshoe, {.meaning = "Height of the vertical walls.",
+                            .unit = "m",
+                            .required = true,
+                            .at_least = 0.0,
+                            .usual = &usual::opening}));
   const bool rise =
       t.number("arch_height", spec.arch_height,
                rule(horseshoe, {.meaning = "Rise of the circular arch above the walls, at most half "
                                            "the width.",
                                 .unit = "m",
                                 .above = 0.0,
-                                .fallback = "width / 2"}));
+                                .fallback = "width / 2",
+                                .usual = &usual::opening}));
   if (rise && spec.width > 0.0 && *spec.arch_height > 0.5 * spec.width) {
     t.fail("arch_height", fmt::format("the number {}", *spec.arch_height),
            fmt::format("at most half the width, {}", 0.5 * spec.width));
@@ -84,7 +92,8 @@ loading::TimeTable read_prescribed(TableReader& t, std::string_view key) {
       key, rows, false,
       {.meaning = "Displacement of the block: rows `[[t, u], …]`, linear between rows and held outside; it "
                   "is zero at time 0.",
-       .unit = "s, m"});
+       .unit = "s, m",
+       .usual = &usual::way});
   loading::TimeTable table(std::move(rows));
   if (!table.empty() && table(0.0) != 0.0) {
     t.fail(key, fmt::format("a displacement of {} at time 0", table(0.0)), "a displacement that begins at 0");
@@ -102,7 +111,8 @@ void read_rotation(TableReader& t, BlockSpec& block) {
                 "histories are given by points of the turned block.",
             .unit = "°",
             .at_least = -360.0,
-            .at_most = 360.0});
+            .at_most = 360.0,
+            .usual = &usual::angle});
   t.point("rotation_center", centre,
           {.meaning = "Point about which it is turned.",
            .unit = "m",
@@ -126,6 +136,7 @@ void read_block(TableReader& t, BlockSpec& block) {
   read_polygon(t, block.polygon, true,
                {.meaning = "Vertices, either way round.", .unit = "m", .required = true});
   read_rotation(t, block);
+  if (const Value* fixed = t.find("fixed"); fixed != nullptr && fixed->boolean) t.judge_nothing();
   read_rock_keys(t, block.rock, false);
   t.boolean("fixed", block.fixed, {.meaning = "The block neither moves nor deforms, but by `motion`."});
   const bool moves = t.documenting() || !block.fixed;
@@ -144,7 +155,8 @@ void read_block(TableReader& t, BlockSpec& block) {
           {.meaning = "Velocity of the centroid at the start.",
            .unit = "m/s",
            .applies = moves,
-           .condition = "fixed = false"});
+           .condition = "fixed = false",
+           .usual = &usual::block_velocity});
   t.number("spin", block.spin,
            {.meaning = "Angular velocity at the start, counter-clockwise.",
             .unit = "rad/s",

@@ -11,6 +11,8 @@ namespace {
 constexpr Word<Keep> keep_words[] = {
     {"all", Keep::all}, {"report", Keep::report}, {"measures", Keep::measures}};
 
+constexpr KeyKind key_list[] = {KeyKind::references}, value_list[] = {KeyKind::list};
+
 // `key`, or `keys` that vary together.
 void read_keys(TableReader& t, VarySpec& vary) {
   std::string key;
@@ -24,7 +26,8 @@ void read_keys(TableReader& t, VarySpec& vary) {
   const Value* keys =
       t.any("keys", "array of strings",
             {.meaning = "In the place of `key`: several that vary together, as `keys = [\"a\", \"b\"]` with "
-                        "`values = [[1, 2], [3, 4]]`."});
+                        "`values = [[1, 2], [3, 4]]`.",
+             .kinds = key_list});
   if (keys == nullptr) return;
   const auto is_string = [](const Value& item) { return item.is(Value::Type::string); };
   if (!keys->is(Value::Type::array) || keys->items.empty() ||
@@ -37,7 +40,8 @@ void read_keys(TableReader& t, VarySpec& vary) {
 
 void read_vary(TableReader& t, VarySpec& vary) {
   read_keys(t, vary);
-  const Value* values = t.any("values", "array", {.meaning = "The values it takes.", .required = true});
+  const Value* values =
+      t.any("values", "array", {.meaning = "The values it takes.", .required = true, .kinds = value_list});
   if (values == nullptr) return;
   if (!values->is(Value::Type::array) || values->items.empty()) {
     t.fail("values", describe(*values), "an array of values");

@@ -154,6 +154,7 @@ struct MotionSpec {
   std::optional<loading::Sine> sine_x, sine_y;
   std::optional<MotionPlace> place;  ///< empty: on an outcrop over a compliant base, else at the base
   std::optional<double> depth;       ///< m below the ground, of a record within
+  std::optional<double> pga, pgv;    ///< m/s², m/s: what the peak along the section is brought to
   std::string path;
 };
 
@@ -167,6 +168,9 @@ struct AcceptedWarnings {
   bool closed_box = false;     ///< of a record that shakes a frame
   bool late_falls = false;     ///< of what hangs loose when the shaking begins
   bool lost_joints = false;    ///< of joints that bound no block
+  bool loads = false;          ///< of loads that are weak or pull, of displacements that go far
+  bool scale = false;          ///< of a motion that its scale makes weaker than its number
+  bool window = false;         ///< of a window that misses most of a record
 };
 
 struct Scenario {
@@ -202,8 +206,9 @@ struct Scenario {
   dynamics::SolverOptions solver;
   std::optional<StudySpec> study;
 
-  std::string file;  ///< as given; for messages
-  std::string text;  ///< of the file, with the overrides as comments at its end
+  std::string file;                  ///< as given; for messages
+  std::string text;                  ///< of the file, with the overrides as comments at its end
+  std::vector<std::string> unusual;  ///< values far from what is usual in SI units, in words
   std::map<std::string, SourcePosition> positions;  ///< of every value, by key path
 
   /// Position of a value, or of the nearest table around it, which may be the file.

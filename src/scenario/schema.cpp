@@ -34,6 +34,8 @@ ordered_json new_table() {
   return {{"type", "object"}, {"properties", ordered_json::object()}, {"additionalProperties", false}};
 }
 
+ordered_json one_of(const KeyType& type);
+
 ordered_json of_type(const KeyType& type) {
   switch (type.kind) {
     case KeyKind::number:
@@ -64,12 +66,28 @@ ordered_json of_type(const KeyType& type) {
       return new_table();
     case KeyKind::tables:
       return list_of(new_table());
+    case KeyKind::list:
+      return list_of(ordered_json::object());
+    case KeyKind::numbers:
+      return {{"type", "object"}, {"additionalProperties", {{"type", number_type}}}};
     case KeyKind::group:
-      return {{"if", {{"type", "object"}}}, {"then", {{"$ref", "#/definitions/" + type.group}}}};
     case KeyKind::any:
-      break;
+      return one_of(type);
   }
   return ordered_json::object();
+}
+
+/// A value of any of several kinds, one of which may be a table with a section of its own.
+ordered_json one_of(const KeyType& type) {
+  ordered_json all = ordered_json::array();
+  for (const KeyKind kind : type.kinds) {
+    KeyType single = type;
+    single.kind = kind;
+    all.push_back(of_type(single));
+  }
+  if (type.kind == KeyKind::group) all.push_back({{"$ref", "#/definitions/" + type.group}});
+  if (all.empty()) return ordered_json::object();
+  return all.size() == 1 ? all.front() : ordered_json{{"anyOf", std::move(all)}};
 }
 
 std::string description(const KeyReference& key) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 #include "loading/motion_measures.h"
@@ -61,6 +62,53 @@ std::string reason_of_small_peak(const Scenario& scenario, const MotionSpec& spe
   if (spec.components.empty() || !scenario.section_azimuth) return units;
   return fmt::format("is section.azimuth = {:.4g}{} normal to the motion, or {}", *scenario.section_azimuth,
                      place_text(scenario, "section.azimuth"), units);
+}
+
+/// g, horizontal in the section over the duration of a stage.
+double horizontal_peak(const Stage& stage, const GroundMotion& motion, double scale) {
+  const double duration = stage.duration.value_or(motion.duration());
+  return loading::measure_along({1.0, 0.0}, motion, scale, duration).peak / loading::standard_gravity;
+}
+
+/// A factor below 1 that leaves little of a record, and would make more of it as a peak in g; or one that makes of it what no earthquake
+/// has, and would not in per cent. Empty: neither.
+std::string scale_text(const Stage& stage, const GroundMotion& motion, double scale) {
+  constexpr double least = 0.05, stronger = 1.5, weak = 0.1, percent = 100.0;
+  const double recorded = horizontal_peak(stage, motion, 1.0), peak = scale * recorded;
+  if (scale >= least && scale < 1.0 && scale > stronger * recorded && peak < weak)
+    return fmt::format(
+        "{:.4g} is a factor, and {:.3g} g of the record in the section become {:.2g} g; for a peak of {:.4g} "
+        "g take "
+        "pga = {:.4g} (m/s2) of the motion, or scale = {:.3g}",
+        scale, recorded, peak, scale, scale * loading::standard_gravity, scale / recorded);
+  if (scale >= 10.0 && peak > loading::most_usual_peak)
+    return fmt::format(
+        "{:.4g} is a factor, and makes {:.3g} g of {:.3g} g in the section; was it in per cent? That is "
+        "{:.4g}",
+        scale, peak, recorded, scale / percent);
+  return {};
+}
+
+/// Whether there is something to warn of.
+bool warn_of_scale(const Scenario& scenario, const Stage& stage, const GroundMotion& motion,
+                   std::vector<std::string>& warnings) {
+  const std::string text = scale_text(stage, motion, stage.scale);
+  if (text.empty() || scenario.accepted.scale) return false;
+  const std::string key = join_path(join_path("stage", stage.name), "scale");
+  warnings.push_back(fmt::format("{}{}: {}", key, place_text(scenario, key), text));
+  return true;
+}
+
+void warn_of_window(const Scenario& scenario, const MotionSpec& spec, const GroundMotion& motion,
+                    std::vector<std::string>& warnings) {
+  constexpr double enough = 0.5;
+  const std::string key = join_path(spec.path, "window");
+  if (motion.share_of_record() >= enough || !spec.window || scenario.accepted.window) return;
+  warnings.push_back(fmt::format(
+      "{}{}: {:.4g} to {:.4g} s have {:.2g} % of the Arias intensity of the record; the strong part "
+      "of the shaking is left out",
+      key, place_text(scenario, key), spec.window->first, spec.window->second,
+      100.0 * motion.share_of_record()));
 }
 
 void warn_of_peak(const Scenario& scenario, const Stage& stage, const MotionSpec& spec,
@@ -120,7 +168,7 @@ double share_of_shaking(const GroundMotion& motion, double end) {
   for (std::size_t k = 1; k < times.size(); ++k) {
     const double part = 0.5 * (squared_norm(a[k - 1]) + squared_norm(a[k])) * (times[k] - times[k - 1]);
     all += part;
-    if (times[k] <= end) before += part;
+    if (times[k] <= end * (1.0 + rounding)) before += part;
   }
   return all > 0.0 ? before / all : 1.0;
 }
@@ -137,6 +185,30 @@ void warn_of_short_stage(const Stage& stage, const GroundMotion& motion, std::ve
         join_path("stage", stage.name), *stage.duration, motion.duration(), motion.name(), 100.0 * share));
 }
 
+/// The shaking stage whose scale a key path leads to, or null.
+const Stage* stage_of_scale(const Scenario& scenario, const std::string& key) {
+  const auto path = parse_key_path(key);
+  if (!path || path->size() != 3 || path->front().key != "stage" || path->back().key != "scale")
+    return nullptr;
+  const auto stage = std::ranges::find(scenario.stages, (*path)[1].key, &Stage::name);
+  return stage == scenario.stages.end() || stage->kind != simulation::StageKind::shake ? nullptr : &*stage;
+}
+
+/// The first of the values that seems to be a peak, or a per cent.
+void warn_of_values(const Stage& stage, const GroundMotion& motion, const VarySpec& axis, std::size_t key,
+                    std::vector<std::string>& warnings) {
+  constexpr double most_in_g = 1.5;
+  std::vector<double> scales;
+  for (const auto& values : axis.values) std::istringstream(values[key]) >> scales.emplace_back(0.0);
+  const bool is_in_g = *std::ranges::max_element(scales) <= most_in_g;
+  for (const double scale : scales) {
+    const std::string text = scale_text(stage, motion, scale);
+    if (text.empty() || (scale < 1.0 && !is_in_g)) continue;
+    warnings.push_back(fmt::format("study.vary: {}: {}", axis.keys[key], text));
+    return;
+  }
+}
+
 }  // namespace
 
 void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMotion>& motions,
@@ -147,11 +219,48 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
     const auto k = static_cast<std::size_t>(stage.motion);
     if (!scenario.accepted.step && !seen[k])
       warn_of_step(scenario, scenario.motions[k], motions[k], warnings);
+    if (!seen[k]) warn_of_window(scenario, scenario.motions[k], motions[k], warnings);
     seen[k] = true;
     warn_of_short_stage(stage, motions[k], warnings);
-    if (scenario.si_units) warn_of_peak(scenario, stage, scenario.motions[k], motions[k], warnings);
+    if (!scenario.si_units) continue;
+    if (!warn_of_scale(scenario, stage, motions[k], warnings))
+      warn_of_peak(scenario, stage, scenario.motions[k], motions[k], warnings);
   }
   warn_of_damping(scenario, motions, warnings);
+}
+
+std::vector<GroundFact> earthquake_facts(const Scenario& scenario, const std::vector<GroundMotion>& motions) {
+  std::vector<GroundFact> facts;
+  const auto shakes = [](const Stage& s) { return s.kind == simulation::StageKind::shake; };
+  const bool several = std::ranges::count_if(scenario.stages, shakes) > 1;
+  for (const Stage& stage : scenario.stages) {
+    if (!shakes(stage)) continue;
+    const GroundMotion& motion = motions[static_cast<std::size_t>(stage.motion)];
+    const double duration = stage.duration.value_or(motion.duration()),
+                 vertical = loading::measure_along({0.0, 1.0}, motion, stage.scale, duration).peak /
+                            loading::standard_gravity,
+                 share = motion.share_of_record() * share_of_shaking(motion, duration);
+    std::string text =
+        fmt::format("{:.2g} g horizontal in the section", horizontal_peak(stage, motion, stage.scale));
+    if (vertical > 0.0) text += fmt::format(", {:.2g} g vertical", vertical);
+    if (!scenario.motions[static_cast<std::size_t>(stage.motion)].components.empty() || share < 1.0)
+      text += fmt::format(", {:.3g} % of the Arias intensity in the window", 100.0 * share);
+    facts.push_back(
+        {several ? fmt::format("earthquake of “{}”", stage.name) : "earthquake", std::move(text)});
+  }
+  return facts;
+}
+
+void add_study_scale_warnings(const Scenario& scenario, const std::vector<GroundMotion>& motions,
+                              std::vector<std::string>& warnings) {
+  if (!scenario.study || !scenario.si_units || scenario.accepted.scale) return;
+  for (const VarySpec& axis : scenario.study->vary) {
+    for (std::size_t j = 0; j < axis.keys.size(); ++j) {
+      const Stage* stage = stage_of_scale(scenario, axis.keys[j]);
+      if (stage != nullptr)
+        warn_of_values(*stage, motions[static_cast<std::size_t>(stage->motion)], axis, j, warnings);
+    }
+  }
 }
 
 }  // namespace keyblock::scenario

@@ -103,7 +103,9 @@ constexpr Synonym all_synonyms[] = {
 
 constexpr Explanation all_explanations[] = {
     {"bolt bolts rockbolt rockbolts anchor anchors cable cables dowel dowels",
-     "bolts and cables are not in the program"},
+     "a [[spring]] between points of two blocks is an anchor, with its stiffness and yield; bolts that rock "
+     "holds "
+     "along their length, and dowels, are not in the program"},
     {"liner liners lining linings shotcrete beam beams struct steelset steelsets",
      "linings and beams are not in the program"},
     {"water waterpressure porepressure pore pp groundwater watertable phreatic piezo fluid flow seepage",
@@ -120,7 +122,9 @@ constexpr Explanation all_explanations[] = {
     {"creep viscosity", "creep is not in the program"},
     {"strike", "joint sets have a dip_direction: the strike + 90 degrees, by the right-hand rule"},
     {"joint", "[joints] has the properties, [[joint_set]] statistics, [[trace_map]] joints one by one"},
-    {"fos factorofsafety srf ssr strengthreduction", "a factor of safety is not in the program"},
+    {"fos factorofsafety srf ssr strengthreduction",
+     "strength_factor of [joints] divides their strength; keyblock limit finds the factor of safety by --key "
+     "joints.strength_factor"},
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "scenario/key_hints.h"
 #include "scenario/key_path.h"
+#include "scenario/magnitudes.h"
 
 namespace keyblock::scenario {
 namespace {
@@ -101,6 +102,14 @@ void TableReader::fail(std::string_view key, std::string found, std::string expe
           std::move(hint));
 }
 
+void TableReader::judge(const Value& value, const std::string& path, double number, const Usual* usual) {
+  if (usual == nullptr || !judges_) return;
+  const std::string text = unusual_text(*usual, number);
+  if (text.empty()) return;
+  context_.unusual.push_back(
+      fmt::format("{} = {}{}: {}", path, with_unit(number, usual->unit), place_text(value.where), text));
+}
+
 void TableReader::missing(std::string_view key, std::string expected, std::string hint) {
   fail(key, "nothing", std::move(expected), std::move(hint));
 }
@@ -154,7 +163,9 @@ const Value* TableReader::take(std::string_view key, const Rule& rule, KeyType v
 }
 
 const Value* TableReader::any(std::string_view key, std::string_view type, const Rule& rule) {
-  return take(key, rule, {}, std::string(type), "");
+  KeyType value_type;
+  value_type.kinds.assign(rule.kinds.begin(), rule.kinds.end());
+  return take(key, rule, std::move(value_type), std::string(type), "");
 }
 
 std::optional<double> TableReader::take_number(std::string_view key, const Rule& rule, bool integer,
@@ -163,7 +174,10 @@ std::optional<double> TableReader::take_number(std::string_view key, const Rule&
   const Value* value = take(key, rule, numeric(rule, integer), type, fallback);
   if (value == nullptr) return std::nullopt;
   const bool right_type = integer ? value->is(Value::Type::integer) : value->is_number();
-  if (right_type && in_range(value->number, rule)) return value->number;
+  if (right_type && in_range(value->number, rule)) {
+    judge(*value, path_of(key), value->number, rule.usual);
+    return value->number;
+  }
   fail(key, describe(*value),
        with_article(type) + (rule.unit.empty() ? "" : fmt::format(", in {}", rule.unit)));
   return std::nullopt;

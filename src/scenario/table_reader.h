@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "geometry/polygon.h"
 #include "scenario/key_reference.h"
 #include "scenario/mistakes.h"
+#include "scenario/usual.h"
 #include "scenario/value.h"
 
 namespace keyblock::scenario {
@@ -28,6 +30,9 @@ struct Rule {
   std::string_view condition{};  ///< when the key is used: `shape = "circle"`
   std::string_view group{};      ///< title of a section of its own for the keys of a table that occurs often
   std::string_view group_meaning{};
+  std::span<const KeyKind>
+      kinds{};                   ///< of a key that may hold several, or of what may stand in place of a group
+  const Usual* usual = nullptr;  ///< what its numbers usually are; of a point and of rows their size
 };
 
 /// Rows (time, value).
@@ -45,6 +50,7 @@ struct ReadContext {
   Mistakes mistakes;
   std::map<std::string, SourcePosition> positions;                          ///< of every value, by key path
   std::map<std::string, std::vector<std::string>, std::less<>> list_names;  ///< names of elements, by list
+  std::vector<std::string> unusual;                                         ///< of values, in words
   std::filesystem::path directory;                                          ///< to which paths are relative
   /// Not null: nothing is read; every key asked for is described here.
   std::vector<SectionReference>* reference = nullptr;
@@ -137,6 +143,10 @@ class TableReader {
   void missing(std::string_view key, std::string expected, std::string hint = {});
   void fail_at(const Value& value, const std::string& path, std::string found, std::string expected,
                std::string hint = {});
+  /// Compares a number with what it usually is.
+  void judge(const Value& value, const std::string& path, double number, const Usual* usual);
+  /// Of what neither weighs nor deforms, values mean nothing.
+  void judge_nothing() { judges_ = false; }
   /// Reports the keys that nobody asked for. Called for all tables but the document itself.
   void finish();
 
@@ -168,6 +178,7 @@ class TableReader {
   std::vector<std::string> known_;
   std::size_t section_ = 0;  // of the reference
   std::string prefix_;       // of keys within it
+  bool judges_ = true;
 };
 
 template <class E, std::size_t n>

@@ -77,16 +77,18 @@ std::optional<Vec2> TableReader::to_point(const Value& value, const std::string&
 
 bool TableReader::point(std::string_view key, Vec2& value, const Rule& rule) {
   const Value* found = take(key, rule, {KeyKind::point}, "point [x, y]", point_default(value));
-  if (found != nullptr && replace_components(*found, value)) return true;
-  const auto point = found == nullptr ? std::nullopt : to_point(*found, path_of(key));
+  const bool replaced = found != nullptr && replace_components(*found, value);
+  const auto point = found == nullptr || replaced ? std::nullopt : to_point(*found, path_of(key));
   if (point) value = *point;
-  return point.has_value();
+  if (point || replaced) judge(*found, path_of(key), norm(value), rule.usual);
+  return point.has_value() || replaced;
 }
 
 bool TableReader::point(std::string_view key, std::optional<Vec2>& value, const Rule& rule) {
   const Value* found = take(key, rule, {KeyKind::point}, "point [x, y]", value ? point_default(*value) : "");
   const auto point = found == nullptr ? std::nullopt : to_point(*found, path_of(key));
   if (point) value = point;
+  if (point) judge(*found, path_of(key), norm(*point), rule.usual);
   return point.has_value();
 }
 
@@ -105,6 +107,7 @@ bool TableReader::interval(std::string_view key, std::optional<std::pair<double,
     return false;
   }
   value = pair;
+  judge(*found, path_of(key), pair->second - pair->first, rule.usual);
   return true;
 }
 
@@ -227,6 +230,9 @@ bool TableReader::time_rows(std::string_view key, TimeRows& rows, bool jumps, co
     read.push_back(*row);
   }
   rows = std::move(read);
+  const auto largest =
+      std::ranges::max_element(rows, {}, [](const auto& row) { return std::abs(row.second); });
+  judge(*found, path_of(key), largest->second, rule.usual);
   return true;
 }
 
@@ -334,6 +340,7 @@ void TableReader::describe_table(std::string_view key, const Rule& rule, bool li
   }
   KeyType group{KeyKind::group};
   group.group = rule.group;
+  group.kinds.assign(rule.kinds.begin(), rule.kinds.end());
   describe_key(key, rule, std::move(group), "see " + std::string(rule.group), "");
   const bool known = std::any_of(sections.begin(), sections.end(),
                                  [&](const SectionReference& s) { return s.title == rule.group; });

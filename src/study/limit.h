@@ -68,6 +68,11 @@ struct RealizationLimit {
 
   [[nodiscard]] const LimitTrial* trial_at(double value) const;
   [[nodiscard]] bool found() const { return error.empty() && state.status == Bisection::Status::found; }
+  /// As far as it is known: of a search that was stopped it is wider than asked.
+  [[nodiscard]] bool is_bracketed() const {
+    const bool is_on_the_way = state.status == Bisection::Status::open && !state.limits.empty();
+    return error.empty() && (found() || is_on_the_way);
+  }
   /// The middle of the bracket.
   [[nodiscard]] double limit() const { return 0.5 * (state.not_met + state.met); }
   [[nodiscard]] const LimitTrial* just_beyond() const { return found() ? trial_at(state.met) : nullptr; }

@@ -66,7 +66,7 @@ ordered_json limits_json(const RealizationLimit& limit) {
 ordered_json realization_json(const RealizationLimit& limit) {
   ordered_json trials = ordered_json::array(), bracket, beyond, error;
   for (const LimitTrial& trial : limit.trials) trials.push_back(trial_json(trial));
-  if (limit.found()) bracket = {{"not_met", limit.state.not_met}, {"met", limit.state.met}};
+  if (limit.is_bracketed()) bracket = {{"not_met", limit.state.not_met}, {"met", limit.state.met}};
   if (const LimitTrial* trial = limit.just_beyond()) beyond = "runs/" + trial->run;
   if (!limit.error.empty()) error = limit.error;
   return {{"realization", limit.realization},

@@ -92,7 +92,9 @@ class Search {
       const std::vector<PlannedRun> round = next_round();
       if (round.empty()) return true;
       if (options_.workers.stop != nullptr && options_.workers.stop->load()) return false;
-      if (!run_round(round)) return false;
+      if (run_round(round)) continue;
+      update();  // by the runs that had ended
+      return false;
     }
   }
 

@@ -37,6 +37,8 @@ constexpr Subject subjects[] = {
     {"load_factor", "the factor on the loads at the limit"},
     {"gravity", "the gravity at the limit"},
     {"stage._.scale", "the scale of the motion at the limit"},
+    {"motion._.pga", "the peak horizontal acceleration at the limit"},
+    {"motion._.pgv", "the peak horizontal velocity at the limit"},
     {"stage._.k_h", "the horizontal seismic coefficient at the limit"},
     {"stage._.k_v", "the vertical seismic coefficient at the limit"},
 };

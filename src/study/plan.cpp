@@ -10,6 +10,7 @@
 #include "core/hash.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
+#include "scenario/magnitudes.h"
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/sections.h"
@@ -50,15 +51,24 @@ void add_files(const Scenario& scenario, std::map<fs::path, std::string>& files)
   }
 }
 
-// Reads every run of one realization, so that what it would refuse is refused now, and lists the files and the ground of all of
-// them.
-void read_all(const Scenario& base, Plan& plan) {
+/// Unusual values that only some runs have.
+void add_new(const Scenario& scenario, std::vector<std::string>& warnings) {
+  std::vector<std::string> unusual;
+  scenario::add_magnitude_warnings(scenario, unusual);
+  for (std::string& text : unusual)
+    if (std::ranges::find(warnings, text) == warnings.end()) warnings.push_back(std::move(text));
+}
+
+// Reads every run of one realization, so that what it would refuse is refused now, and lists the files, the ground and the unusual
+// values of all of them.
+void read_all(const Scenario& base, Plan& plan, std::vector<std::string>* warnings) {
   std::map<fs::path, std::string> files;
   scenario::GroundFacts ground;
   add_files(base, files);
   scenario::read_combinations(plan.text, plan.scenario, plan.overrides, [&](const Scenario& scenario) {
     add_files(scenario, files);
     ground.add(scenario::ground_facts(scenario));
+    if (warnings != nullptr) add_new(scenario, *warnings);
   });
   for (const auto& [path, hash] : files) plan.files.push_back({input_name(plan.scenario, path), hash});
   plan.ground = ground.merged();
@@ -295,7 +305,7 @@ Plan make_plan(const ScenarioText& source, const std::string& version, std::vect
   if (warnings != nullptr && plan.marginal && variants.size() < variants_of(scenario, {plan.stage}).size())
     warnings->push_back(no_release_warning(plan));
   check_count(plan, scenario, variants.size());
-  read_all(scenario, plan);
+  read_all(scenario, plan, warnings);
   list_runs(plan, variants);
   return plan;
 }

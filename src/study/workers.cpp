@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <list>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -116,7 +117,9 @@ class Workers {
     }
   }
 
+  // What comes next runs before it is told.
   void finish_runs() {
+    std::vector<std::pair<std::string, std::string>> ended;
     for (auto run = running_.begin(); run != running_.end();) {
       const std::optional<std::string> end = run->process.poll();
       if (!end) {
@@ -125,28 +128,31 @@ class Workers {
       }
       const std::size_t k = run->index;
       run = running_.erase(run);
-      finish(k, *end);
+      if (const auto failure = finish(k, *end)) ended.emplace_back(plan_.runs[k].key, *failure);
     }
+    if (ended.empty()) return;
+    if (options_.stop == nullptr || !options_.stop->load()) start_runs();
+    for (const auto& [key, failure] : ended) report(key, failure);
   }
 
-  void finish(std::size_t k, const std::string& end) {
+  /// Why it failed, empty where it did not; nothing where there is nothing to tell.
+  std::optional<std::string> finish(std::size_t k, const std::string& end) {
     const PlannedRun& run = plan_.runs[k];
     RunState& state = files_.states[k];
     state = read_run_state(directory_, plan_, run);
     if (state.kind != RunState::Kind::done) read_running();
     update_enough(plan_, files_);
-    if (!files_.asked(run) && state.kind != RunState::Kind::done) return;
+    if (!files_.asked(run) && state.kind != RunState::Kind::done) return std::nullopt;
     if (state.kind == RunState::Kind::done) {
       ++outcome_.done;
     } else if (interrupted_) {
-      return;  // begins anew the next time
+      return std::nullopt;  // begins anew the next time
     } else {
       note_failure(k, end);
       outcome_.failed.push_back(run.key + ": " + state.problem);
       update_enough(plan_, files_);
     }
-    const bool done = state.kind == RunState::Kind::done;
-    report(run.key, done ? "" : state.problem);
+    return state.kind == RunState::Kind::done ? "" : state.problem;
   }
 
   // A run that ended without a result may have found enough realizations in the folder: with that of another, which has written it

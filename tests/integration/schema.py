@@ -54,6 +54,33 @@ class Schema(unittest.TestCase):
         self.assertTrue(spoil(lambda s: s.update(tunnel={})))
         self.assertTrue(spoil(lambda s: s["motion"][0]["components"][0].update(file=3)))
 
+    def test_elements_of_rows_and_of_what_may_be_of_several_kinds(self):
+        right = {
+            "rock": {"density": 2600.0, "young": 1e9, "poisson": 0.2},
+            "motion": [{"name": "m", "x": [[0, 0.0], [1, 2.0]]}, {"name": "n", "x": {"amplitude": 1, "frequency": 2, "cycles": 1}}],
+            "joint_set": [{"name": "J", "dip": 1, "dip_direction": 1, "spacing": 1, "length": {"mean": 1.0, "distribution": "constant"}, "gap": 0}],
+            "excavation": [{"name": "E", "shape": "circle", "center": [0, 0], "diameter": 1, "pressure": [[0, 1e3], [1, 2e3]]}],
+            "stage": [{"name": "s", "kind": "settle", "release": {"E": 0.5}}],
+            "gravity": 9.81,
+        }
+        self.assertEqual(self.problems(right), [])
+
+        def spoil(change):
+            wrong = copy.deepcopy(right)
+            change(wrong)
+            return self.problems(wrong)
+
+        for rows in ([[0, "x"]], [[0, 1, 2]], [0, 1], [], "x"):
+            self.assertTrue(spoil(lambda s, rows=rows: s["motion"][0].update(x=rows)), rows)
+            self.assertTrue(spoil(lambda s, rows=rows: s["excavation"][0].update(pressure=rows)), rows)
+        self.assertTrue(spoil(lambda s: s["motion"][1]["x"].update(amplitude="x")))
+        self.assertTrue(spoil(lambda s: s["joint_set"][0].update(gap=[1])))
+        self.assertTrue(spoil(lambda s: s["excavation"][0].update(pressure=["still"])))
+        self.assertTrue(spoil(lambda s: s["excavation"][0].update(pressure={"s": "still"})))
+        self.assertTrue(spoil(lambda s: s["stage"][0].update(release="all")))
+        self.assertTrue(spoil(lambda s: s.update(gravity="down")))
+        self.assertTrue(spoil(lambda s: s["rock"].update(order=[1])))
+
     def test_the_shipped_one_is_that_of_the_program(self):
         self.assertEqual((ROOT / "examples/keyblock.schema.json").read_text(), self.text)
         for file in sorted((ROOT / "examples").glob("*.toml")):

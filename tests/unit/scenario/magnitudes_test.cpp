@@ -40,7 +40,7 @@ TEST(Warnings, OfUnusualValues) {
   EXPECT_THAT(warned("in_situ.syy=-5"), UnorderedElementsAre(HasSubstr("was it in MPa? That is -5e+06 Pa")));
   EXPECT_THAT(warnings_of(two_blocks, {"in_situ.depth=50", "in_situ.k0=70"}),
               UnorderedElementsAre(
-                  HasSubstr("in_situ.k0 = 70 (--set): usual is at most 5; was it in percent? That is 0.7")));
+                  HasSubstr("in_situ.k0 = 70 (--set): usual is 0.05 to 5; was it in percent? That is 0.7")));
   // What is set to nothing is meant, and what is fixed neither weighs nor deforms.
   for (const char* nothing : {"joints.friction=0", "gravity=[0, 0]", "block.base.density=1",
                               "block.base.young=1", "joints.cohesion=1e15"})

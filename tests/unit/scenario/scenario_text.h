@@ -38,7 +38,7 @@ duration = 1.0
 )";
 
 /// A scenario that is right: a domain with one joint set.
-inline const std::string jointed_domain = R"(accept_warnings = ["plane-stress", "order-1"]
+inline const std::string jointed_domain = R"(accept_warnings = ["plane-stress", "order-1", "lost-joints"]
 
 [section]
 azimuth = 90.0

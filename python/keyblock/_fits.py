@@ -1,0 +1,110 @@
+"""Whether the datasets of result.h5 fit each other. All that reads them may rely on it: what does not fit is a damaged file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import DamagedError
+
+if TYPE_CHECKING:
+    from ._hdf5 import ResultFile
+
+# Sizes by letter: n blocks, v vertices, x components. A letter takes the size where it is met first.
+_MODEL = {
+    "model/block_area": "n",
+    "model/block_centroid": "n2",
+    "model/block_density": "n",
+    "model/block_fixed": "n",
+    "model/block_name": "n",
+    "model/block_order": "n",
+    "model/block_poisson": "n",
+    "model/block_stress_ratio_zz": "n",
+    "model/block_young": "n",
+    "model/vertices": "v2",
+    "model/edge_index": "v",
+    "model/edge_kind": "v",
+    "frames/time": "t",
+    "frames/stage": "t",
+    "frames/step": "t",
+    "frames/displacement": "tv2",
+    "frames/order": "tn",
+    "frames/status": "tn",
+    "frames/stress": "tn3",
+    "frames/velocity": "tn2",
+    "contacts/block_a": "c",
+    "contacts/block_b": "c",
+    "contacts/contact": "c",
+    "contacts/edge_index": "c",
+    "contacts/edge_kind": "c",
+    "contacts/gap": "c",
+    "contacts/length": "c",
+    "contacts/normal": "c2",
+    "contacts/normal_force": "c",
+    "contacts/position": "c2",
+    "contacts/shear_displacement": "c",
+    "contacts/shear_force": "c",
+    "contacts/slip": "c",
+    "contacts/state": "c",
+    "contacts/time": "s",
+    "contacts/stage": "s",
+    "contacts/step": "s",
+    "contacts/end": "s",
+    "histories/time": "h",
+    "histories/step": "h",
+    "histories/values": "hpq",
+    "steps/time": "k",
+    "steps/stage": "k",
+    "steps/step": "k",
+    "steps/step_size": "k",
+    "steps/iterations": "k",
+    "steps/closed_contacts": "k",
+    "steps/penetration": "k",
+    "steps/max_displacement": "k",
+    "steps/energy": "ke",
+}
+# Rows that a run still writes, which are not complete at the same time.
+_GROWING = frozenset("tcshk")
+
+
+def check(file: ResultFile) -> None:
+    """Throws DamagedError, which names what does not fit. Reads the shapes, and the places where snapshots end."""
+    sizes: dict[str, tuple[int, str]] = {}
+    for name, letters in _MODEL.items():
+        if not file.has(name):
+            continue
+        shape = file.shape(name)
+        if len(shape) != len(letters):
+            raise _damaged(file, f"{name} has {len(shape)} dimensions, not {len(letters)}")
+        if name != "model/block_name" and file.kind(name) not in "iuf":
+            raise _damaged(file, f"{name} holds no numbers")
+        for letter, size in zip(letters, shape, strict=True):
+            if letter in _GROWING and file.grows:
+                continue
+            known, first = (int(letter), "") if letter.isdigit() else sizes.setdefault(letter, (size, name))
+            if size != known:
+                raise _damaged(file, f"{name} has a size of {size}, not {known}{f' as {first}' if first else ''}")
+    _check_places(file, sizes)
+
+
+def _check_places(file: ResultFile, sizes: dict[str, tuple[int, str]]) -> None:
+    """Places in other datasets; those of rings are looked at where rings are made."""
+    blocks = sizes.get("n", (0, ""))[0]
+    if file.has("model/block_excavations") and file.has("model/excavation") and blocks:
+        places = file.read("model/block_excavations")
+        last = file.shape("model/excavation")[0]
+        if places.shape != (blocks + 1,) or places[0] != 0 or places[-1] != last or not _ascends(places):
+            raise _damaged(file, f"model/block_excavations does not ascend from 0 to {last}")
+    if file.has("contacts/end") and "c" in sizes:
+        ends = file.read("contacts/end")
+        if len(ends) and (not _ascends(ends) or ends[0] < 0 or ends[-1] > sizes["c"][0]):
+            raise _damaged(file, "contacts/end does not ascend to the number of contacts")
+
+
+def _ascends(places: np.ndarray) -> bool:
+    return bool((np.diff(places.astype(np.int64)) >= 0).all())
+
+
+def _damaged(file: ResultFile, what: str) -> DamagedError:
+    return DamagedError(f"{file.path} is damaged: {what}")
