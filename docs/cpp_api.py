@@ -12,6 +12,7 @@ import re
 INCLUDE = pathlib.Path(__file__).resolve().parents[1] / "include"
 
 TYPE = re.compile(r"(?P<kind>class|struct) (?P<name>\w+)(?P<bases>[^{;]*)\{$")
+ENUM = re.compile(r"enum class (?P<name>\w+)(?P<type>[^{;]*)\{$")
 NOT_SHOWN = re.compile(r"~|.*\boperator=\(|(\w+)\(\1&&\)")  # what owns memory has these
 
 
@@ -19,7 +20,7 @@ NOT_SHOWN = re.compile(r"~|.*\boperator=\(|(\w+)\(\1&&\)")  # what owns memory h
 class Entry:
     """A declaration with what is said of it, and the members of a class."""
 
-    kind: str  # class, function, member
+    kind: str  # class, function, member, enum-class, enumerator
     declaration: str
     comment: list[str]
     members: list["Entry"] = dataclasses.field(default_factory=list)
@@ -72,6 +73,8 @@ class _Reader:
             members = self._scope("};")
             declaration = head["name"] + head["bases"].rstrip()
             return [Entry(head["kind"], declaration, comment, members)]
+        if head := ENUM.match(words):
+            return [Entry("enum-class", head["name"] + head["type"].rstrip(), comment, self._enumerators())]
         if re.match(r"(class|struct) \w+;|using ", words):
             return []
         if words.startswith("std::function<"):
@@ -79,6 +82,16 @@ class _Reader:
         if "(" in words.split("=")[0] or "operator" in words:
             return [] if NOT_SHOWN.match(words) else [Entry("function", _signature(words), comment)]
         return [Entry("member", member, comment) for member in _members(words)]
+
+    def _enumerators(self):
+        """One a line, up to the line that closes the enumeration."""
+        entries = []
+        for line in self._lines:
+            name, _, said = line.strip().partition("///<")
+            if name.strip() == "};":
+                return entries
+            entries.append(Entry("enumerator", name.strip().rstrip(","), [said] if said else []))
+        return entries
 
     def _skip_body(self, text):
         """The rest of the body of a function."""

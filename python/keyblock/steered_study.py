@@ -25,7 +25,7 @@ def file_of_controllers(folder: str | os.PathLike[str]) -> Path:
 
 def run_steered(folder: str, workers: int, controllers: Sequence[Any], progress: Callable[[int, int], Any] | None) -> None:
     """Does all runs that are missing, `workers` at a time. A fork that is killed is one failed run."""
-    from .simulation import controllers_of
+    from .controllers import controllers_of
 
     made = controllers_of(controllers)
     _check_same(Path(folder), made)

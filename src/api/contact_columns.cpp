@@ -88,8 +88,12 @@ void ContactColumns::add_mechanics(Records some) {
   fill(ContactColumn::shear_displacement, c.shear_displacement, some, of(&Record::shear_displacement));
   fill(ContactColumn::normal_force, c.normal_force, some, of(&Record::normal_force));
   fill(ContactColumn::shear_force, c.shear_force, some, of(&Record::shear_force));
-  fill(ContactColumn::friction, c.friction, some,
-       [](const Record& record) { return degrees_of(record.friction); });
+  // Most contacts are of few joints.
+  double coefficient = 0.0, degrees = 0.0;
+  fill(ContactColumn::friction, c.friction, some, [&](const Record& record) {
+    if (record.friction != coefficient) degrees = degrees_of(coefficient = record.friction);
+    return degrees;
+  });
   fill(ContactColumn::cohesion, c.cohesion, some, of(&Record::cohesion));
   fill(ContactColumn::tension, c.tension, some, of(&Record::tension));
 }

@@ -234,7 +234,7 @@ class TableReader {
       }
       if (vertex_places_ = places_of_vertices(names); !vertex_places_.empty()) {
         kind_ = Kind::ends;
-        return true;
+        return header_of_ends(names, cells, number);
       }
       if (!are_points(cells, separator)) continue;
       kind_ = Kind::points;
@@ -244,6 +244,23 @@ class TableReader {
     }
     missing_columns(line, number);
     return false;
+  }
+
+  /// `x1 y1 x2 y2 x1` does not say which x1 is meant.
+  bool header_of_ends(const std::vector<std::string>& names, const std::vector<Cell>& cells, int number) {
+    std::vector<bool> is_taken(names.size(), false);
+    for (const auto& [x, y] : vertex_places_) is_taken[x] = is_taken[y] = true;
+    bool complete = true;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (is_taken[k]) continue;
+      for (std::size_t taken = 0; taken < names.size(); ++taken) {
+        if (!is_taken[taken] || names[taken] != names[k]) continue;
+        map_.mistake(number, cells[k].column, names[k], "the column again", "every column once");
+        complete = false;
+        break;
+      }
+    }
+    return complete;
   }
 
   bool header_of_vertices(const std::vector<std::string>& names, const std::vector<Cell>& cells, int number) {

@@ -75,6 +75,7 @@ TEST_F(TraceMapFormats, TablesOfTwoEnds) {
     EXPECT_EQ(ends(read(text)), cross) << c.header;
   }
   EXPECT_THAT(mistake("id,x1,y1,x2,y2\n1,0,0,5\n").found, HasSubstr("4 cells"));
+  EXPECT_THAT(mistake("x1,y1,x2,y2,x1\n0,0,5,1,3\n").found, HasSubstr("the column again"));
   EXPECT_THAT(mistake("id,x1,y1,x2,y2\n1,0,0,five,1\n").found, HasSubstr("five"));
 }
 
