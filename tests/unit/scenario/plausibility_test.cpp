@@ -250,6 +250,8 @@ TEST(Warnings, OfPeaksThatNoEarthquakeHas) {
 // What comes down into an opening lies on its floor.
 TEST(Warnings, OfAFallThatNothingCanMake) {
   const std::string opened = jointed_domain + R"(
+[time]
+step = 0.01
 [[excavation]]
 name = "tunnel"
 shape = "circle"
