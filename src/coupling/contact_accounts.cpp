@@ -74,6 +74,15 @@ contact::LawLanes laws_in_step(std::span<const contact::Contact> contacts, const
   return law;
 }
 
+/// What the work of contacts takes of their forces at the start of the step (Integrator::end_share_of_work).
+Lanes shares_of_start(const Drive& drive, std::span<const contact::Contact> contacts,
+                      std::span<const Row> rows) {
+  Lanes shares{};
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    shares[i] = 1.0 - drive.end_share_of_work(contacts[i], rows[i].unknown_a >= 0);
+  return shares;
+}
+
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
 ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::size_t count,
                               std::span<contact::Memory> remembered) {
@@ -122,12 +131,9 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
     // A bond's force has a sign, which the pressure that is remembered has not.
     const Lanes at_start =
         where(at_first(springs.low) < zero, law.normal_stiffness * law.depth, memory.normal_force);
-    Lanes of_start{};
-    for (std::size_t i = 0; i < count; ++i)
-      of_start[i] = 1.0 - drive.end_share_of_work(contacts[i], rows[i].unknown_a >= 0);
-    accounts.earlier =
-        of_start * ((law.shear_stiffness * memory.shear - shear) * (moved_shear - rotated_shear) -
-                    (at_start - normal) * (moved_normal - rotated_normal));
+    accounts.earlier = shares_of_start(drive, contacts, rows) *
+                       ((law.shear_stiffness * memory.shear - shear) * (moved_shear - rotated_shear) -
+                        (at_start - normal) * (moved_normal - rotated_normal));
     accounts.input += accounts.earlier;
   }
   accounts.leave_out_beyond(count);
