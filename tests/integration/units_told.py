@@ -18,6 +18,7 @@ TEMPLATES = ("arch", "beam", "column", "slope", "study", "tunnel", "wall")
 # What may be anything: patterns of key paths.
 ANYTHING = {
     r"seed": "any number will do",
+    r"motion.*cycles": "told by the table of what is usual; thousands of cycles take minutes to check",
     r"study\.realizations": "as many as are wanted",
     r"study\.vary\..*": "looked at value by value where it is a key with a unit",
 }
