@@ -76,7 +76,7 @@ inline constexpr Usual opening{"m", 0.05, 2e2, 1.0, 50.0, lengths};
 inline constexpr Usual way{"m", 1e-5, 1e2, 1e-3, 5.0, lengths};
 inline constexpr Usual small_way{"m", 1e-6, 10.0, 1e-5, 2.0, lengths};
 inline constexpr Usual step{"s", 1e-5, 0.1, 1e-4, 0.05, times};
-inline constexpr Usual duration{"s", 0.05, 600.0, 0.1, 300.0, times};
+inline constexpr Usual duration{"s", 0.02, 600.0, 0.1, 300.0, times};
 inline constexpr Usual interval{"s", 2e-4, 60.0, 1e-3, 10.0, times};
 inline constexpr Usual frequency{"Hz", 0.05, 300.0, 0.2, 100.0, frequencies};
 inline constexpr Usual cycles{"", 0.25, 500.0, 1.0, 100.0};
