@@ -29,6 +29,7 @@ int Runner::find_unstable_block(const std::vector<bool>& which_move) {
   put_loads(now_.control, setup_, bending);
   dynamics::Stepper stepper(bending, team_, profile_, options_.stop);
   stepper.resume(state);
+  stepper.find_forces(state);
   return stepper.find_unstable_block(state, which_move);
 }
 

@@ -186,9 +186,10 @@ class OddInput(unittest.TestCase):
                 self.assertGreater(damage["displacement_max_m"], 5.0, f"{name}, order {order}")
 
     def test_energy_from_nothing_is_told(self):
-        for name in ("energy-92", "energy-97"):
-            _, said = self.run_it(name, code=2)
-            self.assertRegex(said, r"the rule of time integration has made energy, 1\d\d %")
+        _, said = self.run_it("energy-92", code=2)
+        self.assertRegex(said, r"the rule of time integration has made energy, 1\d\d %")
+        _, said = self.run_it("energy-97")
+        self.assertRegex(said, r"note: the rule of time integration has made energy, \d\d\.\d %")
         for name in ("residual-27-percent", "residual-100-percent"):
             summary, _ = self.run_it(name)
             self.assertLess(abs(summary["energy"].get("residual_ratio", 0.0)), 0.01, name)

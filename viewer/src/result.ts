@@ -82,7 +82,10 @@ function whatFalls(run: Run): HTMLElement | null {
   ];
   if (damage.fallen_depth_m !== null) facts.push(["Depth behind the wall", depths(damage) || "–"]);
   if (damage.largest_block_pressure_pa !== null)
-    facts.push(["Largest block over its width", `${significant(damage.largest_block_pressure_pa / 1e3, 3)} kPa`]);
+    facts.push([
+      "Largest block over its width",
+      `${significant(damage.largest_block_pressure_pa / 1e3, 3)} kPa`,
+    ]);
   const note =
     damage.fallen_depth_m === null
       ? "Weights are per metre of thickness."

@@ -123,6 +123,23 @@ TEST(Settling, AColumnBeyondItsBucklingLoadDoesNotStandAtAnyOrder) {
   EXPECT_EQ(column_under(1.05, 1, true), Standing::unstable);
 }
 
+// Rock beside it holds a slender block, whose contacts the test has to know.
+TEST(Settling, ASlenderBlockBetweenOthersIsStable) {
+  const double pressed = 2.0 * std::numbers::pi * std::numbers::pi * 1e9 / (48.0 * 400.0);
+  Scene scene(1e9, 30.0);
+  scene.setup.joints.standard.normal_stiffness = 1e9;
+  scene.rectangle({0.0, 0.0}, 1.0, 20.0);
+  scene.rectangle({-2.0, 0.0}, 2.0, 20.0, 0.0, true);
+  scene.rectangle({1.0, 0.0}, 2.0, 20.0, 0.0, true);
+  scene.rectangle({-2.0, -1.0}, 5.0, 1.0, 0.0, true);
+  scene.rectangle({-2.0, 20.0}, 5.0, 1.0, 0.0, true);
+  RunSetup setup = scene.setup;
+  setup.gravity = {0.0, 0.0};
+  setup.time_step = 1.0;
+  setup.in_situ = InSituStress{.sxx = -pressed, .syy = -pressed};
+  EXPECT_EQ(standing_of(settle(setup), {}, false), Standing::stands);
+}
+
 // Without gravity, a block that only its neighbour loads is in balance when the neighbour is.
 TEST(Settling, EndsWithoutGravity) {
   Scene scene(1e9, 30.0);
