@@ -90,7 +90,7 @@ const tests = {
     assert.match(findings, /1 sliver left in the model, as the scenario asks\./);
     // One of them is listed in both stages.
     assert.match(
-      await text(page, "#verdict summary"),
+      await text(page, '#verdict summary:has-text("moving")'),
       /^3 blocks moving at the end of a static stage/,
     );
     assert.equal(await page.locator("#verdict tbody tr").count(), 4);
@@ -251,6 +251,7 @@ const tests = {
   async "what falls is told as an engineer asks it"() {
     const page = await open("tunnel");
     assert.equal(await text(page, ".badge"), "Rock falls");
+    await page.locator(".falls summary").click();
     const result = await text(page, "#verdict");
     assert.match(
       result,

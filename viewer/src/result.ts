@@ -86,11 +86,21 @@ function whatFalls(run: Run): HTMLElement | null {
       "Largest block over its width",
       `${significant(damage.largest_block_pressure_pa / 1e3, 3)} kPa`,
     ]);
-  const note =
-    damage.fallen_depth_m === null
-      ? "Weights are per metre of thickness."
-      : "Weights are per metre of tunnel. The weight of a block over its own width along the wall is what holds that block alone, without friction. The support pressure that holds all the rock is found by trying:";
+  const note = `Weights are per metre of ${damage.fallen_depth_m === null ? "thickness" : "tunnel"}.`;
   const search = run.header.model.pressure_search;
+  const support = search
+    ? h(
+        "details",
+        { class: "hint" },
+        h("summary", {}, "Which support pressure is needed?"),
+        h(
+          "p",
+          {},
+          "The weight of a block over its own width along the wall holds that block alone, without friction. The support pressure that holds all the rock is found by trying: ",
+          h("code", {}, search),
+        ),
+      )
+    : null;
   const list = factList(facts);
   list.classList.add("listed");
   return h(
@@ -98,7 +108,8 @@ function whatFalls(run: Run): HTMLElement | null {
     { class: "falls" },
     h("h3", {}, "What falls"),
     list,
-    h("p", { class: "hint" }, note, ...(search ? [" ", h("code", {}, search)] : [])),
+    h("p", { class: "hint" }, note),
+    support,
   );
 }
 
