@@ -90,7 +90,7 @@ const tests = {
     assert.match(findings, /1 sliver left in the model, as the scenario asks\./);
     // One of them is listed in both stages.
     assert.match(
-      await text(page, '#verdict summary:has-text("moving")'),
+      await text(page, "#verdict details:not(.falls details) > summary"),
       /^3 blocks moving at the end of a static stage/,
     );
     assert.equal(await page.locator("#verdict tbody tr").count(), 4);
