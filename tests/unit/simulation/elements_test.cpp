@@ -11,20 +11,20 @@
 namespace keyblock::simulation {
 namespace {
 
-constexpr double weight = 2600.0 * g, stiffness = 1e7;  // N/m of the hanging block; N/m per m
+constexpr double hung_weight = 2600.0 * g, of_hanger = 1e7;  // N/m of the hanging block; N/m per m
 
-loading::Spring hanger(std::string name, double to, int staged) {
+loading::Spring named_hanger(std::string name, double to, int staged) {
   loading::Spring spring;
   spring.name = std::move(name);
   spring.from = {0.5, 3.0};
   spring.to = {0.5, to};
-  spring.stiffness = stiffness;
+  spring.stiffness = of_hanger;
   spring.staged = staged;
   return spring;
 }
 
-/// A block of this weight with ballast of a fifth of it. A second spring is installed; then the ballast is taken away.
-RunSetup hung_block() {
+/// A block of this hung_weight with ballast of a fifth of it. A second spring is installed; then the ballast is taken away.
+RunSetup hung_by_two() {
   Scene scene(1e11, 30.0);
   scene.rectangle({0.0, 3.0}, 1.0, 1.0, 0.0, true);
   scene.rectangle({0.0, 0.0}, 1.0, 1.0);
@@ -33,7 +33,7 @@ RunSetup hung_block() {
   setup.gravity = {0.0, -g};
   setup.system.blocks[2].excavations = {0};
   setup.excavations.push_back({"ballast", {{0.2, 1.0}, {0.8, 1.0}, {0.8, 1.6}, {0.2, 1.6}}});
-  setup.springs = {hanger("first", 0.9, -1), hanger("", 0.8, 0)};
+  setup.springs = {named_hanger("first", 0.9, -1), named_hanger("", 0.8, 0)};
   setup.staged_supports = {"second"};
   setup.time_step = 0.002;
   setup.stages = {stage("hang", StageKind::settle), stage("support", StageKind::settle),
@@ -46,31 +46,31 @@ RunSetup hung_block() {
 
 TEST(Elements, SpringsCarryWhatTheyHold) {
   RunObserver nobody;
-  const RunRecord record = run(hung_block(), {}, nobody);
+  const RunRecord record = run(hung_by_two(), {}, nobody);
   ASSERT_EQ(record.elements.size(), 2u);
   const ElementRecord &first = record.elements[0], &second = record.elements[1];
   EXPECT_EQ(first.name, "first");
   EXPECT_EQ(second.name, "spring[1]");
   EXPECT_EQ(first.kind, "spring");
-  EXPECT_NEAR(first.force, 1.1 * weight, 1e-4 * weight);
-  EXPECT_NEAR(first.elongation, 1.1 * weight / stiffness, 1e-4 * weight / stiffness);
-  EXPECT_NEAR(first.peak_force, 1.2 * weight, 1e-3 * weight);
+  EXPECT_NEAR(first.force, 1.1 * hung_weight, 1e-4 * hung_weight);
+  EXPECT_NEAR(first.elongation, 1.1 * hung_weight / of_hanger, 1e-4 * hung_weight / of_hanger);
+  EXPECT_NEAR(first.peak_force, 1.2 * hung_weight, 1e-3 * hung_weight);
   EXPECT_EQ(first.peak_stage, "hang");
   EXPECT_FALSE(first.has_yielded());
   EXPECT_EQ(first.utilization(), 0.0);
   // Put in without force, it is pressed when the block rises.
-  EXPECT_NEAR(second.force, -0.1 * weight, 1e-4 * weight);
-  EXPECT_NEAR(second.peak_force, 0.1 * weight, 1e-3 * weight);
+  EXPECT_NEAR(second.force, -0.1 * hung_weight, 1e-4 * hung_weight);
+  EXPECT_NEAR(second.peak_force, 0.1 * hung_weight, 1e-3 * hung_weight);
   EXPECT_EQ(second.peak_stage, "unload");
-  EXPECT_NEAR(second.elongation, -0.1 * weight / stiffness, 1e-4 * weight / stiffness);
+  EXPECT_NEAR(second.elongation, -0.1 * hung_weight / of_hanger, 1e-4 * hung_weight / of_hanger);
   EXPECT_EQ(second.yielded, 0.0);
 }
 
 TEST(Elements, ASpringThatYieldsIsAtItsLimit) {
-  RunSetup setup = hung_block();
+  RunSetup setup = hung_by_two();
   setup.springs.pop_back();
   setup.staged_supports.clear();
-  setup.springs[0].yield = 0.5 * weight;
+  setup.springs[0].yield = 0.5 * hung_weight;
   setup.stages = {stage("fall", StageKind::rest, 0.2)};
   RunObserver nobody;
   const RunRecord record = run(setup, {}, nobody);
@@ -78,7 +78,8 @@ TEST(Elements, ASpringThatYieldsIsAtItsLimit) {
   EXPECT_NEAR(record.elements[0].utilization(), 1.0, 1e-9);
   EXPECT_TRUE(record.elements[0].has_yielded());
   EXPECT_GT(record.elements[0].yielded, 0.01);
-  EXPECT_NEAR(record.elements[0].yielded, record.elements[0].elongation - 0.5 * weight / stiffness, 1e-9);
+  EXPECT_NEAR(record.elements[0].yielded, record.elements[0].elongation - 0.5 * hung_weight / of_hanger,
+              1e-9);
 }
 
 TEST(Elements, ASupportCarriesItsBlock) {
@@ -101,23 +102,23 @@ TEST(Elements, ASupportCarriesItsBlock) {
     ASSERT_EQ(record.elements.size(), 1u);
     EXPECT_EQ(record.elements[0].name, "support[0]");
     EXPECT_EQ(record.elements[0].kind, "support");
-    EXPECT_NEAR(record.elements[0].force, weight, 1e-4 * weight) << is_edge;
-    EXPECT_NEAR(record.elements[0].elongation, weight / 2e7, 1e-4 * weight / 2e7) << is_edge;
+    EXPECT_NEAR(record.elements[0].force, hung_weight, 1e-4 * hung_weight) << is_edge;
+    EXPECT_NEAR(record.elements[0].elongation, hung_weight / 2e7, 1e-4 * hung_weight / 2e7) << is_edge;
     EXPECT_TRUE(std::isinf(record.elements[0].limit));
   }
 }
 
 /// Stops after the first step of the last stage.
-struct Stopper : RunObserver {
+struct StopsAtTheLastStage : RunObserver {
   std::atomic<bool> stop = false;
   void stage_begin(int stage, const StageRecord& /*record*/) override { stop = stage == 2; }
 };
 
 TEST(Elements, LargestForcesAreKeptWhenARunGoesOn) {
-  const RunSetup setup = hung_block();
+  const RunSetup setup = hung_by_two();
   RunObserver nobody;
   const RunRecord whole = run(setup, {}, nobody);
-  Stopper stopper;
+  StopsAtTheLastStage stopper;
   const RunRecord resumed = resumed_run(setup, stopper);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(resumed.elements[k].peak_force, whole.elements[k].peak_force) << k;
