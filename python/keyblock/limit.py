@@ -41,9 +41,18 @@ class Limit:
 
     @property
     def value(self) -> float:
-        """The limit, the median over the realizations; NaN where it is not known. `summary["median"]["bound"]` says whether it is a bound."""
-        found = self.summary["median"]["value"]
+        """The limit, the median over the realizations; NaN where it is not known, or only as a bound: `bound` has that."""
+        median = self.summary["median"]
+        found = None if median.get("bound") else median["value"]
         return math.nan if found is None else float(found)
+
+    @property
+    def bound(self) -> str:
+        """What is known where `value` is NaN: "at least 1.2", "at most 5", where limits lie beyond an end of the search; empty: nothing more."""
+        median = self.summary["median"]
+        if not median.get("bound") or median["value"] is None:
+            return ""
+        return f"{median['bound']} {median['value']:.6g}"
 
     @property
     def answer(self) -> str:
@@ -118,4 +127,5 @@ class Limit:
         figures.legend_below(ax, columns=3)
 
     def __repr__(self) -> str:
-        return f"<keyblock limit {str(self.path)!r}: {self.key} until {self.summary['until']}, {self.interval!r}>"
+        found = self.bound or (f"{self.value:.6g}" if math.isnan(self.interval.low) else repr(self.interval))
+        return f"<keyblock limit {str(self.path)!r}: {self.key} until {self.summary['until']}, {found}>"

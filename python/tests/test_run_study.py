@@ -183,6 +183,8 @@ def test_limits_are_those_of_the_program(tmp_path: Path) -> None:
 
 def test_a_limit_takes_its_criterion_from_the_model(tmp_path: Path) -> None:
     scenario = kb.Scenario.load(ROOT / "verification/scenarios/limit_slope.toml")
+    none = kb.find_limit(scenario, tmp_path / "none", "stage.excavated.k_h", 0.0, -0.05)
+    assert math.isnan(none.value) and none.limits == [] and none.bound in repr(none) and none.bound == "at most -0.05"
     found = kb.find_limit(scenario, tmp_path / "out", "stage.excavated.k_h", 0.0, -0.5, scan=3, workers=2)
     assert found.value == pytest.approx(-math.tan(math.radians(10.0)), rel=0.02)
     assert (found.summary.until, found.summary.scan) == ("collapsed", 3)

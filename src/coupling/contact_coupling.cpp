@@ -69,7 +69,7 @@ bool meets_impact(const Model& model, const State& state, const Drive& drive, co
   if (!may_meet(c.block_a) || !may_meet(c.block_b) || !(strikes(c.block_a) || strikes(c.block_b)))
     return false;
   const double speed = approach(state, drive, points, c, row);
-  return speed > drive.impact_speed && c.depth <= 0.0 && -c.depth < speed * drive.step;
+  return speed > drive.impact_speed && std::abs(c.depth) < speed * drive.step;
 }
 
 /// How contacts of blocks that strike each other are met, zero of all others.

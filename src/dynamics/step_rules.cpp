@@ -133,7 +133,9 @@ bool StepRules::meet_impacts(const Attempt& attempt, std::span<const double> spe
   for (const std::size_t c : fast_) {
     if (!is_impact(attempt, c, least)) continue;
     const double with = approach(attempt, c);
-    const bool strikes = keeps && with > impact_speed_ && attempt.contacts[c].depth <= 0.0;
+    // What has pressed for longer than a step is no impact.
+    const bool strikes =
+        keeps && with > impact_speed_ && attempt.contacts[c].depth <= with * attempt.drive.step;
     const double theta = strikes ? theta_of_impact(attempt, c, with) : options.restitution;
     slow(attempt.model, attempt.contacts[c].block_a, theta, strikes);
     slow(attempt.model, attempt.contacts[c].block_b, theta, strikes);

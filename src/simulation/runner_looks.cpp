@@ -20,7 +20,8 @@ Vec2 Runner::ground_acceleration() const {
 
 int Runner::find_unstable_block(const std::vector<bool>& which_move) {
   const int found = stepper_->find_unstable_block(now_.mechanics, which_move);
-  const auto orders = found < 0 ? orders_that_bend(model_, now_.mechanics) : std::nullopt;
+  const auto orders =
+      found < 0 ? orders_that_bend(model_, now_.mechanics, stepper_->contacts()) : std::nullopt;
   if (!orders) return found;
   // Blocks of low orders stand under any load: a model of blocks that can bend is tested in the place of this one.
   dynamics::Model bending = model_;

@@ -1,7 +1,9 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "contact/contact.h"
 #include "model/model.h"
 #include "model/state.h"
 
@@ -17,7 +19,9 @@ double buckling_ratio(const dynamics::Block& block, const double* position);
 
 /// The orders of all blocks with which a test of stability sees them bend: order 3, which is 0.1 % above Euler's load, for those that are
 /// pressed by a quarter of σ_b. That is far below what any support at the ends leaves of it, unless joints there are soft, which any order sees.
-/// None, where all blocks have these orders.
-std::optional<std::vector<int>> orders_that_bend(const dynamics::Model& model, const dynamics::State& state);
+/// Blocks that press against others with their long sides keep their order: these hold them, and the contacts of order 1 are too few to say so of a
+/// block that bends. None, where all blocks have these orders.
+std::optional<std::vector<int>> orders_that_bend(const dynamics::Model& model, const dynamics::State& state,
+                                                 std::span<const contact::Contact> contacts);
 
 }  // namespace keyblock::simulation
