@@ -34,6 +34,16 @@ constexpr double motion_share = 1e-3;
 /// steps or not, is no part of Drive::in_impact. Larger: digits are lost.
 constexpr double rigid_share = 1e3;
 
+/// Σ of the squares of what a turn by 1 rad changes n coefficients by.
+double squared_turn(const double* position, int n) {
+  double sum = 0.0;
+  for (int k = 2; k < n; ++k) {
+    const double turn = turn_of(1.0, position, at(k));
+    sum += turn * turn;
+  }
+  return sum;
+}
+
 double floor_of(const Drive& drive, double inertia) {
   return drive.is_static && !drive.is_trial ? HUGE_VAL : geometric_floor * inertia;
 }
@@ -188,16 +198,13 @@ void BlockTerms::make_rigid(std::size_t i, const State& state) {
   const Block& block = model_->blocks[i];
   const int n = 2 * block.size, stride = linalg::padded_rows(n);
   const double* position = &state.position[block.first];
+  const double squared = squared_turn(position, n);
   double* h = &h_[h_first_[i]];
-  std::vector<double> turn(at(n));
-  double squared = 0.0;
-  for (std::size_t k = 0; k < at(n); ++k) {
-    turn[k] = turn_of(1.0, position, k);
-    squared += turn[k] * turn[k];
-  }
   for (int c = 2; c < n; ++c) {
     h[c * stride + c] += rigid_[i];
-    for (int r = 2; r < n; ++r) h[c * stride + r] -= rigid_[i] * turn[at(c)] * turn[at(r)] / squared;
+    for (int r = 2; r < n; ++r)
+      h[c * stride + r] -=
+          rigid_[i] * turn_of(1.0, position, at(c)) * turn_of(1.0, position, at(r)) / squared;
   }
 }
 
@@ -359,14 +366,12 @@ BlockTerms::ElasticLoss BlockTerms::block_loss(Size size, std::size_t i, const d
   loss.numerical += of_both - 0.5 * of_turn;
   if (rigid_[i] > 0.0) {
     // What holds the shape stores nothing.
-    double held = 0.0, along = 0.0, squared = 0.0;
+    double held = 0.0, along = 0.0;
     for (int k = 2; k < 2 * size; ++k) {
-      const double t = turn_of(1.0, position, at(k));
       held += d[k] * d[k];
-      along += d[k] * t;
-      squared += t * t;
+      along += d[k] * turn_of(1.0, position, at(k));
     }
-    loss.numerical += 0.5 * rigid_[i] * (held - along * along / squared);
+    loss.numerical += 0.5 * rigid_[i] * (held - along * along / squared_turn(position, 2 * size));
   }
   if (is_static_) {
     for (int k = 0; k < 2 * size; ++k) strained[k] = d[k] - turn[k];

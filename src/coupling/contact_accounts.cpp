@@ -83,6 +83,19 @@ Lanes shares_of_start(const Drive& drive, std::span<const contact::Contact> cont
   return shares;
 }
 
+/// The state of contacts and what a solution does not change, beside the numbers that are kept in lanes.
+void remember_states(std::span<const contact::Contact> contacts, const Lanes& closed, const Lanes& locked,
+                     std::span<contact::Memory> remembered) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    remembered[i].state = closed[i] == 0.0   ? contact::State::open
+                          : locked[i] != 0.0 ? contact::State::locked
+                                             : contact::State::sliding;
+    remembered[i].bonded = contacts[i].memory.bonded;
+    remembered[i].in_face = contacts[i].memory.in_face;
+    remembered[i].bond_length = contacts[i].memory.bond_length;
+  }
+}
+
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
 ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::size_t count,
                               std::span<contact::Memory> remembered) {
@@ -151,14 +164,7 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;
   contact::keep(memory, count, [&](std::size_t i) -> contact::Memory& { return remembered[i]; });
-  for (std::size_t i = 0; i < count; ++i) {
-    remembered[i].state = closed[i] == 0   ? contact::State::open
-                          : locked[i] != 0 ? contact::State::locked
-                                           : contact::State::sliding;
-    remembered[i].bonded = contacts[i].memory.bonded;
-    remembered[i].in_face = contacts[i].memory.in_face;
-    remembered[i].bond_length = contacts[i].memory.bond_length;
-  }
+  remember_states(contacts, accounts.closed, where(locked, broadcast(1.0), zero), remembered);
   return accounts;
 }
 

@@ -8,6 +8,7 @@
 #include "contact/contact_lanes.h"
 #include "contact/joint_faces.h"
 #include "core/index.h"
+#include "coupling/impact.h"
 #include "coupling/points.h"
 #include "coupling/row_owners.h"
 #include "coupling/step_problem.h"
@@ -54,13 +55,6 @@ Lanes ways_to_rest(const Model& model, const State& state, const Drive& drive, c
   return ways;
 }
 
-/// m/s, with which the sides of a contact approach at the start of the step.
-double approach(const State& state, const Drive& drive, const Points& points, const contact::Contact& contact,
-                const Row& row) {
-  return -dot(row.normal, relative_displacement(points, row, state.velocity) +
-                              drive.prescribed_between(contact) / drive.step);
-}
-
 /// Whether the sides of a contact are blocks that strike each other there in the step.
 bool meets_impact(const Model& model, const State& state, const Drive& drive, const Points& points,
                   const contact::Contact& c, const Row& row) {
@@ -68,8 +62,8 @@ bool meets_impact(const Model& model, const State& state, const Drive& drive, co
   const auto may_meet = [&](int b) { return strikes(b) || !model.moves(at(b)); };
   if (!may_meet(c.block_a) || !may_meet(c.block_b) || !(strikes(c.block_a) || strikes(c.block_b)))
     return false;
-  const double speed = approach(state, drive, points, c, row);
-  return speed > drive.impact_speed && std::abs(c.depth) < speed * drive.step;
+  const double speed = speed_of_approach(state, drive, points, c, row);
+  return speed > drive.impact_speed && !has_met_before(c, speed, drive) && -c.depth < speed * drive.step;
 }
 
 /// How contacts of blocks that strike each other are met, zero of all others.
@@ -87,7 +81,7 @@ Impacts impacts_of(const Model& model, const State& state, const Drive& drive, c
   for (std::size_t i = 0; i < contacts.size() && !drive.in_impact.empty(); ++i) {
     const contact::Contact& c = contacts[i];
     if (!meets_impact(model, state, drive, points, c, rows[i])) continue;
-    const double speed = approach(state, drive, points, c, rows[i]), gap = -c.depth,
+    const double speed = speed_of_approach(state, drive, points, c, rows[i]), gap = -c.depth,
                  theta = drive.rule[at(model.moves(at(c.block_a)) ? c.block_a : c.block_b)].inertia() - 1.0,
                  way = drive.step * speed * (theta - model.solver.restitution) / (1.0 + theta);
     impacts.held_off[i] = std::max(0.0, gap - std::max(0.0, way));

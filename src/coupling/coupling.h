@@ -31,7 +31,7 @@ struct MaterialPoint {
 /// A part of a coupling that users know and that carries a force: a spring between two points, a support.
 struct Element {
   const char* kind = "";  ///< "spring", "support": as in the scenario
-  std::string name;       ///< that of the scenario, or kind[k] by its place there
+  std::string name;       ///< that of the scenario, or "spring[0]" by its place there
   double limit = 0.0;     ///< N per thickness, the largest force; infinite: none
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/index.h"
 #include "coupling/contact_coupling.h"
+#include "coupling/impact.h"
 #include "model/worth_threads.h"
 
 namespace keyblock::dynamics {
@@ -68,11 +69,9 @@ bool is_impact(const Attempt& attempt, std::size_t c, double least) {
          contact.normal_stiffness * step * step > reduced_mass(attempt.problem.points(), contact);
 }
 
-/// m/s, with which the sides of a contact approach at the start of the step.
 double approach(const Attempt& attempt, std::size_t c) {
-  const Row& row = attempt.problem.rows()[c];
-  return -dot(row.normal, attempt.problem.relative(row, attempt.state.velocity) +
-                              attempt.drive.prescribed_between(attempt.contacts[c]) / attempt.drive.step);
+  return speed_of_approach(attempt.state, attempt.drive, attempt.problem.points(), attempt.contacts[c],
+                           attempt.problem.rows()[c]);
 }
 
 /// θ with which the blocks of a contact that approach at this speed, m/s, part as the restitution says.
@@ -133,9 +132,8 @@ bool StepRules::meet_impacts(const Attempt& attempt, std::span<const double> spe
   for (const std::size_t c : fast_) {
     if (!is_impact(attempt, c, least)) continue;
     const double with = approach(attempt, c);
-    // What has pressed for longer than a step is no impact.
     const bool strikes =
-        keeps && with > impact_speed_ && attempt.contacts[c].depth <= with * attempt.drive.step;
+        keeps && with > impact_speed_ && !has_met_before(attempt.contacts[c], with, attempt.drive);
     const double theta = strikes ? theta_of_impact(attempt, c, with) : options.restitution;
     slow(attempt.model, attempt.contacts[c].block_a, theta, strikes);
     slow(attempt.model, attempt.contacts[c].block_b, theta, strikes);

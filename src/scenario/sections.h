@@ -9,6 +9,13 @@
 /// the reference alike.
 namespace keyblock::scenario {
 
+/// A rule of a key that has a place under a condition alone.
+inline Rule only(bool applies, std::string_view condition, Rule rule) {
+  rule.applies = applies;
+  rule.condition = condition;
+  return rule;
+}
+
 /// All sections in an order in which names are known before they are referred to, then what concerns several.
 void read_scenario(TableReader& root, Scenario& scenario);
 
@@ -22,8 +29,10 @@ void read_boundary(TableReader& root, Scenario& scenario);
 void read_loading(TableReader& root, Scenario& scenario);
 /// One [[motion]].
 void read_motion(TableReader& t, MotionSpec& motion);
-/// [time], [[stage]], [[history]], [damage], [output], [solver].
+/// [time], [[stage]], [[history]], [damage], [output], and what read_solver() reads.
 void read_run(TableReader& root, Scenario& scenario);
+/// [auto_order], [solver].
+void read_solver(TableReader& root, Scenario& scenario);
 /// `damping` of [solver], after rock_damping and contact_damping. without_ground: there is no ground far away for damping in proportion to
 /// mass to be relative to.
 void read_damping(TableReader& solver_keys, dynamics::SolverOptions& solver, bool without_ground);

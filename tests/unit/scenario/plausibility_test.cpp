@@ -255,23 +255,11 @@ TEST(Warnings, OfPeaksThatNoEarthquakeHas) {
 
 // What comes down into an opening lies on its floor.
 TEST(Warnings, OfAFallThatNothingCanMake) {
-  const std::string opened = jointed_domain + R"(
-[time]
-step = 0.01
-[[excavation]]
-name = "tunnel"
-shape = "circle"
-center = [2, 1.5]
-diameter = 1
-[[stage]]
-name = "opened"
-kind = "settle"
-excavate = ["tunnel"]
-)";
   EXPECT_THAT(
-      warnings_of(opened, {"damage.fall_distance=1.5"}),
+      warnings_of(runnable_domain, {"damage.fall_distance=1.5"}),
       Contains(HasSubstr("openings are 1 m high, and what falls into them does not count as fallen")));
-  EXPECT_THAT(warnings_of(opened, {"damage.fall_distance=0.5"}), Not(Contains(HasSubstr("openings are"))));
+  EXPECT_THAT(warnings_of(runnable_domain, {"damage.fall_distance=0.5"}),
+              Not(Contains(HasSubstr("openings are"))));
 }
 
 TEST(Warnings, OfShakingRockThatNeverSettled) {

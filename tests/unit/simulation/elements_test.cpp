@@ -3,44 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
+#include "../hung_block.h"
 #include "../resumed_run.h"
-#include "../scene.h"
 
 namespace keyblock::simulation {
 namespace {
 
-constexpr double hung_weight = 2600.0 * g, of_hanger = 1e7;  // N/m of the hanging block; N/m per m
+constexpr double hung_weight = 2600.0 * g, of_hanger = hanger_stiffness;  // N/m; N/m per m
 
-loading::Spring named_hanger(std::string name, double to, int staged) {
-  loading::Spring spring;
-  spring.name = std::move(name);
-  spring.from = {0.5, 3.0};
-  spring.to = {0.5, to};
-  spring.stiffness = of_hanger;
-  spring.staged = staged;
-  return spring;
-}
-
-/// A block of this hung_weight with ballast of a fifth of it. A second spring is installed; then the ballast is taken away.
+/// Ballast of a fifth of the block's weight is taken away after a second spring was installed.
 RunSetup hung_by_two() {
-  Scene scene(1e11, 30.0);
-  scene.rectangle({0.0, 3.0}, 1.0, 1.0, 0.0, true);
-  scene.rectangle({0.0, 0.0}, 1.0, 1.0);
-  scene.rectangle({0.3, 1.0}, 0.4, 0.5);
-  RunSetup setup = scene.setup;
-  setup.gravity = {0.0, -g};
-  setup.system.blocks[2].excavations = {0};
-  setup.excavations.push_back({"ballast", {{0.2, 1.0}, {0.8, 1.0}, {0.8, 1.6}, {0.2, 1.6}}});
-  setup.springs = {named_hanger("first", 0.9, -1), named_hanger("", 0.8, 0)};
-  setup.staged_supports = {"second"};
-  setup.time_step = 0.002;
-  setup.stages = {stage("hang", StageKind::settle), stage("support", StageKind::settle),
-                  stage("unload", StageKind::settle)};
-  for (Stage& one : setup.stages) one.tolerance = 1e-9;
-  setup.stages[1].install = {"second"};
-  setup.stages[2].excavate = {0};
+  RunSetup setup = hung_block().setup;
+  setup.springs[0].name = "first";
+  setup.stages.pop_back();
   return setup;
 }
 
