@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT, TUNNEL, optional
+from test_steering import balance
 
 kb = optional("keyblock")
 core = optional("keyblock._core")
