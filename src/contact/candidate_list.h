@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/joint_pieces.h"
 #include "geometry/vec2.h"
 
 namespace keyblock::contact {
@@ -15,10 +16,12 @@ enum class State : std::uint8_t { open = 0, sliding = 1, locked = 2 };
 /// What a contact remembers from step to step.
 struct Memory {
   State state = State::open;
-  bool bonded = false;   ///< in place, with cohesion and tension not yet broken
-  bool in_face = false;  ///< it shared the pressure of a face with others (JointFaces)
-  double offset = 0.0;   ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
-                         ///< negative: the closure of a joint that carries in-situ stress
+  bool bonded = false;      ///< in place, with cohesion and tension not yet broken
+  bool in_face = false;     ///< it shared the pressure of a face with others (JointFaces)
+  bool is_torn = false;     ///< a bond that bears no tension any more, and has its cohesion still
+  std::int32_t piece = -1;  ///< of the joint that remembers for it, into CandidateList::pieces; −1: none
+  double offset = 0.0;  ///< m, subtracted from the penetration: a contact born penetrated is not pushed out;
+                        ///< negative: the closure of a joint that carries in-situ stress
   double stiffness = 0.0;  ///< N/m per thickness, of the normal spring in the last step
   double shear = 0.0;      ///< m, elastic shear displacement
   /// N per thickness, compression positive; of the pressure of a face what the contact bears (JointPressure), never its nodal force.
@@ -28,7 +31,7 @@ struct Memory {
   double bounding_force = 0.0;
   double stored = 0.0;       ///< J per thickness, elastic energy of the springs
   double bond_length = 0.0;  ///< m of joint that a bond holds: it stays what it was when the bond was made
-  double worn = 0.0;         ///< m, slip that has worn the joint under the contact
+  double worn = 0.0;         ///< m, slip that has worn the joint there (JointLaw); 0 of plain joints
 
   /// Whether the candidate is a contact as long as its vertex is over the edge: a bond at any gap, and what presses at any depth.
   [[nodiscard]] bool holds() const { return bonded || normal_force > 0.0; }
@@ -73,6 +76,7 @@ struct CandidateList {
   std::vector<int> pair_of_block, first_of_block;
   std::vector<int> tracked;    ///< contacts of the last step, into pairs; ascending
   std::vector<Memory> memory;  ///< of each of them
+  JointPieces pieces;          ///< of joints that remember how far they slipped
 
   /// For the memory of so many contacts.
   void make_room(std::size_t contacts) {

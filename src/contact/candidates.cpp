@@ -249,6 +249,7 @@ bool Candidates::is_unchanged(std::span<const Candidate> found, const Dirty& dir
 void Candidates::merge(std::span<const Candidate> found, const Dirty& dirty, CandidateList& list) {
   CandidateList merged;
   merged.block_pairs = std::move(list.block_pairs);
+  merged.pieces = std::move(list.pieces);
   merged.pairs.reserve(list.pairs.size() + found.size());
   CandidateList::Finder memory_of(list, 0);
   const auto add = [&](const Candidate& c, int memory) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "contact/candidates.h"
+#include "contact/joint_law.h"
 #include "core/parallel.h"
 #include "geometry/vec2.h"
 
@@ -34,12 +35,30 @@ struct Contact {
   double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< N/m per thickness
   double friction_coefficient = 0.0;
   double cohesion = 0.0, tension = 0.0;  ///< N per thickness, of a bond
+  StrengthLoss loss;                     ///< of its joint, by slip from the start of the step on
   bool fused = false;
+  bool is_ductile = false;   ///< a bond that holds on when it slips
   bool at_corner = false;    ///< it stands for two corners that meet
   bool was_in_face = false;  ///< Memory::in_face of the last step
   Memory memory;             ///< at the start of the step; no bond any more where the bond breaks in the step
 
   [[nodiscard]] Vec2 tangent() const { return tangent_of(normal); }
+  /// Whether its joint keeps some cohesion when it slips.
+  [[nodiscard]] bool keeps_cohesion() const { return memory.bonded && memory.piece >= 0; }
+  /// It bears no tension from now on.
+  void tear() {
+    tension = 0.0;
+    memory.is_torn = true;
+  }
+  /// It has residual strength from now on, and is a bond that holds on.
+  void wear_out() {
+    friction_coefficient -= loss.friction;
+    cohesion -= loss.cohesion;
+    tension = 0.0;
+    loss = {};
+    is_ductile = true;
+    memory.worn = JointLaw::worn_out;
+  }
 };
 
 /// Takes what the contacts of a step remember over into the list. Candidates that were no contacts remember nothing.

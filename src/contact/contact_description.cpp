@@ -43,22 +43,6 @@ void bring_to_curve(const Surface& surface, Contact& contact) {
   contact.gap = dot(contact.normal, from_curve(contact.position));
 }
 
-/// The law of an edge and of the edge beyond its end, which has `share` of the length of the contact. What is fused is so to its end.
-JointLaw law_over_corner(JointLaw law, const JointLaw& beyond, double share, double penalty) {
-  const auto stiffness = [&](const JointLaw& of) {
-    return of.normal_stiffness > 0.0 ? of.normal_stiffness : penalty;
-  };
-  const double normal = std::lerp(stiffness(law), stiffness(beyond), share),
-               shear = std::lerp(stiffness(law) * law.stiffness_ratio,
-                                 stiffness(beyond) * beyond.stiffness_ratio, share);
-  law.friction_coefficient = std::lerp(law.friction_coefficient, beyond.friction_coefficient, share);
-  law.cohesion = std::lerp(law.cohesion, beyond.cohesion, share);
-  law.tension = std::lerp(law.tension, beyond.tension, share);
-  law.normal_stiffness = normal;
-  law.stiffness_ratio = shear / normal;
-  return law;
-}
-
 /// Which blocks meet where. Whether that is where the contact was before.
 bool identify(const Corners& corners, const FoundContact& found, const Candidate& candidate,
               Contact& contact) {
@@ -75,24 +59,36 @@ bool identify(const Corners& corners, const FoundContact& found, const Candidate
 
 }  // namespace
 
+/// The piece of joint that remembers for a contact, and how far that is worn: out, where there is none.
+void ContactDescription::find_piece(const Surface& surface, const CandidateList& candidates,
+                                    const FoundContact& found, Contact& contact) {
+  Memory& memory = contact.memory;
+  memory.piece = found.memory >= 0
+                     ? candidates.memory[at(found.memory)].piece
+                     : piece_of_new_contact(candidates.pieces, surface, contact.vertex, contact.edge);
+  memory.worn = memory.piece < 0 ? JointLaw::worn_out : candidates.pieces[at(memory.piece)].worn;
+}
+
 /// Of a contact that knows its blocks and whether it is bonded. Written in place: numbers that are stored one by one are slow to copy
 /// together.
 void ContactDescription::find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
                                   SpringLaw& of_contact) const {
   const double penalty = std::min(penalty_[at(contact.block_a)], penalty_[at(contact.block_b)]);
   const std::size_t joint = at(surface.joint[at(contact.edge)]);
-  const bool mixed = beyond.share > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
-  const JointLaw over_corner =
-      mixed ? law_over_corner(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : JointLaw{};
-  const JointLaw& law = mixed ? over_corner : laws_[joint];
+  const bool is_mixed = beyond.share > 0.0 && laws_[at(beyond.joint)] != laws_[joint];
+  const JointLaw of_both =
+      is_mixed ? mixed(laws_[joint], laws_[at(beyond.joint)], beyond.share, penalty) : JointLaw{};
+  const JointLaw& law = is_mixed ? of_both : laws_[joint];
   const bool bonded = contact.memory.bonded;
-  const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty;
+  const double of_joint = law.normal_stiffness > 0.0 ? law.normal_stiffness : penalty,
+               worn = law.has_memory() ? contact.memory.worn : 0.0;
   of_contact.fused = bonded && law.fused;
   of_contact.per_length = of_contact.fused ? std::max(of_joint, penalty) : of_joint;
   of_contact.stiffness_ratio = law.stiffness_ratio;
-  of_contact.friction = law.friction_coefficient;
-  of_contact.cohesion = bonded ? law.cohesion : 0.0;
-  of_contact.tension = bonded ? law.tension : 0.0;
+  of_contact.strength = law.strength(worn, bonded);
+  of_contact.loss = law.loss(worn, bonded);
+  of_contact.is_ductile = bonded && law.is_ductile(worn);
+  if (contact.memory.is_torn) of_contact.strength.tension = 0.0;
   if (strengths_ == nullptr || strengths_->empty()) return;
   if (const ContactStrength* own = strengths_->find(contact.vertex, contact.edge))
     put_strength(*own, contact, of_contact);
@@ -103,10 +99,12 @@ void ContactDescription::put_strength(const ContactStrength& strength, const Con
   const auto put = [](double value, double& to) {
     if (ContactStrength::is_given(value)) to = value;
   };
-  put(strength.friction_coefficient, of_contact.friction);
+  put(strength.friction_coefficient, of_contact.strength.friction_coefficient);
+  if (ContactStrength::is_given(strength.friction_coefficient)) of_contact.loss.friction = 0.0;
   if (!contact.memory.bonded) return;
-  put(strength.cohesion, of_contact.cohesion);
-  put(strength.tension, of_contact.tension);
+  if (ContactStrength::is_given(strength.cohesion)) of_contact.loss.cohesion = 0.0;
+  put(strength.cohesion, of_contact.strength.cohesion);
+  put(strength.tension, of_contact.strength.tension);
 }
 
 bool ContactDescription::describe(const Surface& surface, const Corners& corners,
@@ -138,20 +136,28 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
     const Memory& memory = before(found[i]);
     contact.memory.state = memory.state;
     contact.memory.bonded = memory.bonded;
+    contact.memory.is_torn = memory.is_torn;
     contact.memory.in_face = contact.was_in_face = memory.in_face;
     if (memory.bonded) law.length[i] = memory.bond_length;
+    if (has_memory_) find_piece(surface, candidates, found[i], contact);
     find_law(surface, contact, over_corner, laws[i]);
     contact.fused = laws[i].fused;
+    contact.is_ductile = laws[i].is_ductile;
+    contact.loss = laws[i].loss;
+    contact.loss.cohesion *= law.length[i];
   }
   const std::span<const SpringLaw> of_joints = std::span(laws).first(contacts.size());
   const auto of_joint = [&](double SpringLaw::*number) {
     return lanes_of(of_joints, [&](const SpringLaw& one) { return one.*number; });
   };
+  const auto strength_of_joint = [&](double Strength::*number) {
+    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.strength.*number; });
+  };
   law.normal_stiffness = of_joint(&SpringLaw::per_length) * largest(law.length, geometry.least_length);
   law.shear_stiffness = of_joint(&SpringLaw::stiffness_ratio) * law.normal_stiffness;
-  law.friction = of_joint(&SpringLaw::friction);
-  law.cohesion = of_joint(&SpringLaw::cohesion) * law.length;
-  law.tension = of_joint(&SpringLaw::tension) * law.length;
+  law.friction = strength_of_joint(&Strength::friction_coefficient);
+  law.cohesion = strength_of_joint(&Strength::cohesion) * law.length;
+  law.tension = strength_of_joint(&Strength::tension) * law.length;
   MemoryLanes memory =
       components_of<MemoryLanes>(found, [&](const FoundContact& f) { return &before(f).offset; });
   const auto is_new = lanes_where(found, [](const FoundContact& f) { return f.memory < 0; });
@@ -159,6 +165,9 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
   memory.offset = where(is_new, born, where(memory.offset > 0.0, least(memory.offset, born), memory.offset));
   const auto in_face = lanes_where(found, [&](const FoundContact& f) { return before(f).in_face; });
   keep_energy(memory, law.gap, law.normal_stiffness, in_face);
+  if (has_memory_)
+    memory.worn =
+        lanes_of(std::span<const Contact>(contacts), [](const Contact& c) { return c.memory.worn; });
   law.depth = -law.gap - memory.offset;
   keep(law, contacts);
   keep(memory, contacts.size(), [&](std::size_t i) -> Memory& { return contacts[i].memory; });

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "contact/contact_geometry.h"
 #include "contact/contact_strengths.h"
 #include "contact/joint_faces.h"
+#include "contact/joint_law.h"
 
 namespace keyblock::contact {
 
@@ -16,8 +18,13 @@ class ContactDescription {
   /// penalty[b]: Pa/m, normal stiffness of joints of block b that give none; the softer of two blocks counts. laws[k]: by
   /// Surface::joint.
   ContactDescription(const Tolerances& tolerances, std::vector<JointLaw> laws, std::vector<double> penalty)
-      : tolerances_(tolerances), laws_(std::move(laws)), penalty_(std::move(penalty)) {}
-  void set_laws(std::vector<JointLaw> laws) { laws_ = std::move(laws); }
+      : tolerances_(tolerances), penalty_(std::move(penalty)) {
+    set_laws(std::move(laws));
+  }
+  void set_laws(std::vector<JointLaw> laws) {
+    laws_ = std::move(laws);
+    has_memory_ = std::ranges::any_of(laws_, &JointLaw::has_memory);
+  }
   /// Strengths of single contacts, which have to outlive this; what is in them at the time counts.
   void use_strengths(const ContactStrengths& strengths) { strengths_ = &strengths; }
   /// The faces of joints that the contacts of a step share, after they have been described.
@@ -38,16 +45,20 @@ class ContactDescription {
   /// What the springs of a contact have of its joint.
   struct SpringLaw {
     double per_length;  ///< Pa/m, normal stiffness
-    double stiffness_ratio, friction;
-    double cohesion, tension;  ///< Pa, of a bond
-    bool fused;
+    double stiffness_ratio;
+    Strength strength;
+    StrengthLoss loss;  ///< cohesion in Pa
+    bool fused, is_ductile;
   };
+  static void find_piece(const Surface& surface, const CandidateList& candidates, const FoundContact& found,
+                         Contact& contact);
   void find_law(const Surface& surface, const Contact& contact, const Beyond& beyond,
                 SpringLaw& of_contact) const;
   static void put_strength(const ContactStrength& strength, const Contact& contact, SpringLaw& of_contact);
 
   Tolerances tolerances_;
   std::vector<JointLaw> laws_;
+  bool has_memory_ = false;  ///< some of them
   std::vector<double> penalty_;
   const ContactStrengths* strengths_ = nullptr;  ///< null: of no contact
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <span>
 
 #include "contact/contact.h"
@@ -65,7 +66,7 @@ Lanes lanes_of(std::span<const Some> some, const Number& number) {
 /// Whether `is` of each.
 template <typename Some, typename Is>
 auto lanes_where(std::span<const Some> some, const Is& is) {
-  return lanes_of(some, [&](const Some& one) { return is(one) ? 1.0 : 0.0; }) > 0.0;
+  return lanes_of(some, [&](const Some& one) { return std::invoke(is, one) ? 1.0 : 0.0; }) > 0.0;
 }
 
 }  // namespace keyblock::contact

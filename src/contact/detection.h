@@ -8,6 +8,7 @@
 #include "contact/contact.h"
 #include "contact/contact_description.h"
 #include "contact/corners.h"
+#include "contact/joint_law.h"
 #include "contact/steady_pairs.h"
 #include "contact/step_motion.h"
 #include "core/parallel.h"

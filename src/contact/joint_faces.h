@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/contact.h"
+#include "contact/joint_law.h"
 #include "contact/joint_pressure.h"
 #include "contact/surface.h"
 #include "contact/tolerances.h"

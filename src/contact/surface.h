@@ -52,18 +52,4 @@ struct Surface {
   [[nodiscard]] int vertices() const { return static_cast<int>(block.size()); }
 };
 
-/// What a joint resists with, per edge label. Stiffness is that of the pair of blocks where it is not given.
-struct JointLaw {
-  double friction_coefficient = 0.0;
-  double cohesion = 0.0;          ///< Pa, of contacts in place until they slip or open
-  double tension = 0.0;           ///< Pa, likewise
-  double normal_stiffness = 0.0;  ///< Pa/m; 0: [solver] penalty × E, of the softer of the two blocks
-  double stiffness_ratio = 0.4;   ///< shear over normal
-  bool fused = false;             ///< an outline of an excavation not yet opened: rock on both sides is one
-
-  friend bool operator==(const JointLaw&, const JointLaw&) = default;
-  /// Whether contacts in place are bonded.
-  [[nodiscard]] bool may_bond() const { return fused || cohesion > 0.0 || tension > 0.0; }
-};
-
 }  // namespace keyblock::contact

@@ -92,7 +92,19 @@ void remember_states(std::span<const contact::Contact> contacts, const Lanes& cl
                                              : contact::State::sliding;
     remembered[i].bonded = contacts[i].memory.bonded;
     remembered[i].in_face = contacts[i].memory.in_face;
+    remembered[i].is_torn = contacts[i].memory.is_torn;
+    remembered[i].piece = contacts[i].memory.piece;
   }
+}
+
+/// Joints that keep cohesion when they slip have it until their joint has opened by more than a joint in place may: where it only gapes, its
+/// sides still interlock. So the heel of a block that leans on its toe counts in full, as in limit equilibrium.
+LaneCondition still_in_place(const Attempt& attempt, std::span<const contact::Contact> contacts,
+                             const contact::SpringLanes& springs, Lanes y) {
+  if (!attempt.problem.facts().may_break) return Lanes{} > Lanes{};
+  const Lanes most = broadcast(contact::Tolerances(attempt.model.block_size).in_place);
+  const auto keeps = contact::lanes_where(contacts, &contact::Contact::keeps_cohesion);
+  return keeps & (springs.penetration(y) >= -most);
 }
 
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
@@ -127,13 +139,14 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
                                                              at_first(springs.w0) - moved_shear + slipped});
   const Lanes zero{}, pressed = springs.faces.forces(first), normal = s.normal_force(y) + pressed,
                       shear = s.shear_force(w);
-  const auto in_face = (pressed < zero) | (pressed > zero), closed = s.closed(y) | in_face,
+  const auto in_face = (pressed < zero) | (pressed > zero),
+             holds = in_face | still_in_place(attempt, contacts, s, y), closed = s.closed(y) | holds,
              locked = s.locked(w);
   // What the pressure of a face stored in the last step is no more what its contacts have alone, nor the other way round.
   const auto other = contact::lanes_where(
       contacts, [](const contact::Contact& c) { return c.memory.in_face || c.was_in_face; });
   ContactAccounts accounts{
-      .balance = s.balance(y, w, slipped, in_face),
+      .balance = s.balance(y, w, slipped, holds),
       .stored_before = where(other, s.stored_at_start(), memory.stored),
       .input = -(normal * (moved_normal - rotated_normal) - shear * (moved_shear - rotated_shear)),
       .rotation = normal * rotated_normal - shear * rotated_shear,
@@ -167,6 +180,28 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   return accounts;
 }
 
+/// Slip of the step wears the joint of a contact whose strength falls with it. The step had the strength of its start, and owes that of the
+/// place in the step for which its force stands: strength falls in a straight line with slip. What is left of friction at the end has to pay, as far as it
+/// can. Cohesion is lost where the joint opens (still_in_place).
+void wear(const Attempt& attempt, std::size_t c, contact::Memory& memory) {
+  const contact::Contact& contact = attempt.contacts[c];
+  const SpringArray& springs = attempt.problem.springs();
+  if (memory.state == contact::State::open) memory.bonded = false;
+  if (memory.state != contact::State::sliding || !attempt.drive.wears_joints) return;
+  const double elastic = springs.force(c).shear / springs.ks[c],
+               slip = std::abs(springs.w[c] - elastic + springs.slipped[c]);
+  memory.worn += slip;
+  if (attempt.drive.is_static || !contact.loss.is_any()) return;
+  const Integrator& rule =
+      attempt.drive.rule[at(attempt.problem.rows()[c].unknown_a >= 0 ? contact.block_a : contact.block_b)];
+  const contact::StrengthLoss lost = contact.loss.after(rule.place_of_force() * slip);
+  const double at_end = springs.friction[c] - contact.loss.after(slip).friction;
+  if (!(at_end > 0.0)) return;
+  const double right =
+      (springs.friction[c] - lost.friction) * memory.normal_force + springs.constant[c] - lost.cohesion;
+  memory.bounding_force = memory.normal_force + (right - springs.bound[c]) / at_end;
+}
+
 ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::size_t last,
                                contact::CandidateList& list) {
   ContactAccounts sum;
@@ -174,7 +209,10 @@ ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::s
     const std::size_t count = std::min<std::size_t>(lane_count, last - c);
     const std::span<contact::Memory> remembered = std::span(list.memory).subspan(c, count);
     const ContactAccounts accounts = remember_some(attempt, c, count, remembered);
-    for (std::size_t i = 0; i < count; ++i) list.track(c + i, attempt.contacts[c + i].candidate);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (remembered[i].piece >= 0) wear(attempt, c + i, remembered[i]);
+      list.track(c + i, attempt.contacts[c + i].candidate);
+    }
     sum.add(accounts);
   }
   return sum;
@@ -183,6 +221,18 @@ ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::s
 }  // namespace
 
 namespace {
+
+/// What contacts have worn goes to their pieces of joint. Several contacts may share one: it has the slip of the one that slipped most.
+void wear_pieces(contact::CandidateList& list) {
+  for (contact::JointPiece& piece : list.pieces) piece.is_touched = false;
+  for (std::size_t k = 0; k < list.memory.size() && !list.pieces.empty(); ++k) {
+    const contact::Memory& memory = list.memory[k];
+    if (memory.piece < 0) continue;
+    contact::JointPiece& piece = list.pieces[at(memory.piece)];
+    piece.worn = std::max(piece.worn, memory.worn);
+    piece.is_touched = true;
+  }
+}
 
 /// Where the energy of the pressure of faces went in the step, beside that of the springs of their contacts. Each contact keeps its share of what
 /// is stored, ½ F_i x_i, which is negative at an open end.
@@ -242,6 +292,7 @@ CouplingTotals ContactCoupling::account(const Attempt& attempt, std::span<const 
   total.enter(state.ledger);
   state.contact_energy = sum(total.balance.stored);
   account_for_faces(attempt, state);
+  wear_pieces(state.contacts);
   CouplingTotals totals;
   for (std::size_t i = 0; i < lane_count; ++i)
     totals.penetration = std::max(totals.penetration, total.penetration[i]);

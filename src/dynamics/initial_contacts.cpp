@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "contact/law.h"
 #include "core/index.h"
@@ -18,9 +20,10 @@ double carry_stress(const Model& model, const contact::JointLaw& law, contact::C
   const block::Stress s = block::in_situ_at(model.in_situ, where);
   const Vec2 traction{s.xx * c.normal.x + s.xy * c.normal.y, s.xy * c.normal.x + s.yy * c.normal.y};
   const double normal = std::max(0.0, -dot(traction, c.normal) * c.length);
+  const contact::Strength peak = law.strength(0.0, true);
   const double bound =
       law.fused ? HUGE_VAL
-                : contact::shear_strength(law.friction_coefficient, normal, law.cohesion * c.length);
+                : contact::shear_strength(peak.friction_coefficient, normal, peak.cohesion * c.length);
   const double shear = std::clamp(dot(traction, c.tangent()) * c.length, -bound, bound);
   contact::Memory& memory = c.memory;
   memory.normal_force = memory.bounding_force = normal;
@@ -31,13 +34,33 @@ double carry_stress(const Model& model, const contact::JointLaw& law, contact::C
   return memory.stored;
 }
 
+/// Pieces of joint for the contacts that `in_place` names, into contacts, whose laws have memory.
+void make_pieces(const Model& model, const std::vector<std::size_t>& in_place,
+                 std::span<contact::Contact> contacts, contact::JointPieces& pieces) {
+  const auto law = [&](const contact::Contact& c) { return model.laws[at(model.surface.joint[at(c.edge)])]; };
+  pieces.clear();
+  for (const std::size_t k : in_place) {
+    const contact::Contact& c = contacts[k];
+    if (law(c).has_memory()) pieces.push_back({.vertex = c.vertex, .edge = c.edge, .is_touched = true});
+  }
+  std::ranges::sort(pieces, {}, [](const contact::JointPiece& p) { return std::pair(p.vertex, p.edge); });
+  for (contact::Contact& c : contacts) {
+    if (!law(c).has_memory()) continue;
+    c.memory.piece = contact::piece_of_new_contact(pieces, model.surface, c.vertex, c.edge);
+    c.memory.worn = c.memory.piece < 0 ? contact::JointLaw::worn_out : 0.0;
+  }
+}
+
 }  // namespace
 
 double begin_contacts(const Model& model, const contact::Tolerances& tolerances,
-                      std::span<contact::Contact> contacts) {
+                      std::span<contact::Contact> contacts, contact::JointPieces& pieces) {
   double stored = 0.0;
-  for (contact::Contact& c : contacts) {
+  std::vector<std::size_t> in_place;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    contact::Contact& c = contacts[k];
     if (std::abs(c.gap) > tolerances.in_place || c.length <= tolerances.rounding) continue;
+    in_place.push_back(k);
     const contact::JointLaw& law = model.laws[at(model.surface.joint[at(c.edge)])];
     c.memory.bonded = law.may_bond();
     if (c.memory.bonded) {
@@ -46,6 +69,7 @@ double begin_contacts(const Model& model, const contact::Tolerances& tolerances,
     }
     if (model.in_situ) stored += carry_stress(model, law, c);
   }
+  make_pieces(model, in_place, contacts, pieces);
   return stored;
 }
 

@@ -216,7 +216,8 @@ double RotationCorrection::keep_shear(const Attempt& attempt, std::span<contact:
         for (std::size_t c = begin; c < end; ++c) {
           const contact::Contact& contact = attempt.contacts[c];
           contact::Memory& of_contact = memory[c];
-          if (!of_contact.bonded || contact.fused) continue;
+          const bool slides = contact.is_ductile && of_contact.state == contact::State::sliding;
+          if (!of_contact.bonded || contact.fused || slides) continue;
           const Vec2 now = apart(surface, contact, [&](std::size_t v) { return surface.position[v]; });
           const double missed = now.y - dot(attempt.problem.rows()[c].tangent(), attempt.relative[c]);
           gained_[c] = contact.shear_stiffness * missed * (of_contact.shear + 0.5 * missed);

@@ -70,7 +70,7 @@ void Stepper::start(State& state) {
   place_surface(model_, state, motion_, team_);
   std::fill(state.moved.begin(), state.moved.end(), 0.0);
   finder_.find_at_rest(motion_, state);
-  state.contact_energy += begin_contacts(model_, finder_.tolerances(), finder_.contacts());
+  state.contact_energy += begin_contacts(model_, finder_.tolerances(), finder_.contacts(), state.contacts.pieces);
   contact::keep_memory(finder_.contacts(), state.contacts, team_);
   contact_coupling_.begin_step(finder_.contacts(), {}, {}, {});
   systems_.make_room(model_, contact_coupling_, state);
@@ -325,6 +325,7 @@ void Stepper::substep(State& state, double t0, double t1, const GroundAccelerati
   drive.step = t1 - t0;
   drive.end_time = t1;
   drive.owed_share = state.last_step / drive.step;
+  drive.wears_joints = model_.joints_wear;
   const bool shi = model_.solver.integrator == TimeIntegration::shi;
   if (ground != nullptr) {
     drive.ground_acceleration = shi ? ground->mean(t0, t1) : ground->at(t1);

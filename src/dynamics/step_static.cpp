@@ -87,6 +87,7 @@ Drive Stepper::static_drive(const State& state, std::span<const double> inertia_
   Drive drive;
   drive.end_time = state.time;
   drive.is_static = true;
+  drive.wears_joints = model_.joints_wear;
   drive.ground_acceleration = model_.static_ground;
   drive.step = 1.0;
   drive.inertia_scale = inertia_scale;

@@ -15,6 +15,7 @@ struct Drive {
   Vec2 ground_acceleration;  ///< m/s², that the step is solved with: the mean over it, or that at its end
   Vec2 ground_before;        ///< m/s², at its start
   double owed_share = 0.0;   ///< length of the last dynamic step over that of this one; static: 0
+  bool wears_joints = true;  ///< slip in the step counts for the strength of joints
   bool is_static = false;    ///< velocities are dropped; inertia only keeps the step small
   /// Static only: factor on the inertia of each block.
   std::span<const double> inertia_scale;

@@ -67,6 +67,10 @@ class Integrator {
   /// first order of Δt.
   [[nodiscard]] double end_share_of_work() const { return family_ == Family::shi ? 1.0 : 0.5; }
 
+  /// Where in a step, as a share of it, the force is that the rule takes: Shi's rule has the same force all over the step, so that it stands for
+  /// the middle; the others balance forces at the end.
+  [[nodiscard]] double place_of_force() const { return family_ == Family::shi ? 1.0 - 0.5 * theta_ : 1.0; }
+
   /// D of a step with v′ = 0 is this share of Δt v, and the next of Δt² a.
   [[nodiscard]] double rest_share() const {
     return family_ == Family::shi ? theta_ / inertia_ : 1.0 - beta_ / gamma_;

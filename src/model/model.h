@@ -8,6 +8,7 @@
 #include "block/elasticity.h"
 #include "block/pose.h"
 #include "contact/contact_strengths.h"
+#include "contact/joint_law.h"
 #include "contact/surface.h"
 #include "contact/tolerances.h"
 #include "loading/time_table.h"
@@ -76,6 +77,7 @@ struct Model {
   Vec2 gravity;  ///< m/s²
   /// m/s², acceleration of the ground that static steps stand for: each block has the inertia force of it as a load.
   Vec2 static_ground;
+  bool joints_wear = true;  ///< slip wears the joints whose law has memory, in the stage that runs
   double block_size = 1.0;  ///< m, √(mean area of the blocks that move)
   SolverOptions solver;
 

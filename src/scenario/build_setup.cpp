@@ -81,6 +81,9 @@ void reduce_strength(JointProperties& joint, double factor) {
   joint.friction = std::atan(std::tan(joint.friction * degree) / factor) / degree;
   joint.cohesion /= factor;
   joint.tension /= factor;
+  if (!joint.residual) return;
+  joint.residual->friction = std::atan(std::tan(joint.residual->friction * degree) / factor) / degree;
+  joint.residual->cohesion /= factor;
 }
 
 JointProperties joint_properties(const JointKeys& own, const JointKeys& standard) {
@@ -94,6 +97,16 @@ JointProperties joint_properties(const JointKeys& own, const JointKeys& standard
   joint.normal_stiffness = pick(own.normal_stiffness, standard.normal_stiffness);
   const auto shear = pick(own.shear_stiffness, standard.shear_stiffness);
   if (shear && joint.normal_stiffness) joint.stiffness_ratio = *shear / *joint.normal_stiffness;
+  if (own.has_residual() || standard.has_residual()) {
+    const double friction = pick(own.residual_friction, standard.residual_friction).value_or(joint.friction),
+                 cohesion = pick(own.residual_cohesion, standard.residual_cohesion).value_or(0.0);
+    // A set may have less strength than what [joints] say is left.
+    joint.residual = {std::min(friction, joint.friction), std::min(cohesion, joint.cohesion),
+                      pick(own.weakening_slip, standard.weakening_slip).value_or(0.0)};
+    if (joint.residual->friction == joint.friction && joint.residual->cohesion == 0.0 && joint.residual->slip == 0.0)
+      joint.residual.reset();  // a bond that slips loses its cohesion anyway
+  }
+  reduce_strength(joint, pick(own.strength_factor, standard.strength_factor).value_or(1.0));
   return joint;
 }
 
@@ -106,12 +119,10 @@ simulation::JointTable joint_table(const Scenario& scenario) {
   for (const TraceMapSpec& spec : scenario.trace_maps) {
     table.trace_maps.push_back(joint_properties(spec.joints, scenario.joints));
   }
-  reduce_strength(table.standard, scenario.strength_factor);
-  for (JointProperties& set : table.joint_sets) reduce_strength(set, scenario.strength_factor);
-  for (JointProperties& map : table.trace_maps) reduce_strength(map, scenario.strength_factor);
   table.frame = table.standard;
   table.frame.friction = scenario.domain ? scenario.domain->frame_friction : 0.0;
   table.frame.cohesion = table.frame.tension = 0.0;
+  table.frame.residual.reset();
   return table;
 }
 

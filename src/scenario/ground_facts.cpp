@@ -151,13 +151,24 @@ class Facts {
     add("joints: friction φ", number(joints.friction.value_or(0.0)) + "°");
     add("joints: cohesion c", pressure(joints.cohesion.value_or(0.0)));
     if (joints.tension.value_or(0.0) > 0.0) add("joints: tensile strength", pressure(*joints.tension));
-    if (scenario_.strength_factor != 1.0)
-      add("joints: strength divided by", number(scenario_.strength_factor));
+    if (joints.has_residual()) add("joints: residual strength", residual(joints));
+    if (joints.strength_factor) add("joints: strength divided by", number(*joints.strength_factor));
     const double normal = joints.normal_stiffness.value_or(scenario_.solver.penalty * *scenario_.rock.young);
     const double shear = joints.shear_stiffness.value_or(JointProperties{}.stiffness_ratio * normal);
     const char* standard = joints.normal_stiffness ? "" : " (default)";
     add("joints: stiffness",
         fmt::format("kn {}, ks {}{}", pressure(normal, "/m"), pressure(shear, "/m"), standard));
+  }
+
+  /// What is left of strength, and after which slip.
+  static std::string residual(const JointKeys& joints) {
+    std::vector<std::string> parts;
+    if (joints.residual_friction) parts.push_back("φr " + number(*joints.residual_friction) + "°");
+    if (joints.residual_cohesion) parts.push_back("cr " + pressure(*joints.residual_cohesion));
+    if (joints.weakening_slip)
+      parts.push_back(*joints.weakening_slip > 0.0 ? "after a slip of " + number(*joints.weakening_slip) + " m"
+                                                   : "at the first slip");
+    return joined(parts);
   }
 
   /// What a set or map gives of its own.
@@ -166,6 +177,8 @@ class Facts {
     if (joints.friction) parts.push_back("φ " + number(*joints.friction) + "°");
     if (joints.cohesion) parts.push_back("c " + pressure(*joints.cohesion));
     if (joints.tension) parts.push_back("tensile strength " + pressure(*joints.tension));
+    if (joints.has_residual()) parts.push_back(residual(joints));
+    if (joints.strength_factor) parts.push_back("strength divided by " + number(*joints.strength_factor));
     if (joints.normal_stiffness) parts.push_back("kn " + pressure(*joints.normal_stiffness, "/m"));
     if (joints.shear_stiffness) parts.push_back("ks " + pressure(*joints.shear_stiffness, "/m"));
     return parts.empty() ? nothing : joined(parts);

@@ -40,6 +40,7 @@ class Plausibility {
     add_magnitude_warnings(scenario_, warnings_);
     check_distributions();
     check_bonds();
+    check_weakening();
     check_outlines();
     check_fall_distance();
     check_automatic_order();
@@ -123,6 +124,35 @@ class Plausibility {
           "{}: the least shear breaks a joint pulled by cohesion / tan(friction), {:.4g}, before its tension "
           "of {:.4g} is reached",
           path, apex, tension);
+  }
+
+  void check_weakening() {
+    const auto see = [&](const std::string& path, const JointKeys& own, const JointKeys& standard) {
+      const auto of = [&](std::optional<double> JointKeys::*key) {
+        return own.*key ? own.*key : standard.*key;
+      };
+      const double cohesion = of(&JointKeys::cohesion).value_or(0.0),
+                   friction = of(&JointKeys::friction).value_or(0.0);
+      const bool falls = cohesion > 0.0 || of(&JointKeys::tension).value_or(0.0) > 0.0 ||
+                         of(&JointKeys::residual_friction).value_or(friction) < friction;
+      if (own.has_residual() && !falls)
+        warn(
+            "{}: nothing falls to residual strength, as residual_friction is not below friction and there is "
+            "neither "
+            "cohesion nor tension",
+            path);
+      const bool is_reduced = of(&JointKeys::strength_factor).has_value();
+      if (is_reduced && cohesion > 0.0 && !of(&JointKeys::residual_cohesion) &&
+          (own.cohesion || path == "joints"))
+        warn(
+            "{}: its cohesion is lost contact by contact, so that a factor of safety comes out 10 to 50 % "
+            "too low; "
+            "residual_cohesion = {} keeps it, as limit equilibrium does",
+            path, cohesion);
+    };
+    see("joints", scenario_.joints, {});
+    for (const JointSetSpec& spec : scenario_.joint_sets) see(spec.path, spec.joints, scenario_.joints);
+    for (const TraceMapSpec& spec : scenario_.trace_maps) see(spec.path, spec.joints, scenario_.joints);
   }
 
   void check_automatic_order() {

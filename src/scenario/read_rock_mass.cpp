@@ -144,7 +144,7 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
 
 struct JointDefaults {
   bool friction_required = false;
-  std::string_view zero, friction, normal, shear;
+  std::string_view zero, friction, normal, shear, residual_friction;
 };
 
 void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
@@ -171,6 +171,28 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
        .at_least = 0.0,
        .fallback = defaults.zero,
        .usual = &usual::strength});
+  t.number("residual_friction", joints.residual_friction,
+           {.meaning = "Friction angle that is left after weakening_slip, and of contacts where no joint was in "
+                       "place.",
+            .unit = "°",
+            .at_least = 0.0,
+            .below = 90.0,
+            .fallback = defaults.residual_friction,
+            .usual = &usual::friction});
+  t.number("residual_cohesion", joints.residual_cohesion,
+           {.meaning = "Cohesion that is left after weakening_slip, until the joint opens. The same as cohesion: "
+                       "slip takes none (ideal plasticity).",
+            .unit = "Pa",
+            .at_least = 0.0,
+            .fallback = defaults.zero,
+            .usual = &usual::strength});
+  t.number("weakening_slip", joints.weakening_slip,
+           {.meaning = "Slip over which friction, cohesion and tension fall to what is left of them. 0: all at "
+                       "once when the joint first slips.",
+            .unit = "m",
+            .at_least = 0.0,
+            .fallback = defaults.zero,
+            .usual = &usual::small_way});
   t.number("normal_stiffness", joints.normal_stiffness,
            {.meaning = "Normal stiffness of the joint.",
             .unit = "Pa/m",
@@ -185,10 +207,36 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
             .usual = &usual::stiffness});
 }
 
-constexpr JointDefaults joint_defaults{true, "0", "", "20 young per metre", "0.4 normal_stiffness"};
-constexpr JointDefaults set_defaults{false, "of [joints]", "of [joints]", "of [joints]", "of [joints]"};
+constexpr JointDefaults joint_defaults{true, "0", "", "20 young per metre", "0.4 normal_stiffness",
+                                       "friction"};
+constexpr JointDefaults set_defaults{false,         "of [joints]", "of [joints]",
+                                     "of [joints]", "of [joints]", "of [joints]; else friction"};
 
-void check_stiffness(TableReader& t, const JointKeys& own, const JointKeys& standard) {
+void read_set_factor(TableReader& t, JointKeys& joints) {
+  t.number("strength_factor", joints.strength_factor,
+           {.meaning = "Its strength is divided by it, that of all other joints is not.",
+            .above = 0.0,
+            .fallback = "of [joints]",
+            .usual = &usual::strength_factor});
+}
+
+double given(const std::optional<double>& own, const std::optional<double>& standard) {
+  return own.value_or(standard.value_or(0.0));
+}
+
+/// Strength that is left is no more than strength at the peak, and belongs to something that falls.
+void check_residual(TableReader& t, const JointKeys& own, const JointKeys& standard) {
+  const double friction = given(own.friction, standard.friction), cohesion = given(own.cohesion, standard.cohesion);
+  if (own.residual_friction && *own.residual_friction > friction)
+    t.fail("residual_friction", fmt::format("{}, above friction = {}", *own.residual_friction, friction),
+           "no more than the friction of the peak");
+  if (own.residual_cohesion && *own.residual_cohesion > cohesion)
+    t.fail("residual_cohesion", fmt::format("{}, above cohesion = {}", *own.residual_cohesion, cohesion),
+           "no more than the cohesion of the peak");
+}
+
+void check_joint_keys(TableReader& t, const JointKeys& own, const JointKeys& standard) {
+  check_residual(t, own, standard);
   if (own.shear_stiffness && !own.normal_stiffness && !standard.normal_stiffness) {
     t.fail("shear_stiffness", "a shear stiffness without a normal stiffness", "normal_stiffness as well");
   }
@@ -233,7 +281,8 @@ void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standar
   read_distribution(t, "length", set.length, false, "Length of a trace in the section.");
   read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
   read_joint_keys(t, spec.joints, set_defaults);
-  check_stiffness(t, spec.joints, standard);
+  read_set_factor(t, spec.joints);
+  check_joint_keys(t, spec.joints, standard);
 }
 
 void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
@@ -268,7 +317,8 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
           .fallback = "that of the file"});
   if (map.name.empty()) map.name = map.file.stem().string();
   read_joint_keys(t, map.joints, set_defaults);
-  check_stiffness(t, map.joints, standard);
+  read_set_factor(t, map.joints);
+  check_joint_keys(t, map.joints, standard);
 }
 
 void read_cutting(TableReader& t, CuttingKeys& cutting) {
@@ -381,13 +431,14 @@ void read_rock_mass(TableReader& root, Scenario& scenario) {
       [&](TableReader& t) {
         read_joint_keys(t, scenario.joints, joint_defaults);
         t.number(
-            "strength_factor", scenario.strength_factor,
-            {.meaning = "tan(friction), cohesion and tension of all joints, of sets and trace maps too, are "
-                        "divided by it: the value at which rock just falls is a factor of safety. The "
-                        "frame keeps its friction.",
+            "strength_factor", scenario.joints.strength_factor,
+            {.meaning = "tan(friction), cohesion and tension, residual strength too, are divided by it: the "
+                        "value at which rock just falls is a factor of safety. It is that of sets and trace "
+                        "maps that give none. The frame keeps its friction.",
              .above = 0.0,
+             .fallback = "1",
              .usual = &usual::strength_factor});
-        check_stiffness(t, scenario.joints, {});
+        check_joint_keys(t, scenario.joints, {});
       });
   root.tables(
       "joint_set", scenario.joint_sets,

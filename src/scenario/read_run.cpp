@@ -113,6 +113,22 @@ void read_equilibrium(TableReader& t, Stage& stage, bool settle) {
                  .below = 1.0}));
 }
 
+/// From which stage on slip uses the strength of joints up.
+void read_wear(TableReader& t, Stage& stage, const Scenario& scenario) {
+  const auto weakens = [](const auto& spec) { return spec.joints.has_residual(); };
+  const bool some = t.documenting() || scenario.joints.has_residual() ||
+                    std::ranges::any_of(scenario.joint_sets, weakens) ||
+                    std::ranges::any_of(scenario.trace_maps, weakens);
+  bool wears = true;
+  const bool is_given = t.boolean(
+      "wears_joints", wears,
+      only(some, "joints that have residual_friction, residual_cohesion or weakening_slip",
+           {.meaning = "Whether slip counts for the strength of joints that weaken.",
+            .fallback = "false while gravity is turned on: in the first `settle` stages, without an excavation, "
+                        "k_h, k_v or install, before others"}));
+  if (is_given) stage.wears_joints = wears;
+}
+
 /// A target and a factor contradict each other.
 void check_scale(TableReader& t, const Stage& stage, const Scenario& scenario) {
   if (t.find("scale") == nullptr || stage.motion < 0 || at(stage.motion) >= scenario.motions.size()) return;
@@ -161,6 +177,7 @@ void read_stage(TableReader& t, Stage& stage, const Scenario& scenario) {
                  .usual = &usual::duration}));
   read_stillness(t, stage, any || stage.kind != StageKind::settle, shake);
   read_equilibrium(t, stage, settle);
+  read_wear(t, stage, scenario);
 }
 
 void check_step_count(TableReader& t, const Scenario& scenario) {

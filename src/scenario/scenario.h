@@ -35,6 +35,11 @@ constexpr int automatic_order = 0;
 /// [joints], or those of its keys that a joint set or trace map has of its own.
 struct JointKeys {
   std::optional<double> friction, cohesion, tension, normal_stiffness, shear_stiffness;
+  std::optional<double> residual_friction, residual_cohesion, weakening_slip;
+  std::optional<double> strength_factor;  ///< tan(friction), cohesion and tension are divided by it
+
+  /// Whether strength falls from a peak to what is left.
+  [[nodiscard]] bool has_residual() const { return residual_friction || residual_cohesion || weakening_slip; }
 };
 
 struct Domain {
@@ -184,7 +189,6 @@ struct Scenario {
   std::optional<BoundarySpec> boundary;
   RockKeys rock;  ///< all set
   JointKeys joints;
-  double strength_factor = 1.0;  ///< of all joints: tan(friction), cohesion and tension are divided by it
   double load_factor = 1.0;      ///< of all loads
   std::vector<JointSetSpec> joint_sets;
   std::vector<TraceMapSpec> trace_maps;

@@ -25,13 +25,20 @@ using dynamics::Model;
 
 namespace {
 
+double coefficient_of(double friction_angle) {
+  return std::tan(friction_angle * std::numbers::pi / 180.0);
+}
+
 contact::JointLaw law_of(const JointProperties& joint) {
-  return {std::tan(joint.friction * std::numbers::pi / 180.0),
-          joint.cohesion,
-          joint.tension,
-          joint.normal_stiffness.value_or(0.0),
-          joint.stiffness_ratio,
-          false};
+  contact::JointLaw law{.friction_coefficient = coefficient_of(joint.friction),
+                        .cohesion = joint.cohesion,
+                        .tension = joint.tension,
+                        .normal_stiffness = joint.normal_stiffness.value_or(0.0),
+                        .stiffness_ratio = joint.stiffness_ratio};
+  if (joint.residual)
+    law.residual = contact::JointLaw::Residual{coefficient_of(joint.residual->friction), joint.residual->cohesion,
+                                               joint.residual->slip};
+  return law;
 }
 
 /// Polynomials over a block. Throws InputError where it is so thin, for its order, that they cannot be told from each other.

@@ -92,6 +92,7 @@ void transfer_mechanics(Archive& archive, StateOrConst& s) {
   archive(s.contacts.pairs);
   archive(s.contacts.tracked);
   archive(s.contacts.memory);
+  archive(s.contacts.pieces);
   archive(s.pattern);
   archive(s.couplings);
   archive(s.walls.forces);

@@ -69,7 +69,22 @@ bool comes_before(const contact::Candidate& x, const contact::Candidate& y) {
 bool is_memory(const contact::Memory& m) {
   const double numbers[] = {m.offset,         m.stiffness, m.shear,       m.normal_force,
                             m.bounding_force, m.stored,    m.bond_length, m.worn};
-  return m.state <= contact::State::locked && is_bool(m.bonded) && is_bool(m.in_face) && all_finite(numbers);
+  return m.state <= contact::State::locked && is_bool(m.bonded) && is_bool(m.in_face) && is_bool(m.is_torn) && all_finite(numbers);
+}
+
+bool are_pieces(const contact::CandidateList& list, const contact::Surface& surface) {
+  const auto is_piece = [&](const contact::JointPiece& p) {
+    return is_place(p.vertex, surface.position.size()) && is_place(p.edge, surface.position.size()) &&
+           std::isfinite(p.worn) && p.worn >= 0.0 && is_bool(p.is_touched);
+  };
+  const auto comes_first = [](const contact::JointPiece& x, const contact::JointPiece& y) {
+    return std::pair(x.vertex, x.edge) < std::pair(y.vertex, y.edge);
+  };
+  const auto has_piece = [&](const contact::Memory& m) {
+    return m.piece == -1 || is_place(m.piece, list.pieces.size());
+  };
+  return std::all_of(list.pieces.begin(), list.pieces.end(), is_piece) && ascends(list.pieces, comes_first) &&
+         std::all_of(list.memory.begin(), list.memory.end(), has_piece);
 }
 
 bool are_contacts(const contact::CandidateList& list, const contact::Surface& surface) {
@@ -79,7 +94,7 @@ bool are_contacts(const contact::CandidateList& list, const contact::Surface& su
          std::all_of(list.tracked.begin(), list.tracked.end(),
                      [&](int k) { return is_place(k, list.pairs.size()); }) &&
          list.memory.size() == list.tracked.size() &&
-         std::all_of(list.memory.begin(), list.memory.end(), is_memory);
+         std::all_of(list.memory.begin(), list.memory.end(), is_memory) && are_pieces(list, surface);
 }
 
 bool is_pattern(const std::vector<std::pair<int, int>>& pattern, const Model& model) {

@@ -25,6 +25,9 @@ void put(const Strength& strength, contact::JointLaw& law) {
   law.friction_coefficient = strength.friction_coefficient;
   law.cohesion = strength.cohesion;
   law.tension = strength.tension;
+  if (!law.residual) return;
+  law.residual->friction_coefficient = std::min(law.residual->friction_coefficient, law.friction_coefficient);
+  law.residual->cohesion = std::min(law.residual->cohesion, law.cohesion);
 }
 
 void check_factor(const char* key, double value) {

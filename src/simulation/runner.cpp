@@ -219,6 +219,7 @@ void Runner::begin_stage() {
     install(setup_, record.stage, model_, now_.mechanics);
     opening_.begin_stage(now_.stage, now_.mechanics);
   }
+  model_.joints_wear = wears_joints(setup_.stages, at(now_.stage));
   now_.present = model_.surface.present;
   observer_.stage_begin(now_.stage, record);
   if (is_new) reporter_.frame(now_);

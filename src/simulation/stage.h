@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +36,13 @@ struct Stage {
   std::optional<int> max_steps;  ///< settle
   /// settle: inertia forces of an earthquake as loads that stay, over the weight: to the right, and up.
   double k_h = 0.0, k_v = 0.0;
+  /// Whether slip counts for the strength of joints. Not given: in every stage but those that turn gravity on (wears_joints).
+  std::optional<bool> wears_joints;
   double tolerance = 1e-4;  ///< settle: largest residual of a block over its weight at equilibrium
 };
+
+/// Whether slip of stage k wears joints (contact::JointLaw::residual). What turns gravity on shall not use strength up: static stages without
+/// an excavation, a load of an earthquake or anything installed do not count, as long as nothing else came before them and a stage comes after.
+bool wears_joints(std::span<const Stage> stages, std::size_t k);
 
 }  // namespace keyblock::simulation

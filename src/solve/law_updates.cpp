@@ -146,6 +146,8 @@ bool LawUpdates::renew_bonds(const StepSystem& system, Iterate& iterate) {
   using step_numbers::settled_strength;
   SpringArray& springs = system.springs();
   return for_bonds(system, [&](std::size_t c) {
+    if (system.contact(c).is_ductile)
+      return false;  // its bound is renewed as that of any contact that slides
     const double strength = springs.strength(c, springs.bearing(c)), bound = springs.bound[c],
                  elastic = std::abs(springs.ks[c] * springs.w[c]);
     if (elastic <= std::min(strength, bound) || std::abs(strength - bound) <= settled_strength * bound)
@@ -164,12 +166,25 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
     const double pulled = springs.faces.has(c)
                               ? -contact.normal_stiffness * springs.y[c] / springs.faces.elastic_share(c)
                               : -normal;
-    const bool holds = std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
-    if (pulled <= contact.tension && holds) return false;
-    contact.memory.bonded = false;
+    const bool keeps_cohesion = contact.keeps_cohesion();
+    const bool is_pulled = pulled > contact.tension && !(keeps_cohesion && contact.tension == 0.0);
+    const bool holds = contact.is_ductile || std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
+    if (!is_pulled && holds) return false;
+    // A joint with residual strength keeps some cohesion until it has opened (ContactCoupling::account).
+    if (!keeps_cohesion) {
+      contact.memory.bonded = false;
+    } else if (is_pulled) {
+      contact.tear();
+    } else {
+      contact.wear_out();
+    }
     iterate.change_spring(system, c, [&] {
-      springs.constant[c] = 0.0;
-      springs.set_law(c, contact.friction_coefficient * std::max(0.0, springs.bearing(c)), false);
+      springs.constant[c] = keeps_cohesion ? contact.cohesion : 0.0;
+      springs.friction[c] = contact.friction_coefficient;
+      springs.set_law(c,
+                      contact::shear_strength(contact.friction_coefficient, std::max(0.0, springs.bearing(c)),
+                                              springs.constant[c]),
+                      false);
     });
     iterate.let_go_of_faces(system, c);
     return true;

@@ -34,14 +34,20 @@ std::string value_text(double value) {
   return text;
 }
 
-// Mistakes in the key are found at either end.
-void check_ends(const Plan& plan, const LimitRequest& request) {
-  for (const double end : {request.from, request.to}) {
+/// What is odd at both ends of the search is so all over it; the rest belongs to the run in question. Throws InputError where an end is wrong.
+std::vector<std::string> warnings_of_ends(const Plan& plan, const LimitRequest& request) {
+  const auto warnings_at = [&](double end) {
     std::vector<std::string> overrides = plan.overrides;
     overrides.push_back(request.key + "=" + value_text(end));
-    static_cast<void>(scenario::check_inputs(
-        scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out)));
-  }
+    return scenario::check_inputs(
+        scenario::parse_scenario_text(plan.text, plan.scenario, overrides, scenario::StudyTable::leave_out));
+  };
+  std::vector<std::string> of_both = warnings_at(request.from);
+  const std::vector<std::string> of_other = warnings_at(request.to);
+  std::erase_if(of_both, [&](const std::string& warning) {
+    return std::ranges::find(of_other, warning) == of_other.end();
+  });
+  return of_both;
 }
 
 void check_request(const LimitRequest& request) {
@@ -290,9 +296,11 @@ Plan plan_limit(const ScenarioText& scenario, const std::string& version, LimitR
         fmt::format("--realizations {}: nothing is random without a [[joint_set]]; all limits are the same, "
                     "and their interval says nothing",
                     request.realizations));
-  plan.warnings = std::move(warnings);
   check_since(request, read.stages);
-  check_ends(plan, request);
+  for (std::string& warning : warnings_of_ends(plan, request)) {
+    if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
+  }
+  plan.warnings = std::move(warnings);
   plan.realizations = request.realizations;
   plan.axes = {{{request.key}, {}}};
   plan.since.clear();

@@ -54,6 +54,23 @@ TEST(Warnings, OfARuleThatMakesEnergy) {
               UnorderedElementsAre(HasSubstr("makes energy wherever joints slide")));
 }
 
+TEST(Warnings, OfResidualStrengthOfWhichNothingFalls) {
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.weakening_slip=0.01"}),
+              UnorderedElementsAre(HasSubstr("joints: nothing falls to residual strength")));
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.weakening_slip=0.01", "joints.residual_friction=20"}),
+              IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.weakening_slip=0.01", "joints.cohesion=5e3"}), IsEmpty());
+}
+
+// Bonds break one after another, as a zip does.
+TEST(Warnings, OfAFactorOfSafetyOfCohesionThatIsLost) {
+  const std::vector<std::string> reduced{"joints.strength_factor=1.2", "joints.cohesion=5e3"};
+  EXPECT_THAT(warnings_of(two_blocks, reduced),
+              UnorderedElementsAre(HasSubstr("residual_cohesion = 5000 keeps it")));
+  EXPECT_THAT(warnings_of(two_blocks, {reduced[0], reduced[1], "joints.residual_cohesion=5e3"}), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {reduced[1]}), IsEmpty());
+}
+
 TEST(Warnings, OfPlaneStressWithAnOpening) {
   const std::vector<std::string> none{"accept_warnings=['lost-joints']", "rock.order=2"};
   EXPECT_THAT(warnings_of(runnable_domain, none),
