@@ -45,7 +45,7 @@ bool KeptFactor::fits(const StepSystem& system) const {
          std::ranges::equal(inertia_, system.problem.terms().inertias());
 }
 
-/// What is known of the matrix by contact goes over to the contacts of this step: those that came have no spring in it, those that went had
+/// What is known of the matrix by row goes over to the rows of this step: those that came have no spring in it, those that went had
 /// none. False when one had, or is updated.
 bool KeptFactor::carry(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update) {
   if (system.contacts.version != 0 && version_ == system.contacts.version) return true;

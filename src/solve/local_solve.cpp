@@ -58,7 +58,7 @@ void LocalSolve::find_contacts_of_blocks(const StepSystem& system) {
   });
 }
 
-/// What the next solution reaches. A contact of two blocks that move comes once, with the first of them.
+/// What the next solution reaches. A row of two blocks that move comes once, with the first of them.
 void LocalSolve::take_reach(const StepSystem& system) {
   find_contacts_of_blocks(system);
   is_taken_.assign(system.problem.model().blocks.size(), 0);

@@ -195,7 +195,7 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
   return true;
 }
 
-/// Springs of the contacts that differ from the matrix and are not updated yet.
+/// Springs of the rows that differ from the matrix and are not updated yet.
 void LowRankUpdate::find_wanted(const SpringArray& springs, const StepMatrix& matrix) {
   wanted_.clear();
   for (const std::size_t c : matrix.differing()) {

@@ -30,13 +30,13 @@ class LowRankUpdate {
   [[nodiscard]] static std::size_t limit(const StepSystem& system);
   /// Springs that are updated.
   [[nodiscard]] std::size_t size() const { return corrections_.size(); }
-  /// Their contacts.
+  /// Their rows.
   [[nodiscard]] std::vector<std::size_t> contacts() const;
-  /// Goes over to the contacts of another step, as StepMatrix::carry(); none is gone.
+  /// Goes over to the rows of another step, as StepMatrix::carry(); none is gone.
   void carry(std::span<const std::size_t> now);
 
  private:
-  /// The normal or the shear spring of a contact.
+  /// The normal or the shear spring of a row.
   struct Spring {
     std::size_t contact;
     bool normal;

@@ -15,7 +15,7 @@ namespace {
 using Force = SpringArray::Force;
 using Residual = linalg::BlockSolver::Residual;
 
-/// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
+/// By how much the force of a row at D + αp differs from the straight line on which it is at D.
 Force force_beside(const SpringArray& springs, std::size_t c, double alpha) {
   const double y = springs.y[c] + alpha * springs.dy[c], w = springs.w[c] + alpha * springs.dw[c];
   return springs.force_at(c, y, w) - springs.force_on(c, springs.branch[c], y, w);
@@ -56,7 +56,7 @@ bool Newton::solve(const StepSystem& system, Iterate& iterate, bool exact, const
   const auto enough = [&](double share) {
     return std::max(linear_share * tolerance, share * iterate.out_of_balance(system));
   };
-  // Where no contact changes its branch and little is out of balance, one system of all blocks is all that is needed.
+  // Where no row changes its branch and little is out of balance, one system of all blocks is all that is needed.
   const bool is_calm = result.changes == 0 && iterate.out_of_balance(system) <= calm * tolerance;
   local_.reset();
   if (!is_calm && local_.solve(system, iterate, enough(forcing_local))) return system.solver.solved();
@@ -77,7 +77,7 @@ bool Newton::go_along(const StepSystem& system, Iterate& iterate, double enough,
   const bool whole_way = !local_.is_active() && std::exchange(may_go_whole_way_, false);
   if (whole_way) find_changes(system, 1.0);
   double alpha = whole_way ? 1.0 : search_line(system, iterate);
-  // Where no contact changes, what the system left over is all that is.
+  // Where no row changes, what the system left over is all that is.
   if (!local_.is_active() && changes_.empty() && bends_.empty() &&
       system.problem.terms().residual_ratio(iterate.residual) >= enough) {
     if (!improve(system, iterate, exact)) return false;
@@ -123,7 +123,7 @@ void Newton::find_bends(const StepSystem& system, double alpha) {
   for (std::size_t f = 0; f < faces.size(); ++f) look_at(f);
 }
 
-/// Contacts that change their branch between where they are and α along the direction.
+/// Rows that change their branch between where they are and α along the direction.
 void Newton::find_changes(const StepSystem& system, double alpha) {
   const SpringArray& springs = system.springs();
   find_bends(system, alpha);
@@ -156,7 +156,7 @@ Newton::Products Newton::products(const StepSystem& system, const Iterate& itera
   return products;
 }
 
-/// dΠ(D + αp)/dα given the contacts that change up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) except for these.
+/// dΠ(D + αp)/dα given the rows that change up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) except for these.
 double Newton::slope(const SpringArray& springs, double alpha) const {
   double sum = slope_at_zero_ + alpha * curvature_;
   for (const std::size_t c : changes_) {

@@ -211,7 +211,7 @@ void StepMatrix::take_hold(const StepProblem& problem, const Row& row) {
   });
 }
 
-/// Counts what holds the blocks of a contact.
+/// Counts what holds the blocks of a row.
 void StepMatrix::count_held(const StepSystem& system, std::size_t c, int count) {
   const Row& row = system.row(c);
   if (row.unknown_a >= 0) held_[at(row.unknown_a)] += count;
