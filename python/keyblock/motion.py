@@ -10,7 +10,8 @@ import numpy as np
 from .errors import DataError
 
 if TYPE_CHECKING:
-    from .scenario import Scenario, Table
+    from .scenario import Scenario
+    from .scenario_tables import Table
 
 # Shares of a time step. Steps may differ by rounding; beginnings by what no frequency of an earthquake notices.
 _SAME_STEP = 1e-6
