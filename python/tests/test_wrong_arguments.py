@@ -32,7 +32,17 @@ def spring_run() -> kb.Simulation:
 def things(folder: Path) -> dict[str, Callable[[], Any]]:
     """Makers of the objects whose methods are called; anew each time, as calls change them."""
     scenario = falling_block()
+
+    def results() -> kb.Result:
+        if not (folder / "run").exists():
+            scenario.run(folder / "run")
+        return kb.open(folder / "run")
+
     return {
+        "results": results,
+        "frames": lambda: results().frames,
+        "blocks of results": lambda: results().blocks,
+        "contacts of results": lambda: results().contacts(),
         "scenario": falling_block,
         "Scenario": lambda: kb.Scenario,
         "rock": lambda: falling_block().rock,
@@ -168,6 +178,9 @@ def test_what_was_meant_is_asked_for() -> None:
         (lambda: kb.Scenario.parse(b"x = 1"), TypeError, "text: found b'x = 1'; expected a text"),
         (lambda: kb.run_study("study.toml", "out"), TypeError, "scenario: found str; expected a keyblock.Scenario"),
         (lambda: kb.find_limit(hanging(), "out", "joints.friction", "1", 2), TypeError, "start: found '1'; expected a number"),
+        (lambda: kb.controller(lambda sim: None, name=3), TypeError, "name: found 3; expected a text"),
+        (lambda: kb.controller(lambda sim: None, name="a\nb"), ValueError, "name: found .*one line"),
+        (lambda: kb.Motion("0.01", [1.0, 2.0]), TypeError, "step: found '0.01'; expected a number"),
     ]:
         refused(call, kind, words)
     # Numbers of numpy are numbers.
