@@ -27,19 +27,19 @@ class LocalSolve {
   [[nodiscard]] std::span<const std::size_t> blocks() const { return blocks_; }
   [[nodiscard]] std::span<const std::size_t> moved_blocks() const { return blocks().first(moved_); }
   /// Of the blocks that move; a row of two of them comes once.
-  [[nodiscard]] std::span<const std::size_t> contacts() const { return contacts_; }
+  [[nodiscard]] std::span<const std::size_t> rows() const { return rows_; }
 
  private:
-  void find_contacts_of_blocks(const StepSystem& system);
+  void find_rows_of_blocks(const StepSystem& system);
   void take_reach(const StepSystem& system);
 
   bool is_active_ = false;
   std::vector<std::size_t> blocks_;
   std::size_t moved_ = 0;
-  std::vector<std::size_t> contacts_;
+  std::vector<std::size_t> rows_;
   /// Rows of each unknown block; empty: not needed yet.
-  std::vector<std::size_t> first_contact_;
-  std::vector<std::uint32_t> contacts_of_block_;
+  std::vector<std::size_t> first_row_;
+  std::vector<std::uint32_t> rows_of_block_;
   std::uint64_t version_ = 0;  ///< StepContacts::version of these
   // Scratch.
   linalg::LocalSolver::Reach reach_;

@@ -31,16 +31,16 @@ class LowRankUpdate {
   /// Springs that are updated.
   [[nodiscard]] std::size_t size() const { return corrections_.size(); }
   /// Their rows.
-  [[nodiscard]] std::vector<std::size_t> contacts() const;
+  [[nodiscard]] std::vector<std::size_t> rows() const;
   /// Goes over to the rows of another step, as StepMatrix::carry(); none is gone.
   void carry(std::span<const std::size_t> now);
 
  private:
   /// The normal or the shear spring of a row.
   struct Spring {
-    std::size_t contact;
+    std::size_t row;
     bool normal;
-    [[nodiscard]] std::size_t number() const { return 2 * contact + (normal ? 0 : 1); }
+    [[nodiscard]] std::size_t number() const { return 2 * row + (normal ? 0 : 1); }
   };
   bool refines(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool wants);
   bool iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,

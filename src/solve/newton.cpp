@@ -37,10 +37,10 @@ void Newton::for_reached_coefficients(const StepSystem& system, const Iterate& i
 }
 
 template <typename Body>
-void Newton::for_reached_contacts(const StepSystem& system, const Body& body) const {
+void Newton::for_reached_rows(const StepSystem& system, const Body& body) const {
   if (!local_.is_active())
     return system.team.for_range(system.springs().size(), contacts_worth_threads, body);
-  for (const std::size_t c : local_.contacts()) body(c, c + 1);
+  for (const std::size_t c : local_.rows()) body(c, c + 1);
 }
 
 void Newton::begin(const StepSystem& system) {
@@ -119,7 +119,7 @@ void Newton::find_bends(const StepSystem& system, double alpha) {
   const auto look_at = [&](std::size_t f) {
     if (!faces.is_linear(f, springs.y, springs.dy, alpha)) bends_.emplace_back(f);
   };
-  if (local_.is_active()) return faces.for_faces_of(local_.contacts(), look_at);
+  if (local_.is_active()) return faces.for_faces_of(local_.rows(), look_at);
   for (std::size_t f = 0; f < faces.size(); ++f) look_at(f);
 }
 
@@ -133,7 +133,7 @@ void Newton::find_changes(const StepSystem& system, double alpha) {
   };
   if (local_.is_active()) {
     changes_.clear();
-    std::ranges::copy_if(local_.contacts(), std::back_inserter(changes_), changes);
+    std::ranges::copy_if(local_.rows(), std::back_inserter(changes_), changes);
     return;
   }
   find_few<lane_count>(
@@ -197,7 +197,7 @@ void Newton::go(const StepSystem& system, Iterate& iterate, double alpha) const 
   } else {
     iterate.gradient_changed();
   }
-  for_reached_contacts(system, [&](std::size_t begin, std::size_t end) { springs.go(alpha, begin, end); });
+  for_reached_rows(system, [&](std::size_t begin, std::size_t end) { springs.go(alpha, begin, end); });
   springs.press_faces();
   iterate.is_placed = false;
   for (const std::size_t c : changes_) springs.branch[c] = springs.branch_at(c, springs.y[c], springs.w[c]);

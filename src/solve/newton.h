@@ -38,7 +38,7 @@ class Newton {
   void for_reached_coefficients(const StepSystem& system, const Iterate& iterate, const Body& body) const;
   /// Likewise for the rows.
   template <typename Body>
-  void for_reached_contacts(const StepSystem& system, const Body& body) const;
+  void for_reached_rows(const StepSystem& system, const Body& body) const;
   bool improve(const StepSystem& system, Iterate& iterate, bool exact) const;
   void find_direction(const StepSystem& system, Iterate& iterate) const;
   [[nodiscard]] double search_line(const StepSystem& system, const Iterate& iterate);

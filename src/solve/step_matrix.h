@@ -50,7 +50,7 @@ class StepMatrix {
   void take_branches_with_the_same_springs(const StepSystem& system);
   /// What is known by row goes over to the rows of another step: now[k] of each of these, `gone` where it went. has_faces(): then,
   /// whether the faces are those of the step.
-  void carry(std::span<const std::size_t> now, std::size_t gone, std::size_t contacts);
+  void carry(std::span<const std::size_t> now, std::size_t gone, std::size_t rows);
 
   [[nodiscard]] bool has_faces(const FaceSprings& faces) const;
 
