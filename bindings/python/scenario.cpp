@@ -57,23 +57,34 @@ void bind_scenario(py::module_& module) {
       .def_static("made", &made, py::arg("values"), py::arg("file"))
       .def(
           "set",
-          [](Scenario& s, const std::string& key, const py::object& value) { s.set(key, value_of(value)); },
+          [](Scenario& s, const std::string& key, const py::object& value) {
+            const Value known = value_of(value);
+            Scenario::check_keys(key, known);
+            s.set(key, known);
+          },
           py::arg("key"), py::arg("value"))
+      .def(
+          "restore",
+          [](Scenario& s, const std::string& key, const py::object& value) { s.set(key, value_of(value)); },
+          py::arg("key"), py::arg("value"), "What a scenario had set, known or not.")
       .def(
           "set_toml", [](Scenario& s, const std::string& key, const std::string& toml) { s.set(key, toml); },
           py::arg("key"), py::arg("toml"))
       .def(
           "append",
           [](Scenario& s, const std::string& key, const py::object& value) {
-            s.append(key, value_of(value));
+            const Value known = value_of(value);
+            Scenario::check_keys(key, known);
+            s.append(key, known);
           },
           py::arg("key"), py::arg("value"))
       .def(
           "extend",
           [](Scenario& s, const std::string& key, const py::iterable& values) {
-            Value::List list;
-            for (const py::handle& value : values) list.push_back(value_of(value));
-            s.extend(key, list);
+            Value list = Value::List();
+            for (const py::handle& value : values) std::get<Value::List>(list.is).push_back(value_of(value));
+            Scenario::check_keys(key, list);
+            s.extend(key, std::get<Value::List>(list.is));
           },
           py::arg("key"), py::arg("values"))
       .def(
@@ -91,6 +102,8 @@ void bind_scenario(py::module_& module) {
       .def(
           "is_list_of_tables",
           [](const Scenario& s, const std::string& key) { return s.is_list_of_tables(key); }, py::arg("key"))
+      .def_static(
+          "check_keys", [](const std::string& key) { Scenario::check_keys(key); }, py::arg("key"))
       .def_static("known_keys", &Scenario::known_keys, py::arg("table") = "")
       .def("toml", [](const Scenario& s) { return s.toml(); })
       .def_property_readonly("text", [](const Scenario& s) { return s.text(); })

@@ -90,6 +90,9 @@ class KEYBLOCK_API Scenario {
   [[nodiscard]] bool is_list_of_tables(const std::string& key) const;
   /// The keys that the program knows of a table of the scenario: `rock`, or `joint_set` for elements of that list; empty for the keys outside all tables.
   [[nodiscard]] static std::vector<KeyMeaning> known_keys(const std::string& table = "");
+  /// Throws one InputError with all keys of the path and within the value that the program does not know, each with the nearest that it does.
+  /// set() takes them, as check() tells them later; Python asks here first.
+  static void check_keys(const std::string& key, const Value& value = {});
   /// The text that was read; of a scenario that began empty, what was set, as TOML.
   [[nodiscard]] std::string text() const;
   /// Whether its text is made of what was set, as it began empty, or something was taken out of it.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _arguments as arguments
 from ._sealed import Sealed
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ class Controller(Sealed):
             raise ValueError("every: at least 1")
         self._function = function
         self._every = int(every)
+        if name is not None and not arguments.text("name", name).isprintable():
+            raise ValueError(f"name: found {name!r}; expected a text of one line")
         self._name = name or _name_of(function)
         self._hash = hashlib.sha256(f"{_source_of(function)}\n{_held_values(function)}{self._every}".encode()).hexdigest()[:16]
 

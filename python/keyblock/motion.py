@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _arguments as arguments
 from .errors import DataError
 
 if TYPE_CHECKING:
-    from .scenario import Scenario, Table
+    from .scenario import Scenario
+    from .scenario_tables import Table
 
 # Shares of a time step. Steps may differ by rounding; beginnings by what no frequency of an earthquake notices.
 _SAME_STEP = 1e-6
@@ -30,6 +32,7 @@ class Motion:
     def __post_init__(self) -> None:
         self.x = _samples(self.x, "x")
         self.y = None if self.y is None else _samples(self.y, "y")
+        self.step = arguments.number("step", self.step)
         if not (np.isfinite(self.step) and self.step > 0):
             raise DataError("step: a time above 0 s")
         if self.y is not None and len(self.y) != len(self.x):
@@ -45,6 +48,7 @@ class Motion:
 
         Traces are aligned by `stats.starttime`, and their common time is taken. Throws DataError for gaps, for steps that differ by more
         than 1e-6, for beginnings between samples, and for two traces of one component. Nothing is filtered, and no response is taken off."""
+        section, factor = arguments.number("section", section), arguments.number("factor", factor)
         all_traces = [trace for given in traces for trace in ([given] if hasattr(given, "stats") else given)]
         if not all_traces:
             raise DataError("no traces")

@@ -83,7 +83,7 @@ class _Throttled:
 
 
 def _display_for(progress: Any) -> _Throttled:
-    if progress not in (True, "notebook", "line"):
+    if progress is not True and not (isinstance(progress, str) and progress in ("notebook", "line")):
         raise ValueError(f"progress: {progress!r}; expected a function, True, 'notebook', 'line' or None")
     notebook = in_notebook()
     wants_bar = progress == "notebook" or (progress is True and notebook)

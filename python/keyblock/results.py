@@ -15,6 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from . import _arguments as arguments
 from . import record, tables
 from ._hdf5 import ResultFile
 from .blocks import Blocks
@@ -164,7 +165,7 @@ class Result:
         from ._compiled import core
 
         target = self.path.parent / format if folder is None else Path(folder)
-        return [Path(file) for file in core.export_run(self.path.parent, target, format, replace or folder is None)]
+        return [Path(file) for file in core.export_run(self.path.parent, target, arguments.text("format", format), arguments.flag("replace", replace) or folder is None)]
 
     def to_xarray(self, frames: slice = slice(None)) -> Any:
         """Frames as xarray.Dataset with the dimensions time, vertex, block and component."""

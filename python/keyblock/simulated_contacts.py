@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _arguments as arguments
 from ._sealed import Sealed
 from .record import did_you_mean
 from .steering import read_only
@@ -102,7 +103,7 @@ class Contacts(Sealed):
 
     def of(self, joint: str) -> Contacts:
         """Those of one joint set, trace map or excavation."""
-        if joint not in self._names:
+        if arguments.text("joint", joint) not in self._names:
             raise KeyError(f"no joint set {joint!r}{did_you_mean(joint, [name for name in self._names if name])}")
         return self[np.array([name == joint for name in self._names])[self.joint_code]]
 
@@ -119,10 +120,12 @@ class Contacts(Sealed):
     def __iter__(self) -> Any:
         raise TypeError("contacts have columns, such as contacts.slip; a single one has no object of its own")
 
-    def set_strength(self, friction: Any = None, cohesion: Any = None, tension: Any = None) -> None:
+    def set_strength(self, *unnamed: Any, friction: Any = None, cohesion: Any = None, tension: Any = None) -> None:
         """Gives each of these contacts a strength of its own, in the place of that of its joint, from the next step on: degrees and Pa, a number for
         all or one for each. What is not given stays as it is. Cohesion and tension act where a bond still holds. It stays with the vertex and the
         edge of the contact, also while they do not touch, and is in checkpoints."""
+        if unnamed:
+            raise TypeError(f"set_strength() takes named values only: set_strength(friction={unnamed[0]!r}), in degrees, or cohesion, or tension, in Pa")
         if friction is None and cohesion is None and tension is None:
             raise TypeError("set_strength() needs friction, cohesion or tension")
         values = [None if value is None else self._of_each(name, value) for name, value in (("friction", friction), ("cohesion", cohesion), ("tension", tension))]
@@ -133,7 +136,7 @@ class Contacts(Sealed):
         self._core.forget_contact_strengths(self.vertex, self.edge)
 
     def _of_each(self, name: str, value: Any) -> np.ndarray:
-        values = np.asarray(value, dtype=float)
+        values = arguments.array(name, value)
         if values.shape not in ((), (self._size,)):
             raise ValueError(f"{name}: found an array of shape {values.shape}; expected a number, or one for each of {self._size} contacts")
         return np.ascontiguousarray(np.broadcast_to(values, (self._size,)))

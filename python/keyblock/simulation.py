@@ -19,10 +19,11 @@ import sys
 import weakref
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from . import _arguments as arguments
 from ._compiled import core as _core
 from ._sealed import Sealed
 from .controllers import Controller as Controller
@@ -30,11 +31,9 @@ from .controllers import controller as controller
 from .controllers import controllers_of
 from .progress import Progress as _Shown
 from .progress import words_of_run
+from .scenario import Scenario, core_of
 from .simulated_contacts import Contacts
 from .steering import JointStrength, SimulatedBlocks, Springs, Strengths, read_only
-
-if TYPE_CHECKING:
-    from .scenario import Scenario
 
 Progress = _core.Progress
 
@@ -69,15 +68,15 @@ class Simulation(Sealed):
         self._blocks: SimulatedBlocks | None = None
         self._contacts: weakref.ref[Contacts] | None = None
         self._names: list[str] | None = None
-        self._folder = "" if folder is None else os.fspath(folder)
+        self._folder = "" if folder is None else arguments.path("folder", folder)
         self._controllers = controllers_of(controllers)
         self._core = _core.Simulation.begin(
-            scenario._core,
+            core_of(scenario),
             folder=self._folder,
-            realization=realization,
-            threads=threads,
-            resume=resume,
-            replace=replace,
+            realization=arguments.count("realization", realization),
+            threads=arguments.count("threads", threads),
+            resume=arguments.flag("resume", resume),
+            replace=arguments.flag("replace", replace),
             hooks=[(c.name, c.hash) for c in self._controllers],
         )
         for warning in self._core.warnings:
@@ -97,15 +96,15 @@ class Simulation(Sealed):
     def advance(self, steps: int = 1) -> int:
         """Takes steps of the plan, over the ends of stages; returns how many, which are fewer at the end of the run. Throws RunError where
         the run cannot go on, and what a controller throws."""
-        if steps < 0:
-            raise ValueError(f"steps: at least 0, and not {steps}")
+        steps = arguments.whole("steps", steps, least=0)
         self._leave_contacts()
         return self._core.advance(steps, self._after_step if self._controllers else None, None)
 
     def advance_to(self, time: float) -> int:
         """Steps until the simulated time, s, is reached. Static steps take none."""
+        time = arguments.number("time", time)
         if not time >= 0.0:
-            raise ValueError(f"time: s, at least 0, and not {time}")
+            raise ValueError(f"time: found {time}; expected seconds, at least 0")
         taken = 0
         while self.time < time and not self.done:
             taken += self.advance()
@@ -257,7 +256,7 @@ class Simulation(Sealed):
 
     @velocity.setter
     def velocity(self, values: np.ndarray) -> None:
-        self._core.velocity = np.ascontiguousarray(values, dtype=float)
+        self._core.velocity = np.ascontiguousarray(arguments.array("velocity", values))
 
     @property
     def first_coefficient(self) -> np.ndarray:
@@ -322,8 +321,10 @@ class Simulation(Sealed):
         """A force on a block, (2,), N per metre thickness. It acts from the next step on until it is changed; another one of the same `slot` takes
         its place, and zero takes it away. `point`: where it acts, (2,), m, local coordinates, as the block lies now; None: its mass centre. It goes
         with the block without turning. Its work is in energy["input"], and it is in checkpoints."""
-        where = None if point is None else [float(x) for x in point]
-        self._core.set_force(self.blocks.index_of(block), [float(f) for f in force], where, int(slot))
+        where = None if point is None else arguments.pair("point", point, "x and y in m")
+        along = arguments.pair("force", force, "along x and y in N per metre")
+        pushed = self.blocks.index_of(block if isinstance(block, str) else arguments.whole("block", block, least=0))
+        self._core.set_force(pushed, along, where, arguments.whole("slot", slot, least=0))
 
     @property
     def forces(self) -> tuple[tuple[int, int, tuple[float, float]], ...]:
@@ -332,11 +333,11 @@ class Simulation(Sealed):
 
     def set_load_factor(self, load: int, factor: float) -> None:
         """Factor on a load, by its place among [[load]], beside its own."""
-        self._core.set_load_factor(load, factor)
+        self._core.set_load_factor(arguments.whole("load", load, least=0), arguments.number("factor", factor))
 
     def set_motion_scale(self, factor: float) -> None:
         """Factor on ground motions, beside that of the stage. Throws InputError with a seismic boundary."""
-        self._core.set_motion_scale(factor)
+        self._core.set_motion_scale(arguments.number("factor", factor))
 
     def __repr__(self) -> str:
         return f"<keyblock.Simulation, step {self.step}, {self.time:g} s, stage {self.stage!r}>"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from . import _arguments as arguments
 from ._compiled import core as _core
 from ._sealed import Sealed
 from .record import did_you_mean
@@ -100,14 +101,15 @@ class SimulatedBlocks(Sequence[SimulatedBlock]):
         return iter(self._blocks)
 
     def index_of(self, which: int | str) -> int:
-        """Index of a block, by its index or its name. Throws KeyError and IndexError."""
+        """Index of a block, by its name or its index, which counts from 0. Throws KeyError and IndexError."""
         if isinstance(which, str):
             if not which or which not in self.names:
                 raise KeyError(f"no block {which!r}{did_you_mean(which, sorted({n for n in self.names if n}))}")
             return self.names.index(which)
+        which = arguments.whole("block", which)
         if not -len(self) <= which < len(self):
             raise IndexError(f"there are blocks 0 to {len(self) - 1}, and no block {which}")
-        return int(which) % len(self)
+        return which % len(self)
 
     def __repr__(self) -> str:
         return f"<{len(self)} blocks>"
@@ -127,12 +129,12 @@ class Spring(Sealed):
     length = property(lambda self: self._get()[3], doc="m")
     stiffness = property(
         lambda self: self._get()[4],
-        lambda self, value: self._core.set_spring_stiffness(self._index, float(value)),
+        lambda self, value: self._core.set_spring_stiffness(self._index, arguments.number("stiffness", value)),
         doc="N/m per metre thickness; a spring that gets another one keeps its elongation.",
     )
     force = property(
         lambda self: self._get()[5],
-        lambda self, value: self._core.set_spring_force(self._index, float(value)),
+        lambda self, value: self._core.set_spring_force(self._index, arguments.number("force", value)),
         doc="N per metre thickness, tension positive; setting it is pretension: the spring is made as long as that takes.",
     )
     yield_force = property(lambda self: self._get()[6], doc="N per metre thickness; inf: it never yields.")
@@ -163,6 +165,7 @@ class Springs(Sequence[Spring]):
             if not which or which not in names:
                 raise KeyError(f"no spring {which!r}{did_you_mean(which, [n for n in names if n])}")
             which = names.index(which)
+        which = arguments.whole("spring", which)
         if not -len(names) <= which < len(names):
             raise IndexError(f"there are {len(names)} springs")
         return Spring(self._core, which % len(names))
@@ -180,14 +183,14 @@ class JointStrength(Sealed):
     def _get(self) -> tuple[float, float, float]:
         return self._core.strength(self._joint)
 
-    def _set(self, place: int, value: float) -> None:
+    def _set(self, name: str, value: float) -> None:
         values = list(self._get())
-        values[place] = float(value)
+        values[("friction", "cohesion", "tension").index(name)] = arguments.number(name, value)
         self._core.set_strength(self._joint, *values)
 
-    friction = property(lambda self: self._get()[0], lambda self, value: self._set(0, value))
-    cohesion = property(lambda self: self._get()[1], lambda self, value: self._set(1, value))
-    tension = property(lambda self: self._get()[2], lambda self, value: self._set(2, value))
+    friction = property(lambda self: self._get()[0], lambda self, value: self._set("friction", value))
+    cohesion = property(lambda self: self._get()[1], lambda self, value: self._set("cohesion", value))
+    tension = property(lambda self: self._get()[2], lambda self, value: self._set("tension", value))
 
     def __repr__(self) -> str:
         friction, cohesion, tension = self._get()
@@ -201,6 +204,6 @@ class Strengths(Sealed):
         self._core = core
 
     def __getitem__(self, joint: str) -> JointStrength:
-        strength = JointStrength(self._core, joint)
+        strength = JointStrength(self._core, arguments.text("joint", joint))
         strength._get()  # an unknown name is refused here
         return strength

@@ -19,16 +19,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import _arguments as arguments
 from ._compiled import core as _core
 from .progress import Progress, words_of_study
 from .record import Record, parse
+from .scenario import Scenario, core_of
 
 from .steered_study import run_steered
 from .steered_study import file_of_controllers as _controllers_file
 
 if TYPE_CHECKING:
     from .limit import Limit
-    from .scenario import Scenario
     from .simulation import Controller, Simulation
     from .study import Study
 
@@ -46,18 +47,19 @@ class StudyState:
 def plan_study(scenario: Scenario, folder: str | os.PathLike[str], *, resume: bool = False) -> list[str]:
     """Makes the plan of a study and puts it into the folder; returns warnings. `resume`: goes on with what is there, and runs that failed are tried
     again. Throws InputError."""
-    return _core.plan_study(scenario._core, os.path.abspath(os.fspath(folder)), resume)
+    return _core.plan_study(core_of(scenario), _whole_path(folder), arguments.flag("resume", resume))
 
 
 def study_state(folder: str | os.PathLike[str]) -> StudyState:
     """How far a study is. Throws InputError where the folder holds no plan."""
-    return StudyState(*_core.study_state(os.fspath(folder)))
+    return StudyState(*_core.study_state(arguments.path("folder", folder)))
 
 
 def study_task(folder: str | os.PathLike[str], run: int) -> int:
     """Does one run of a planned study, in this process; returns its number. A run that fails leaves the reason in the folder."""
+    run = arguments.whole("run", run, least=0)
     try:
-        _core.run_of_study(os.fspath(folder), run)
+        _core.run_of_study(arguments.path("folder", folder), run)
     except _core.RunError:
         pass
     return run
@@ -67,8 +69,9 @@ def collect_study(folder: str | os.PathLike[str]) -> Study:
     """Gathers the runs that are there into runs.csv, study.json and report.html. Throws InputError where the folder holds no plan."""
     from .study import Study
 
-    _core.collect_study(os.fspath(folder))
-    return Study(os.fspath(folder))
+    path = arguments.path("folder", folder)
+    _core.collect_study(path)
+    return Study(path)
 
 
 def run_study(
@@ -89,8 +92,8 @@ def run_study(
     failed, after the others are collected."""
     if controllers and executor is not None:
         raise ValueError("controllers need own processes, and no executor")
-    path = os.path.abspath(os.fspath(folder))
-    _core.plan_study(scenario._core, path, resume)
+    path = _whole_path(folder)
+    _core.plan_study(core_of(scenario), path, arguments.flag("resume", resume))
     with Progress(progress, words_of_study) as shown:
         if controllers or _controllers_file(path).exists():
             run_steered(path, _count(workers), controllers, shown.call)
@@ -130,21 +133,21 @@ def find_limit(
     before, to find all limits; None: 8 for the scale of a motion, else 1. Throws InputError, and RunError where a run fails."""
     from .limit import Limit
 
-    path = os.path.abspath(os.fspath(folder))
+    path = _whole_path(folder)
     with Progress(progress, words_of_study) as shown:
         _core.find_limit(
-            scenario._core,
+            core_of(scenario),
             path,
-            key=key,
-            start=float(start),
-            stop=float(stop),
-            until=until or "",
-            above=None if above is None else float(above),
-            since=since,
-            tolerance=float(tolerance),
-            realizations=realizations,
-            resume=resume,
-            scan=scan or 0,
+            key=arguments.text("key", key),
+            start=arguments.number("start", start),
+            stop=arguments.number("stop", stop),
+            until="" if until is None else arguments.text("until", until),
+            above=arguments.number_or_none("above", above),
+            since=arguments.text("since", since),
+            tolerance=arguments.number("tolerance", tolerance),
+            realizations=arguments.count("realizations", realizations),
+            resume=arguments.flag("resume", resume),
+            scan=0 if scan is None else arguments.count("scan", scan, least=0),
             workers=_count(workers),
             command=_worker_command(),
             progress=shown.call,
@@ -165,15 +168,22 @@ def verify(
     the case files, `verification` of the source. `names`: of case files; none: all but the long ones."""
     with Progress(progress, words_of_study) as shown:
         text = _core.verify(
-            os.fspath(cases), names=list(names), orders=list(orders), all=all, workers=_count(workers), progress=shown.call
+            arguments.path("cases", cases),
+            names=arguments.texts("names", names),
+            orders=[arguments.count("orders", order) for order in orders],
+            all=arguments.flag("all", all),
+            workers=_count(workers),
+            progress=shown.call,
         )
     return parse(text, "the table")
 
 
 def _count(workers: int | None) -> int:
-    if workers is not None and workers < 1:
-        raise ValueError("workers: at least 1")
-    return workers or os.cpu_count() or 1
+    return (os.cpu_count() or 1) if workers is None else arguments.count("workers", workers, least=1)
+
+
+def _whole_path(folder: Any) -> str:
+    return os.path.abspath(arguments.path("folder", folder))
 
 
 def _worker_command() -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 import warnings
 from collections.abc import Iterator
 from functools import partial
@@ -9,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, TUNNEL, optional
+from conftest import PROGRAM, ROOT, TUNNEL, optional
 from test_scenario import falling_block
 
 kb = optional("keyblock")
@@ -75,6 +77,46 @@ def test_forces_stay_in_checkpoints(tmp_path: Path) -> None:
     assert resumed["state_hash"] == whole["state_hash"] != scenario.run()["state_hash"]
 
 
+def test_resuming_a_steered_run_names_what_steered_it(tmp_path: Path) -> None:
+    scenario = falling_block()
+    scenario.save(tmp_path / "drop.toml")
+    scenario = kb.Scenario.load(tmp_path / "drop.toml")
+
+    @kb.controller(name="push it")
+    def push(sim: kb.Simulation) -> None:
+        if sim.step == 3:
+            sim.apply_force("stone", [500.0, 0.0])
+
+    @kb.controller(name="push it")
+    def push_harder(sim: kb.Simulation) -> None:
+        sim.apply_force("stone", [900.0, 0.0])
+
+    @kb.controller(name="other: one")
+    def other(sim: kb.Simulation) -> None:
+        pass
+
+    def stop_early(folder: str, controllers: list[kb.Controller]) -> None:
+        sim = scenario.simulate(tmp_path / folder, controllers=controllers)
+        sim.advance(20)
+        sim.stop()
+        sim.finish()
+
+    stop_early("steered", [push, other])
+    told = r"controllers of a program have steered: push it, other: one; expected the same controllers, from that program; the rest would run without them"
+    with pytest.raises(kb.InputError, match=told):
+        scenario.run(tmp_path / "steered", resume=True)
+    done = subprocess.run([PROGRAM, "run", "drop.toml", "-o", "steered", "--resume"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1 and re.search(told, done.stderr)
+    with pytest.raises(kb.InputError, match="other controllers have steered: push it, other: one; expected the same ones; their text has changed"):
+        scenario.run(tmp_path / "steered", resume=True, controllers=[push_harder, other])
+    with pytest.raises(kb.InputError, match="expected the same ones, and not other: one"):
+        scenario.run(tmp_path / "steered", resume=True, controllers=[other])
+    stop_early("free", [])
+    with pytest.raises(kb.InputError, match="results of a run without controllers; expected the same run, and none of push it"):
+        scenario.run(tmp_path / "free", resume=True, controllers=[push])
+    assert scenario.run(tmp_path / "steered", resume=True, controllers=[push, other])["state_hash"] == scenario.run(controllers=[push])["state_hash"]
+
+
 def hanging() -> kb.Scenario:
     scenario = falling_block()
     scenario["block"] = [
@@ -110,6 +152,26 @@ def test_springs_are_read_and_tightened() -> None:
     with pytest.raises(KeyError, match="did you mean 'rope'"):
         sim.springs["ropes"]
     assert sim.springs[0].name == "rope" and len(sim.springs) == 1
+    assert sim.finish()["elements"][0]["elongation_m"] == pytest.approx(rope.length - 1.5, abs=1e-9)
+
+
+def test_elongation_is_the_change_of_length_since_the_spring_was_installed() -> None:
+    scenario = hanging()
+    scenario.spring.append(name="late", from_=[1.2, 3.0], to=[1.2, 1.5], stiffness=1e6)
+    scenario.stage.append(name="tightened", kind="settle", install=["late"])
+    sim = scenario.simulate()
+    while sim.stage != "tightened":
+        sim.advance()
+    before = sim.springs["late"].length
+    assert before > 1.5 + 1e-2
+    sim.advance()
+    sim.springs["late"].force = 2e4  # pretension is no elongation
+    while not sim.done:
+        sim.advance()
+    first, late = sim.finish()["elements"]
+    assert late["elongation_m"] == pytest.approx(sim.springs["late"].length - before, abs=1e-9)
+    assert late["elongation_m"] < -5e-3 and late["force_n_m"] == pytest.approx(2e4 + 1e6 * late["elongation_m"], rel=1e-3)
+    assert first["elongation_m"] == pytest.approx(sim.springs["rope"].length - 1.5, abs=1e-9)
 
 
 def test_what_cannot_be_pushed_is_refused() -> None:

@@ -18,10 +18,12 @@ const std::vector<SectionReference>& reference() {
   return sections;
 }
 
-const SectionReference* section(std::string_view title) {
-  const auto found = std::find_if(reference().begin(), reference().end(),
-                                  [&](const SectionReference& s) { return s.title == title; });
-  return found == reference().end() ? nullptr : &*found;
+std::size_t brackets_of(const SectionReference& section) {
+  return section.title.starts_with("[[") ? 2 : section.title.starts_with('[') ? 1 : 0;
+}
+
+std::string name_of(const SectionReference& section, std::size_t brackets) {
+  return section.title.substr(brackets, section.title.size() - 2 * brackets);
 }
 
 std::string list_title(const std::string& key) {
@@ -45,17 +47,13 @@ KeyMeaning meaning_of(const KeyReference& key, std::size_t prefix) {
   return {key.key.substr(prefix), std::move(meaning), key.type, standard_value(key), key.fallback};
 }
 
-}  // namespace
-
-namespace {
-
 /// The tables of a scenario, as keys of it.
 void add_tables(std::vector<KeyMeaning>& keys) {
   for (const SectionReference& s : reference()) {
-    const std::size_t brackets = s.title.starts_with("[[") ? 2 : s.title.starts_with('[') ? 1 : 0;
+    const std::size_t brackets = brackets_of(s);
     if (brackets == 0) continue;
-    keys.push_back({s.title.substr(brackets, s.title.size() - 2 * brackets), s.meaning,
-                    brackets == 2 ? "list of tables" : "table", std::nullopt, "none"});
+    keys.push_back(
+        {name_of(s, brackets), s.meaning, brackets == 2 ? "list of tables" : "table", std::nullopt, "none"});
   }
 }
 
@@ -69,15 +67,29 @@ const KeyReference* group_key(const SectionReference& of, const std::string& wit
 
 }  // namespace
 
+const SectionReference* section_of(std::string_view title) {
+  const auto found = std::find_if(reference().begin(), reference().end(),
+                                  [&](const SectionReference& s) { return s.title == title; });
+  return found == reference().end() ? nullptr : &*found;
+}
+
+std::vector<std::string> table_names() {
+  std::vector<std::string> names;
+  for (const SectionReference& s : reference()) {
+    if (const std::size_t brackets = brackets_of(s); brackets > 0) names.push_back(name_of(s, brackets));
+  }
+  return names;
+}
+
 std::vector<KeyMeaning> known_keys(const std::string& table) {
   const std::size_t dot = std::min(table.find('.'), table.size());
   const std::string first = table.substr(0, dot);
   std::string within = dot < table.size() ? table.substr(dot + 1) + "." : "";
-  const SectionReference* of = section(first.empty() ? "" : "[" + first + "]");
-  if (of == nullptr) of = section(list_title(first));
+  const SectionReference* of = section_of(first.empty() ? "" : "[" + first + "]");
+  if (of == nullptr) of = section_of(list_title(first));
   const KeyReference* group = of == nullptr ? nullptr : group_key(*of, within);
   if (group != nullptr) {
-    of = section(group->value_type.group);
+    of = section_of(group->value_type.group);
     within.clear();
   }
   std::vector<KeyMeaning> keys;
@@ -90,7 +102,7 @@ std::vector<KeyMeaning> known_keys(const std::string& table) {
 }
 
 bool is_list_section(const std::string& key) {
-  return section(list_title(key)) != nullptr;
+  return section_of(list_title(key)) != nullptr;
 }
 
 }  // namespace keyblock::api

@@ -7,6 +7,7 @@
 #include "api/edge_names.h"
 #include "api/known_keys.h"
 #include "api/scenario_source.h"
+#include "api/unknown_keys.h"
 #include "core/atomic_file.h"
 #include "core/checked_json.h"
 #include "core/folder.h"
@@ -307,6 +308,10 @@ bool Scenario::is_list_of_tables(const std::string& key) const {
 
 std::vector<KeyMeaning> Scenario::known_keys(const std::string& table) {
   return api::known_keys(table);
+}
+
+void Scenario::check_keys(const std::string& key, const Value& value) {
+  api::check_keys(key, value);
 }
 
 std::string Scenario::toml() const {

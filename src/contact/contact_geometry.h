@@ -27,7 +27,7 @@ struct ContactGeometry {
   std::array<std::size_t, lane_count> beyond;
 };
 
-/// Of up to lane_count contacts; lanes beyond the last are those of the first (docs/decisions/0012-length-of-joints.md). memories: of the list.
+/// Of up to lane_count contacts; lanes beyond the last are those of the first (docs/decisions/0008-contacts.md). memories: of the list.
 ContactGeometry measure_contacts(const Surface& surface, const Tolerances& tolerances, const Corners& corners,
                                  std::span<const Candidate> candidates, std::span<const FoundContact> found,
                                  std::span<const Memory> memories);

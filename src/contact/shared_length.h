@@ -2,7 +2,7 @@
 #include "core/lanes.h"
 
 // Two edges that face each other have a length in common. How much of it belongs to the contact of a vertex
-// (docs/decisions/0012-length-of-joints.md).
+// (docs/decisions/0008-contacts.md).
 namespace keyblock::contact {
 
 /// An edge beside a line, as SharedLength sees it. Number: double or Lanes.

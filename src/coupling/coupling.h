@@ -40,8 +40,9 @@ struct Carried {
   Vec2 from, to;  ///< m, its ends, or those of the stretch that it supports
   double force =
       0.0;  ///< N per thickness; of springs tension is positive, of supports it is the size of the resultant
-  double elongation = 0.0;  ///< m, since it was put in; of supports the mean way of what they support
-  double yielded = 0.0;     ///< m of it, that does not come back
+  double elongation =
+      0.0;  ///< m, of springs the change of length since it was installed, of supports the mean way of what they support
+  double yielded = 0.0;  ///< m, by what it has yielded
   bool present = false;
 };
 

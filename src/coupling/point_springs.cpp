@@ -90,7 +90,8 @@ void PointSprings::install(const Model& model, const State& state, std::span<con
                            std::span<double> memory) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const int staged = springs_[k].staged;
-    if (staged >= 0 && now[at(staged)] != 0) memory[k] = norm(chord(model, state, k)) - springs_[k].length;
+    if (staged >= 0 && now[at(staged)] != 0)
+      memory[k] = memory[installed(k)] = norm(chord(model, state, k)) - springs_[k].length;
   }
 }
 
@@ -149,7 +150,7 @@ std::vector<Carried> PointSprings::carried(const Model& model, const State& stat
     one.present = true;
     one.force = springs[k].force;
     one.yielded = memory[yielded(k)];
-    one.elongation = stretch_of(k, springs[k].length, memory) + one.yielded;
+    one.elongation = springs[k].length - springs_[k].length - memory[installed(k)];
   }
   return all;
 }

@@ -24,7 +24,7 @@ struct PointSpring {
 ///     T = clamp(k (length now − length without force − p), ±yield)
 ///
 /// with p the elongation that leaves no force, in the memory: what has yielded, what it was long when a stage installed it, and what pretension
-/// asked for. The memory has what has yielded beside it. The normal spring acts across the line with T/L where T pulls: by that the force
+/// asked for. The memory has what has yielded beside it, and how much longer than without force the spring was when it was installed. The normal spring acts across the line with T/L where T pulls: by that the force
 /// turns with the line within the step. Lengths are those of the positions at the start of the step, so that nothing drifts.
 class PointSprings final : public Coupling {
  public:
@@ -47,7 +47,7 @@ class PointSprings final : public Coupling {
 
   [[nodiscard]] std::span<const MaterialPoint> points() const override { return points_; }
   void add_pairs(BlockPairs& pairs) const override;
-  [[nodiscard]] std::size_t memory_size() const override { return 2 * springs_.size(); }
+  [[nodiscard]] std::size_t memory_size() const override { return 3 * springs_.size(); }
 
   [[nodiscard]] std::size_t rows() const override { return springs_.size(); }
   RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
@@ -77,6 +77,8 @@ class PointSprings final : public Coupling {
   }
   /// Place in the memory, of what a spring has yielded.
   [[nodiscard]] std::size_t yielded(std::size_t k) const { return springs_.size() + k; }
+  /// Likewise, of its length when it was installed over that without force.
+  [[nodiscard]] std::size_t installed(std::size_t k) const { return 2 * springs_.size() + k; }
   /// From the second end to the first, m.
   [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
   /// m, that has not yielded, of a spring of this length.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* input_name = "scenario.toml";
 constexpr const char* result_name = "result.h5";
+constexpr std::string_view steered_by = "# steered by ";
 constexpr const char* conclusions[] = {"summary.json", "histories.csv", "report.html"};
 
 // All files of a run.
@@ -40,8 +43,27 @@ std::string input_text(const simulation::RunSetup& setup) {
   std::string text = fmt::format("{}\n# realization {}\n", setup.scenario, setup.realization);
   for (const simulation::InputFile& file : setup.files)
     text += fmt::format("# content of {}: {}\n", file.name, file.hash);
-  for (const auto& [name, hash] : setup.hooks) text += fmt::format("# steered by {}: {}\n", name, hash);
+  for (const auto& [name, hash] : setup.hooks) text += fmt::format("{}{}: {}\n", steered_by, name, hash);
   return text;
+}
+
+/// The input of a run without what steered it, and the names of that.
+struct Steering {
+  std::string rest, names;
+};
+
+Steering steering_of(std::string text) {
+  Steering steering;
+  while (text.size() > 1) {
+    const std::size_t line = text.rfind('\n', text.size() - 2) + 1;
+    if (!std::string_view(text).substr(line).starts_with(steered_by)) break;
+    const std::size_t begin = line + steered_by.size(), end = text.rfind(": ");
+    const std::string name = text.substr(begin, std::max(end, begin) - begin);
+    steering.names = name + (steering.names.empty() ? "" : ", ") + steering.names;
+    text.resize(line);
+  }
+  steering.rest = std::move(text);
+  return steering;
 }
 
 void check_keeps_input(const fs::path& folder, const std::vector<fs::path>& inputs) {
@@ -111,6 +133,7 @@ void ResultFolder::check_state(Use use) const {
     }
     return;
   }
+  if (results && use == Use::resume) check_steering();
   if (results) {
     refuse(folder_, "results of other input",
            use == Use::resume ? "those of this scenario with the same files, --set and --realization"
@@ -122,6 +145,24 @@ void ResultFolder::check_state(Use use) const {
     refuse(folder_, fmt::format("a {} that is not of this run", file.filename().string()), "another folder",
            "or --force to replace it");
   }
+}
+
+/// Of the same input, but steered by others: gone on with, it would be neither run.
+void ResultFolder::check_steering() const {
+  const fs::path input = folder_ / input_name;
+  if (!file_exists(input)) return;
+  const Steering before = steering_of(read_file(input)), now = steering_of(input_);
+  if (before.rest != now.rest) return;
+  const std::string hint = "to begin anew, run into another folder";
+  if (before.names.empty())
+    refuse(folder_, "results of a run without controllers", "the same run, and none of " + now.names, hint);
+  if (now.names.empty())
+    refuse(folder_, "results of a run that controllers of a program have steered: " + before.names,
+           "the same controllers, from that program; the rest would run without them", hint);
+  refuse(folder_, "results of a run that other controllers have steered: " + before.names,
+         before.names == now.names ? "the same ones; their text has changed"
+                                   : "the same ones, and not " + now.names,
+         hint);
 }
 
 void ResultFolder::enter() {

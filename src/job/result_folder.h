@@ -47,6 +47,7 @@ class ResultFolder {
 
  private:
   void check_state(Use use) const;
+  void check_steering() const;
 
   std::filesystem::path folder_;
   std::string input_;

@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 /// bend. joint[k]: Surface::joint of the edges of the polygons, block by block and ring by ring.
 ///
 /// An edge of such a block is cut where the blocks on its other side begin and end, so that what two blocks have in common is a part of both:
-/// traction along a joint does the same work on either then (docs/decisions/0012-length-of-joints.md). A part is divided at the points of
+/// traction along a joint does the same work on either then (docs/decisions/0008-contacts.md). A part is divided at the points of
 /// Gauss and Lobatto's rule, alike on both sides, as the higher of the two orders asks for.
 void build_surface(dynamics::Model& model, std::span<const int> joint);
 

@@ -25,7 +25,7 @@ class Iterate {
   }
   /// ∇Π(D), of the springs where they are.
   void find_gradient(const StepSystem& system);
-  /// gradient += scale · ∂ψ/∂D of a contact whose springs push with `force`.
+  /// gradient += scale · ∂ψ/∂D of a row whose springs push with `force`.
   void add_force(const StepSystem& system, std::size_t c, Force force, double scale = 1.0);
   /// Changes the law of a spring, by change(), and what that does to its branch and to the gradient.
   template <typename Change>
@@ -52,12 +52,12 @@ class Iterate {
   /// −gradient into the direction, of the first n coefficients.
   void turn_against_gradient(std::size_t n);
 
-  /// What the two sides of some contacts are displaced by against each other: each, and along normals and tangents.
+  /// What the two sides of some rows are displaced by against each other: each, and along normals and tangents.
   struct Relatives {
     Pair each[lane_count];
     Lanes normal, tangent;
   };
-  /// Calls of_some(c, count, relatives) with what `displacement` is of as many contacts as there are lanes, or fewer, from c on.
+  /// Calls of_some(c, count, relatives) with what `displacement` is of as many rows as there are lanes, or fewer, from c on.
   template <typename OfSome>
   void for_relatives(const StepSystem& system, const OfSome& of_some) const {
     const std::span<const Row> rows = system.problem.rows();
@@ -85,7 +85,7 @@ class Iterate {
   std::vector<double> direction;   ///< p
   std::vector<double> residual;    ///< ρ of the last linear solution: A p = −g − ρ
   std::vector<Vec2> displacement;  ///< m, of vertices: of D, or of p
-  std::vector<Vec2> relative;      ///< m, r of every contact
+  std::vector<Vec2> relative;      ///< m, r of every row
   std::vector<Vec2> vertex_force;  ///< scratch
   bool is_placed = false;          ///< `relative` is that at D
 

@@ -9,7 +9,7 @@ namespace keyblock::dynamics {
 
 namespace {
 
-constexpr std::size_t gone_contact = SIZE_MAX;
+constexpr std::size_t gone_row = SIZE_MAX;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ bool KeptFactor::begin_step(const StepSystem& system, StepMatrix& matrix, LowRan
   matrix.forget_free_blocks();
   if (!is_kept_) return false;
   matrix.take_branches_with_the_same_springs(system);
-  matrix.find_free_blocks(system, update.contacts());
+  matrix.find_free_blocks(system, update.rows());
   return true;
 }
 
@@ -45,13 +45,13 @@ bool KeptFactor::fits(const StepSystem& system) const {
          std::ranges::equal(inertia_, system.problem.terms().inertias());
 }
 
-/// What is known of the matrix by contact goes over to the contacts of this step: those that came have no spring in it, those that went had
+/// What is known of the matrix by row goes over to the rows of this step: those that came have no spring in it, those that went had
 /// none. False when one had, or is updated.
 bool KeptFactor::carry(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update) {
   if (system.contacts.version != 0 && version_ == system.contacts.version) return true;
   std::vector<Coupling::RowKey> rows;
   system.problem.name_rows(rows);
-  std::vector<std::size_t> now(rows_.size(), gone_contact);
+  std::vector<std::size_t> now(rows_.size(), gone_row);
   std::size_t next = 0;
   for (std::size_t c = 0; c < rows.size(); ++c) {
     const std::size_t last = std::min(next + step_numbers::most_gone, rows_.size());
@@ -63,12 +63,11 @@ bool KeptFactor::carry(const StepSystem& system, StepMatrix& matrix, LowRankUpda
     }
   }
   for (std::size_t k = 0; k < now.size(); ++k) {
-    if (now[k] == gone_contact && matrix.has_spring(k)) return false;
+    if (now[k] == gone_row && matrix.has_spring(k)) return false;
   }
-  if (std::ranges::any_of(update.contacts(), [&](std::size_t c) { return now[c] == gone_contact; }))
-    return false;
+  if (std::ranges::any_of(update.rows(), [&](std::size_t c) { return now[c] == gone_row; })) return false;
   update.carry(now);
-  matrix.carry(now, gone_contact, rows.size());
+  matrix.carry(now, gone_row, rows.size());
   rows_ = std::move(rows);
   version_ = system.contacts.version;
   return true;

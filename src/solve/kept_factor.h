@@ -8,7 +8,7 @@
 
 namespace keyblock::dynamics {
 
-/// Accelerator: the factor of a step serves the steps that follow, as long as it was made for the same inertia and nearly the same contacts, and
+/// Accelerator: the factor of a step serves the steps that follow, as long as it was made for the same inertia and nearly the same rows, and
 /// few springs have to be updated. Where it failed, it is not tried for some steps, twice as many after each failure.
 class KeptFactor {
  public:
@@ -18,7 +18,7 @@ class KeptFactor {
     wait_ = 0;
     next_wait_ = 1;
   }
-  /// At the start of a step: whether the factor of an earlier step is tried. Matrix and update then are of the contacts of this step.
+  /// At the start of a step: whether the factor of an earlier step is tried. Matrix and update then are of the rows of this step.
   bool begin_step(const StepSystem& system, StepMatrix& matrix, LowRankUpdate& update);
   /// The matrix of this step is being made; it may serve later ones.
   void note(const StepSystem& system);

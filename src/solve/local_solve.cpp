@@ -36,9 +36,9 @@ bool LocalSolve::solve(const StepSystem& system, Iterate& iterate, double enough
   return true;
 }
 
-void LocalSolve::find_contacts_of_blocks(const StepSystem& system) {
+void LocalSolve::find_rows_of_blocks(const StepSystem& system) {
   const std::uint64_t version = system.contacts.version;
-  if (!first_contact_.empty() && version != 0 && version_ == version) return;
+  if (!first_row_.empty() && version != 0 && version_ == version) return;
   version_ = version;
   const auto& rows = system.problem.rows();
   const auto for_ends = [&](const auto& body) {
@@ -49,25 +49,25 @@ void LocalSolve::find_contacts_of_blocks(const StepSystem& system) {
     }
   };
   // Counted two places on: in the next one stands where a block begins, until it is filled, and then where the block after it does.
-  first_contact_.assign(system.problem.model().blocks.size() + 2, 0);
-  for_ends([&](std::size_t block, std::size_t /*contact*/) { ++first_contact_[block + 2]; });
-  std::partial_sum(first_contact_.begin(), first_contact_.end(), first_contact_.begin());
-  contacts_of_block_.resize(first_contact_.back());
-  for_ends([&](std::size_t block, std::size_t contact) {
-    contacts_of_block_[first_contact_[block + 1]++] = static_cast<std::uint32_t>(contact);
+  first_row_.assign(system.problem.model().blocks.size() + 2, 0);
+  for_ends([&](std::size_t block, std::size_t /*row*/) { ++first_row_[block + 2]; });
+  std::partial_sum(first_row_.begin(), first_row_.end(), first_row_.begin());
+  rows_of_block_.resize(first_row_.back());
+  for_ends([&](std::size_t block, std::size_t row) {
+    rows_of_block_[first_row_[block + 1]++] = static_cast<std::uint32_t>(row);
   });
 }
 
-/// What the next solution reaches. A contact of two blocks that move comes once, with the first of them.
+/// What the next solution reaches. A row of two blocks that move comes once, with the first of them.
 void LocalSolve::take_reach(const StepSystem& system) {
-  find_contacts_of_blocks(system);
+  find_rows_of_blocks(system);
   is_taken_.assign(system.problem.model().blocks.size(), 0);
-  contacts_.clear();
+  rows_.clear();
   for (const std::size_t block : std::span(reach_.blocks).first(reach_.moved)) {
-    for (std::size_t i = first_contact_[block]; i < first_contact_[block + 1]; ++i) {
-      const Row& row = system.row(contacts_of_block_[i]);
+    for (std::size_t i = first_row_[block]; i < first_row_[block + 1]; ++i) {
+      const Row& row = system.row(rows_of_block_[i]);
       const int other = at(row.unknown_a) == block ? row.unknown_b : row.unknown_a;
-      if (other < 0 || is_taken_[at(other)] == 0) contacts_.push_back(contacts_of_block_[i]);
+      if (other < 0 || is_taken_[at(other)] == 0) rows_.push_back(rows_of_block_[i]);
     }
     is_taken_[block] = 1;
   }
@@ -80,8 +80,8 @@ void LocalSolve::take_reach(const StepSystem& system) {
 /// Blocks beside those that move stand still: the displacement is that of another direction there.
 void LocalSolve::find_direction(const StepSystem& system, Iterate& iterate) const {
   SpringArray& springs = system.springs();
-  system.problem.points().displace(iterate.direction, blocks_, contacts_, iterate.displacement);
-  for (const std::size_t c : contacts_) {
+  system.problem.points().displace(iterate.direction, blocks_, rows_, iterate.displacement);
+  for (const std::size_t c : rows_) {
     const Row& row = system.row(c);
     const Vec2 r = vec2_of(row.relative(iterate.displacement));
     springs.dy[c] = -dot(row.normal, r);

@@ -13,8 +13,8 @@ namespace {
 using Force = SpringArray::Force;
 
 /// Takes the force of one spring out of the gradient.
-void leave_out(const StepSystem& system, Iterate& iterate, std::size_t contact, bool normal, double force) {
-  iterate.add_force(system, contact, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0);
+void leave_out(const StepSystem& system, Iterate& iterate, std::size_t row, bool normal, double force) {
+  iterate.add_force(system, row, {normal ? force : 0.0, normal ? 0.0 : force}, -1.0);
 }
 
 }  // namespace
@@ -37,10 +37,10 @@ void LowRankUpdate::look_at_faces(const StepSystem& system, const StepMatrix& ma
   faces_bend_ = faces_bend_ || !matrix.has_faces_as_they_press(system.springs());
 }
 
-std::vector<std::size_t> LowRankUpdate::contacts() const {
-  std::vector<std::size_t> contacts;
-  for (const Spring spring : updated_) contacts.push_back(spring.contact);
-  return contacts;
+std::vector<std::size_t> LowRankUpdate::rows() const {
+  std::vector<std::size_t> rows;
+  for (const Spring spring : updated_) rows.push_back(spring.row);
+  return rows;
 }
 
 bool LowRankUpdate::minimize(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,
@@ -195,7 +195,7 @@ bool LowRankUpdate::find_forces(const StepSystem& system, const StepMatrix& matr
   return true;
 }
 
-/// Springs of the contacts that differ from the matrix and are not updated yet.
+/// Springs of the rows that differ from the matrix and are not updated yet.
 void LowRankUpdate::find_wanted(const SpringArray& springs, const StepMatrix& matrix) {
   wanted_.clear();
   for (const std::size_t c : matrix.differing()) {
@@ -218,7 +218,7 @@ void LowRankUpdate::remember_places() {
 }
 
 void LowRankUpdate::carry(std::span<const std::size_t> now) {
-  for (Spring& spring : updated_) spring.contact = now[spring.contact];
+  for (Spring& spring : updated_) spring.row = now[spring.row];
   remember_places();
 }
 
@@ -229,7 +229,7 @@ void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const Spring spring = wanted_[k];
     auto& [a, b] = parts_[k];
-    const Row& row = system.row(spring.contact);
+    const Row& row = system.row(spring.row);
     system.problem.derivative(row, spring.normal ? -1.0 * row.normal : row.tangent(), a, b);
     vectors_.push_back({{row.unknown_a, a}, {row.unknown_b, b}});
     updated_.push_back(spring);
@@ -242,8 +242,8 @@ void LowRankUpdate::take_wanted(const StepSystem& system, StepMatrix& matrix) {
 /// Takes out of the gradient what the springs in wanted_, which the increment knows nothing of, do otherwise than the matrix has them.
 void LowRankUpdate::leave_out_wanted(const StepSystem& system, Iterate& iterate, const StepMatrix& matrix) {
   for (const Spring spring : wanted_) {
-    const Force force = matrix.force_beside(system.springs(), spring.contact);
-    leave_out(system, iterate, spring.contact, spring.normal, spring.normal ? force.normal : force.shear);
+    const Force force = matrix.force_beside(system.springs(), spring.row);
+    leave_out(system, iterate, spring.row, spring.normal, spring.normal ? force.normal : force.shear);
   }
   if (!wanted_.empty()) iterate.gradient_changed();
 }
@@ -256,7 +256,7 @@ void LowRankUpdate::find_rest(const StepSystem& system, Iterate& iterate, const 
   for (const std::size_t c : matrix.differing())
     iterate.add_force(system, c, matrix.force_beside(system.springs(), c));
   for (std::size_t k = 0; k < updated_.size(); ++k)
-    leave_out(system, iterate, updated_[k].contact, updated_[k].normal, force_[k]);
+    leave_out(system, iterate, updated_[k].row, updated_[k].normal, force_[k]);
 }
 
 }  // namespace keyblock::dynamics

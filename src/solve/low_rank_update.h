@@ -30,17 +30,17 @@ class LowRankUpdate {
   [[nodiscard]] static std::size_t limit(const StepSystem& system);
   /// Springs that are updated.
   [[nodiscard]] std::size_t size() const { return corrections_.size(); }
-  /// Their contacts.
-  [[nodiscard]] std::vector<std::size_t> contacts() const;
-  /// Goes over to the contacts of another step, as StepMatrix::carry(); none is gone.
+  /// Their rows.
+  [[nodiscard]] std::vector<std::size_t> rows() const;
+  /// Goes over to the rows of another step, as StepMatrix::carry(); none is gone.
   void carry(std::span<const std::size_t> now);
 
  private:
-  /// The normal or the shear spring of a contact.
+  /// The normal or the shear spring of a row.
   struct Spring {
-    std::size_t contact;
+    std::size_t row;
     bool normal;
-    [[nodiscard]] std::size_t number() const { return 2 * contact + (normal ? 0 : 1); }
+    [[nodiscard]] std::size_t number() const { return 2 * row + (normal ? 0 : 1); }
   };
   bool refines(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool wants);
   bool iterate_until_done(const StepSystem& system, Iterate& iterate, StepMatrix& matrix, bool is_kept,

@@ -15,7 +15,7 @@ namespace {
 using Force = SpringArray::Force;
 using Residual = linalg::BlockSolver::Residual;
 
-/// By how much the force of a contact at D + αp differs from the straight line on which it is at D.
+/// By how much the force of a row at D + αp differs from the straight line on which it is at D.
 Force force_beside(const SpringArray& springs, std::size_t c, double alpha) {
   const double y = springs.y[c] + alpha * springs.dy[c], w = springs.w[c] + alpha * springs.dw[c];
   return springs.force_at(c, y, w) - springs.force_on(c, springs.branch[c], y, w);
@@ -37,10 +37,10 @@ void Newton::for_reached_coefficients(const StepSystem& system, const Iterate& i
 }
 
 template <typename Body>
-void Newton::for_reached_contacts(const StepSystem& system, const Body& body) const {
+void Newton::for_reached_rows(const StepSystem& system, const Body& body) const {
   if (!local_.is_active())
     return system.team.for_range(system.springs().size(), contacts_worth_threads, body);
-  for (const std::size_t c : local_.contacts()) body(c, c + 1);
+  for (const std::size_t c : local_.rows()) body(c, c + 1);
 }
 
 void Newton::begin(const StepSystem& system) {
@@ -56,7 +56,7 @@ bool Newton::solve(const StepSystem& system, Iterate& iterate, bool exact, const
   const auto enough = [&](double share) {
     return std::max(linear_share * tolerance, share * iterate.out_of_balance(system));
   };
-  // Where no contact changes its branch and little is out of balance, one system of all blocks is all that is needed.
+  // Where no row changes its branch and little is out of balance, one system of all blocks is all that is needed.
   const bool is_calm = result.changes == 0 && iterate.out_of_balance(system) <= calm * tolerance;
   local_.reset();
   if (!is_calm && local_.solve(system, iterate, enough(forcing_local))) return system.solver.solved();
@@ -77,7 +77,7 @@ bool Newton::go_along(const StepSystem& system, Iterate& iterate, double enough,
   const bool whole_way = !local_.is_active() && std::exchange(may_go_whole_way_, false);
   if (whole_way) find_changes(system, 1.0);
   double alpha = whole_way ? 1.0 : search_line(system, iterate);
-  // Where no contact changes, what the system left over is all that is.
+  // Where no row changes, what the system left over is all that is.
   if (!local_.is_active() && changes_.empty() && bends_.empty() &&
       system.problem.terms().residual_ratio(iterate.residual) >= enough) {
     if (!improve(system, iterate, exact)) return false;
@@ -119,11 +119,11 @@ void Newton::find_bends(const StepSystem& system, double alpha) {
   const auto look_at = [&](std::size_t f) {
     if (!faces.is_linear(f, springs.y, springs.dy, alpha)) bends_.emplace_back(f);
   };
-  if (local_.is_active()) return faces.for_faces_of(local_.contacts(), look_at);
+  if (local_.is_active()) return faces.for_faces_of(local_.rows(), look_at);
   for (std::size_t f = 0; f < faces.size(); ++f) look_at(f);
 }
 
-/// Contacts that change their branch between where they are and α along the direction.
+/// Rows that change their branch between where they are and α along the direction.
 void Newton::find_changes(const StepSystem& system, double alpha) {
   const SpringArray& springs = system.springs();
   find_bends(system, alpha);
@@ -133,7 +133,7 @@ void Newton::find_changes(const StepSystem& system, double alpha) {
   };
   if (local_.is_active()) {
     changes_.clear();
-    std::ranges::copy_if(local_.contacts(), std::back_inserter(changes_), changes);
+    std::ranges::copy_if(local_.rows(), std::back_inserter(changes_), changes);
     return;
   }
   find_few<lane_count>(
@@ -156,7 +156,7 @@ Newton::Products Newton::products(const StepSystem& system, const Iterate& itera
   return products;
 }
 
-/// dΠ(D + αp)/dα given the contacts that change up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) except for these.
+/// dΠ(D + αp)/dα given the rows that change up to α. With A p = −g − ρ it is g·p + α (−g·p − ρ·p) except for these.
 double Newton::slope(const SpringArray& springs, double alpha) const {
   double sum = slope_at_zero_ + alpha * curvature_;
   for (const std::size_t c : changes_) {
@@ -197,7 +197,7 @@ void Newton::go(const StepSystem& system, Iterate& iterate, double alpha) const 
   } else {
     iterate.gradient_changed();
   }
-  for_reached_contacts(system, [&](std::size_t begin, std::size_t end) { springs.go(alpha, begin, end); });
+  for_reached_rows(system, [&](std::size_t begin, std::size_t end) { springs.go(alpha, begin, end); });
   springs.press_faces();
   iterate.is_placed = false;
   for (const std::size_t c : changes_) springs.branch[c] = springs.branch_at(c, springs.y[c], springs.w[c]);

@@ -10,7 +10,7 @@ namespace keyblock::dynamics {
 /// minimum of Π(D + αp), the root of a piecewise linear function of α.
 ///
 /// Along p the gradient is known without the matrix: ∇Π(D + αp) = (1 − α) ∇Π(D) − α ρ, with ρ what an iterative solver left over, except for
-/// contacts that change their branch on the way, which are few. So is the slope that the line search needs.
+/// rows that change their branch on the way, which are few. So is the slope that the line search needs.
 class Newton {
  public:
   /// At the start of a step.
@@ -36,9 +36,9 @@ class Newton {
   /// Calls body(begin, end) for the coefficients that the direction of search moves or whose residual it changes, in parts.
   template <typename Body>
   void for_reached_coefficients(const StepSystem& system, const Iterate& iterate, const Body& body) const;
-  /// Likewise for the contacts.
+  /// Likewise for the rows.
   template <typename Body>
-  void for_reached_contacts(const StepSystem& system, const Body& body) const;
+  void for_reached_rows(const StepSystem& system, const Body& body) const;
   bool improve(const StepSystem& system, Iterate& iterate, bool exact) const;
   void find_direction(const StepSystem& system, Iterate& iterate) const;
   [[nodiscard]] double search_line(const StepSystem& system, const Iterate& iterate);
@@ -48,10 +48,10 @@ class Newton {
   void go(const StepSystem& system, Iterate& iterate, double alpha) const;
 
   LocalSolve local_;
-  std::vector<std::size_t> changes_;  ///< contacts that change their branch along the direction of search
+  std::vector<std::size_t> changes_;  ///< rows that change their branch along the direction of search
   std::vector<FaceBend> bends_;       ///< faces of joints whose pressure is not linear along it
   double slope_at_zero_ = 0.0, curvature_ = 0.0;
-  /// The way of the first system of all blocks is gone to its end: few contacts would hold all blocks back, and what these do otherwise is
+  /// The way of the first system of all blocks is gone to its end: few rows would hold all blocks back, and what these do otherwise is
   /// mended by local solves.
   bool may_go_whole_way_ = false;
 };

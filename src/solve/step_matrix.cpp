@@ -179,13 +179,13 @@ void StepMatrix::take_branches_with_the_same_springs(const StepSystem& system) {
   });
 }
 
-void StepMatrix::carry(std::span<const std::size_t> now, std::size_t gone, std::size_t contacts) {
-  const auto carry_one = [&](auto& of_contact) {
-    std::remove_reference_t<decltype(of_contact)> carried(contacts);
+void StepMatrix::carry(std::span<const std::size_t> now, std::size_t gone, std::size_t rows) {
+  const auto carry_one = [&](auto& of_row) {
+    std::remove_reference_t<decltype(of_row)> carried(rows);
     for (std::size_t k = 0; k < now.size(); ++k) {
-      if (now[k] != gone) carried[now[k]] = of_contact[k];
+      if (now[k] != gone) carried[now[k]] = of_row[k];
     }
-    of_contact = std::move(carried);
+    of_row = std::move(carried);
   };
   carry_one(branches_);
   carry_one(normal_stiffness_);
@@ -211,7 +211,7 @@ void StepMatrix::take_hold(const StepProblem& problem, const Row& row) {
   });
 }
 
-/// Counts what holds the blocks of a contact.
+/// Counts what holds the blocks of a row.
 void StepMatrix::count_held(const StepSystem& system, std::size_t c, int count) {
   const Row& row = system.row(c);
   if (row.unknown_a >= 0) held_[at(row.unknown_a)] += count;

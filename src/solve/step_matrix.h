@@ -6,7 +6,7 @@
 
 namespace keyblock::dynamics {
 
-/// The matrix of a step, ∇²Π on certain branches of the laws of its contacts, in the memory of a linear solver: which springs it has, and
+/// The matrix of a step, ∇²Π on certain branches of the laws of its rows, in the memory of a linear solver: which springs it has, and
 /// how it comes to have those that act.
 class StepMatrix {
  public:
@@ -18,21 +18,21 @@ class StepMatrix {
   void forget() { is_assembled_ = false; }
   [[nodiscard]] bool is_assembled() const { return is_assembled_; }
 
-  /// Makes it for the branches that the contacts are on.
+  /// Makes it for the branches that the rows are on.
   void assemble(const StepSystem& system);
-  /// Brings it to the branches that the contacts are on now, and one of an earlier step to how its free blocks are turned. False when it
+  /// Brings it to the branches that the rows are on now, and one of an earlier step to how its free blocks are turned. False when it
   /// has not changed.
   bool update(const StepSystem& system);
 
-  /// Of a contact, for which it was made.
+  /// Of a row, for which it was made.
   [[nodiscard]] Branch branch(std::size_t c) const { return branches_[c]; }
-  /// N/m per thickness, of the spring of a contact in it; 0: it has none.
+  /// N/m per thickness, of the spring of a row in it; 0: it has none.
   [[nodiscard]] double normal_stiffness(std::size_t c) const { return normal_stiffness_[c]; }
   [[nodiscard]] double shear_stiffness(std::size_t c) const { return shear_stiffness_[c]; }
   [[nodiscard]] bool has_spring(std::size_t c) const {
     return normal_stiffness_[c] != 0.0 || shear_stiffness_[c] != 0.0;
   }
-  /// By how much the force of a contact, of its own springs, differs from its straight line in the matrix.
+  /// By how much the force of a row, of its own springs, differs from its straight line in the matrix.
   [[nodiscard]] SpringArray::Force force_beside(const SpringArray& springs, std::size_t c) const {
     return springs.force_at(c, springs.y[c], springs.w[c]) -
            springs.force_on(c, branches_[c], springs.y[c], springs.w[c]);
@@ -41,25 +41,25 @@ class StepMatrix {
   [[nodiscard]] bool has_faces_as_they_press(const SpringArray& springs) const;
   /// N per thickness, per row, of the straight lines on which the matrix has the faces, at penetrations y; empty: there are none.
   [[nodiscard]] std::vector<double> face_lines(const SpringArray& springs, std::span<const double> y) const;
-  /// Finds the contacts that are on another branch than in the matrix.
+  /// Finds the rows that are on another branch than in the matrix.
   void find_differing(const StepSystem& system);
   /// As found last.
   [[nodiscard]] std::span<const std::size_t> differing() const { return differing_; }
   [[nodiscard]] std::size_t count_differing(const SpringArray& springs) const;
   /// Where the same springs act the matrix is the same: branches that differ in nothing else are taken for its own.
   void take_branches_with_the_same_springs(const StepSystem& system);
-  /// What is known by contact goes over to the contacts of another step: now[k] of each of these, `gone` where it went. has_faces(): then,
+  /// What is known by row goes over to the rows of another step: now[k] of each of these, `gone` where it went. has_faces(): then,
   /// whether the faces are those of the step.
-  void carry(std::span<const std::size_t> now, std::size_t gone, std::size_t contacts);
+  void carry(std::span<const std::size_t> now, std::size_t gone, std::size_t rows);
 
   [[nodiscard]] bool has_faces(const FaceSprings& faces) const;
 
-  /// Blocks that no spring of the matrix holds, nor any at `updated` contacts. They may turn fast, which the factor of an earlier step knows
+  /// Blocks that no spring of the matrix holds, nor any at `updated` rows. They may turn fast, which the factor of an earlier step knows
   /// nothing of, and are solved alone.
   void find_free_blocks(const StepSystem& system, std::span<const std::size_t> updated);
   [[nodiscard]] std::span<const std::size_t> free_blocks() const { return free_; }
   void forget_free_blocks() { free_.clear(); }
-  /// The blocks of this contact are free no more.
+  /// The blocks of this row are free no more.
   void take_hold(const StepProblem& problem, const Row& row);
 
  private:
@@ -74,13 +74,13 @@ class StepMatrix {
     return std::span(face_tangents_).subspan(first_tangents_[f], first_tangents_[f + 1] - first_tangents_[f]);
   }
 
-  std::vector<Branch> branches_;                            ///< per contact
-  std::vector<double> normal_stiffness_, shear_stiffness_;  ///< N/m per thickness, per contact
+  std::vector<Branch> branches_;                            ///< per row
+  std::vector<double> normal_stiffness_, shear_stiffness_;  ///< N/m per thickness, per row
   std::vector<Place> places_;                               ///< of these springs
   std::vector<std::size_t> face_rows_, first_tangents_;     ///< as FaceSprings::all_rows; per face
   std::vector<Place> face_places_;                          ///< of these rows
   std::vector<double> face_tangents_;                       ///< N/m per thickness, H of each face by rows
-  std::vector<int> held_;  ///< per unknown block: contacts that have such springs
+  std::vector<int> held_;  ///< per unknown block: rows that have such springs
   std::vector<std::size_t> free_;
   std::vector<std::size_t> differing_;
   std::vector<SpringChange> changes_;  ///< scratch

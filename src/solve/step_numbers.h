@@ -10,11 +10,11 @@ namespace keyblock::dynamics::step_numbers {
 /// Of the tolerance of a step, what its linear systems may leave over. Larger: an iteration more to converge; smaller: more digits than
 /// are looked at.
 inline constexpr double linear_share = 0.3;
-/// Of what is out of balance, what a linear system of all blocks may leave over: contacts change their branch afterwards anyway.
+/// Of what is out of balance, what a linear system of all blocks may leave over: rows change their branch afterwards anyway.
 inline constexpr double forcing = 0.003;
-/// The same of a local solve, after which contacts change again.
+/// The same of a local solve, after which rows change again.
 inline constexpr double forcing_local = 0.03;
-/// Times the tolerance, out of balance: up to there one system of all blocks is all that is needed where no contact changed its branch.
+/// Times the tolerance, out of balance: up to there one system of all blocks is all that is needed where no row changed its branch.
 inline constexpr double calm = 100.0;
 
 /// Of the pairs of blocks that have contacts, how many pairs without contacts keep their room in the matrix. Larger: factors have more
@@ -46,7 +46,7 @@ inline constexpr int most_refinements = 3;
 inline constexpr double kept_share = 0.003;
 /// Steps without a kept factor, at most, after it has failed again and again.
 inline constexpr int longest_wait = 32;
-/// Contacts in a row that may be gone before contacts of two steps are taken for different ones.
+/// Rows after each other that may be gone before those of two steps are taken for different ones.
 inline constexpr std::size_t most_gone = 64;
 /// Tries with a low-rank update in a minimization.
 inline constexpr int most_tries = 4;

@@ -46,7 +46,7 @@ struct OpenCloseResult {
   bool finite = true;          ///< what is out of balance is a number
   bool bond_broken = false;    ///< some contact lost its cohesion and tension on the way
   int iterations = 0;          ///< linear solves
-  std::size_t changes = 0;     ///< contacts that changed their branch on the way, as often as they did
+  std::size_t changes = 0;     ///< rows that changed their branch on the way, as often as they did
   int refinements = 0;         ///< corrections of what the factor of an earlier step gets wrong
   int bound_updates = 0;       ///< times the Coulomb bounds were taken anew
   bool given_up = false;       ///< at the first of them

@@ -167,6 +167,14 @@ class DefaultCriterion(Limit):
         self.assertAlmostEqual(damage["loosened_area_m2"], 341.155, delta=0.1)
         self.assertLess(damage["displacement_max_m"], 1.0)
 
+    def test_a_pier_on_soft_joints_falls_where_its_joints_say(self):
+        """Rigid blocks on continuous joints, by hand: verification/joint_pressure.py. With stiff shear joints shift no weight outwards."""
+        words = [CASES / "soft_pier.toml", "--key", "tilt", "--from", 0, "--to", 20, "--until", "collapsed", "--tolerance", 0.001]
+        self.limit(*words, out="soft")
+        self.check_bracket(9.483, 0.002, out="soft")
+        self.limit(*words, "--set", "joints.shear_stiffness=1e10", out="stiff")
+        self.check_bracket(9.528, 0.002, out="stiff")
+
     def test_seismic_coefficients_and_gravity(self):
         """tan(φ − α) = tan 10°, of the weight; horizontal gravity likewise, and gravity itself where a plane has cohesion."""
         words = self.slope()

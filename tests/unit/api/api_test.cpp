@@ -141,6 +141,31 @@ TEST(Api, ValuesGoInAsTheyAre) {
   EXPECT_TRUE(knows_order);
 }
 
+TEST(Api, UnknownKeysOfAValueAreTold) {
+  Scenario::check_keys("rock.young");
+  Scenario::check_keys("joint_set.J1.spacing.mean");
+  Scenario::check_keys("stage[0].release.'any name'", 0.5);
+  Scenario::check_keys("motion",
+                       Value::List{Value::Table{{"x", Value::List{Value::rows(std::vector{0.0, 1.0})}}}});
+  const Value rock = Value::Table{{"yung", 1e9}, {"density", 2600.0}, {"kn", 1e9}};
+  try {
+    Scenario::check_keys("rock", rock);
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 2u);
+    EXPECT_EQ(error.diagnostics()[0].key, "rock.yung");
+    EXPECT_EQ(error.diagnostics()[0].found, "an unknown key");
+    EXPECT_EQ(error.diagnostics()[0].hint, "did you mean 'young'?");
+    EXPECT_EQ(error.diagnostics()[1].key, "rock.kn");
+  }
+  for (const char* key : {"rok.young", "rock.yung", "joint_set.J1.spacing.meen", "joint_set[2].dipp"})
+    EXPECT_THROW(Scenario::check_keys(key), InputError) << key;
+  // What is put in all the same is told by check().
+  Scenario scenario = Scenario::parse(falling);
+  scenario.set("rock.yung", 1e9);
+  EXPECT_THROW(static_cast<void>(scenario.check()), InputError);
+}
+
 TEST(Api, ASimulationWithinAStepIsNotSteppedAgain) {
   Simulation run(Scenario::parse(falling));
   run.after_step([&] { run.advance(); });

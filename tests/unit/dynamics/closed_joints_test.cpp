@@ -232,7 +232,7 @@ TEST(ClosedJoint, KeepsOutTipsThatSoftJointsLetIn) {
 
 // Joints of 1 GPa/m give way by more than the zone in which corners compete: a tip stays with the face that has held it, and where it slides
 // over the joint the next face takes over what held it. The blow takes less than 8 mm. Not so in four of 216 scenes (23 to 35 mm), in which
-// the tip slides to and fro over the joint (decision 0009).
+// the tip slides to and fro over the joint (decision 0008).
 TEST(ClosedJoint, KeepsOutTipsThatVerySoftJointsLetIn) {
   int deep = 0;
   double deepest = 0.0;
