@@ -15,7 +15,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'0018;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'0019;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -192,6 +192,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   transfer_overlap(archive, s.record.contact_checks.deepest);
   transfer_overlap(archive, s.record.contact_checks.unexplained);
   archive(s.record.max_area_change);
+  archive(s.record.made);
 }
 
 RunState read_state(ArchiveReader& archive, const RunSetup& setup) {

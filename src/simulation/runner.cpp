@@ -172,7 +172,7 @@ void Runner::end() {
   record.open_close.mean_iterations =
       record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
   record.energy = energy();
-  record.made_ratio = made_ratio(model_, record.energy);
+  watch_made(model_, record.energy, now_.mechanics.time, record.made);
   record.planes = planes_beside(setup_, model_, now_.mechanics);
   record.elements = element_records(model_, now_.mechanics, now_.peaks, setup_.stages);
   record.interrupted = record.interrupted || is_set(options_.stop) || now_.stage < std::ssize(setup_.stages);
