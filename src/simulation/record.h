@@ -168,11 +168,11 @@ struct Energy {
 };
 
 /// Energy that the time integration makes rather than dissipates: how far Energy::numerical has come down from its highest value before, over
-/// the largest of the other terms at that moment. A later loss of any size does not make up for it.
+/// the largest of the other terms at that moment. A later loss of any size does not make up for it. Static steps count none.
 struct MadeEnergy {
   double ratio = 0.0;    ///< at the worst moment that was looked at
   double time = 0.0;     ///< s, of that moment
-  double highest = 0.0;  ///< J per thickness, of `numerical` so far; 0 at the start
+  double highest = 0.0;  ///< J per thickness, of `numerical` in the dynamic stage at hand so far
 };
 
 /// How the steps went, one row now and then.
