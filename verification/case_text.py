@@ -5,9 +5,10 @@ NOTE = "# Written by verification/generate.py.\n"
 FILES = {}
 
 
-def scenario(name, *, title, gravity=(0.0, -G), rock, joints, step, blocks, histories=(), stages, solver="", extra=""):
-    """blocks: (name, ring, further lines); histories: (name, block, point); stages: text."""
-    text = NOTE + f'title = "{title}"\ngravity = {point(gravity)}\n\n[rock]\n{rock}\n\n[joints]\n{joints}\n\n[time]\nstep = {step}\n'
+def scenario(name, *, title, gravity=(0.0, -G), rock, joints, step, blocks, histories=(), stages, solver="", extra="", accept=""):
+    """blocks: (name, ring, further lines); histories: (name, block, point); stages: text; accept: a warning of what is meant."""
+    accepted = f'accept_warnings = ["{accept}"]\n' if accept else ""
+    text = NOTE + f'title = "{title}"\n{accepted}gravity = {point(gravity)}\n\n[rock]\n{rock}\n\n[joints]\n{joints}\n\n[time]\nstep = {step}\n'
     for block, ring, more in blocks:
         text += f'\n[[block]]\nname = "{block}"\nouter = [{", ".join(point(p) for p in ring)}]\n{more}'
     for history, block, p in histories:

@@ -13,9 +13,10 @@ def gravity(slope):
     return G * math.sin(math.radians(slope)), -G * math.cos(math.radians(slope))
 
 
-def incline(name, *, title, slope, friction, motion, duration):
+def incline(name, *, title, slope, friction, motion, duration, accept=""):
     scenario(
         name, title=title, gravity=gravity(slope), rock=STIFF_ROCK, joints=f"friction = {number(friction)}", step=0.002,
+        accept=accept,
         blocks=[("incline", box(-2, -1, 20, 1), FIXED), ("slider", box(0, 0, 1, 0.5), "")],
         histories=[("s", "slider", (0.5, 0.25))], extra=f'[[motion]]\nname = "base"\n{motion}\n\n',
         stages=f'[[stage]]\nname = "settle"\nkind = "settle"\n\n[[stage]]\nname = "shake"\nkind = "shake"\nmotion = "base"\nduration = {number(duration)}\n',
@@ -30,7 +31,8 @@ def tilted(before, after, friction):
     """A constant acceleration of the base, so that gravity less it is that of a steeper slope. Where the block goes in 1 s."""
     (x0, y0), (x1, y1) = gravity(before), gravity(after)
     rows = "\n".join(f"{axis} = [[0.0, {number(a)}], [2.0, {number(a)}]]" for axis, a in (("x", x0 - x1), ("y", y0 - y1)))
-    incline("incline_tilted", title=f"A block held on {before}°, on an incline that is tilted to {after}° at once", slope=before, friction=friction, motion=rows, duration=1.0)
+    incline("incline_tilted", title=f"A block held on {before}°, on an incline that is tilted to {after}° at once", slope=before, friction=friction, motion=rows, duration=1.0,
+            accept="scale")
     return 0.5 * (x1 + y1 * math.tan(math.radians(friction)))
 
 

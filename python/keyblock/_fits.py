@@ -11,7 +11,7 @@ from .errors import DamagedError
 if TYPE_CHECKING:
     from ._hdf5 import ResultFile
 
-# Sizes by letter: n blocks, v vertices, x components. A letter takes the size where it is met first.
+# Sizes by letter: n blocks, v vertices, r starts of rings. A letter takes the size where it is met first.
 _MODEL = {
     "model/block_area": "n",
     "model/block_centroid": "n2",
@@ -25,6 +25,8 @@ _MODEL = {
     "model/vertices": "v2",
     "model/edge_index": "v",
     "model/edge_kind": "v",
+    "model/ring_start": "r",
+    "model/block_rings": "b",
     "frames/time": "t",
     "frames/stage": "t",
     "frames/step": "t",

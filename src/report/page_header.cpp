@@ -129,7 +129,7 @@ ordered_json run_json(const results::RunData& data) {
           {"contact_checks", results::contact_checks_json(run.contact_checks, data.model.origin)},
           {"errors", simulation::computation_errors(run)},
           {"max_area_change", run.max_area_change},
-          {"made_ratio", run.made_ratio},
+          {"made_ratio", run.made.ratio},
           {"elements", results::elements_json(run.elements, data.model.origin)},
           {"energy", results::energy_json(run.energy)},
           {"stages", stages},

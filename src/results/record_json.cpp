@@ -261,7 +261,8 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"contact_checks", contact_checks_json(run.contact_checks, {})},
                           {"max_area_change", run.max_area_change},
                           {"energy", energy_json(run.energy)},
-                          {"made_ratio", run.made_ratio},
+                          {"made_ratio", run.made.ratio},
+                          {"made_time", run.made.time},
                           {"planes", planes_json(run.planes, {})},
                           {"elements", elements_json(run.elements, {})},
                           {"interrupted", run.interrupted}};
@@ -282,7 +283,8 @@ simulation::RunRecord read_run_json(const std::string& text) {
     if (json.contains("contact_checks")) run.contact_checks = read_contact_checks(json.at("contact_checks"));
     run.max_area_change = number(json.at("max_area_change"));
     run.energy = read_energy(json.at("energy"));
-    run.made_ratio = json.contains("made_ratio") ? number(json.at("made_ratio")) : 0.0;
+    if (json.contains("made_ratio")) run.made.ratio = number(json.at("made_ratio"));
+    if (json.contains("made_time")) run.made.time = number(json.at("made_time"));
     if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
     if (json.contains("elements")) run.elements = read_elements(json.at("elements"));
     json.at("interrupted").get_to(run.interrupted);

@@ -18,6 +18,7 @@
 #include "scenario/polygon_checks.h"
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
+#include "scenario/size_checks.h"
 #include "scenario/stage_steps.h"
 #include "simulation/build_boundary.h"
 #include "simulation/damping_table.h"
@@ -311,27 +312,34 @@ void add_box_fact(RunSetup& setup) {
   }
 }
 
-/// Average acceleration makes energy in joints that slide: guide, "Rules of time integration".
-void warn_of_average_acceleration(const Scenario& scenario, const RunSetup& setup,
-                                  std::vector<std::string>& notes) {
-  const bool may_slide = setup.properties.size() > 1;
+/// Rules that damp stiff vibration too little make energy in contacts: guide, "Which rule of time integration".
+void warn_of_made_energy(const Scenario& scenario, const RunSetup& setup, std::vector<std::string>& notes) {
+  constexpr double most_radius = 0.1;
+  const auto rule = scenario.solver.integrator;
+  const bool average = rule == dynamics::TimeIntegration::average_acceleration,
+             alpha = rule == dynamics::TimeIntegration::generalized_alpha &&
+                     scenario.solver.spectral_radius > most_radius;
+  const bool has_contacts = setup.properties.size() > 1;
   const bool moves = std::ranges::any_of(scenario.stages, [](const simulation::Stage& stage) {
     return stage.kind != simulation::StageKind::settle;
   });
-  if (scenario.solver.integrator != dynamics::TimeIntegration::average_acceleration || !may_slide || !moves)
-    return;
-  notes.push_back(
-      fmt::format("solver.integrator{}: average-acceleration makes energy wherever joints slide; \"shi\" and "
-                  "\"generalized-alpha\" do not",
-                  place_text(scenario, "solver.integrator")));
+  if (!(average || alpha) || !has_contacts || !moves) return;
+  notes.push_back(fmt::format(
+      "solver.{}: makes energy wherever joints slide, open or close; \"shi\" and \"generalized-alpha\" "
+      "with spectral_radius = 0 do not",
+      average
+          ? fmt::format("integrator{} = \"average-acceleration\"", place_text(scenario, "solver.integrator"))
+          : fmt::format("spectral_radius = {}{}", scenario.solver.spectral_radius,
+                        place_text(scenario, "solver.spectral_radius"))));
 }
 
 /// What the setup as a whole shows.
 void add_setup_warnings(const Scenario& scenario, RunSetup& setup, std::vector<std::string>& notes) {
   add_shaking_warnings(scenario, setup.motions, notes);
   add_boundary_warnings(scenario, setup, notes);
-  warn_of_average_acceleration(scenario, setup, notes);
+  warn_of_made_energy(scenario, setup, notes);
   add_dynamic_warnings(scenario, setup, notes);
+  add_size_warnings(scenario, setup, notes);
   if (const simulation::JointClosure soft = simulation::largest_closure(setup);
       soft.share() > simulation::soft_joint_closure && soft.share() <= simulation::most_joint_closure) {
     notes.push_back(fmt::format(

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 
@@ -16,6 +17,7 @@
 #include "loading/motion_text.h"
 #include "loading/projection.h"
 #include "rockmass/trace_map.h"
+#include "scenario/magnitudes.h"
 #include "scenario/shaking_checks.h"
 
 namespace keyblock::scenario {
@@ -28,6 +30,12 @@ using loading::MotionComponent;
 
 // Directions that differ by more than this from what a file says are worth a warning. °
 constexpr double azimuth_tolerance = 1.0;
+// Of components that are normal to each other. °
+constexpr double normal_tolerance = 10.0;
+// Of the only horizontal component of a record, that is along the section.
+constexpr double least_share_of_component = 0.5;
+// What is left of one that is normal to the section: its peak is told.
+constexpr double none_of_component = 1e-3;
 
 void append(std::vector<Diagnostic>& all, const InputError& error) {
   all.insert(all.end(), error.diagnostics().begin(), error.diagnostics().end());
@@ -78,6 +86,7 @@ class MotionReader {
   GroundMotion record(const MotionSpec& spec) {
     std::vector<std::pair<MotionComponent, ComponentDirection>> components;
     std::vector<Diagnostic> mistakes;
+    has_told_of_components_ = false;
     for (const MotionComponentSpec& component : spec.components) {
       warn_of_repetition(spec, component);
       try {
@@ -90,6 +99,7 @@ class MotionReader {
       }
     }
     if (!mistakes.empty()) throw InputError(std::move(mistakes));
+    if (!has_told_of_components_) warn_of_azimuths(spec, components);
     loading::ProjectionOptions options;
     options.section_azimuth = scenario_.section_azimuth.value_or(0.0);
     options.window = spec.window;
@@ -97,6 +107,38 @@ class MotionReader {
     GroundMotion motion = loading::project_motion(spec.name, components, options);
     if (spec.window) warn_of_jumps(spec, motion);
     return motion;
+  }
+
+  /// Horizontal components are normal to each other; one alone shakes along the section, or not much.
+  void warn_of_azimuths(const MotionSpec& spec,
+                        const std::vector<std::pair<MotionComponent, ComponentDirection>>& components) {
+    std::vector<std::size_t> horizontal;
+    for (std::size_t k = 0; k < components.size(); ++k)
+      if (!components[k].second.vertical) horizontal.push_back(k);
+    if (horizontal.empty() || scenario_.accepted.azimuth) return;
+    const auto azimuth_of = [&](std::size_t k) { return components[horizontal[k]].second.azimuth; };
+    const auto key_of = [&](std::size_t k) { return spec.components[horizontal[k]].path + ".azimuth"; };
+    if (horizontal.size() == 2) {
+      const double apart = std::abs(std::remainder(azimuth_of(1) - azimuth_of(0), 180.0));
+      if (90.0 - apart <= normal_tolerance) return;
+      warnings_.push_back(fmt::format(
+          "{}: {:.4g}°{} and the {:.4g}° of {} are {:.3g}° apart; the horizontal components of a record are "
+          "normal to each other, as {:.4g}° and {:.4g}° are",
+          key_of(1), azimuth_of(1), place_text(scenario_, key_of(1)), azimuth_of(0), key_of(0),
+          std::abs(std::remainder(azimuth_of(1) - azimuth_of(0), 360.0)), azimuth_of(0),
+          std::fmod(azimuth_of(0) + 90.0, 360.0)));
+      return;
+    }
+    if (horizontal.size() > 1 || spec.components[horizontal[0]].along_section) return;
+    const double across = std::abs(std::remainder(azimuth_of(0) - *scenario_.section_azimuth, 180.0)),
+                 share = std::cos(across * std::numbers::pi / 180.0);
+    if (share >= least_share_of_component || share < none_of_component) return;
+    warnings_.push_back(
+        fmt::format("{}: the only horizontal component{}, at {:.4g}°, is {:.3g}° from the section of "
+                    "{:.4g}°; {:.2g} % of "
+                    "it shakes the section; x = {{ file = … }} takes all of it",
+                    key_of(0), place_text(scenario_, key_of(0)), azimuth_of(0), across,
+                    *scenario_.section_azimuth, 100.0 * share));
   }
 
   /// The peak along the section is that of the target.
@@ -127,6 +169,7 @@ class MotionReader {
         continue;
       warnings_.push_back(
           fmt::format("{}: the same record as {}; both are added up", component.path, before->path));
+      has_told_of_components_ = true;
     }
   }
 
@@ -193,10 +236,12 @@ class MotionReader {
       }
     } else if (along.vertical != component.vertical && (component.vertical || component.azimuth)) {
       warnings_.push_back(fmt::format("{}: the file calls this component \"{}\"", key, component.label));
+      has_told_of_components_ = true;
     } else if (!along.vertical && component.azimuth &&
                std::abs(std::remainder(along.azimuth - *component.azimuth, 360.0)) > azimuth_tolerance) {
       warnings_.push_back(
           fmt::format("{} is {}°; the file says {}°", key, along.azimuth, *component.azimuth));
+      has_told_of_components_ = true;
     }
     if (!along.vertical && !scenario_.section_azimuth) {
       fail("section.azimuth", "nothing",
@@ -208,6 +253,7 @@ class MotionReader {
   const Scenario& scenario_;
   std::vector<std::string>& warnings_;
   std::vector<Diagnostic> mistakes_;
+  bool has_told_of_components_ = false;  ///< of the motion at hand: that one is another than it seems
 };
 
 }  // namespace

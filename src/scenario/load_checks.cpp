@@ -32,6 +32,18 @@ const BlockSpec* block_of(const Scenario& scenario, const Load& load) {
   return found == scenario.blocks.end() ? nullptr : &*found;
 }
 
+/// N per thickness.
+double weight_of(const Scenario& scenario, const BlockSpec& block) {
+  return block.rock.density.value_or(scenario.rock.density.value_or(0.0)) * area(block.polygon) *
+         norm(scenario.gravity);
+}
+
+bool is_weak(const Scenario& scenario, const Load& load, const BlockSpec& block) {
+  if (!scenario.si_units || scenario.accepted.loads) return false;
+  const double force = norm(resultant(scenario, load));
+  return force > 0.0 && force < least_share * weight_of(scenario, block);
+}
+
 class LoadChecks {
  public:
   LoadChecks(const Scenario& scenario, std::vector<std::string>& warnings)
@@ -53,16 +65,14 @@ class LoadChecks {
 
  private:
   void check_strength(const std::string& path, const Load& load, const BlockSpec& block) {
-    if (!scenario_.si_units) return;
-    const double density = block.rock.density.value_or(scenario_.rock.density.value_or(0.0)),
-                 weight = density * area(block.polygon) * norm(scenario_.gravity),
-                 force = norm(resultant(scenario_, load));
-    if (force == 0.0 || force >= least_share * weight) return;
+    if (!is_weak(scenario_, load, block)) return;
+    const double weight = weight_of(scenario_, block), force = norm(resultant(scenario_, load));
+    const bool in_mega = 1e3 * force < least_share * weight;
     warnings_.push_back(
-        fmt::format("{}{}: {:.3g} N/m, {:.2g} % of the weight of its block of {:.3g} kN/m; was it in {}? A "
+        fmt::format("{}{}: {:.3g} N/m, {:.2g} % of the weight of its block of {:.3g} kN/m; was it in {}{}? A "
                     "weaker load moves nothing",
                     path, place_text(scenario_, path), force, 100.0 * force / weight, weight / 1e3,
-                    load.is_line ? "kPa" : "kN/m"));
+                    in_mega ? "M" : "k", load.is_line ? "Pa" : "N/m"));
   }
 
   /// Of a stretch of boundary; a force at a point may be that of an anchor.
@@ -106,6 +116,15 @@ Vec2 resultant(const Scenario& scenario, const Load& load) {
   // Simpson's rule, exact for parabolas.
   const Vec2 sum = load.traction(0.0) + 4.0 * load.traction(0.5) + load.traction(1.0);
   return factor * norm(load.to - load.from) / 6.0 * sum;
+}
+
+bool is_weak_load(const Scenario& scenario, const std::string& key) {
+  for (std::size_t k = 0; k < scenario.loads.size(); ++k) {
+    const BlockSpec* block = block_of(scenario, scenario.loads[k]);
+    if (block != nullptr && key.starts_with(join_index("load", k) + "."))
+      return is_weak(scenario, scenario.loads[k], *block);
+  }
+  return false;
 }
 
 void add_load_warnings(const Scenario& scenario, std::vector<std::string>& warnings) {

@@ -118,12 +118,14 @@ void read_distribution(TableReader& t, std::string_view key, Distribution& distr
     d.word("distribution", distribution.kind, distribution_kinds,
            {.meaning = "Its shape. `uniform` spans mean ± √3 std.", .required = true});
     const bool constant = distribution.kind == DistributionKind::constant;
+    // One description for all lengths.
+    const bool may_be_zero = d.documenting() || (zero_allowed && constant);
     d.number("mean", distribution.mean,
              {.meaning = "Mean. Zero only where a constant gap is meant.",
               .unit = "m",
               .required = true,
-              .above = zero_allowed && constant ? -HUGE_VAL : 0.0,
-              .at_least = zero_allowed && constant ? 0.0 : -HUGE_VAL,
+              .above = may_be_zero ? -HUGE_VAL : 0.0,
+              .at_least = may_be_zero ? 0.0 : -HUGE_VAL,
               .usual = &usual::spacing});
     const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
     static const std::string std_text = fmt::format(

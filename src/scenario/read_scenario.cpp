@@ -168,7 +168,9 @@ constexpr std::pair<const char*, bool AcceptedWarnings::*> acceptable[] = {
     {"lost-joints", &AcceptedWarnings::lost_joints},
     {"loads", &AcceptedWarnings::loads},
     {"scale", &AcceptedWarnings::scale},
-    {"window", &AcceptedWarnings::window}};
+    {"window", &AcceptedWarnings::window},
+    {"azimuth", &AcceptedWarnings::azimuth},
+    {"direction", &AcceptedWarnings::direction}};
 
 constexpr KeyKind word_list[] = {KeyKind::references};
 constexpr KeyKind gravity_kinds[] = {KeyKind::point, KeyKind::number};
@@ -219,17 +221,16 @@ void read_gravity(TableReader& root, Scenario& scenario) {
   } else {
     root.point("gravity", scenario.gravity, rule);
   }
-  double tilt = 0.0;
   root.number(
-      "tilt", tilt,
+      "tilt", scenario.tilt,
       {.meaning = "The whole model tilted, as on a tilting table: its right side goes up by this angle, and "
                   "gravity pulls to the left as well. Gravity alone is turned.",
        .unit = "°",
        .at_least = -180.0,
        .at_most = 180.0,
        .usual = &usual::angle});
-  if (tilt == 0.0) return;
-  const double angle = tilt * std::numbers::pi / 180.0;
+  if (scenario.tilt == 0.0) return;
+  const double angle = scenario.tilt * std::numbers::pi / 180.0;
   const Vec2 g = scenario.gravity;
   scenario.gravity = {std::cos(angle) * g.x + std::sin(angle) * g.y,
                       std::cos(angle) * g.y - std::sin(angle) * g.x};

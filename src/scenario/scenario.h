@@ -15,6 +15,7 @@
 #include "model/options.h"
 #include "rockmass/joint_set.h"
 #include "scenario/study_spec.h"
+#include "scenario/usual.h"
 #include "simulation/boundary.h"
 #include "simulation/setup.h"
 #include "simulation/stage.h"
@@ -176,6 +177,8 @@ struct AcceptedWarnings {
   bool loads = false;          ///< of loads that are weak or pull, of displacements that go far
   bool scale = false;          ///< of a motion that its scale makes weaker than its number
   bool window = false;         ///< of a window that misses most of a record
+  bool azimuth = false;  ///< of components of a record that are not normal to each other, or mostly left out
+  bool direction = false;  ///< of a seismic coefficient, or tilt, that pushes into the slope
 };
 
 struct Scenario {
@@ -184,6 +187,7 @@ struct Scenario {
   AcceptedWarnings accepted;
   std::uint64_t seed = 1;
   Vec2 gravity{0.0, -9.81};  ///< m/s², turned by the tilt of the model
+  double tilt = 0.0;         ///< degrees
   std::optional<double> section_azimuth;
   std::optional<Domain> domain;
   std::optional<BoundarySpec> boundary;
@@ -210,9 +214,9 @@ struct Scenario {
   dynamics::SolverOptions solver;
   std::optional<StudySpec> study;
 
-  std::string file;                  ///< as given; for messages
-  std::string text;                  ///< of the file, with the overrides as comments at its end
-  std::vector<std::string> unusual;  ///< values far from what is usual in SI units, in words
+  std::string file;                   ///< as given; for messages
+  std::string text;                   ///< of the file, with the overrides as comments at its end
+  std::vector<UnusualValue> unusual;  ///< in SI units
   std::map<std::string, SourcePosition> positions;  ///< of every value, by key path
 
   /// Position of a value, or of the nearest table around it, which may be the file.

@@ -70,17 +70,33 @@ double horizontal_peak(const Stage& stage, const GroundMotion& motion, double sc
   return loading::measure_along({1.0, 0.0}, motion, scale, duration).peak / loading::standard_gravity;
 }
 
-/// A factor below 1 that leaves little of a record, and would make more of it as a peak in g; or one that makes of it what no earthquake
-/// has, and would not in per cent. Empty: neither.
-std::string scale_text(const Stage& stage, const GroundMotion& motion, double scale) {
+/// A sine or a table of less than 0.5 m/s² that would be an earthquake in g. Whether there is something to warn of.
+bool warn_of_amplitude(const Scenario& scenario, const Stage& stage, const MotionSpec& spec,
+                       const GroundMotion& motion, std::vector<std::string>& warnings) {
+  if (!spec.components.empty() || spec.pga || spec.pgv || scenario.accepted.scale ||
+      is_unusual(scenario, spec.path))
+    return false;
+  const double duration = stage.duration.value_or(motion.duration()),
+               peak = loading::measure(motion, stage.scale, duration).peak;
+  const std::string text = unusual_text(usual::shaking, peak);
+  if (peak >= usual::shaking.least || text.find("was it in g?") == std::string::npos) return false;
+  warnings.push_back(fmt::format("{}{}: shakes by at most {:.4g} m/s2 in the stage '{}'; {}", spec.path,
+                                 place_text(scenario, spec.path), peak, stage.name, text));
+  return true;
+}
+
+/// A factor below 1 that leaves little of a record, and would make more of it as a peak in g, or one on a sine, whose size is its amplitude; or
+/// one that makes of it what no earthquake has, and would not in per cent. Empty: none of them.
+std::string scale_text(const Stage& stage, const GroundMotion& motion, double scale, bool is_sine) {
   constexpr double least = 0.05, stronger = 1.5, weak = 0.1, percent = 100.0;
   const double recorded = horizontal_peak(stage, motion, 1.0), peak = scale * recorded;
-  if (scale >= least && scale < 1.0 && scale > stronger * recorded && peak < weak)
+  const bool is_less = scale >= least && scale < 1.0 && recorded > 0.0;
+  if (is_less && (is_sine || (scale > stronger * recorded && peak < weak)))
     return fmt::format(
-        "{:.4g} is a factor, and {:.3g} g of the record in the section become {:.2g} g; for a peak of {:.4g} "
-        "g take "
-        "pga = {:.4g} (m/s2) of the motion, or scale = {:.3g}",
-        scale, recorded, peak, scale, scale * loading::standard_gravity, scale / recorded);
+        "{:.4g} is a factor, and {:.3g} g of the {} in the section become {:.2g} g; for a peak of {:.4g} g "
+        "take pga = {:.4g} (m/s2) of the motion, or scale = {:.3g}",
+        scale, recorded, is_sine ? "sine" : "record", peak, scale, scale * loading::standard_gravity,
+        scale / recorded);
   if (scale >= 10.0 && peak > loading::most_usual_peak)
     return fmt::format(
         "{:.4g} is a factor, and makes {:.3g} g of {:.3g} g in the section; was it in per cent? That is "
@@ -90,11 +106,11 @@ std::string scale_text(const Stage& stage, const GroundMotion& motion, double sc
 }
 
 /// Whether there is something to warn of.
-bool warn_of_scale(const Scenario& scenario, const Stage& stage, const GroundMotion& motion,
-                   std::vector<std::string>& warnings) {
-  const std::string text = scale_text(stage, motion, stage.scale);
-  if (text.empty() || scenario.accepted.scale) return false;
+bool warn_of_scale(const Scenario& scenario, const Stage& stage, const MotionSpec& spec,
+                   const GroundMotion& motion, std::vector<std::string>& warnings) {
+  const std::string text = scale_text(stage, motion, stage.scale, spec.sine_x || spec.sine_y);
   const std::string key = join_path(join_path("stage", stage.name), "scale");
+  if (text.empty() || scenario.accepted.scale || is_unusual(scenario, key)) return false;
   warnings.push_back(fmt::format("{}{}: {}", key, place_text(scenario, key), text));
   return true;
 }
@@ -113,11 +129,13 @@ void warn_of_window(const Scenario& scenario, const MotionSpec& spec, const Grou
 
 void warn_of_peak(const Scenario& scenario, const Stage& stage, const MotionSpec& spec,
                   const GroundMotion& motion, std::vector<std::string>& warnings) {
-  if (stage.scale == 0.0) return;
+  if (stage.scale == 0.0 || is_unusual(scenario, spec.path)) return;
   const double duration = stage.duration.value_or(motion.duration()),
                peak = loading::measure(motion, stage.scale, duration).peak,
                in_g = peak / loading::standard_gravity;
   if (in_g >= loading::least_usual_peak && in_g <= loading::most_usual_peak) return;
+  const std::string of_scale = join_path(join_path("stage", stage.name), "scale");
+  if (in_g > loading::most_usual_peak && is_unusual(scenario, of_scale)) return;
   warnings.push_back(
       fmt::format("{}: the peak acceleration of {} is {:.4g} m/s2, {:.3g} g, with scale = {:.4g}; usual is "
                   "{} to {} g; {}",
@@ -202,7 +220,7 @@ void warn_of_values(const Stage& stage, const GroundMotion& motion, const VarySp
   for (const auto& values : axis.values) std::istringstream(values[key]) >> scales.emplace_back(0.0);
   const bool is_in_g = *std::ranges::max_element(scales) <= most_in_g;
   for (const double scale : scales) {
-    const std::string text = scale_text(stage, motion, scale);
+    const std::string text = scale_text(stage, motion, scale, false);
     if (text.empty() || (scale < 1.0 && !is_in_g)) continue;
     warnings.push_back(fmt::format("study.vary: {}: {}", axis.keys[key], text));
     return;
@@ -223,8 +241,10 @@ void add_shaking_warnings(const Scenario& scenario, const std::vector<GroundMoti
     seen[k] = true;
     warn_of_short_stage(stage, motions[k], warnings);
     if (!scenario.si_units) continue;
-    if (!warn_of_scale(scenario, stage, motions[k], warnings))
-      warn_of_peak(scenario, stage, scenario.motions[k], motions[k], warnings);
+    const MotionSpec& spec = scenario.motions[k];
+    if (!warn_of_scale(scenario, stage, spec, motions[k], warnings) &&
+        !warn_of_amplitude(scenario, stage, spec, motions[k], warnings))
+      warn_of_peak(scenario, stage, spec, motions[k], warnings);
   }
   warn_of_damping(scenario, motions, warnings);
 }

@@ -106,8 +106,8 @@ void TableReader::judge(const Value& value, const std::string& path, double numb
   if (usual == nullptr || !judges_) return;
   const std::string text = unusual_text(*usual, number);
   if (text.empty()) return;
-  context_.unusual.push_back(
-      fmt::format("{} = {}{}: {}", path, with_unit(number, usual->unit), place_text(value.where), text));
+  context_.unusual.push_back({path, fmt::format("{} = {}{}: {}", path, with_unit(number, usual->unit),
+                                                place_text(value.where), text)});
 }
 
 void TableReader::missing(std::string_view key, std::string expected, std::string hint) {

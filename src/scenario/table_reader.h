@@ -50,8 +50,8 @@ struct ReadContext {
   Mistakes mistakes;
   std::map<std::string, SourcePosition> positions;                          ///< of every value, by key path
   std::map<std::string, std::vector<std::string>, std::less<>> list_names;  ///< names of elements, by list
-  std::vector<std::string> unusual;                                         ///< of values, in words
-  std::filesystem::path directory;                                          ///< to which paths are relative
+  std::vector<UnusualValue> unusual;
+  std::filesystem::path directory;  ///< to which paths are relative
   /// Not null: nothing is read; every key asked for is described here.
   std::vector<SectionReference>* reference = nullptr;
 

@@ -8,9 +8,12 @@
 namespace keyblock::scenario {
 namespace {
 
-std::string usual_range(const Usual& usual) {
-  if (!std::isfinite(usual.most)) return "at least " + with_unit(usual.least, usual.unit);
-  return fmt::format("{:.4g} to {}", usual.least, with_unit(usual.most, usual.unit));
+std::string usual_range(const Usual& usual, double size) {
+  const bool is_limited = std::isfinite(usual.most) && !std::isfinite(usual.without_limit);
+  if (is_limited) return fmt::format("{:.4g} to {}", usual.least, with_unit(usual.most, usual.unit));
+  if (size < usual.least) return "at least " + with_unit(usual.least, usual.unit);
+  return fmt::format("at most {}, or {} and more for what never breaks", with_unit(usual.most, usual.unit),
+                     with_unit(usual.without_limit, usual.unit));
 }
 
 std::string hint(const Usual& usual, double value) {
@@ -32,9 +35,9 @@ std::string with_unit(double value, std::string_view unit) {
 
 std::string unusual_text(const Usual& usual, double value) {
   const double size = std::abs(value);
-  if (size == 0.0 || (size >= usual.least && size <= usual.most)) return {};
+  if (size == 0.0 || (size >= usual.least && size <= usual.most) || size >= usual.without_limit) return {};
   const std::string meant = hint(usual, value);
-  return "usual is " + usual_range(usual) + (meant.empty() ? "" : "; " + meant);
+  return "usual is " + usual_range(usual, size) + (meant.empty() ? "" : "; " + meant);
 }
 
 }  // namespace keyblock::scenario

@@ -21,6 +21,14 @@ struct Usual {
   double least_likely, most_likely;
   std::span<const OtherUnit> mistaken{};
   bool may_be_tangent = false;  ///< an angle that may be given as a coefficient
+  /// From here on a value is meant: it says that a limit is never reached.
+  double without_limit = HUGE_VAL;
+};
+
+/// A value of a scenario that its quantity usually has not.
+struct UnusualValue {
+  std::string key;   ///< its path
+  std::string text;  ///< the warning
 };
 
 /// "usual is 1000 to 4000 kg/m3; was it in t/m3 or g/cm3? That is 2600 kg/m3"; empty where the value is usual.
@@ -38,7 +46,7 @@ inline constexpr OtherUnit densities[] = {{"t/m3 or g/cm3", 1e3},
                                           {"g/m3", 1e-3}};
 inline constexpr OtherUnit pressures[] = {{"GPa", 1e9}, {"MPa", 1e6}, {"kPa", 1e3}, {"mPa", 1e-3}};
 inline constexpr OtherUnit stiffnesses[] = {{"GPa/m", 1e9}, {"MPa/m", 1e6}, {"kPa/m", 1e3}};
-inline constexpr OtherUnit strengths[] = {{"MPa", 1e6}, {"kPa", 1e3}};
+inline constexpr OtherUnit strengths[] = {{"MPa", 1e6}, {"kPa", 1e3}, {"mPa", 1e-3}};
 inline constexpr OtherUnit accelerations[] = {{"g", standard_weight}, {"cm/s2", 1e-2}, {"mm/s2", 1e-3}};
 inline constexpr OtherUnit percents[] = {{"percent", 1e-2}};
 inline constexpr OtherUnit speeds[] = {{"km/s", 1e3}};
@@ -53,8 +61,8 @@ inline constexpr Usual density{"kg/m3", 1e3, 4e3, 1.5e3, 3.5e3, densities};
 inline constexpr Usual young{"Pa", 5e7, 1e12, 1e8, 2e11, pressures};
 inline constexpr Usual poisson{"", 0.01, 0.5, 0.1, 0.45};
 inline constexpr Usual stiffness{"Pa/m", 1e6, 1e14, 1e8, 1e13, stiffnesses};
-/// Joints that never break are given any strength.
-inline constexpr Usual strength{"Pa", 1e2, HUGE_VAL, 1e3, 2e7, strengths};
+/// Of joints. Intact rock has a cohesion of some 50 MPa at the most.
+inline constexpr Usual strength{"Pa", 1e2, 5e7, 1e3, 2e7, strengths, false, 1e9};
 inline constexpr Usual stress{"Pa", 1e2, 1e9, 5e4, 2e8, strengths};
 inline constexpr Usual friction{"degrees", 5.0, 75.0, 10.0, 60.0, {}, true};
 inline constexpr Usual angle{"degrees", 0.1, 720.0, 1.0, 360.0};
@@ -83,9 +91,12 @@ inline constexpr Usual cycles{"", 0.25, 500.0, 1.0, 100.0};
 inline constexpr Usual acceleration{"m/s2", 0.01, 50.0, 0.1, 30.0, accelerations};
 /// Of a target, which few give for weak shaking: 0.1 to 0.5 is meant in g.
 inline constexpr Usual peak_acceleration{"m/s2", 0.5, 30.0, 0.4, 20.0, accelerations};
+/// Of a sine or table: weaker ones than 0.15 are meant, as for waves, and stronger ones may be in m/s2.
+inline constexpr Usual shaking{"m/s2", 0.5, 30.0, 1.5, 20.0, accelerations};
 inline constexpr Usual peak_velocity{"m/s", 0.003, 5.0, 0.01, 3.0, slow_speeds};
 inline constexpr Usual block_velocity{"m/s", 1e-4, 100.0, 1e-2, 50.0, slow_speeds};
 inline constexpr Usual factor{"", 0.01, 100.0, 0.1, 10.0, percents};
+inline constexpr Usual load_factor{"", 0.02, 20.0, 0.1, 10.0, percents};
 inline constexpr Usual strength_factor{"", 0.05, 50.0, 0.5, 10.0, percents};
 inline constexpr Usual coefficient{"", 0.001, 2.0, 0.01, 1.0, percents};
 inline constexpr Usual damping{"", 1e-4, 1.0, 0.002, 0.5, percents};

@@ -193,6 +193,7 @@ void transfer(Archive& archive, RunStateOrConst& s) {
   transfer_overlap(archive, s.record.contact_checks.deepest);
   transfer_overlap(archive, s.record.contact_checks.unexplained);
   archive(s.record.max_area_change);
+  archive(s.record.made);
 }
 
 RunState read_state(ArchiveReader& archive, const RunSetup& setup) {

@@ -58,8 +58,12 @@ Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, 
   return e;
 }
 
-double made_ratio(const dynamics::Model& model, const Energy& energy) {
-  return std::max(0.0, -energy.numerical) / largest_but_numerical(model, energy);
+void watch_made(const dynamics::Model& model, const Energy& energy, double time, MadeEnergy& made) {
+  made.highest = std::max(made.highest, energy.numerical);
+  const double ratio = (made.highest - energy.numerical) / largest_but_numerical(model, energy);
+  if (!(ratio > made.ratio)) return;
+  made.ratio = ratio;
+  made.time = time;
 }
 
 }  // namespace keyblock::simulation

@@ -12,7 +12,7 @@ double stored_energy(const dynamics::Model& model, const dynamics::State& state)
 /// thickness.
 Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, double initial);
 
-/// Energy that the time integration has made rather than dissipated, over the largest of the other terms; 0: it has made none.
-double made_ratio(const dynamics::Model& model, const Energy& energy);
+/// Looks at what the time integration has made until now.
+void watch_made(const dynamics::Model& model, const Energy& energy, double time, MadeEnergy& made);
 
 }  // namespace keyblock::simulation

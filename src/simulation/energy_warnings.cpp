@@ -25,13 +25,14 @@ std::string reason_of_failure(const Energy& energy) {
 }
 
 bool has_made_most(const RunRecord& run) {
-  return run.made_ratio > failed_made;
+  return run.made.ratio > failed_made;
 }
 
 std::string made(const RunRecord& run) {
   return fmt::format(
-      "the rule of time integration has made energy, {:.3g} % of the largest term that is accounted for",
-      100.0 * run.made_ratio);
+      "the rule of time integration has made energy, {:.3g} % of the largest term that is accounted for at "
+      "{:.3g} s",
+      100.0 * run.made.ratio, run.made.time);
 }
 
 std::string made_too_much(const RunRecord& run) {
@@ -53,7 +54,7 @@ std::vector<std::string> energy_warnings(const RunRecord& run) {
   }
   if (has_made_most(run)) {
     texts.push_back(made_too_much(run));
-  } else if (run.made_ratio > doubtful_made) {
+  } else if (run.made.ratio > doubtful_made) {
     texts.push_back(made(run) +
                     ": compare with a run with a smaller time.step, or with another solver.integrator");
   }

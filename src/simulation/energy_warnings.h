@@ -10,7 +10,7 @@ namespace keyblock::simulation {
 inline constexpr double doubtful_residual = 0.01;
 /// … and above which they are none: forces and motion do not belong together.
 inline constexpr double failed_residual = 0.05;
-/// RunRecord::made_ratio, above which the time integration drives what moves.
+/// MadeEnergy::ratio, above which the time integration drives what moves.
 inline constexpr double doubtful_made = 0.1;
 /// … and above which the results are none: most of what moves has its energy from nothing.
 inline constexpr double failed_made = 0.5;

@@ -167,6 +167,14 @@ struct Energy {
   double radiated = 0.0;  ///< carried away by waves through a seismic boundary
 };
 
+/// Energy that the time integration makes rather than dissipates: how far Energy::numerical has come down from its highest value before, over
+/// the largest of the other terms at that moment. A later loss of any size does not make up for it. Static steps count none.
+struct MadeEnergy {
+  double ratio = 0.0;    ///< at the worst moment that was looked at
+  double time = 0.0;     ///< s, of that moment
+  double highest = 0.0;  ///< J per thickness, of `numerical` in the dynamic stage at hand so far
+};
+
 /// How the steps went, one row now and then.
 struct StepRow {
   double time = 0.0;
@@ -336,7 +344,7 @@ struct RunRecord {
   ContactChecks contact_checks;  ///< of all steps
   double max_area_change = 0.0;  ///< relative
   Energy energy;
-  double made_ratio = 0.0;  ///< energy that the time integration has made, over the largest other term
+  MadeEnergy made;
   std::vector<StageRecord> stages;
   std::vector<PlaneRecord> planes;      ///< beside the model, from left to right and from below
   std::vector<ElementRecord> elements;  ///< springs and supports, at the end

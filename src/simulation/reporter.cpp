@@ -84,6 +84,7 @@ void Reporter::due_step_row(RunState& now, const dynamics::StepReport& report) {
                   report.penetration, report.max_displacement, report.closed_contacts, energy});
   ++now.reported.steps;
   check_energies(setup_, now, energy);
+  if (!is_static(now)) watch_made(model_, energy, now.mechanics.time, now.record.made);
 }
 
 }  // namespace keyblock::simulation

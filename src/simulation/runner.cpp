@@ -172,7 +172,6 @@ void Runner::end() {
   record.open_close.mean_iterations =
       record.steps > 0 ? static_cast<double>(now_.iterations) / static_cast<double>(record.steps) : 0.0;
   record.energy = energy();
-  record.made_ratio = made_ratio(model_, record.energy);
   record.planes = planes_beside(setup_, model_, now_.mechanics);
   record.elements = element_records(model_, now_.mechanics, now_.peaks, setup_.stages);
   record.interrupted = record.interrupted || is_set(options_.stop) || now_.stage < std::ssize(setup_.stages);
@@ -227,6 +226,7 @@ void Runner::begin_stage() {
     begin_settling();
     return;
   }
+  if (is_new) now_.record.made.highest = now_.mechanics.ledger.numerical;
   if (record.stage.until_still) begin_waiting(is_new);
   stage_->most_steps = static_cast<long>(step_count(record.planned_duration.value_or(0.0), setup_.time_step));
   if (record.stage.kind == StageKind::shake) {
@@ -334,6 +334,7 @@ void Runner::end_stage() {
     // Time from the number of steps, so that stages start at the same time whatever has been added up.
     record.duration = static_cast<double>(now_.stage_step) * setup_.time_step;
     if (!record.interrupted) now_.mechanics.time = record.start_time + record.duration;
+    watch_made(model_, energy(), now_.mechanics.time, now_.record.made);
   }
   record.interrupted = record.interrupted || is_set(options_.stop);
   record.steps = now_.stage_step;

@@ -116,7 +116,7 @@ struct Limit {
 /// "It ends to hold at 7.0 and holds again from 9.1 on."
 std::string other_limits(const LimitResult& result, const RealizationLimit& limit) {
   const auto& all = limit.state.limits;
-  const std::size_t first = limit.found() ? 1 : 0;
+  const std::size_t first = limit.is_bracketed() ? 1 : 0;
   if (all.size() <= first) return {};
   const double way = result.request.to - result.request.from;
   std::string text;

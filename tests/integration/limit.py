@@ -291,6 +291,24 @@ class Reproducible(Limit):
         after = self.runs()
         self.assertEqual({run: after[run] for run in before}, before)
 
+    def test_interrupted_it_keeps_the_bracket(self):
+        words = [PROGRAM, "limit", *map(str, self.FRICTION), "--tolerance", "0.00002", "--workers", "1", "-o", "out"]
+        process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        wait_for(lambda: len(self.runs()) >= 5, "runs that are done")
+        process.send_signal(signal.SIGINT)
+        said, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 2, errors)
+        result = self.found()
+        self.assertFalse(result["complete"])
+        (limit,) = result["realizations"]
+        self.assertEqual(limit["status"], "open")
+        self.assertGreater(limit["bracket"]["not_met"], 30.0 - 1e-9)
+        self.assertLess(limit["bracket"]["met"], 30.0)
+        for met in (True, False):
+            self.assertIn(limit["bracket"]["met" if met else "not_met"], [trial["value"] for trial in limit["trials"] if trial["met"] == met])
+        self.assertRegex(said, r"\nbetween [\d.]+° and [\d.]+° so far\.?\n", "and of no other limit")
+        self.assertIn(" so far", result["answer"])
+
     def runs(self):
         return {path.parent.name: path.stat().st_mtime_ns for path in (self.folder / "out/runs").glob("*/run.json")}
 

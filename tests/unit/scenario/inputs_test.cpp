@@ -1,5 +1,6 @@
 #include "scenario/inputs.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 namespace keyblock::scenario {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -142,6 +144,44 @@ TEST(Motions, TheSameRecordTwiceIsWarnedOf) {
       HasSubstr("motion.m.components[1]: the same record as motion.m.components[0]; both are added up");
   EXPECT_THAT(warned(""), testing::ElementsAre(same));
   EXPECT_THAT(warned(", channel = 1"), testing::ElementsAre(same));
+}
+
+// Two horizontal components, by their azimuths.
+std::vector<std::string> warned_of_azimuths(const std::string& azimuths) {
+  std::vector<std::string> warnings;
+  motions_of(azimuths + "\n[section]\nazimuth = 90.0\n", warnings);
+  return warnings;
+}
+
+TEST(Motions, HorizontalComponentsAreNormalToEachOther) {
+  const auto warned = [](double one, double other) {
+    return warned_of_azimuths(
+        fmt::format("components = [{{ FILE, column = 2, unit = 'm/s2', azimuth = {} }}, {{ FILE, "
+                    "column = 3, unit = 'm/s2', azimuth = {} }}]",
+                    one, other));
+  };
+  EXPECT_THAT(warned(0.0, 90.0), IsEmpty());
+  EXPECT_THAT(warned(350.0, 85.0), IsEmpty());
+  EXPECT_THAT(warned(30.0, 300.0), IsEmpty());
+  EXPECT_THAT(
+      warned(0.0, 60.0),
+      ElementsAre(HasSubstr("motion.m.components[1].azimuth: 60° (line 27) and the 0° of "
+                            "motion.m.components[0].azimuth are 60° apart; the horizontal components of a "
+                            "record are normal to each other, as 0° and 90° are")));
+  EXPECT_THAT(warned(0.0, 180.0), ElementsAre(HasSubstr("are 180° apart")));
+}
+
+TEST(Motions, TheOnlyComponentIsAlongTheSection) {
+  const auto warned = [](double azimuth) {
+    return warned_of_azimuths(
+        fmt::format("components = [{{ FILE, column = 2, unit = 'm/s2', azimuth = {} }}]", azimuth));
+  };
+  EXPECT_THAT(warned(270.0), IsEmpty());
+  EXPECT_THAT(warned(45.0), IsEmpty());
+  EXPECT_THAT(warned(10.0),
+              ElementsAre(HasSubstr(
+                  "motion.m.components[0].azimuth: the only horizontal component (line 27), at 10°, is "
+                  "80° from the section of 90°; 17 % of it shakes the section")));
 }
 
 TEST(Motions, OfSeveralComponentsOneMustBeChosen) {

@@ -56,14 +56,143 @@ TEST(OddInput, TargetsOfMotions) {
 TEST(OddInput, AFactorThatSeemsToBeAPeak) {
   EXPECT_THAT(
       warnings_of(shaken_blocks, {"stage.shaken.scale=0.35"}),
-      ElementsAre(HasSubstr("stage.shaken.scale (--set): 0.35 is a factor, and 0.102 g of the record in the "
+      ElementsAre(HasSubstr("stage.shaken.scale (--set): 0.35 is a factor, and 0.102 g of the sine in the "
                             "section become 0.036 g; for a peak of 0.35 g take pga = 3.432 (m/s2) of the "
                             "motion, or scale = 3.43")));
   EXPECT_THAT(warnings_of(shaken_blocks, {"stage.shaken.scale=0.35", "accept_warnings=['scale']"}),
               IsEmpty());
   EXPECT_THAT(warnings_of(shaken_blocks, {"stage.shaken.scale=3"}), IsEmpty());
-  // Half of a strong record is meant.
-  EXPECT_THAT(warnings_of(shaken_blocks, {"stage.shaken.scale=0.5", "motion.m.x.amplitude=5"}), IsEmpty());
+  // Half of a strong record is meant; a sine has an amplitude of its own.
+  EXPECT_THAT(warnings_of(shaken_blocks,
+                          {"stage.shaken.scale=0.5", "motion.m.x=[[0, 0], [0.1, 5], [0.3, -5], [0.4, 0]]"}),
+              IsEmpty());
+  EXPECT_THAT(warnings_of(shaken_blocks, {"stage.shaken.scale=0.5", "motion.m.x.amplitude=5"}),
+              ElementsAre(HasSubstr("0.51 g of the sine in the section become 0.25 g")));
+}
+
+TEST(OddInput, AnAmplitudeThatSeemsToBeInG) {
+  EXPECT_THAT(
+      warnings_of(shaken_blocks, {"motion.m.x.amplitude=0.3"}),
+      ElementsAre(HasSubstr("motion.m (line 26): shakes by at most 0.3 m/s2 in the stage 'shaken'; usual "
+                            "is 0.5 to 30 m/s2; was it in g? That is 2.943 m/s2")));
+  // A Ricker wavelet, as rows.
+  EXPECT_THAT(
+      warnings_of(shaken_blocks, {"motion.m.x=[[0, 0], [0.1, -0.13], [0.2, 0.3], [0.3, -0.13], [0.4, 0]]"}),
+      ElementsAre(HasSubstr("was it in g? That is 2.943 m/s2")));
+  for (const char* meant :
+       {"accept_warnings=['scale']", "stage.shaken.scale=9.81", "motion.m.pga=3", "units=other"})
+    EXPECT_THAT(warnings_of(shaken_blocks, {"motion.m.x.amplitude=0.3", meant}), IsEmpty()) << meant;
+  EXPECT_THAT(warnings_of(shaken_blocks, {"motion.m.x.amplitude=0.6"}), IsEmpty());
+  EXPECT_THAT(warnings_of(shaken_blocks, {"motion.m.x.amplitude=0.1"}), IsEmpty()) << "as for waves";
+}
+
+// The record of example 01 has components at 0 and 90 degrees.
+TEST(OddInput, ASectionNormalToItsRecord) {
+  const std::string across = two_blocks + fmt::format(R"([section]
+azimuth = 90.0
+[[motion]]
+name = "m"
+components = [{{ file = "{}" }}]
+[[stage]]
+name = "shaken"
+kind = "shake"
+motion = "m"
+)",
+                                                      (examples / "motions/0111a.smc").string());
+  const auto along = warnings_of(across, {"section.azimuth=0"}), normal = warnings_of(across);
+  EXPECT_THAT(along, Not(Contains(HasSubstr("azimuth"))));
+  EXPECT_THAT(normal,
+              Contains(AllOf(HasSubstr("stage.shaken: the peak acceleration of motion.m is "),
+                             HasSubstr("is section.azimuth = 90 (line 26) normal to the motion, or is the "
+                                       "record in g, and was read as m/s2 or cm/s2?"))));
+  EXPECT_THAT(normal, Not(Contains(HasSubstr("the only horizontal component")))) << "told once";
+}
+
+TEST(OddInput, AUnitIsHintedOnce) {
+  const auto load = [](const char* traction) {
+    return two_blocks + "[[load]]\nblock = \"top\"\nfrom = [3, 1]\nto = [3, 2]\ntraction = " + traction +
+           "\n";
+  };
+  EXPECT_THAT(warnings_of(load("[-0.03, 0]")), ElementsAre(HasSubstr("was it in MPa?")));
+  EXPECT_THAT(warnings_of(load("[-30, 0]")), ElementsAre(HasSubstr("was it in kPa?")));
+  EXPECT_THAT(
+      warnings_of(shaken_blocks, {"motion.m.pgv=30"}),
+      ElementsAre(HasSubstr("motion.m.pgv = 30 m/s (--set): usual is 0.003 to 5 m/s; was it in cm/s?")));
+  EXPECT_THAT(warnings_of(shaken_blocks, {"motion.m.pga=300"}), ElementsAre(HasSubstr("was it in cm/s2?")));
+  EXPECT_THAT(warnings_of(shaken_blocks, {"motion.m.x.amplitude=300"}),
+              ElementsAre(HasSubstr("was it in cm/s2?")));
+  EXPECT_THAT(warnings_of(shaken_blocks, {"stage.shaken.scale=300"}),
+              ElementsAre(HasSubstr("was it in percent?")));
+}
+
+TEST(OddInput, StrengthsAboveThoseOfRock) {
+  for (const char* key : {"joints.cohesion", "joints.tension"}) {
+    const std::string set = key, cohesive = "joints.cohesion=1e12";
+    EXPECT_THAT(warnings_of(two_blocks, {cohesive, set + "=1e8"}),
+                Contains(HasSubstr(
+                    set + " = 1e+08 Pa (--set): usual is at most 5e+07 Pa, or 1e+09 Pa and more for what "
+                          "never breaks; was it in mPa? That is 1e+05 Pa")));
+    EXPECT_THAT(warnings_of(two_blocks, {cohesive, set + "=1e9"}), IsEmpty()) << "it never breaks";
+    EXPECT_THAT(warnings_of(two_blocks, {cohesive, set + "=2e7"}), IsEmpty());
+  }
+}
+
+TEST(OddInput, FactorsOnLoads) {
+  const std::string loaded =
+      two_blocks + "[[load]]\nblock = \"top\"\nfrom = [3, 1]\nto = [3, 2]\ntraction = [-30e3, 0]\n";
+  EXPECT_THAT(
+      warnings_of(loaded, {"load_factor=100"}),
+      ElementsAre(HasSubstr("load_factor = 100 (--set): usual is 0.02 to 20; was it in percent? That is 1")));
+  EXPECT_THAT(warnings_of(loaded, {"load_factor=5"}), IsEmpty());
+}
+
+TEST(OddInput, LimitsOfDamageAndTheSizeOfBlocks) {
+  // Of 1.4 and 2 m.
+  const auto warned = [](const char* limit) { return warnings_of(two_blocks, {limit}); };
+  EXPECT_THAT(
+      warned("damage.slip=2"),
+      ElementsAre(HasSubstr("damage.slip = 2 m (--set): blocks are 1.7 m, and nothing counts before it has "
+                            "left its place; was it in cm? That is 0.02 m")));
+  EXPECT_THAT(warned("damage.loosened_distance=5"), ElementsAre(HasSubstr("was it in cm? That is 0.05 m")));
+  EXPECT_THAT(warned("damage.opening=2e-6"),
+              ElementsAre(HasSubstr("all count that bend or settle; usual is at least")));
+  EXPECT_THAT(warned("damage.slip=20"), ElementsAre(HasSubstr("was it in cm?"))) << "told once";
+  for (const char* usual : {"damage.slip=0.002", "damage.loosened_distance=0.1", "damage.opening=5e-5"})
+    EXPECT_THAT(warned(usual), IsEmpty()) << usual;
+}
+
+/// Ground that falls to the left: a block on a base, that a step of the ground holds.
+const std::string slope_to_the_left = R"([rock]
+density = 2600.0
+young = 1e9
+poisson = 0.2
+[joints]
+friction = 30.0
+[time]
+step = 0.01
+[[block]]
+name = "base"
+outer = [[0, 0], [10, 0], [10, 5], [6, 5], [2, 1], [0, 1]]
+fixed = true
+[[block]]
+name = "top"
+outer = [[3, 2], [5, 4], [4, 5], [2.5, 3]]
+[[stage]]
+name = "quake"
+kind = "settle"
+)";
+
+TEST(OddInput, WhatPushesIntoTheSlope) {
+  EXPECT_THAT(warnings_of(slope_to_the_left, {"stage.quake.k_h=0.15"}),
+              ElementsAre(HasSubstr(
+                  "stage.quake.k_h = 0.15 (--set): pushes to the right, into the slope, which falls "
+                  "to the left; -0.15 pushes out of it")));
+  EXPECT_THAT(warnings_of(slope_to_the_left, {"stage.quake.k_h=-0.15"}), IsEmpty());
+  EXPECT_THAT(warnings_of(slope_to_the_left, {"tilt=-5"}),
+              ElementsAre(HasSubstr("tilt = -5 (--set): pushes to the right, into the slope")));
+  EXPECT_THAT(warnings_of(slope_to_the_left, {"tilt=5"}), IsEmpty());
+  EXPECT_THAT(warnings_of(slope_to_the_left, {"tilt=-5", "accept_warnings=['direction']"}), IsEmpty());
+  EXPECT_THAT(warnings_of(two_blocks, {"tilt=-5"}), IsEmpty()) << "no slope";
 }
 
 std::vector<std::string> of_study(const std::string& study) {

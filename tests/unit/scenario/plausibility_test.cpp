@@ -100,7 +100,7 @@ TEST(Warnings, ThatAreAcceptedAreNamed) {
       HasSubstr(
           "accept_warnings[0]: found the string \"plane-stres\"; expected \"plane-stress\", \"order-1\", "
           "\"free-boundary\", \"step\", \"damping\", \"closed-box\", \"late-falls\", "
-          "\"lost-joints\", \"loads\", \"scale\" or \"window\"; did you mean "
+          "\"lost-joints\", \"loads\", \"scale\", \"window\", \"azimuth\" or \"direction\"; did you mean "
           "'plane-stress'?"));
   EXPECT_THAT(mistakes(two_blocks, {"accept_warnings='step'"}), HasSubstr("write [\"step\"]"));
 }
