@@ -189,6 +189,10 @@ void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std:
     const std::string key = join_path(join_path("history", given.name), "point");
     simulation::History history = given;
     history.point -= setup.system.origin;
+    if (!history.element.empty()) {
+      setup.histories.push_back(std::move(history));
+      continue;
+    }
     if (history.column) {
       check_column(scenario, setup, history);
       setup.histories.push_back(std::move(history));

@@ -9,6 +9,8 @@
 
 #include "contact/tolerances.h"
 #include "core/index.h"
+#include "simulation/fallen.h"
+#include "simulation/openings.h"
 #include "simulation/refuse.h"
 
 namespace keyblock::simulation {
@@ -76,6 +78,43 @@ bool holds(const std::vector<int>& excavations, std::size_t excavation) {
   return std::ranges::find(excavations, static_cast<int>(excavation)) != excavations.end();
 }
 
+Vec2 place_of(const dynamics::Model& model, const dynamics::WallPoint& point) {
+  return lerp(model.reference[at(point.vertex)], model.reference[at(model.surface.next[at(point.vertex)])],
+              point.share);
+}
+
+/// Divides a wall under pressure into crown, sides and invert, by what its faces look at.
+void add_stretches(const std::string& wall, const dynamics::Model& model, dynamics::WallPressure& pressure,
+                   std::vector<dynamics::WallStretch>& stretches) {
+  const Vec2 down = model.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model.gravity);
+  pressure.element.resize(pressure.faces.size());
+  for (const WallPart part : {WallPart::crown, WallPart::left, WallPart::right, WallPart::invert}) {
+    const bool is_level = part == WallPart::crown || part == WallPart::invert;
+    const Vec2 along = is_level ? perpendicular(down) : -1.0 * down;  // to the right; upwards
+    dynamics::WallStretch stretch;
+    stretch.name = fmt::format("{}.{}", wall, wall_part_name(part));
+    bool found = false;
+    for (std::size_t f = 0; f < pressure.faces.size(); ++f) {
+      const dynamics::WallFace& face = pressure.faces[f];
+      const dynamics::WallPoint ends[] = {{face.vertex, face.from}, {face.vertex, face.to}};
+      // The rock is on the left of its edge.
+      if (part_towards(perpendicular(place_of(model, ends[1]) - place_of(model, ends[0])), down) != part)
+        continue;
+      pressure.element[f] = stretches.size();
+      for (const dynamics::WallPoint& end : ends) {
+        const double reach = dot(along, place_of(model, end));
+        if (!found || reach < dot(along, place_of(model, stretch.from))) stretch.from = end;
+        if (!found || reach > dot(along, place_of(model, stretch.to))) stretch.to = end;
+        found = true;
+      }
+    }
+    if (!found) continue;
+    stretch.from_end = {place_of(model, stretch.from), model.surface.block[at(stretch.from.vertex)]};
+    stretch.to_end = {place_of(model, stretch.to), model.surface.block[at(stretch.to.vertex)]};
+    stretches.push_back(std::move(stretch));
+  }
+}
+
 }  // namespace
 
 std::vector<dynamics::WallFace> wall_faces(const RunSetup& setup, const dynamics::Model& model,
@@ -101,6 +140,7 @@ std::vector<dynamics::WallFace> wall_faces(const RunSetup& setup, const dynamics
 
 std::shared_ptr<const dynamics::Coupling> wall_loads(const RunSetup& setup, const dynamics::Model& model) {
   std::vector<dynamics::WallPressure> pressures;
+  std::vector<dynamics::WallStretch> stretches;
   for (std::size_t e = 0; e < setup.excavations.size(); ++e) {
     const SupportPressure& pressure = setup.excavations[e].pressure;
     if (pressure.empty()) continue;
@@ -109,12 +149,13 @@ std::shared_ptr<const dynamics::Coupling> wall_loads(const RunSetup& setup, cons
       refuse(fmt::format("excavation.{}.pressure", setup.excavations[e].name),
              pressure.arc ? "no rock along this arc of the outline" : "no rock along the outline",
              "faces of blocks that are neither fixed nor taken out with it");
-    pressures.push_back({static_cast<int>(e), std::move(faces), pressure.over_time});
+    pressures.push_back({static_cast<int>(e), std::move(faces), pressure.over_time, {}});
+    add_stretches(setup.excavations[e].name, model, pressures.back(), stretches);
   }
   const bool releases =
       std::ranges::any_of(setup.stages, [](const Stage& stage) { return !stage.release.empty(); });
   if (pressures.empty() && !releases) return nullptr;
-  return std::make_shared<dynamics::WallLoads>(std::move(pressures));
+  return std::make_shared<dynamics::WallLoads>(std::move(pressures), std::move(stretches));
 }
 
 }  // namespace keyblock::simulation

@@ -187,7 +187,11 @@ ordered_json head(const StudyData& study, const Summary& summary) {
         {{"name", level.name}, {"measure", level.measure}, {"threshold", number(level.threshold)}});
   ordered_json units = ordered_json::array();
   for (const Measure& m : measures())
-    units.push_back({{"name", m.name}, {"title", m.title}, {"unit", m.unit}});
+    units.push_back({{"name", m.name},
+                     {"title", m.title},
+                     {"unit", m.unit},
+                     {"shown_unit", m.shown_unit},
+                     {"shown_factor", m.shown_factor}});
   ordered_json kinds = ordered_json::array();
   for (const Intensity& i : intensities())
     kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}});

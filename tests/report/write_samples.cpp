@@ -15,7 +15,7 @@ void forget_end(keyblock::results::RunData& data) {
   keyblock::simulation::RunRecord& run = data.run;
   keyblock::simulation::StageRecord& last = run.stages.back();
   const keyblock::simulation::Damage known = last.damage;
-  for (const auto& [name, measure] : keyblock::simulation::damage_fields) last.damage.*measure = unknown;
+  for (const auto& field : keyblock::simulation::damage_fields) last.damage.*field.number = unknown;
   last.damage.fallen_area = known.fallen_area;
   last.damage.loosened_area = known.loosened_area;
   last.wall_time = last.worst_residual_ratio = unknown;
