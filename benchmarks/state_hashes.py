@@ -21,7 +21,6 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 TUNNEL = ROOT / "examples/01-tunnel.toml"
-WALL = ROOT / "examples/04-wall.toml"
 VARIANTS = {
     "order 2": ["rock.order=2"],
     "order 3": ["rock.order=3"],
@@ -44,7 +43,6 @@ def scenarios():
             yield str(path.relative_to(ROOT)), path, []
     for name, values in VARIANTS.items():
         yield f"examples/01-tunnel.toml, {name}", TUNNEL, values
-    yield "examples/04-wall.toml, augmented Lagrangian", WALL, ['solver.contact="augmented-lagrangian"']
 
 
 def cut_short(path, most_steps):

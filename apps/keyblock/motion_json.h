@@ -6,7 +6,7 @@
 
 namespace keyblock::app {
 
-/// A list with what `keyblock motion` tells of each component. Its names are in docs/user-guide.md.
+/// A list with what `keyblock motion` tells of each component. Its names are in docs/guide/loads.md.
 nlohmann::ordered_json components_json(const std::vector<loading::MotionComponent>& components);
 
 }  // namespace keyblock::app

@@ -22,8 +22,7 @@ def held_on_slope(**keys: object) -> kb.Scenario:
     return scenario
 
 
-SOLVERS: list[dict[str, object]] = [{}, {"rock__order": 2}, {"rock__order": 3}, {"solver__face_contacts": 3}, {"joints__normal_stiffness": 1e9},
-                                    {"solver__contact": "augmented-lagrangian"}]
+SOLVERS: list[dict[str, object]] = [{}, {"rock__order": 2}, {"rock__order": 3}, {"solver__face_contacts": 3}, {"joints__normal_stiffness": 1e9}]
 
 
 @pytest.mark.parametrize("keys", SOLVERS, ids=str)

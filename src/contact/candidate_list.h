@@ -26,10 +26,9 @@ struct Memory {
   /// N per thickness; times μ it bounds the friction of the next step. It is the normal force, negative in the tension of a bond, and the part of
   /// it that the bounds of the steps before have missed while the contact slid, as a force over the last step. So friction loses no impulse.
   double bounding_force = 0.0;
-  double multiplier = 0.0;  ///< m, augmented Lagrangian: normal force over stiffness, in place of penetration
-  double drift = 0.0;       ///< m, augmented Lagrangian: shear displacement since the contact last slid
-  double stored = 0.0;      ///< J per thickness, elastic energy of the springs
+  double stored = 0.0;       ///< J per thickness, elastic energy of the springs
   double bond_length = 0.0;  ///< m of joint that a bond holds: it stays what it was when the bond was made
+  double worn = 0.0;         ///< m, slip that has worn the joint under the contact
 
   /// Whether the candidate is a contact as long as its vertex is over the edge: a bond at any gap, and what presses at any depth.
   [[nodiscard]] bool holds() const { return bonded || normal_force > 0.0; }

@@ -18,16 +18,14 @@ namespace {
 /// a face knows how much of it is closed, whatever the length: there the penetration stays.
 void keep_energy(MemoryLanes& memory, Lanes gap, Lanes stiffness, LaneCondition in_face) {
   const Lanes zero{}, depth = -gap - memory.offset, ratio = memory.stiffness / stiffness;
-  const auto pushes = memory.multiplier > 0.0;  // a force that belongs to no penetration stays
   const auto is_other = (stiffness < memory.stiffness) | (stiffness > memory.stiffness),
-             changes = ~pushes & (memory.stiffness > 0.0) & is_other & (depth > 0.0);
+             changes = (memory.stiffness > 0.0) & is_other & (depth > 0.0);
   const Lanes scale = square_root(ratio), wanted = scale * depth,
               offset = largest(-gap - wanted, least(memory.offset, zero)), now = -gap - offset;
   memory.stored = where(changes & ~in_face & (now < wanted),
                         memory.stored - 0.5 * stiffness * (wanted * wanted - now * now), memory.stored);
   memory.offset = where(changes & ~in_face, offset, memory.offset);
-  memory.multiplier = where(pushes, memory.multiplier * ratio, memory.multiplier);
-  memory.shear = where(pushes, memory.shear * ratio, where(changes, memory.shear * scale, memory.shear));
+  memory.shear = where(changes, memory.shear * scale, memory.shear);
   memory.stiffness = stiffness;
 }
 
@@ -140,7 +138,6 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
     const Memory& memory = before(found[i]);
     contact.memory.state = memory.state;
     contact.memory.bonded = memory.bonded;
-    contact.memory.bond_length = memory.bond_length;
     contact.memory.in_face = contact.was_in_face = memory.in_face;
     if (memory.bonded) law.length[i] = memory.bond_length;
     find_law(surface, contact, over_corner, laws[i]);
@@ -162,7 +159,7 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
   memory.offset = where(is_new, born, where(memory.offset > 0.0, least(memory.offset, born), memory.offset));
   const auto in_face = lanes_where(found, [&](const FoundContact& f) { return before(f).in_face; });
   keep_energy(memory, law.gap, law.normal_stiffness, in_face);
-  law.depth = -law.gap - memory.offset + memory.multiplier;
+  law.depth = -law.gap - memory.offset;
   keep(law, contacts);
   keep(memory, contacts.size(), [&](std::size_t i) -> Memory& { return contacts[i].memory; });
   return same;

@@ -12,7 +12,7 @@ struct LawLanes {
   Lanes gap, length, depth, normal_stiffness, shear_stiffness, friction, cohesion, tension;
 };
 struct MemoryLanes {
-  Lanes offset, stiffness, shear, normal_force, bounding_force, multiplier, drift, stored;
+  Lanes offset, stiffness, shear, normal_force, bounding_force, stored, bond_length, worn;
 
   /// N: the part of the force that bounds friction that is owed from the steps before, and the other part. A contact that only pulls owes
   /// nothing.
@@ -24,7 +24,7 @@ struct MemoryLanes {
   }
 };
 static_assert(offsetof(Contact, tension) - offsetof(Contact, gap) == (lane_count - 1) * sizeof(double));
-static_assert(offsetof(Memory, stored) - offsetof(Memory, offset) == (lane_count - 1) * sizeof(double));
+static_assert(offsetof(Memory, worn) - offsetof(Memory, offset) == (lane_count - 1) * sizeof(double));
 
 /// Numbers of `some`, at least one, that begin at begin(each); lanes beyond the last are those of the first.
 template <typename Components, typename Some, typename Begin>
@@ -51,8 +51,8 @@ inline void keep(const LawLanes& law, std::span<Contact> contacts) {
 /// Into as many memories, the first of them memory_of(0).
 template <typename MemoryOf>
 void keep(const MemoryLanes& m, std::size_t count, const MemoryOf& memory_of) {
-  Lanes lines[lane_count] = {m.offset,         m.stiffness,  m.shear, m.normal_force,
-                             m.bounding_force, m.multiplier, m.drift, m.stored};
+  Lanes lines[lane_count] = {m.offset,         m.stiffness, m.shear,       m.normal_force,
+                             m.bounding_force, m.stored,    m.bond_length, m.worn};
   transpose(lines);
   for (std::size_t i = 0; i < lane_count && i < count; ++i) store(&memory_of(i).offset, lines[i]);
 }

@@ -6,10 +6,9 @@ namespace keyblock::contact {
 
 namespace {
 
-/// m, how far the normal spring is pressed; 0: it is a bond, or has its force from a multiplier.
+/// m, how far the normal spring is pressed; 0: it is a bond.
 double stretch_of(const Memory& memory) {
-  const bool is_spring =
-      memory.normal_force > 0.0 && memory.stiffness > 0.0 && !memory.bonded && !(memory.multiplier > 0.0);
+  const bool is_spring = memory.normal_force > 0.0 && memory.stiffness > 0.0 && !memory.bonded;
   return is_spring ? memory.normal_force / memory.stiffness : 0.0;
 }
 

@@ -136,15 +136,6 @@ class BasicSpring {
     return b;
   }
 
-  /// The same where forces are multipliers, which store nothing: `normal` and `slip` are n·r and t·r of the step.
-  [[nodiscard]] Balance rigid_balance(Number y, Number w, Number normal, Number slip) const {
-    const Number shear = where(closed(y), shear_force(w), zero);
-    Balance b;
-    b.friction = where(locked(w), zero, shear * slip);
-    b.numerical = -normal_force(y) * normal + shear_force(w) * slip - b.friction;
-    return b;
-  }
-
  private:
   static constexpr Number zero{};
   static Number magnitude(Number x) { return where(x < zero, -x, x); }

@@ -92,7 +92,6 @@ void remember_states(std::span<const contact::Contact> contacts, const Lanes& cl
                                              : contact::State::sliding;
     remembered[i].bonded = contacts[i].memory.bonded;
     remembered[i].in_face = contacts[i].memory.in_face;
-    remembered[i].bond_length = contacts[i].memory.bond_length;
   }
 }
 
@@ -155,7 +154,7 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
               pressure = where(borne > zero, borne, zero);
   memory.normal_force = pressure;
   memory.bounding_force = borne;
-  if (!drive.is_static && attempt.model.solver.contact == ContactMethod::penalty) {
+  if (!drive.is_static) {
     const Lanes friction = at_first(springs.friction), constant = at_first(springs.constant);
     const auto slides = closed & ~locked & (friction > zero);
     const Lanes owed = pressure - (bound - constant) / where(slides, friction, broadcast(1.0));
@@ -168,43 +167,14 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   return accounts;
 }
 
-/// What is otherwise with an augmented Lagrangian.
-void remember_multiplier(const Attempt& attempt, std::size_t c, std::size_t lane, contact::Memory& memory,
-                         ContactAccounts& accounts) {
-  const contact::Contact& contact = attempt.contacts[c];
-  const Row& row = attempt.problem.rows()[c];
-  const contact::Spring s = spring_of(attempt.problem, contact, c);
-  const double y = attempt.problem.springs().y[c], w = attempt.problem.springs().w[c];
-  const Vec2 r = attempt.relative[c];
-  const contact::Spring::Balance balance = s.rigid_balance(y, w, dot(row.normal, r), dot(row.tangent(), r));
-  accounts.balance.stored[lane] = memory.stored = balance.stored;
-  accounts.balance.friction[lane] = balance.friction;
-  accounts.balance.damping[lane] = balance.damping;
-  accounts.balance.numerical[lane] = balance.numerical;
-  const double penetration = -(contact.gap + dot(row.normal, r));
-  memory.offset = std::max(memory.offset, 0.0);
-  accounts.penetration[lane] = 0.0;
-  memory.multiplier = 0.0;
-  if (accounts.closed[lane] != 0.0) {
-    accounts.penetration[lane] = penetration - memory.offset;
-    memory.multiplier = s.normal_force(y) / contact.normal_stiffness;
-    memory.shear = s.shear_force(w) / contact.shear_stiffness;
-  }
-  memory.drift = memory.state == contact::State::locked ? memory.drift + dot(row.tangent(), r) : 0.0;
-}
-
 ContactAccounts remember_piece(const Attempt& attempt, std::size_t first, std::size_t last,
                                contact::CandidateList& list) {
   ContactAccounts sum;
   for (std::size_t c = first; c < last; c += lane_count) {
     const std::size_t count = std::min<std::size_t>(lane_count, last - c);
     const std::span<contact::Memory> remembered = std::span(list.memory).subspan(c, count);
-    ContactAccounts accounts = remember_some(attempt, c, count, remembered);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (attempt.model.solver.contact != ContactMethod::penalty)
-        remember_multiplier(attempt, c + i, i, remembered[i], accounts);
-      list.track(c + i, attempt.contacts[c + i].candidate);
-    }
+    const ContactAccounts accounts = remember_some(attempt, c, count, remembered);
+    for (std::size_t i = 0; i < count; ++i) list.track(c + i, attempt.contacts[c + i].candidate);
     sum.add(accounts);
   }
   return sum;

@@ -47,7 +47,7 @@ double way_to_rest(const Model& model, const State& state, const Drive& drive, c
 Lanes ways_to_rest(const Model& model, const State& state, const Drive& drive, const Points& points,
                    std::span<const contact::Contact> contacts, std::span<const Row> rows) {
   Lanes ways{};
-  if (drive.is_static || model.solver.contact != ContactMethod::penalty) return ways;
+  if (drive.is_static) return ways;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (contacts[i].memory.state == contact::State::sliding)
       ways[i] = way_to_rest(model, state, drive, points, contacts[i], rows[i]);
@@ -270,19 +270,6 @@ RowFacts ContactCoupling::build_row(const Drive& drive, std::size_t c, const Cou
   out.owners.set(c, row.unknown_a, row.unknown_b);
   return {contact.memory.bonded && !contact.fused, row.pair == Row::without_room,
           std::abs(row.position - 0.5) > 1.0};
-}
-
-contact::Spring spring_of(const StepProblem& problem, const contact::Contact& contact, std::size_t c) {
-  const Row& row = problem.rows()[c];
-  const SpringArray& springs = problem.springs();
-  return {{.normal_stiffness = contact.normal_stiffness,
-           .shear_stiffness = contact.shear_stiffness,
-           .depth = contact.depth,
-           .shear = contact.memory.shear,
-           .bound = springs.bound[c],
-           .tensile = springs.is_tensile(c)},
-          {springs.kn[c], springs.ks[c], springs.y0[c] + dot(row.normal, row.moved),
-           springs.w0[c] - dot(row.tangent(), row.moved) + springs.slipped[c]}};
 }
 
 double reduced_mass(const Points& points, const contact::Contact& c) {

@@ -60,9 +60,6 @@ class ContactCoupling final : public Coupling {
   FindFaces find_faces_;
 };
 
-/// The spring of contact c in a step, at the start of the step where the `memory` of the contact has it.
-[[nodiscard]] contact::Spring spring_of(const StepProblem& problem, const contact::Contact& contact,
-                                        std::size_t c);
 /// kg/m, of the two blocks of a contact; fixed ones count as infinite.
 [[nodiscard]] double reduced_mass(const Points& points, const contact::Contact& c);
 /// N/m per thickness, inertia of the two blocks of a contact against each other in a step.

@@ -96,16 +96,10 @@ class SpringArray {
     return contact::shear_strength(load(&friction[c]), normal, load(&constant[c]));
   }
 
-  /// Adds a force that belongs to no displacement: stiffness times these, m (augmented Lagrangian).
-  void shift(std::size_t c, double penetration, double shear) {
-    y0[c] += penetration;
-    w0[c] += shear;
-    y[c] += penetration;
-    w[c] += shear;
-  }
   /// The shear spring holds from where the step begins, not from where a velocity ends (ContactCoupling).
   void hold_from_start(std::size_t c) {
-    shift(c, 0.0, slipped[c]);
+    w0[c] += slipped[c];
+    w[c] += slipped[c];
     slipped[c] = 0.0;
   }
   /// Goes on along the direction of search; `branch` stays that of where it was.

@@ -36,10 +36,8 @@ void ContactFinder::describe(const State& state, const contact::Detection::OfSom
   if (!detection_.describe(model_.surface, state.contacts, team_, contacts_, then)) ++version_;
 }
 
-/// Multipliers take the place of the stiffness of joints.
 const contact::JointFaces& ContactFinder::find_faces() {
-  if (model_.solver.contact == ContactMethod::penalty)
-    detection_.find_faces(model_.surface, contacts_, faces_);
+  detection_.find_faces(model_.surface, contacts_, faces_);
   return faces_;
 }
 

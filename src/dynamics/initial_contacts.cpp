@@ -27,7 +27,6 @@ double carry_stress(const Model& model, const contact::JointLaw& law, contact::C
   memory.offset = -c.gap - normal / c.normal_stiffness;
   memory.shear = shear / c.shear_stiffness;
   memory.state = normal > 0.0 ? contact::State::locked : contact::State::open;
-  if (model.solver.contact == ContactMethod::augmented_lagrangian) return 0.0;
   memory.stored = 0.5 * (normal * normal / c.normal_stiffness + shear * shear / c.shear_stiffness);
   return memory.stored;
 }

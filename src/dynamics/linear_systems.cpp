@@ -95,11 +95,9 @@ bool LinearSystems::prefers_iterations(const State& state, bool is_static) {
 LinearSystems::Chosen LinearSystems::choose(const Model& model, const State& state, bool is_static,
                                             bool must_be_direct) {
   const LinearSolver wanted = model.solver.linear;
-  // Multipliers ask for more digits than conjugate residuals are stopped at.
-  const bool may_iterate = !must_be_direct && model.solver.contact == ContactMethod::penalty;
   const bool iterates =
-      may_iterate && (wanted == LinearSolver::iterative ||
-                      (wanted == LinearSolver::automatic && prefers_iterations(state, is_static)));
+      !must_be_direct && (wanted == LinearSolver::iterative ||
+                          (wanted == LinearSolver::automatic && prefers_iterations(state, is_static)));
   Linear& linear = iterates ? iterative_ : direct_;
   const bool is_new = !linear.analysed;
   if (is_new) linear.solver->analyse(unknown_sizes_, state.pattern);

@@ -95,8 +95,7 @@ double largest_move(const Model& model, const State& state, double time) {
     if (!std::isfinite(state.moved[b])) {
       throw RunError("block " + std::to_string(b) + " has no finite position after the step to " +
                      std::to_string(time) +
-                     " s, which does not converge; a shorter time.step, order 1, or solver.contact = "
-                     "\"penalty\" may help");
+                     " s, which does not converge; a shorter time.step or order 1 may help");
     }
     most = std::max(most, state.moved[b]);
   }

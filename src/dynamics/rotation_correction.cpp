@@ -210,7 +210,6 @@ Verdict RotationCorrection::check_contact(const Attempt& attempt, std::size_t c,
 double RotationCorrection::keep_shear(const Attempt& attempt, std::span<contact::Memory> memory) {
   if (!attempt.problem.facts().may_break) return 0.0;
   const contact::Surface& surface = attempt.model.surface;
-  const bool has_multipliers = attempt.model.solver.contact == ContactMethod::augmented_lagrangian;
   gained_.assign(attempt.contacts.size(), 0.0);
   attempt.team.for_range(
       attempt.contacts.size(), contacts_worth_threads, [&](std::size_t begin, std::size_t end) {
@@ -220,10 +219,6 @@ double RotationCorrection::keep_shear(const Attempt& attempt, std::span<contact:
           if (!of_contact.bonded || contact.fused) continue;
           const Vec2 now = apart(surface, contact, [&](std::size_t v) { return surface.position[v]; });
           const double missed = now.y - dot(attempt.problem.rows()[c].tangent(), attempt.relative[c]);
-          if (has_multipliers) {
-            of_contact.drift += missed;
-            continue;
-          }
           gained_[c] = contact.shear_stiffness * missed * (of_contact.shear + 0.5 * missed);
           of_contact.shear += missed;
           of_contact.stored += gained_[c];

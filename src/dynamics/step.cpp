@@ -107,7 +107,6 @@ void Stepper::sum_stored_energy(State& state) const {
 void Stepper::measure_stored_energy(State& state) {
   finder_.find_at_rest(motion_, state);
   for (contact::Contact& c : finder_.contacts()) {
-    if (model_.solver.contact == ContactMethod::augmented_lagrangian) break;  // multipliers store nothing
     const bool pulls = c.fused || (c.memory.bonded && c.tension > 0.0);
     c.memory.stored = contact::Spring({.normal_stiffness = c.normal_stiffness,
                                        .shear_stiffness = c.shear_stiffness,
@@ -133,15 +132,13 @@ std::vector<ContactForce> Stepper::forces() const {
 void Stepper::forces(std::size_t first, std::span<ContactForce> to) const {
   if (first + to.size() > force_count()) throw std::out_of_range("forces of contacts that there are not");
   const SpringArray& springs = problem_.springs();
-  const bool has_multipliers = model_.solver.contact == ContactMethod::augmented_lagrangian;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const std::size_t k = first + i;
     const contact::Contact& c = finder_.contacts()[k];
     const Row& row = problem_.rows()[k];
-    // n·r; what multipliers have added is in both y₀ and y.
-    const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);
+    const double normal = springs.y0[k] - springs.y[k] + dot(row.normal, row.moved);  // n·r
     ContactForce& force = to[i] = {};
-    force.gap = c.gap + (has_multipliers ? std::max(c.memory.offset, 0.0) : c.memory.offset) + normal;
+    force.gap = c.gap + c.memory.offset + normal;
     force.normal = springs.bearing(k);
     if (springs.is_open(k)) continue;
     force.shear = springs.force(k).shear;

@@ -21,20 +21,6 @@ double speed_of_impact(const Model& model, std::span<const double> speed, double
   return std::max(share * *std::max_element(speed.begin(), speed.end()), noise * model.block_size / step);
 }
 
-/// Multipliers know no contact that holds blocks off.
-bool parts_as_given(const SolverOptions& options) {
-  return options.keeps_restitution && options.contact == ContactMethod::penalty;
-}
-
-/// m/s, the least speed of approach of an impact. Multipliers are stiffer than any spring: what is left of a velocity into a contact would
-/// ring for ever.
-double least_speed(const Attempt& attempt, std::span<const double> speed) {
-  const Model& model = attempt.model;
-  const double least = speed_of_impact(model, speed, attempt.drive.step);
-  if (model.solver.contact != ContactMethod::augmented_lagrangian) return least;
-  return std::min(least, 1e-4 * norm(model.gravity) * attempt.drive.step);
-}
-
 /// Contacts that may approach at `least`, m/s, or faster. A point of an edge, and a little beyond its ends, is not much faster than its
 /// vertices: half an edge beyond, three times as fast at most against another.
 void find_fast(const Attempt& attempt, std::span<const double> speed, double least,
@@ -64,8 +50,7 @@ bool is_impact(const Attempt& attempt, std::size_t c, double least) {
   const Vec2 speed = attempt.problem.relative(row, attempt.state.velocity) +
                      attempt.drive.prescribed_between(contact) / step;
   if (-dot(row.normal, speed) <= least) return false;
-  return attempt.model.solver.contact == ContactMethod::augmented_lagrangian ||
-         parts_as_given(attempt.model.solver) ||
+  return attempt.model.solver.keeps_restitution ||
          contact.normal_stiffness * step * step > reduced_mass(attempt.problem.points(), contact);
 }
 
@@ -123,14 +108,13 @@ void StepRules::share_smallest(const Attempt& attempt) {
 bool StepRules::meet_impacts(const Attempt& attempt, std::span<const double> speed) {
   const SolverOptions& options = attempt.model.solver;
   const double elastic = options.integrator == TimeIntegration::shi ? options.theta : 1.0;
-  const bool keeps = parts_as_given(options);
+  const bool keeps = options.keeps_restitution;
   if (attempt.drive.is_static || (options.restitution >= elastic && !keeps)) return false;
-  const double least = least_speed(attempt, speed);
   impact_speed_ = speed_of_impact(attempt.model, speed, attempt.drive.step);
-  find_fast(attempt, speed, least, fast_);
+  find_fast(attempt, speed, impact_speed_, fast_);
   found_ = false;
   for (const std::size_t c : fast_) {
-    if (!is_impact(attempt, c, least)) continue;
+    if (!is_impact(attempt, c, impact_speed_)) continue;
     const double with = approach(attempt, c);
     const bool strikes =
         keeps && with > impact_speed_ && !has_met_before(attempt.contacts[c], with, attempt.drive);

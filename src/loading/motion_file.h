@@ -52,7 +52,7 @@ struct MotionReading {
 };
 
 /// Reads all acceleration components of a strong-motion file. The format is recognized by the content; the formats, and what is read of
-/// each, are in docs/user-guide.md. Samples are in m/s², those of vertical components positive upwards.
+/// each, are in docs/guide/loads.md. Samples are in m/s², those of vertical components positive upwards.
 ///
 /// A unit is read from the file, and one that is not understood is refused. Where a file names none, `reading` must; an AT2 file is else
 /// taken to be in g, with a note.

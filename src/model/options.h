@@ -9,9 +9,6 @@ namespace keyblock::dynamics {
 /// automatic: block factors, or conjugate residuals where they take less; direct: a library, to check the others by.
 enum class LinearSolver { automatic, block, iterative, direct };
 
-/// How contacts keep blocks apart: by penetration of a spring, or by multipliers that leave none (augmented Lagrangian).
-enum class ContactMethod { penalty, augmented_lagrangian };
-
 /// Rules of time integration; integrator.h has the formulas.
 enum class TimeIntegration { shi, average_acceleration, generalized_alpha };
 
@@ -71,13 +68,9 @@ struct SolverOptions {
   double bound_tolerance = 1e-2;
   double bound_accuracy = 1e-4;
   int max_bound_updates = 8;
-  ContactMethod contact = ContactMethod::penalty;
   /// Along a face, at the least: at its ends, and from 3 on between them, too. A block of order n has n + 1.
   int face_contacts = 2;
   double penalty = 20.0;  ///< normal stiffness of joints that give none: times Young's modulus, per metre
-  /// Augmented Lagrangian: largest penetration, and drift of a contact that holds, over the block size.
-  double penetration_tolerance = 1e-10;
-  int max_multiplier_updates = 200;
   LinearSolver linear = LinearSolver::automatic;
   Accelerators accelerators;
 

@@ -97,12 +97,6 @@ JointProperties joint_properties(const JointKeys& own, const JointKeys& standard
   return joint;
 }
 
-// Multipliers leave no penetration, whatever the springs are: those of the penalty are the ones that they converge with.
-void leave_stiffness_to_penalty(JointProperties& joint, const Scenario& scenario) {
-  if (joint.normal_stiffness && *joint.normal_stiffness < scenario.stiffness_by_penalty())
-    joint.normal_stiffness.reset();
-}
-
 simulation::JointTable joint_table(const Scenario& scenario) {
   simulation::JointTable table;
   table.standard = joint_properties(scenario.joints, {});
@@ -111,11 +105,6 @@ simulation::JointTable joint_table(const Scenario& scenario) {
   }
   for (const TraceMapSpec& spec : scenario.trace_maps) {
     table.trace_maps.push_back(joint_properties(spec.joints, scenario.joints));
-  }
-  if (scenario.solver.contact == dynamics::ContactMethod::augmented_lagrangian) {
-    leave_stiffness_to_penalty(table.standard, scenario);
-    for (auto* joints : {&table.joint_sets, &table.trace_maps})
-      for (JointProperties& joint : *joints) leave_stiffness_to_penalty(joint, scenario);
   }
   reduce_strength(table.standard, scenario.strength_factor);
   for (JointProperties& set : table.joint_sets) reduce_strength(set, scenario.strength_factor);

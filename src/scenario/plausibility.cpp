@@ -50,7 +50,6 @@ class Plausibility {
     check_release();
     check_velocities();
     check_base();
-    check_multipliers();
     check_gravity();
     check_tolerances();
     check_sizes();
@@ -134,20 +133,6 @@ class Plausibility {
         std::any_of(scenario_.blocks.begin(), scenario_.blocks.end(), is_automatic))
       return;
     warn("auto_order: is not used, as no order is \"auto\"");
-  }
-
-  void check_multipliers() {
-    if (scenario_.solver.contact != dynamics::ContactMethod::augmented_lagrangian) return;
-    const auto warn_of = [&](const std::string& path, const JointKeys& keys) {
-      if (keys.normal_stiffness && *keys.normal_stiffness < scenario_.stiffness_by_penalty())
-        warn(
-            "{}.normal_stiffness: is not used, as no joint closes with solver.contact = "
-            "\"augmented-lagrangian\"; with \"penalty\" joints close by it",
-            path);
-    };
-    warn_of("joints", scenario_.joints);
-    for (const JointSetSpec& spec : scenario_.joint_sets) warn_of(spec.path, spec.joints);
-    for (const TraceMapSpec& spec : scenario_.trace_maps) warn_of(spec.path, spec.joints);
   }
 
   // As a tilt it is at most 45°: `tilt` turns it farther, and says so.

@@ -244,7 +244,7 @@ void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard
   }
   const bool has_file = t.find("file") != nullptr;
   t.file("file", map.file,
-         {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](user-guide.md#trace-maps), in the "
+         {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](guide/joints.md#trace-maps), in the "
                      "coordinates of the domain. `file`, `points` or `lines` is required.",
           .required = !t.documenting() && given.empty(),
           .fallback = "points"});

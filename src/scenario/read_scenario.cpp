@@ -180,7 +180,7 @@ void read_accepted_warnings(TableReader& root, AcceptedWarnings& accepted) {
   const Value* list =
       root.any("accept_warnings", type,
                {.meaning = "Warnings of choices that are meant: they are not given ([which they "
-                           "are](user-guide.md#warnings)).",
+                           "are](guide/scenarios.md#warnings)).",
                 .fallback = "[]",
                 .kinds = word_list});
   if (list == nullptr) return;

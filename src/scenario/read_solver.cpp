@@ -10,9 +10,6 @@ constexpr Word<dynamics::TimeIntegration> integrators[] = {
     {"shi", dynamics::TimeIntegration::shi},
     {"average-acceleration", dynamics::TimeIntegration::average_acceleration},
     {"generalized-alpha", dynamics::TimeIntegration::generalized_alpha}};
-constexpr Word<dynamics::ContactMethod> contact_methods[] = {
-    {"penalty", dynamics::ContactMethod::penalty},
-    {"augmented-lagrangian", dynamics::ContactMethod::augmented_lagrangian}};
 constexpr Word<LinearSolver> linear_solvers[] = {{"automatic", LinearSolver::automatic},
                                                  {"block", LinearSolver::block},
                                                  {"iterative", LinearSolver::iterative},
@@ -32,11 +29,7 @@ void read_automatic_order(TableReader& t, simulation::AutomaticOrder& automatic)
              .at_most = block::highest_order});
 }
 
-void read_contact_method(TableReader& t, dynamics::SolverOptions& solver) {
-  t.word(
-      "contact", solver.contact, contact_methods,
-      {.meaning = "How contacts keep blocks apart: springs that are penetrated a little, or multipliers that "
-                  "leave no penetration and no drift of contacts that hold."});
+void read_contact_springs(TableReader& t, dynamics::SolverOptions& solver) {
   t.integer("face_contacts", solver.face_contacts,
             {.meaning =
                  "Contacts along a face that blocks share, at the least: 2 are at its ends. Joints of given "
@@ -50,14 +43,6 @@ void read_contact_method(TableReader& t, dynamics::SolverOptions& solver) {
                   "block, per metre.",
        .unit = "1/m",
        .above = 0.0});
-  const bool multipliers = t.documenting() || solver.contact == dynamics::ContactMethod::augmented_lagrangian;
-  constexpr std::string_view with_multipliers = "contact = \"augmented-lagrangian\"";
-  t.number("penetration_tolerance", solver.penetration_tolerance,
-           only(multipliers, with_multipliers,
-                {.meaning = "Largest penetration and drift, over the block size.", .above = 0.0}));
-  t.integer("max_multiplier_updates", solver.max_multiplier_updates,
-            only(multipliers, with_multipliers,
-                 {.meaning = "How often multipliers are updated in a step at most.", .at_least = 1.0}));
 }
 
 void read_solver_keys(TableReader& t, dynamics::SolverOptions& solver, bool without_ground) {
@@ -95,11 +80,9 @@ void read_solver_keys(TableReader& t, dynamics::SolverOptions& solver, bool with
   read_damping(t, solver, without_ground);
   solver.keeps_restitution = t.number(
       "restitution", solver.restitution,
-      {.meaning =
-           "Share of the speed of approach with which blocks part after an impact, whatever the step "
-           "and the rule of integration. Where the key is not given, blocks part with 0 to 0.5 of it, "
-           "by the moment of the step at which they meet. With contact = \"augmented-lagrangian\" it is the "
-           "largest share.",
+      {.meaning = "Share of the speed of approach with which blocks part after an impact, whatever the step "
+                  "and the rule of integration. Where the key is not given, blocks part with 0 to 0.5 of it, "
+                  "by the moment of the step at which they meet.",
        .at_least = 0.0,
        .at_most = 1.0});
   t.integer(
@@ -120,12 +103,12 @@ void read_solver_keys(TableReader& t, dynamics::SolverOptions& solver, bool with
            {.meaning = "The error they are then brought below.", .above = 0.0});
   t.integer("max_bound_updates", solver.max_bound_updates,
             {.meaning = "How often they are taken anew at most.", .at_least = 0.0});
-  read_contact_method(t, solver);
+  read_contact_springs(t, solver);
   t.word("linear", solver.linear, linear_solvers,
          {.meaning = "Solver of the linear systems: `block` factors them in dense blocks, `iterative` takes "
                      "conjugate residuals, "
                      "`automatic` the cheaper of the two, and `direct` the factorization of a library, to "
-                     "check them by. The augmented Lagrangian always factors."});
+                     "check them by."});
 }
 
 }  // namespace

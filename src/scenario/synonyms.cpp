@@ -98,7 +98,6 @@ constexpr Synonym all_synonyms[] = {
     {"gaussian gauss", "normal"},
     {"negexp negativeexponential", "exponential"},
     {"newmark trapezoidal", "average-acceleration"},
-    {"uzawa multipliers", "augmented-lagrangian"},
 };
 
 constexpr Explanation all_explanations[] = {
@@ -118,6 +117,9 @@ constexpr Explanation all_explanations[] = {
      "the rock has a density in kg/m3: its unit weight over the acceleration of gravity"},
     {"nonreflecting quiet absorbing transmitting viscousboundary absorbingboundary",
      "[boundary] lets waves out: base = \"compliant\", sides = \"free-field\" or \"viscous\""},
+    {"contact lagrangian augmentedlagrangian multiplier multipliers penetrationtolerance "
+     "maxmultiplierupdates uzawa",
+     "contacts are springs: normal_stiffness of [joints] or penalty of [solver] says how stiff"},
     {"temperature thermal", "heat is not in the program"},
     {"creep viscosity", "creep is not in the program"},
     {"strike", "joint sets have a dip_direction: the strike + 90 degrees, by the right-hand rule"},

@@ -67,8 +67,8 @@ bool comes_before(const contact::Candidate& x, const contact::Candidate& y) {
 }
 
 bool is_memory(const contact::Memory& m) {
-  const double numbers[] = {m.offset,     m.stiffness, m.shear,  m.normal_force, m.bounding_force,
-                            m.multiplier, m.drift,     m.stored, m.bond_length};
+  const double numbers[] = {m.offset,         m.stiffness, m.shear,       m.normal_force,
+                            m.bounding_force, m.stored,    m.bond_length, m.worn};
   return m.state <= contact::State::locked && is_bool(m.bonded) && is_bool(m.in_face) && all_finite(numbers);
 }
 

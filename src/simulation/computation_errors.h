@@ -7,7 +7,7 @@
 namespace keyblock::simulation {
 
 /// Why the numbers of a run are not to be trusted, each in words: what its own checks have found that no input explains. Empty: nothing.
-/// Commands end with exit code 2 where there is something, and outputs list it (docs/user-guide.md, "Errors of the computation").
+/// Commands end with exit code 2 where there is something, and outputs list it (docs/guide/results.md, "Errors of the computation").
 [[nodiscard]] std::vector<std::string> computation_errors(const RunRecord& run);
 
 /// After the results are written: throws a RunError with the reasons, if there are any.

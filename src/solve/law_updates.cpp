@@ -24,19 +24,6 @@ struct Sums {
   }
 };
 
-/// n·r and t·r of a closed contact, except for what multipliers have added: how deep it lies in, m, and how far it has drifted from where
-/// it holds, m.
-Vec2 violation(const StepSystem& system, std::size_t c) {
-  const SpringArray& springs = system.springs();
-  const Row& row = system.row(c);
-  const contact::Contact& contact = system.contact(c);
-  const double normal = springs.y0[c] - springs.y[c] + dot(row.normal, row.moved),
-               slip = springs.w[c] - springs.w0[c] + dot(row.tangent(), row.moved);
-  const double penetration = -(contact.gap + normal) - std::max(0.0, contact.memory.offset);
-  return {penetration,
-          springs.branch[c].shear == SpringArray::Shear::held ? contact.memory.drift + slip : 0.0};
-}
-
 /// Calls changes(c) for the contacts whose bond may break. Whether it returned true for any.
 template <typename Changes>
 bool for_bonds(const StepSystem& system, const Changes& changes) {
@@ -55,9 +42,6 @@ void LawUpdates::begin() {
   bound_updates_ = 0;
   bound_error_ = HUGE_VAL;
   bound_damping_ = 1.0;
-  worst_ = HUGE_VAL;
-  stalls_ = 0;
-  multiplier_share_ = step_numbers::first_multiplier_share;
 }
 
 /// N per thickness, per block: what friction holds it with where its contacts slide.
@@ -155,57 +139,6 @@ bool LawUpdates::update_bounds(const StepSystem& system, Iterate& iterate, doubl
     iterate.change_spring(system, c, [&] { springs.bound[c] += share * missing; });
     last = {{missing, share * missing}, springs.bound[c]};
   }
-  return true;
-}
-
-/// Adds the shifts, times a share, to the forces that belong to no displacement.
-void LawUpdates::shift_forces(const StepSystem& system, Iterate& iterate, double share) {
-  SpringArray& springs = system.springs();
-  for (std::size_t c = 0; c < springs.size(); ++c) {
-    if (shift_[c] == Vec2{}) continue;
-    iterate.change_spring(system, c, [&] { springs.shift(c, share * shift_[c].x, share * shift_[c].y); });
-  }
-}
-
-bool LawUpdates::augment(const StepSystem& system, Iterate& iterate, double tolerance) {
-  const SpringArray& springs = system.springs();
-  violation_.assign(springs.size(), {});
-  double worst = 0.0;
-  for (std::size_t c = 0; c < system.contacts.contacts.size(); ++c) {
-    if (!springs.branch[c].closed) continue;
-    violation_[c] = violation(system, c);
-    worst = std::max({worst, std::abs(violation_[c].x), std::abs(violation_[c].y)});
-  }
-  if (worst <= tolerance) return false;
-  if (std::isinf(worst_)) worst_without_ = worst;
-  // What runs away, far beyond what springs without multipliers leave, was shifted by too much: it is taken back, except for what fits.
-  if (worst > worst_ && worst > std::max(4.0 * worst_without_,
-                                         step_numbers::most_transient * system.problem.model().block_size)) {
-    const double left = std::min(0.25, worst_ / worst);
-    multiplier_share_ *= left;
-    shift_forces(system, iterate, left - 1.0);
-    for (Vec2& shift : shift_) shift = left * shift;
-    stalls_ = 0;
-    return true;
-  }
-  // What grows is overshot: more contacts share a block, or move softer modes of it, than the share was meant for.
-  const bool overshoots = worst > worst_ && multiplier_share_ > step_numbers::least_multiplier_share;
-  if (overshoots) multiplier_share_ /= std::min(1.0 + worst / worst_, 4.0);
-  // Where blocks have more constraints than unknowns the rest cannot be taken out: three updates in a row gain nothing.
-  stalls_ = !overshoots && worst > 0.97 * worst_ ? stalls_ + 1 : 0;
-  worst_ = worst;
-  if (stalls_ == 3) return false;
-  shift_.assign(springs.size(), {});
-  for (std::size_t c = 0; c < system.contacts.contacts.size(); ++c) {
-    if (!springs.branch[c].closed) continue;
-    const double inertia = multiplier_share_ * inertia_between(system.problem, system.contact(c));
-    // A multiplier pushes, or is none: a negative one would let the blocks penetrate until they have made up for it.
-    const double multiplier =
-        springs.is_tensile(c) ? HUGE_VAL : std::max(0.0, springs.y[c] - violation_[c].x);
-    shift_[c] = {std::max(violation_[c].x * (1.0 + inertia / springs.kn[c]), -multiplier),
-                 violation_[c].y * (1.0 + inertia / springs.ks[c])};
-  }
-  shift_forces(system, iterate, 1.0);
   return true;
 }
 

@@ -6,7 +6,7 @@
 
 namespace keyblock::dynamics {
 
-/// What a solution does to the laws of its springs, between two minimizations: bounds of friction, bonds, multipliers, contacts that turn
+/// What a solution does to the laws of its springs, between two minimizations: bounds of friction, bonds, contacts that turn
 /// round. Each function changes springs, and the gradient with them, and says whether it changed any.
 class LawUpdates {
  public:
@@ -22,16 +22,12 @@ class LawUpdates {
   bool renew_bonds(const StepSystem& system, Iterate& iterate);
   /// Bonds whose strength is exceeded lose it for good, in the memory of their contacts too.
   bool break_bonds(const StepSystem& system, Iterate& iterate);
-  /// Uzawa's iteration with a step between the stiffness of the spring and what the inertia of the blocks adds to it. False when nothing
-  /// penetrates and no contact that holds has drifted by more than `tolerance`, m, or when that stalls.
-  bool augment(const StepSystem& system, Iterate& iterate, double tolerance);
   /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2).
   bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance);
 
  private:
   void sum_bounds(const StepSystem& system);
   [[nodiscard]] bool reverses(const StepSystem& system, std::size_t c) const;
-  void shift_forces(const StepSystem& system, Iterate& iterate, double share);
 
   // Contacts that turn round.
   std::vector<double> sliding_bound_;  ///< N per thickness, per block; scratch
@@ -47,14 +43,6 @@ class LawUpdates {
   int bound_updates_ = 0;       ///< in this step
   double bound_error_ = 0.0;    ///< of the last of them, over all bounds
   double bound_damping_ = 1.0;  ///< share of its way that each contact goes
-
-  // Multipliers.
-  std::vector<Vec2> violation_;    ///< m, per contact: penetration and drift; scratch
-  std::vector<Vec2> shift_;        ///< m, of springs: normal, shear
-  double worst_ = 0.0;             ///< m, largest penetration or drift at the last update
-  double worst_without_ = 0.0;     ///< m, the same before the first of them
-  int stalls_ = 0;                 ///< updates in a row that did not make it smaller
-  double multiplier_share_ = 0.0;  ///< of the inertia behind a contact, in the step of Uzawa's iteration
 };
 
 }  // namespace keyblock::dynamics

@@ -133,13 +133,7 @@ bool OpenClose::change_laws(const StepSystem& system, OpenCloseResult& result) {
     result.bond_broken = true;
     return true;
   }
-  if (options.contact != ContactMethod::augmented_lagrangian ||
-      result.multiplier_updates >= options.max_multiplier_updates)
-    return false;
-  if (!laws_.augment(system, iterate_, options.penetration_tolerance * system.problem.model().block_size))
-    return false;
-  ++result.multiplier_updates;
-  return true;
+  return false;
 }
 
 OpenCloseResult OpenClose::solve(const StepSystem& system, std::span<double> d,
@@ -150,7 +144,6 @@ OpenCloseResult OpenClose::solve(const StepSystem& system, std::span<double> d,
   look_at_stop();
   begin(system, d);
   OpenCloseResult result;
-  const bool augmented = options.contact == ContactMethod::augmented_lagrangian;
   double enough = options.tolerance;
   for (bool warm = false;; warm = true) {
     result.converged = minimize(system, warm, enough, result);
@@ -159,8 +152,7 @@ OpenCloseResult OpenClose::solve(const StepSystem& system, std::span<double> d,
       break;
     }
     if (change_laws(system, result)) continue;
-    const double tolerance =
-        springs.bounds_updated || augmented ? options.bound_accuracy : options.bound_tolerance;
+    const double tolerance = springs.bounds_updated ? options.bound_accuracy : options.bound_tolerance;
     if (result.bound_updates < options.max_bound_updates &&
         laws_.update_bounds(system, iterate_, tolerance)) {
       springs.bounds_updated = true;

@@ -24,8 +24,7 @@ class Interrupted : public std::exception {};
 ///        this step or of an earlier one (KeptFactor); by Newton's method (Newton) where not, or where too many springs act otherwise;
 ///     2. where contacts that slid turn round, let their springs turn with the way of the step; go on with 1;
 ///     3. bonds whose strength is exceeded break; go on with 1. A broken bond stays broken;
-///     4. with an augmented Lagrangian, move forces from penetration to multipliers until none is left; go on with 1;
-///     5. where the Coulomb bounds differ too much from μN at the solution, freeze them anew; go on with 1
+///     4. where the Coulomb bounds differ too much from μN at the solution, freeze them anew; go on with 1
 ///        (a new contact has no friction otherwise, in its first step).
 ///
 /// Without any accelerator (SolverOptions::accelerators) it is Newton's method with a new factor in each iteration.

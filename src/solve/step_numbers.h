@@ -112,14 +112,4 @@ inline constexpr double least_rotation_share = 2e-5;
 /// Of the strength of a bond, what turning may seem to stretch it by.
 inline constexpr double bond_share = 0.01;
 
-// ── multipliers ──────────────────────────────────────────────────────────────────────────────────────────────────────
-
-/// Of the inertia behind a contact, in the first update: enough for eight contacts that push a rigid block.
-inline constexpr double first_multiplier_share = 0.25;
-/// How small that share gets, unless penetrations run away.
-inline constexpr double least_multiplier_share = 1e-3;
-/// Of the block size, penetration that updates may leave on their way; beyond it, and four times what springs leave without multipliers,
-/// an update is taken back, except for what fits.
-inline constexpr double most_transient = 1e-3;
-
 }  // namespace keyblock::dynamics::step_numbers

@@ -48,7 +48,6 @@ struct OpenCloseResult {
   int iterations = 0;          ///< linear solves
   std::size_t changes = 0;     ///< contacts that changed their branch on the way, as often as they did
   int refinements = 0;         ///< corrections of what the factor of an earlier step gets wrong
-  int multiplier_updates = 0;  ///< of an augmented Lagrangian
   int bound_updates = 0;       ///< times the Coulomb bounds were taken anew
   bool given_up = false;       ///< at the first of them
 };

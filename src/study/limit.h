@@ -104,10 +104,10 @@ struct LimitResult {
 /// The trial of a run that is done.
 LimitTrial limit_trial(const LimitRequest& request, double value, const RunResult& run);
 
-/// limits.csv: a row for each realization, documented in docs/user-guide.md.
+/// limits.csv: a row for each realization, documented in docs/guide/limits.md.
 std::string limit_csv(const LimitResult& result);
 
-/// limit.json, documented in docs/user-guide.md. It depends on the scenario and the request alone, not on workers or time.
+/// limit.json, documented in docs/guide/limits.md. It depends on the scenario and the request alone, not on workers or time.
 std::string limit_json(const LimitResult& result);
 
 }  // namespace keyblock::study

@@ -1,5 +1,5 @@
-"""Scenarios that are right, from a seed: tunnels in joint sets, grids of blocks, loose blocks; every rule of integration, penalty and augmented
-Lagrangian. Half of them are demanding: soft joints, orders above 1 and "auto", tunnels under in-situ stress, slopes that are cut, stones
+"""Scenarios that are right, from a seed: tunnels in joint sets, grids of blocks, loose blocks; every rule of integration.
+Half of them are demanding: soft joints, orders above 1 and "auto", tunnels under in-situ stress, slopes that are cut, stones
 that roll. Small, so that a run takes a second."""
 
 import math
@@ -62,10 +62,10 @@ class Writer:
 
     def solver(self):
         rule = self.draw.choice(["shi", "average-acceleration", "generalized-alpha"])
-        contact = self.draw.choice(["penalty", "penalty", "augmented-lagrangian"])
-        self.facts |= {"integrator": rule, "contact": contact}
+        self.draw.randrange(3)  # of a key that is gone: the scenarios of a seed stay what they were
+        self.facts |= {"integrator": rule}
         self.add(
-            "[solver]", integrator=f'"{rule}"', contact=f'"{contact}"',
+            "[solver]", integrator=f'"{rule}"',
             spectral_radius=self.uniform(0, 1) if rule == "generalized-alpha" and self.chance(0.7) else None,
             theta=self.uniform(0, 1) if rule == "shi" and self.chance(0.3) else None,
             restitution=self.uniform(0, 1) if self.chance(0.5) else None,

@@ -133,7 +133,7 @@ def table(outcomes):
     lines = [f"{len(outcomes)} scenarios, {len(ended)} ended, {sum(o.seconds for o in outcomes):.0f} s"]
     for kind, count in Counter(without_numbers(o.error) for o in outcomes if o.error).most_common():
         lines.append(f"  error: {count} × {kind}")
-    for fact in ("integrator", "contact", "order", "kind", "demanding"):
+    for fact in ("integrator", "order", "kind", "demanding"):
         for value in sorted({o.facts[fact] for o in ended}, key=str):
             of_value = [o for o in ended if o.facts[fact] == value]
             beyond = [o for o in of_value if o.residual > MOST_RESIDUAL]

@@ -18,13 +18,12 @@ class HardRuns(Scenario):
         self.assertLess(abs(summary["energy"]["residual_ratio"]), residual, name)
         return summary
 
-    def test_multipliers_of_soft_blocks_of_order_2(self):
-        # Without care penetrations grow from update to update, and blocks fly away.
-        self.ends("multipliers-order-2", 5e-3, 0.01)
+    def test_soft_blocks_of_order_2(self):
+        self.ends("soft-rock-order-2", 5e-3, 0.01)
 
-    def test_multipliers_of_blocks_that_are_held_fast(self):
-        # A share of the inertia of a block that a static step holds is 10 to the 9 springs.
-        self.ends("multipliers-excavation", 1e-4, 0.01)
+    def test_an_excavation_among_blocks_that_are_held_fast(self):
+        # The inertia of a block that a static step holds is 10 to the 9 springs.
+        self.ends("held-excavation", 1e-4, 0.01)
 
     def test_stones_that_fall_on_soft_joints_in_long_steps(self):
         # Of a stone of 10 m2 that falls by 5 m the springs take 25 mm.

@@ -133,9 +133,8 @@ double depth_by_geometry(Simulator& s) {
 // the floor stands still or is lifted.
 TEST(Turn, IsKnownToContactsAtTheEndOfTheStep) {
   const double height = 1.0, width = 0.1, dt = 0.01;
-  for (const auto& [lift, rigid] : {std::pair{0.0, false}, {0.5, false}, {0.5, true}}) {  // m/s
+  for (const double lift : {0.0, 0.5}) {  // m/s
     Scene scene(3e9, 80.0);
-    if (rigid) scene.setup.solver.contact = dynamics::ContactMethod::augmented_lagrangian;
     scene.rectangle({-1.0, -1.0}, 4.0, 1.0, 0.0, true);
     scene.rectangle({0.0, 0.0}, width, height);
     scene.setup.properties[0].motion_y = loading::TimeTable({{0.0, 0.0}, {10.0, 10.0 * lift}});

@@ -101,8 +101,7 @@ TEST(KeyHints, SynonymsAreOfThisProgram) {
                                           "frame",
                                           "normal",
                                           "exponential",
-                                          "average-acceleration",
-                                          "augmented-lagrangian"};
+                                          "average-acceleration"};
   for (const SectionReference& section : key_reference()) {
     const std::size_t begin = section.title.find_first_not_of('[');
     if (begin != std::string::npos) here.insert(section.title.substr(begin, section.title.find(']') - begin));

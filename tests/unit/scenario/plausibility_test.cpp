@@ -54,16 +54,6 @@ TEST(Warnings, OfARuleThatMakesEnergy) {
               UnorderedElementsAre(HasSubstr("makes energy wherever joints slide")));
 }
 
-TEST(Warnings, OfMultipliersForJointsThatClose) {
-  const auto warned = [](const char* stiffness) {
-    return warnings_of(two_blocks, {"solver.contact=\"augmented-lagrangian\"", stiffness});
-  };
-  EXPECT_THAT(warned("joints.normal_stiffness=1e9"),
-              UnorderedElementsAre(HasSubstr("is not used, as no joint closes")));
-  EXPECT_THAT(warned("joints.normal_stiffness=1e13"), IsEmpty());
-  EXPECT_THAT(warnings_of(two_blocks, {"joints.normal_stiffness=1e9"}), IsEmpty());
-}
-
 TEST(Warnings, OfPlaneStressWithAnOpening) {
   const std::vector<std::string> none{"accept_warnings=['lost-joints']", "rock.order=2"};
   EXPECT_THAT(warnings_of(runnable_domain, none),
