@@ -229,9 +229,7 @@ void BlockTerms::add_loads(const State& state, const Drive& drive) {
     weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
   }
   if (model_->gravity != Vec2{}) return;
-  for (const auto& coupling : model_->couplings) {
-    if (const ForceScale* scale = coupling->force_scale()) scale->add_weights(*model_, state, drive, weight_);
-  }
+  add_weights(*model_, state, drive, weight_);
 }
 
 /// Largest |b_k| of a block.

@@ -50,4 +50,7 @@ class ForceScale {
                            std::span<double> weight) const = 0;
 };
 
+/// Of all couplings of a model.
+void add_weights(const Model& model, const State& state, const Drive& drive, std::span<double> weight);
+
 }  // namespace keyblock::dynamics

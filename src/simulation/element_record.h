@@ -22,6 +22,14 @@ struct ElementDescription {
   friend bool operator==(const ElementDescription&, const ElementDescription&) = default;
 };
 
+/// A history of what an element carries.
+struct ElementHistory {
+  std::string name;
+  int element = 0;
+
+  friend bool operator==(const ElementHistory&, const ElementHistory&) = default;
+};
+
 /// What an element carries at a moment (dynamics::Carried).
 struct ElementState {
   Vec2 from, to;                                        ///< m, local

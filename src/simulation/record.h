@@ -36,14 +36,6 @@ struct ColumnRecord {
   double longest_element = 0.0;              ///< m
 };
 
-/// A history of what an element carries.
-struct ElementHistory {
-  std::string name;
-  int element = 0;
-
-  friend bool operator==(const ElementHistory&, const ElementHistory&) = default;
-};
-
 /// The block system in reference position. Outlines are given by *display vertices*: every vertex of the block, and
 /// for a block of order > 1 further points along its edges, which may curve.
 struct ModelRecord {

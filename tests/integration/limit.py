@@ -235,6 +235,17 @@ class Reproducible(Limit):
         self.realizations = ("gallery.toml", "--key", "joints.strength_factor", "--from", 0.5, "--to", 8, "--tolerance", 0.2,
                              "--realizations", 6)  # fmt: skip
 
+    def test_the_strength_at_which_an_anchor_yields(self):
+        """A block on a spring, with ballast of a fifth of its weight: the spring yields below 1.2 times the weight, and is at 80 % of 1.5 times that."""
+        weight = 2600.0 * 9.81
+        hung = CASES / "staged_support.toml"
+        words = (hung, "--key", "spring.first.yield", "--from", 2.0 * weight, "--to", 1.1 * weight, "--tolerance", 0.005)
+        self.limit(*words, "--until", "yielded_elements")
+        self.check_bracket(1.2 * weight, 0.005)
+        said = self.limit(*words, "--until", "largest_utilization", "--above", 0.8, out="used")
+        self.check_bracket(1.5 * weight, 0.005, out="used")
+        self.assertIn("largest utilization of an element", said)
+
     def test_any_number_of_workers(self):
         for workers in (1, 2, 5):
             self.limit(*self.FRICTION, "--workers", workers, out=f"w{workers}")

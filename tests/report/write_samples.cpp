@@ -36,6 +36,30 @@ void move_block(keyblock::results::RunData& data, std::size_t block, float up) {
   }
 }
 
+/// Puts an anchor of 100 kN/m in with the second stage, to 80 % of that in the last frame; and the base of the model, without a limit.
+void add_elements(keyblock::results::RunData& data) {
+  using keyblock::simulation::ElementState;
+  keyblock::simulation::ModelRecord& model = data.model;
+  model.elements = {{"anchor <1>", "spring", 1e5, {2.0, 2.5}, {2.0, 4.5}, 0, 1},
+                    {"boundary.base", "boundary", HUGE_VAL, {0.0, 0.0}, {4.0, 0.0}, -1, -1}};
+  model.element_histories = {{"load cell", 0}};
+  const auto at = [&](double share, bool present) {
+    return std::vector<ElementState>{
+        {{2.0, 2.5 - 0.1 * share}, {2.0, 4.5}, 8e4 * share, 0.1 * share, 0.0, present},
+        {{0.0, 0.0}, {4.0, 0.0}, 2e6, 1e-3, 0.0, true}};
+  };
+  for (std::size_t f = 0; f < data.frames.size(); ++f) {
+    const double share = static_cast<double>(f + 1) / static_cast<double>(data.frames.size());
+    data.frames[f].elements = at(share, data.frames[f].stage > 0);
+  }
+  for (std::size_t k = 0; k < data.histories.size(); ++k) {
+    ElementState cell = at(static_cast<double>(k) / static_cast<double>(data.histories.size()), true)[0];
+    if (k == 0) cell.force = cell.elongation = std::nan("");
+    data.histories[k].elements = {cell};
+  }
+  for (auto& stage : data.run.stages) stage.damage.largest_utilization = 0.8;
+}
+
 }  // namespace
 
 /// write_samples DIR: one folder with a report.html for each kind of run that the browser test opens.
@@ -65,6 +89,10 @@ int main(int argc, char** argv) {
   marginal.run.stages[2].release = {{5000, 1.0, 9e-3, 4e-3, 6e-3, 0}};
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "marginal");
   keyblock::report::write_report(marginal, std::filesystem::path(argv[1]) / "marginal");
+  keyblock::results::RunData anchored = synthetic_run({});
+  add_elements(anchored);
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "anchored");
+  keyblock::report::write_report(anchored, std::filesystem::path(argv[1]) / "anchored");
   write("interrupted", {.interrupted = true});
   keyblock::results::RunData killed = synthetic_run({.interrupted = true});
   forget_end(killed);

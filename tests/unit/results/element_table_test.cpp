@@ -1,5 +1,3 @@
-#include "results/element_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
