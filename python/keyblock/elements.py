@@ -91,7 +91,7 @@ class Elements:
 
     def table(self) -> Any:
         """A row for each, as pandas.DataFrame. Throws MissingPackageError without pandas."""
-        columns = {
+        columns: dict[str, Any] = {
             "name": self.names, "kind": self.kinds, "present": self.present, "force": self.force, "elongation": self.elongation,
             "yielded": self.yielded, "limit": self.limit, "utilization": self.utilization,
         }  # fmt: skip

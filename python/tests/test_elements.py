@@ -72,7 +72,7 @@ def test_they_are_drawn_with_their_force(anchors):
     (drawn,) = lines(ax)
     assert len(drawn.get_segments()) == 2
     first, second = drawn.get_linewidths()
-    assert first > second > 0.9  # 28 % of its limit; all of the largest of its kind
+    assert (first, second) == pytest.approx((1.0 + 2.2 * 0.281, 3.2), abs=0.01)  # 28 % of its limit; all of the largest of its kind
     labels = [text.get_text() for text in ax.figure.legends[0].texts] if ax.figure.legends else [t.get_text() for t in ax.get_legend().texts]
     assert any("limit" in label for label in labels)
     assert not lines(anchors.plot("unload", "plain", elements=False))

@@ -8,7 +8,6 @@
 #include "scenario/inputs.h"
 #include "scenario/joint_warnings.h"
 #include "simulation/build_model.h"
-#include "simulation/elements.h"
 #include "simulation/feasibility.h"
 
 namespace keyblock::job {
@@ -24,7 +23,7 @@ Checked check(const scenario::Scenario& scenario, int realization) {
     // Has those of the inputs as well.
     const simulation::RunSetup setup =
         scenario::build_setup(scenario, realization, checked.blocks, &checked.warnings);
-    simulation::check_element_histories(setup, simulation::build_model(setup));
+    simulation::build_model(setup);
     for (const auto& [name, value] : setup.ground) {
       const bool is_turned = name == "gravity" && value.find("downwards") != std::string::npos;
       if (name == "boundary" || is_turned || name.starts_with("earthquake"))

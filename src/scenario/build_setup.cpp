@@ -7,6 +7,7 @@
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
 #include "scenario/dynamic_checks.h"
+#include "scenario/element_histories.h"
 #include "scenario/expected_blocks.h"
 #include "scenario/far_rock.h"
 #include "scenario/ground_facts.h"
@@ -388,6 +389,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   add_box_fact(setup);
   add_block_warnings(scenario, blocks, notes);
   add_setup_warnings(scenario, setup, notes);
+  check_element_histories(scenario, setup);
   if (warnings != nullptr) {
     add_overlap_warnings(scenario, setup.system, notes);
     warnings->insert(warnings->end(), notes.begin(), notes.end());

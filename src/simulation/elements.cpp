@@ -70,7 +70,12 @@ std::vector<ElementState> element_states(const Model& model, const State& state)
 int element_of(const Model& model, const History& history) {
   const std::vector<ElementDescription> all = element_descriptions(model);
   const auto found = std::ranges::find(all, history.element, &ElementDescription::name);
-  if (found != all.end()) return static_cast<int>(found - all.begin());
+  const auto count = std::ranges::count(all, history.element, &ElementDescription::name);
+  if (count == 1) return static_cast<int>(found - all.begin());
+  const std::string key = fmt::format("history.{}.element", history.name);
+  if (count > 1)
+    refuse(key, fmt::format("\"{}\", which {} elements have", history.element, count),
+           "a name that one element has");
   std::string names;
   constexpr std::ptrdiff_t most_names = 20;
   for (auto e = all.begin(); e != all.end(); ++e) {
@@ -80,15 +85,9 @@ int element_of(const Model& model, const History& history) {
     }
     names += (names.empty() ? "" : ", ") + e->name;
   }
-  refuse(fmt::format("history.{}.element", history.name), fmt::format("\"{}\"", history.element),
+  refuse(key, fmt::format("\"{}\"", history.element),
          all.empty() ? "an element; the model has no springs, supports, boundaries or pressures"
                      : "the name of an element: " + names);
-}
-
-void check_element_histories(const RunSetup& setup, const Model& model) {
-  for (const History& history : setup.histories) {
-    if (!history.element.empty()) element_of(model, history);
-  }
 }
 
 void keep_peaks(const Model& model, const State& state, int stage, std::vector<ElementPeak>& peaks) {

@@ -34,7 +34,5 @@ std::vector<ElementDescription> element_descriptions(const dynamics::Model& mode
 std::vector<ElementState> element_states(const dynamics::Model& model, const dynamics::State& state);
 /// The element that a history follows, by its name. Throws InputError where there is none.
 int element_of(const dynamics::Model& model, const History& history);
-/// Whether all histories of elements follow one. Throws InputError.
-void check_element_histories(const RunSetup& setup, const dynamics::Model& model);
 
 }  // namespace keyblock::simulation

@@ -103,7 +103,9 @@ TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
   simulation::HistoryRow row;
   row.time = 0.5;
   row.points = {{none, none, none, none, none, none, none}, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
-  EXPECT_THAT(histories_csv({"a", "b"}, {row}), testing::EndsWith("\n0.5,,,,,,,,,,1,2,3,4,5,6,7,8,9\n"));
+  simulation::ModelRecord model;
+  model.history_names = {"a", "b"};
+  EXPECT_THAT(histories_csv(model, {row}), testing::EndsWith("\n0.5,,,,,,,,,,1,2,3,4,5,6,7,8,9\n"));
 }
 
 TEST(Export, GeoJsonOfEveryStageEnd) {

@@ -198,10 +198,16 @@ struct Watcher : RunObserver {
   void history(const HistoryRow& row) override { rows.push_back(row); }
 };
 
+History follows(const char* name, const char* element) {
+  History history;
+  history.name = name;
+  history.element = element;
+  return history;
+}
+
 TEST(Elements, FramesAndHistoriesSayWhatTheyCarry) {
   RunSetup setup = hung_by_two();
-  setup.histories = {{.name = "cell", .element = "spring[1]"},
-                     {.name = "corner", .block = "b1", .point = {0.5, 0.5}}};
+  setup.histories = {follows("cell", "spring[1]"), {"corner", "b1", {0.5, 0.5}}};
   Watcher watcher;
   const RunRecord record = run(setup, {}, watcher);
   ASSERT_EQ(watcher.model.elements.size(), 2u);
@@ -226,7 +232,7 @@ TEST(Elements, FramesAndHistoriesSayWhatTheyCarry) {
 
 TEST(Elements, AHistoryNeedsTheNameOfOne) {
   RunSetup setup = hung_by_two();
-  setup.histories = {{.name = "cell", .element = "frist"}};
+  setup.histories = {follows("cell", "frist")};
   RunObserver nobody;
   try {
     run(setup, {}, nobody);
