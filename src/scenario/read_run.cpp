@@ -248,14 +248,13 @@ void read_history(TableReader& t, simulation::History& history, const Scenario& 
       t.find("element") != nullptr || t.find("spring") != nullptr || t.find("support") != nullptr;
   read_column(t, history, !of_element, scenario);
   const bool of_block = !history.column && !of_element;
-  const std::string_view unless = of_element ? "no element" : "no column";
   t.reference("block", history.block, "block",
-              only(of_block, unless,
+              only(of_block, "neither column nor element",
                    {.meaning = "The block it belongs to.",
                     .fallback = "the block that holds the point; of several with a common border, one that "
                                 "no stage excavates or the one excavated last"}));
   if (t.point("point", history.point,
-              only(of_block, unless,
+              only(of_block, "neither column nor element",
                    {.meaning = "Material point, by its place before the run.",
                     .unit = "m",
                     .required = of_block && !t.documenting(),

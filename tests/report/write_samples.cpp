@@ -40,13 +40,15 @@ void move_block(keyblock::results::RunData& data, std::size_t block, float up) {
 void add_elements(keyblock::results::RunData& data) {
   using keyblock::simulation::ElementState;
   keyblock::simulation::ModelRecord& model = data.model;
+  keyblock::Box box;
+  for (const keyblock::Vec2 p : model.vertices) box.add(p);
   model.elements = {{"anchor <1>", "spring", 1e5, {2.0, 2.5}, {2.0, 4.5}, 0, 1},
-                    {"boundary.base", "boundary", HUGE_VAL, {0.0, 0.0}, {4.0, 0.0}, -1, -1}};
+                    {"boundary.base", "boundary", HUGE_VAL, {box.min.x, 0.0}, {box.max.x, 0.0}, -1, -1}};
   model.element_histories = {{"load cell", 0}};
   const auto at = [&](double share, bool present) {
     return std::vector<ElementState>{
         {{2.0, 2.5 - 0.1 * share}, {2.0, 4.5}, 8e4 * share, 0.1 * share, 0.0, present},
-        {{0.0, 0.0}, {4.0, 0.0}, 2e6, 1e-3, 0.0, true}};
+        {{box.min.x, 0.0}, {box.max.x, 0.0}, 2e6, 1e-3, 0.0, true}};
   };
   for (std::size_t f = 0; f < data.frames.size(); ++f) {
     const double share = static_cast<double>(f + 1) / static_cast<double>(data.frames.size());
