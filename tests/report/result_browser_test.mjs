@@ -246,10 +246,10 @@ const tests = {
     );
     assert.deepEqual(columns, [
       "At the end of",
-      "Largest slip ever",
-      "Largest slip in place",
-      "Largest rotation",
       "Hinges",
+      "Largest rotation",
+      "Largest slip in place",
+      "Largest slip ever",
     ]);
     assert.equal(await page.locator("#damage tbody tr").count(), 4);
     assert.equal(await text(page, ".badge"), "Stands");
