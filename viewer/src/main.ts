@@ -159,7 +159,9 @@ function build(run: Run, main: HTMLElement): void {
     parts.push(
       section(
         "histories",
-        "Histories",
+        (run.header.model.element_histories?.length ?? 0) > 0
+          ? "Histories of chosen points and elements"
+          : "Histories of chosen points",
         ...histories.flatMap(({ name, plots: made }) => [
           h("h3", {}, name),
           h("div", { class: "plots" }, ...track(made)),
