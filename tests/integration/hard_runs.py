@@ -18,9 +18,6 @@ class HardRuns(Scenario):
         self.assertLess(abs(summary["energy"]["residual_ratio"]), residual, name)
         return summary
 
-    def test_soft_blocks_of_order_2(self):
-        self.ends("soft-rock-order-2", 5e-3, 0.01)
-
     def test_an_excavation_among_blocks_that_are_held_fast(self):
         # The inertia of a block that a static step holds is 10 to the 9 springs.
         self.ends("held-excavation", 1e-4, 0.01)
