@@ -83,6 +83,14 @@ Vec2 place_of(const dynamics::Model& model, const dynamics::WallPoint& point) {
               point.share);
 }
 
+/// m, from the start of a face to its end.
+Vec2 way_along(const dynamics::Model& model, const dynamics::WallFace& face) {
+  return place_of(model, {face.vertex, face.to}) - place_of(model, {face.vertex, face.from});
+}
+
+/// Of the longest face of a part of a wall: shorter ones, which corners of blocks leave, are not where the part ends.
+constexpr double least_at_end = 0.1;
+
 /// Divides a wall under pressure into crown, sides and invert, by what its faces look at.
 void add_stretches(const std::string& wall, const dynamics::Model& model, dynamics::WallPressure& pressure,
                    std::vector<dynamics::WallStretch>& stretches) {
@@ -93,22 +101,28 @@ void add_stretches(const std::string& wall, const dynamics::Model& model, dynami
     const Vec2 along = is_level ? perpendicular(down) : -1.0 * down;  // to the right; upwards
     dynamics::WallStretch stretch;
     stretch.name = fmt::format("{}.{}", wall, wall_part_name(part));
-    bool found = false;
+    std::vector<std::size_t> of_part;
+    double longest = 0.0;
     for (std::size_t f = 0; f < pressure.faces.size(); ++f) {
-      const dynamics::WallFace& face = pressure.faces[f];
-      const dynamics::WallPoint ends[] = {{face.vertex, face.from}, {face.vertex, face.to}};
-      // The rock is on the left of its edge.
-      if (part_towards(perpendicular(place_of(model, ends[1]) - place_of(model, ends[0])), down) != part)
-        continue;
+      const Vec2 way = way_along(model, pressure.faces[f]);
+      if (part_towards(perpendicular(way), down) != part) continue;  // the rock is on the left of its edge
       pressure.element[f] = stretches.size();
-      for (const dynamics::WallPoint& end : ends) {
+      of_part.push_back(f);
+      longest = std::max(longest, norm(way));
+    }
+    if (of_part.empty()) continue;
+    bool found = false;
+    for (const std::size_t f : of_part) {
+      const dynamics::WallFace& face = pressure.faces[f];
+      if (norm(way_along(model, face)) < least_at_end * longest) continue;
+      for (const dynamics::WallPoint& end :
+           {dynamics::WallPoint{face.vertex, face.from}, dynamics::WallPoint{face.vertex, face.to}}) {
         const double reach = dot(along, place_of(model, end));
         if (!found || reach < dot(along, place_of(model, stretch.from))) stretch.from = end;
         if (!found || reach > dot(along, place_of(model, stretch.to))) stretch.to = end;
         found = true;
       }
     }
-    if (!found) continue;
     stretch.from_end = {place_of(model, stretch.from), model.surface.block[at(stretch.from.vertex)]};
     stretch.to_end = {place_of(model, stretch.to), model.surface.block[at(stretch.to.vertex)]};
     stretches.push_back(std::move(stretch));
