@@ -1,5 +1,6 @@
 #include "coupling/boundary_sides.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -28,23 +29,17 @@ Vec2 place_now(const BoundaryPoint& p, const Model& model, const State& state) {
 
 BoundarySides::BoundarySides(std::span<const BoundaryPoint> points) : side_of_(points.size(), -1) {
   for (const auto& [name, normal] : all_sides) {
-    bool acts = false, found = false;
-    Side side{name, 0, 0};
+    std::vector<std::size_t> of_side;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (dot(points[k].normal, normal) > 0.5) of_side.push_back(k);
+    const auto acts = [&](std::size_t k) { return points[k].springs != Vec2{} || points[k].absorbs; };
+    if (std::ranges::none_of(of_side, acts)) continue;
     // To the right along base and top, upwards along the others.
     const Vec2 along{std::abs(normal.y), std::abs(normal.x)};
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      if (dot(points[k].normal, normal) < 0.5) continue;
-      side_of_[k] = static_cast<int>(sides_.size());
-      acts = acts || points[k].springs != Vec2{} || points[k].absorbs;
-      if (!found || dot(along, points[k].place) < dot(along, points[side.first].place)) side.first = k;
-      if (!found || dot(along, points[k].place) > dot(along, points[side.last].place)) side.last = k;
-      found = true;
-    }
-    if (acts) {
-      sides_.push_back(side);
-    } else {
-      for (int& of : side_of_) of = of == static_cast<int>(sides_.size()) ? -1 : of;
-    }
+    const auto [first, last] =
+        std::ranges::minmax_element(of_side, {}, [&](std::size_t k) { return dot(along, points[k].place); });
+    for (const std::size_t k : of_side) side_of_[k] = static_cast<int>(sides_.size());
+    sides_.push_back({name, *first, *last});
   }
 }
 

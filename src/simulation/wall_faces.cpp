@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 
 #include "contact/tolerances.h"
 #include "core/index.h"
@@ -91,41 +92,44 @@ Vec2 way_along(const dynamics::Model& model, const dynamics::WallFace& face) {
 /// Of the longest face of a part of a wall: shorter ones, which corners of blocks leave, are not where the part ends.
 constexpr double least_at_end = 0.1;
 
+/// Sets the ends of a stretch of these faces, along a direction.
+void set_ends(const dynamics::Model& model, std::span<const dynamics::WallFace> faces, Vec2 along,
+              dynamics::WallStretch& stretch) {
+  double longest = 0.0;
+  for (const dynamics::WallFace& face : faces) longest = std::max(longest, norm(way_along(model, face)));
+  std::vector<dynamics::WallPoint> ends;
+  for (const dynamics::WallFace& face : faces) {
+    if (norm(way_along(model, face)) < least_at_end * longest) continue;
+    ends.push_back({face.vertex, face.from});
+    ends.push_back({face.vertex, face.to});
+  }
+  const auto [from, to] = std::ranges::minmax_element(
+      ends, {}, [&](const dynamics::WallPoint& end) { return dot(along, place_of(model, end)); });
+  stretch.from = *from;
+  stretch.to = *to;
+  stretch.from_end = {place_of(model, *from), model.surface.block[at(from->vertex)]};
+  stretch.to_end = {place_of(model, *to), model.surface.block[at(to->vertex)]};
+}
+
 /// Divides a wall under pressure into crown, sides and invert, by what its faces look at.
 void add_stretches(const std::string& wall, const dynamics::Model& model, dynamics::WallPressure& pressure,
                    std::vector<dynamics::WallStretch>& stretches) {
   const Vec2 down = model.gravity == Vec2{} ? Vec2{0.0, -1.0} : normalized(model.gravity);
   pressure.element.resize(pressure.faces.size());
   for (const WallPart part : {WallPart::crown, WallPart::left, WallPart::right, WallPart::invert}) {
-    const bool is_level = part == WallPart::crown || part == WallPart::invert;
-    const Vec2 along = is_level ? perpendicular(down) : -1.0 * down;  // to the right; upwards
-    dynamics::WallStretch stretch;
-    stretch.name = fmt::format("{}.{}", wall, wall_part_name(part));
-    std::vector<std::size_t> of_part;
-    double longest = 0.0;
+    std::vector<dynamics::WallFace> of_part;
     for (std::size_t f = 0; f < pressure.faces.size(); ++f) {
-      const Vec2 way = way_along(model, pressure.faces[f]);
-      if (part_towards(perpendicular(way), down) != part) continue;  // the rock is on the left of its edge
+      // The rock is on the left of its edge.
+      if (part_towards(perpendicular(way_along(model, pressure.faces[f])), down) != part) continue;
       pressure.element[f] = stretches.size();
-      of_part.push_back(f);
-      longest = std::max(longest, norm(way));
+      of_part.push_back(pressure.faces[f]);
     }
     if (of_part.empty()) continue;
-    bool found = false;
-    for (const std::size_t f : of_part) {
-      const dynamics::WallFace& face = pressure.faces[f];
-      if (norm(way_along(model, face)) < least_at_end * longest) continue;
-      for (const dynamics::WallPoint& end :
-           {dynamics::WallPoint{face.vertex, face.from}, dynamics::WallPoint{face.vertex, face.to}}) {
-        const double reach = dot(along, place_of(model, end));
-        if (!found || reach < dot(along, place_of(model, stretch.from))) stretch.from = end;
-        if (!found || reach > dot(along, place_of(model, stretch.to))) stretch.to = end;
-        found = true;
-      }
-    }
-    stretch.from_end = {place_of(model, stretch.from), model.surface.block[at(stretch.from.vertex)]};
-    stretch.to_end = {place_of(model, stretch.to), model.surface.block[at(stretch.to.vertex)]};
-    stretches.push_back(std::move(stretch));
+    const bool is_level = part == WallPart::crown || part == WallPart::invert;
+    dynamics::WallStretch& stretch = stretches.emplace_back();
+    stretch.name = fmt::format("{}.{}", wall, wall_part_name(part));
+    // To the right; upwards.
+    set_ends(model, of_part, is_level ? perpendicular(down) : -1.0 * down, stretch);
   }
 }
 
