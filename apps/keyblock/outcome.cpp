@@ -207,7 +207,11 @@ std::vector<std::string> warnings(const RunRecord& run) {
 /// "most loaded: bolt 3, 118 kN/m tension, 98 % of its limit, in "shaking"; 2 of 12 springs have yielded"
 std::string most_loaded(const RunRecord& run) {
   std::string text;
-  for (const char* kind : {"spring", "support"}) {
+  std::vector<std::string> kinds;
+  for (const simulation::ElementRecord& e : run.elements) {
+    if (std::ranges::find(kinds, e.kind) == kinds.end()) kinds.push_back(e.kind);
+  }
+  for (const std::string& kind : kinds) {
     const simulation::ElementRecord* most = nullptr;
     long count = 0, yielded = 0;
     for (const simulation::ElementRecord& e : run.elements) {

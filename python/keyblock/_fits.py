@@ -11,7 +11,7 @@ from .errors import DamagedError
 if TYPE_CHECKING:
     from ._hdf5 import ResultFile
 
-# Sizes by letter: n blocks, v vertices, r starts of rings. A letter takes the size where it is met first.
+# Sizes by letter: n blocks, v vertices, r starts of rings, m elements. A letter takes the size where it is met first.
 _MODEL = {
     "model/block_area": "n",
     "model/block_centroid": "n2",
@@ -35,6 +35,16 @@ _MODEL = {
     "frames/status": "tn",
     "frames/stress": "tn3",
     "frames/velocity": "tn2",
+    "elements/name": "m",
+    "elements/kind": "m",
+    "elements/limit": "m",
+    "elements/reference": "m22",
+    "elements/block": "m2",
+    "elements/ends": "tm22",
+    "elements/present": "tm",
+    "elements/force": "tm",
+    "elements/elongation": "tm",
+    "elements/yielded": "tm",
     "contacts/block_a": "c",
     "contacts/block_b": "c",
     "contacts/contact": "c",
@@ -56,6 +66,8 @@ _MODEL = {
     "histories/time": "h",
     "histories/step": "h",
     "histories/values": "hpq",
+    "histories/element_names": "f",
+    "histories/element_values": "hf2",
     "steps/time": "k",
     "steps/stage": "k",
     "steps/step": "k",
@@ -66,6 +78,7 @@ _MODEL = {
     "steps/max_displacement": "k",
     "steps/energy": "ke",
 }
+_TEXTS = frozenset({"model/block_name", "elements/name", "elements/kind", "histories/element_names"})
 # Rows that a run still writes, which are not complete at the same time.
 _GROWING = frozenset("tcshk")
 
@@ -79,7 +92,7 @@ def check(file: ResultFile) -> None:
         shape = file.shape(name)
         if len(shape) != len(letters):
             raise _damaged(file, f"{name} has {len(shape)} dimensions, not {len(letters)}")
-        if name != "model/block_name" and file.kind(name) not in "iuf":
+        if name not in _TEXTS and file.kind(name) not in "iuf":
             raise _damaged(file, f"{name} holds no numbers")
         for letter, size in zip(letters, shape, strict=True):
             if letter in _GROWING and file.grows:
@@ -88,6 +101,9 @@ def check(file: ResultFile) -> None:
             if size != known:
                 raise _damaged(file, f"{name} has a size of {size}, not {known}{f' as {first}' if first else ''}")
     _check_places(file, sizes)
+    for name, letter in (("elements/name", "m"), ("histories/element_names", "f")):
+        if letter in sizes and (not file.has(name) or len(file.texts(name)) != sizes[letter][0]):
+            raise _damaged(file, f"there are not {sizes[letter][0]} names in {name}")
 
 
 def _check_places(file: ResultFile, sizes: dict[str, tuple[int, str]]) -> None:

@@ -133,7 +133,14 @@ class ResultFile:
             raise DamagedError(f"{self.path} is damaged: {name} cannot be read ({error})") from None
 
     # Texts of any length lie in a heap without a checksum, and a wrong byte there ends the interpreter. `texts` has all of them as bytes.
-    _IN_TEXTS = {"model/block_name": "block_names", "histories/names": "history_names", "steps/energy_names": "energy_names"}
+    _IN_TEXTS = {
+        "model/block_name": "block_names",
+        "histories/names": "history_names",
+        "histories/element_names": "element_history_names",
+        "steps/energy_names": "energy_names",
+        "elements/name": "element_names",
+        "elements/kind": "element_kinds",
+    }
 
     @cached_property
     def _texts(self) -> dict[str, Any]:

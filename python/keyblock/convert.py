@@ -43,12 +43,17 @@ def to_xarray(run: Result, rows: slice = slice(None)) -> Any:
         "status": ("time", "block"),
         "order": ("time", "block"),
     }
+    of_elements = ("force", "elongation", "yielded", "present")
     variables: dict[str, Any] = {}
     for name, dimensions in quantities.items():
         dataset = f"frames/{name}"
         if file.has(dataset):
             attributes = {"units": file.unit(dataset), "description": file.description(dataset)}
             variables[name] = (dimensions, file.read(dataset, rows), attributes)
+    for name in of_elements if file.has("elements/name") else ():
+        dataset = f"elements/{name}"
+        attributes = {"units": file.unit(dataset), "description": file.description(dataset)}
+        variables[f"element_{name}"] = (("time", "element"), file.read(dataset, rows), attributes)
     flags = {"flag_values": np.arange(len(STATUS), dtype=np.uint8), "flag_meanings": " ".join(s.replace(" ", "_") for s in STATUS)}
     variables["status"][2].update(flags)
     metres = {"units": "m"}
@@ -70,6 +75,8 @@ def to_xarray(run: Result, rows: slice = slice(None)) -> Any:
         "density": ("block", blocks.density, {"units": "kg/m3"}),
         "fixed": ("block", blocks.fixed),
     }
+    if file.has("elements/name"):
+        coordinates["element"] = ("element", np.asarray(file.texts("elements/name"), dtype=str))
     attributes = {"title": run.title, "source": f"keyblock {file.attribute('version')}"}
     return xarray.Dataset(variables, coordinates, attributes)
 

@@ -12,6 +12,7 @@ import numpy as np
 from . import record
 from ._hdf5 import ResultFile
 from .blocks import Blocks
+from .elements import Elements
 
 #: When: a simulated time in s, the name of a stage (its end), or None (the last moment).
 When = Union[float, str, None]
@@ -138,6 +139,11 @@ class Frame:
     def is_there(self) -> np.ndarray:
         """Whether each block is not excavated, (nb,)."""
         return self.status != EXCAVATED
+
+    @cached_property
+    def elements(self) -> Elements:
+        """What springs, supports and other elements carry."""
+        return Elements(self._file, self._blocks, self.index)
 
     @cached_property
     def order(self) -> np.ndarray:

@@ -105,6 +105,8 @@ def draw_legend(ax: Axes, picture: Picture) -> None:
         force = nice(typical)
         label = f"force between blocks: {with_unit(force, 'force')}"
         entries.append(Line2D([], [], color=colors.FORCE, linewidth=section.FORCE_WIDTH * force / typical, label=label))
+    if options.elements and len(picture.frame.elements):
+        entries += element_entries(picture)
     if options.stress:
         entries.append(Line2D([], [], color=colors.COMPRESSION, linewidth=0.8, label="compression"))
         entries.append(Line2D([], [], color=colors.TENSION, linewidth=0.8, label="tension"))
@@ -118,6 +120,18 @@ def draw_legend(ax: Axes, picture: Picture) -> None:
     columns = max(1, min(len(entries), 72 // (longest + 6)))
     figures.legend_below(ax, entries, columns=columns, gap=32.0 if options.axes else 18.0)
     _draw_length_key(ax, picture)
+
+
+def element_entries(picture: Picture) -> list[Any]:
+    """The force of elements over their limit, or over the largest of those without one."""
+    from matplotlib.lines import Line2D
+
+    shades = colors.color_map("viridis")
+    labels = {1.0: "element at its limit", 0.5: "at half of it"}
+    if picture.free_forces:
+        largest = ", ".join(f"{kind} {with_unit(float(f'{force:.2g}'), 'force')}" for kind, force in picture.free_forces.items())
+        labels[1.0] = f"element at its limit, or {largest}"
+    return [Line2D([], [], color=shades(share), linewidth=1.0 + 2.2 * share, label=label) for share, label in labels.items()]
 
 
 def _quantity(picture: Picture) -> str:

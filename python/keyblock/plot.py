@@ -45,6 +45,7 @@ class Options:
 
     color: Any = "displacement"
     joints: str | None = None  #: "state", "slip", "opening" or "set"
+    elements: bool = True  #: springs, supports and other elements: lines, the wider and darker the more of its limit each carries
     forces: bool = False  #: force chains: lines between blocks, as wide as the force
     stress: bool = False  #: crosses of the principal stresses
     arrows: str | None = None  #: "velocity" or "displacement"
@@ -87,6 +88,7 @@ class Picture:
         self.window = options.window or section.extent(run)
         self.field = self._scaled(fields.block_field(run, frame, options.color, self.since))
         self.joint_scale = section.size_scale(run, options.joints) if options.joints in ("slip", "opening") else None
+        self.free_forces = section.largest_free_forces(run) if options.elements else {}
         self._ax: Any = None
         self._moving: list[Artist] = []
         self._typical: dict[str, float] = {}
@@ -162,6 +164,8 @@ class Picture:
         drawn += self._draw_joints(ax, look, contacts)
         if o.forces and contacts is not None:
             drawn += section.draw_forces(ax, look, contacts, self.typical("force"))
+        if o.elements and len(self.frame.elements):
+            drawn += section.draw_elements(ax, look, self.free_forces)
         if o.stress:
             drawn += section.draw_crosses(ax, look, self.typical("stress"))
         if o.arrows:

@@ -97,7 +97,7 @@ class Result:
 
     @cached_property
     def histories(self) -> Any:
-        """Displacement, velocity, stress and acceleration of the chosen points: a table over time with columns (point, quantity)."""
+        """What the chosen points and elements did: a table over time with columns (point, quantity). Of an element: force and elongation."""
         return tables.histories(self._file)
 
     @cached_property
@@ -112,7 +112,7 @@ class Result:
 
     @property
     def elements(self) -> Any:
-        """Springs and supports: what each carries at the end and carried at the most. None without."""
+        """Springs, supports and other elements: what each carries at the end and carried at the most. None without. At a moment: `frames[3].elements`."""
         return tables.elements(self.summary.get("elements") or [])
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import colors, fields
 from .blocks import DOMAIN, JOINT_SET, TRACE_MAP
+from .elements import Elements
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -51,18 +52,22 @@ class Look:
     frame: Frame
     at: np.ndarray  #: (nv, 2), m: positions of the vertices as drawn
     centroid: np.ndarray  #: (nb, 2), m: of the blocks as drawn
+    elements: np.ndarray  #: (n, 2, 2), m: ends of the elements as drawn
     block_size: float  #: m: side of a mean block
     points_per_metre: float
 
     @staticmethod
     def of(run: Result, frame: Frame, since: int, exaggeration: float, points_per_metre: float) -> Look:
-        blocks, local = run.blocks, frame.local
+        blocks, local, ends = run.blocks, frame.local, frame.elements.local
         if exaggeration != 1.0:
             before = blocks.local if since < 0 else run.frames[since].local
             local = before + exaggeration * (local - before)
+            ends_before = Elements(run._file, blocks, None if since < 0 else since).local
+            ends = ends_before + exaggeration * (ends - ends_before)
         moving = ~blocks.fixed
         size = float(np.sqrt(blocks.area[moving].mean())) if moving.any() else 1.0
-        return Look(run, frame, local + blocks.origin, blocks.outlines.centroids(local) + blocks.origin, size, points_per_metre)
+        centroid = blocks.outlines.centroids(local) + blocks.origin
+        return Look(run, frame, local + blocks.origin, centroid, ends + blocks.origin, size, points_per_metre)
 
     @property
     def shown(self) -> np.ndarray:
@@ -265,6 +270,37 @@ def draw_forces(ax: Axes, look: Look, contacts: Contacts, typical: float) -> lis
     widths = np.minimum(FORCE_WIDTH * total[kept] / typical, 2.0 * FORCE_WIDTH)
     lines = LineCollection(chains[kept], colors=colors.FORCE, linewidths=widths, alpha=0.85, capstyle="round", zorder=6)
     return [ax.add_collection(lines, autolim=False)]
+
+
+def element_shares(look: Look, largest: dict[str, float]) -> np.ndarray:
+    """Size of the force of each element over its limit, (n,); without one, over the largest of its kind in the run, N/m."""
+    elements = look.frame.elements
+    whole = np.where(np.isfinite(elements.limit), elements.limit, [largest.get(kind, 0.0) for kind in elements.kinds])
+    return np.clip(np.abs(elements.force) / np.maximum(whole, 1e-30), 0.0, 1.0)
+
+
+def largest_free_forces(run: Result) -> dict[str, float]:
+    """By kind of element: the largest force in the run of those without a limit, N/m."""
+    largest: dict[str, float] = {}
+    for k in fields.stage_ends(run):
+        elements = run.frames[k].elements
+        for kind, force, limit in zip(elements.kinds, elements.force, elements.limit):
+            if not np.isfinite(limit):
+                largest[kind] = max(largest.get(kind, 0.0), abs(float(force)))
+    return largest
+
+
+def draw_elements(ax: Axes, look: Look, largest: dict[str, float]) -> list[Artist]:
+    """Springs, supports and other elements that are there: lines, the wider and darker the more of its limit each carries."""
+    from matplotlib.collections import LineCollection
+
+    kept = np.flatnonzero(look.frame.elements.present)
+    share = element_shares(look, largest)[kept]
+    segments, shades = look.elements[kept], colors.color_map("viridis")(share)
+    halo = LineCollection(segments, colors="white", linewidths=2.0 + 2.2 * share, capstyle="round", zorder=6.5)
+    lines = LineCollection(segments, colors=shades, linewidths=1.0 + 2.2 * share, capstyle="round", zorder=6.6)
+    ends = ax.scatter(*segments.reshape(-1, 2).T, s=6.0, c=np.repeat(shades, 2, axis=0), linewidths=0.0, zorder=6.6)
+    return [ax.add_collection(halo, autolim=False), ax.add_collection(lines, autolim=False), ends]
 
 
 #: Length of a bar of a cross, and of an arrow, whose value is the typical one, in sides of a mean block.

@@ -11,6 +11,7 @@ from . import _optional
 from ._hdf5 import ResultFile
 
 HISTORY_COLUMNS = ["ux", "uy", "vx", "vy", "sxx", "syy", "sxy"]  # of results that do not name them
+ELEMENT_COLUMNS = ["force", "elongation"]
 RELEASE_COLUMNS = ["stage", "step", "excavation", "released", "crown", "springline", "mean"]
 
 
@@ -31,13 +32,21 @@ def data_frame(rows: Sequence[Mapping[str, Any]], what: str, columns: list[str] 
 
 
 def histories(file: ResultFile) -> Any:
-    """Displacement, velocity, stress and acceleration of the chosen points; columns (point, quantity)."""
+    """Displacement, velocity, stress and acceleration of the chosen points, force and elongation of the chosen elements; columns (point, quantity)."""
     time = file.complete_times("histories")
     values = file.read("histories/values", slice(0, len(time)))
     quantities, units = file.columns("histories/values", HISTORY_COLUMNS), file.units("histories/values")
     points = file.texts("histories/names")
     columns = {(p, q): values[:, i, k] for i, p in enumerate(points) for k, q in enumerate(quantities)}
-    found = table(columns, time, dict(zip(quantities, units)))
+    unit_of = dict(zip(quantities, units))
+    of_elements = "histories/element_values"
+    if file.has(of_elements):
+        values = file.read(of_elements, slice(0, len(time)))
+        quantities = file.columns(of_elements, ELEMENT_COLUMNS)
+        names = file.texts("histories/element_names")
+        columns |= {(e, q): values[:, i, k] for i, e in enumerate(names) for k, q in enumerate(quantities)}
+        unit_of |= dict(zip(quantities, file.units(of_elements)))
+    found = table(columns, time, unit_of)
     if not isinstance(found, dict):
         import pandas
 
@@ -65,7 +74,7 @@ def steps(file: ResultFile) -> Any:
 
 
 def elements(rows: Sequence[Mapping[str, Any]]) -> Any:
-    """Springs and supports: a row each, with what it carries at the end of the run and carried at the most; None where there are none.
+    """Springs, supports and other elements: a row each, with what it carries at the end of the run and carried at the most; None where there are none.
 
     N per metre of thickness, of springs tension is positive; m; s. NaN where there is no limit. Without pandas: a dictionary of arrays.
     """

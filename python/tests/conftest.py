@@ -89,6 +89,13 @@ def heading_folder(out: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
+def anchors_folder(out: Path) -> Path:
+    """A block on a spring, and a second one that a stage installs; with histories of the second and of the block."""
+    scenario = (ROOT / "verification/scenarios/staged_support.toml").read_text()
+    return _run(out, "anchors", scenario + '\n[[history]]\nname = "cell"\nspring = "second"\n', "--set", "spring.first.yield=1e5")
+
+
+@pytest.fixture(scope="session")
 def incline_folder(out: Path) -> Path:
     return _run(out, "incline", ROOT / "examples/03-block-on-incline.toml")
 

@@ -21,6 +21,8 @@ RESULTS = {
     "heading.release.groupby": lambda n: n["axes"] is not None and len(n["axes"].lines) == len(set(n["heading"].release["excavation"])),
     "frame.principal": lambda n: (n["principal"][:, 0] >= n["principal"][:, 1]).all() and abs(n["frame"].time - 0.3) < 0.05,
     "block = run.blocks[3]": lambda n: n["run"].blocks.area[3] == n["block"].area > 0,
+    "elements = heading": lambda n: {name for name, there in zip(n["elements"].names, n["elements"].present) if there}
+    == {"heading.crown", "heading.left", "heading.right"} and set(n["elements"].kinds) == {"pressure"} and n["elements"].force[0] == pytest.approx(6.4e5, rel=0.01),
     'groupby("edge").slip.max()': lambda n: (n["contacts"].slip >= 0).all()
     and (n["contacts"].slip == abs(n["contacts"].shear_displacement)).all()
     and (n["contacts"].table().groupby("edge").slip.max() == abs(n["contacts"].table().shear_displacement).groupby(n["contacts"].table().edge).max()).all()

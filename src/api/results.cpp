@@ -17,6 +17,12 @@ struct Results::Parts {
   results::RunData data;
 };
 
+namespace {
+std::array<double, 2> xy(Vec2 p) {
+  return {p.x, p.y};
+}
+}  // namespace
+
 Results::Results(const std::filesystem::path& folder)
     : parts_(std::make_unique<Parts>(Parts{results::read_run(folder)})) {}
 Results::~Results() = default;
@@ -37,7 +43,9 @@ std::size_t Results::frames() const {
 
 Frame Results::frame(std::size_t k) const {
   const simulation::Frame& of = parts_->data.frames.at(k);
-  Frame frame{of.time, of.stage, of.step, of.displacement, of.stress, {}, of.velocity};
+  Frame frame{of.time, of.stage, of.step, of.displacement, of.stress, {}, of.velocity, {}};
+  for (const simulation::ElementState& e : of.elements)
+    frame.elements.push_back({xy(e.from), xy(e.to), e.force, e.elongation, e.yielded, e.present});
   if (frame.velocity.empty()) frame.velocity.assign(blocks(), {std::nanf(""), std::nanf("")});
   for (const simulation::BlockStatus status : of.status)
     frame.status.push_back(static_cast<unsigned char>(status));
@@ -75,6 +83,27 @@ std::vector<HistoryOfPoint> Results::histories() const {
     }
   }
   return histories;
+}
+
+std::vector<HistoryOfElement> Results::element_histories() const {
+  std::vector<HistoryOfElement> histories;
+  const auto& followed = parts_->data.model.element_histories;
+  for (std::size_t k = 0; k < followed.size(); ++k) {
+    HistoryOfElement& of = histories.emplace_back(
+        HistoryOfElement{followed[k].name, static_cast<std::size_t>(followed[k].element), {}, {}});
+    for (const simulation::HistoryRow& row : parts_->data.histories) {
+      of.force.push_back(row.elements.at(k).force);
+      of.elongation.push_back(row.elements.at(k).elongation);
+    }
+  }
+  return histories;
+}
+
+std::vector<Element> Results::elements() const {
+  std::vector<Element> elements;
+  for (const simulation::ElementDescription& e : parts_->data.model.elements)
+    elements.push_back({e.name, e.kind, e.limit, xy(e.from), xy(e.to), e.from_block, e.to_block});
+  return elements;
 }
 
 std::vector<StepEnergies> Results::energies() const {

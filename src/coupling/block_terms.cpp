@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "core/known_size.h"
 #include "coupling/coupling.h"
+#include "coupling/facets.h"
 #include "linalg/dense_block.h"
 #include "model/turn.h"
 #include "model/vertex_field.h"
@@ -228,7 +229,7 @@ void BlockTerms::add_loads(const State& state, const Drive& drive) {
     weight_[at(load.block)] = std::max(weight_[at(load.block)], largest);
   }
   if (model_->gravity != Vec2{}) return;
-  for (const auto& coupling : model_->couplings) coupling->add_weights(*model_, state, drive, weight_);
+  add_weights(*model_, state, drive, weight_);
 }
 
 /// Largest |b_k| of a block.

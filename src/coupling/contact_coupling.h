@@ -37,7 +37,7 @@ class ContactCoupling final : public Coupling {
 
   void add_pairs(BlockPairs& pairs) const override;
   [[nodiscard]] std::size_t rows() const override { return contacts_.size(); }
-  [[nodiscard]] RowKey key(std::size_t row) const override {
+  [[nodiscard]] std::pair<int, int> key(std::size_t row) const override {
     return {contacts_[row].vertex, contacts_[row].edge};
   }
   RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,

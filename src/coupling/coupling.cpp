@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "coupling/facets.h"
 #include "model/model.h"
 
 namespace keyblock::dynamics {
@@ -18,6 +19,12 @@ std::vector<int> held_blocks(const Model& model) {
   std::vector<int> blocks;
   for (const auto& coupling : model.couplings) coupling->add_held_blocks(blocks);
   return blocks;
+}
+
+void add_weights(const Model& model, const State& state, const Drive& drive, std::span<double> weight) {
+  for (const auto& coupling : model.couplings) {
+    if (const ForceScale* scale = coupling->force_scale()) scale->add_weights(model, state, drive, weight);
+  }
 }
 
 }  // namespace keyblock::dynamics

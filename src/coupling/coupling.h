@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/rock_column.h"
 #include "coupling/row.h"
 #include "coupling/spring_array.h"
 #include "geometry/vec2.h"
@@ -17,9 +16,12 @@ namespace keyblock::dynamics {
 struct Attempt;
 class BlockTerms;
 struct Drive;
+class FarField;
+class ForceScale;
 struct Model;
 class Points;
 class RowOwners;
+class StagedSupports;
 struct State;
 
 /// A material point of a block, by the block's basis functions there.
@@ -28,21 +30,29 @@ struct MaterialPoint {
   std::vector<double> phi;  ///< N values
 };
 
-/// A part of a coupling that users know and that carries a force: a spring between two points, a support.
+/// An end of an element, or of the stretch that it supports.
+struct ElementEnd {
+  Vec2 place;      ///< m, local, before the run
+  int block = -1;  ///< that it is a point of; −1: of several
+};
+
+/// A part of a coupling that users know and that carries a force: a spring between two points, a support, a side of the boundary, a wall under
+/// pressure. All that a run writes and draws of it (simulation/elements.h) asks for elements() and carried() alone.
 struct Element {
   const char* kind = "";  ///< "spring", "support": as in the scenario
   std::string name;       ///< that of the scenario, or "spring[0]" by its place there
   double limit = 0.0;     ///< N per thickness, the largest force; infinite: none
+  ElementEnd from, to;
 };
 
 /// What an element carries.
 struct Carried {
   Vec2 from, to;  ///< m, its ends, or those of the stretch that it supports
   double force =
-      0.0;  ///< N per thickness; of springs tension is positive, of supports it is the size of the resultant
+      0.0;  ///< N per thickness; of springs tension is positive, of all else it is the size of the resultant
   double elongation =
-      0.0;  ///< m, of springs the change of length since it was installed, of supports the mean way of what they support
-  double yielded = 0.0;  ///< m, by what it has yielded
+      0.0;  ///< m, of springs the change of length since they were installed, of supports the mean way of what they support
+  double yielded = 0.0;  ///< m of it, that does not come back
   bool present = false;
 };
 
@@ -92,8 +102,12 @@ struct CouplingRows {
 class Coupling {
  public:
   using BlockPairs = std::vector<std::pair<int, int>>;
-  /// Names a row from step to step.
-  using RowKey = std::pair<int, int>;
+  /// Names a row from step to step among all rows of a problem.
+  struct RowKey {
+    int coupling = 0;           ///< StepProblem's number of it
+    std::pair<int, int> row{};  ///< among its own rows
+    friend bool operator==(const RowKey&, const RowKey&) = default;
+  };
 
   Coupling() = default;
   Coupling(const Coupling&) = delete;
@@ -109,22 +123,15 @@ class Coupling {
   /// Adds its terms to those of the blocks.
   virtual void add_terms(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
                          std::span<const double> /*memory*/, BlockTerms& /*terms*/) const {}
-  /// Raises what residuals of blocks are measured by, N over √A, to forces of its own: in a model without gravity.
-  virtual void add_weights(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
-                           std::span<double> /*weight*/) const {}
   /// Number of its rows in the step at hand.
   [[nodiscard]] virtual std::size_t rows() const { return 0; }
-  /// Of a row, among its own rows; the first number is not negative.
-  [[nodiscard]] virtual RowKey key(std::size_t row) const { return {0, static_cast<int>(row)}; }
+  /// Of a row, among its own rows: what it is in other steps too.
+  [[nodiscard]] virtual std::pair<int, int> key(std::size_t row) const { return {0, static_cast<int>(row)}; }
   /// Writes its rows and their springs, unstretched by D.
   virtual RowFacts build(const Model& /*model*/, const State& /*state*/, const Drive& /*drive*/,
                          std::span<const double> /*memory*/, CouplingRows /*out*/) const {
     return {};
   }
-
-  /// Supports come to life, without force at the positions of the state. now: as State::installed, those that do.
-  virtual void install(const Model& /*model*/, const State& /*state*/, std::span<const std::uint8_t> /*now*/,
-                       std::span<double> /*memory*/) const {}
 
   /// Before blocks are moved: where its energy went in the step, into the ledger, and what it stores at the end as the step has it, into
   /// the energy of its kind in the state; what it remembers. `first`: its first row. spin: rad, by which the step turns each block.
@@ -147,10 +154,10 @@ class Coupling {
     return {};
   }
 
-  /// How the ground moves at a place, where the model does not disturb it. Places are those before the run.
-  [[nodiscard]] virtual GroundMove far_ground(std::span<const double> /*memory*/, Vec2 /*place*/) const {
-    return {};
-  }
+  // What only some couplings are (facets.h); null: this one is not.
+  [[nodiscard]] virtual const StagedSupports* staged_supports() const { return nullptr; }
+  [[nodiscard]] virtual const FarField* far_field() const { return nullptr; }
+  [[nodiscard]] virtual const ForceScale* force_scale() const { return nullptr; }
 
   /// Adds the blocks that it holds to the ground.
   virtual void add_held_blocks(std::vector<int>& /*blocks*/) const {}

@@ -76,7 +76,9 @@ double GroundSprings::stored_energy(const Model& model, const State& state, doub
 
 std::vector<Element> GroundSprings::elements() const {
   std::vector<Element> all;
-  for (const SupportedPlace& place : places_) all.push_back({"support", place.name, HUGE_VAL});
+  for (const SupportedPlace& place : places_)
+    all.push_back(
+        {"support", place.name, HUGE_VAL, {place.from_place, place.block}, {place.to_place, place.block}});
   return all;
 }
 

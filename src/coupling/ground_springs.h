@@ -27,6 +27,7 @@ struct SupportedPlace {
   std::string name;
   int block = 0;
   std::vector<double> from, to;  ///< N values of φ there
+  Vec2 from_place, to_place;     ///< m, before the run
 };
 
 /// Supports: a coupling of single blocks with the ground, by terms.

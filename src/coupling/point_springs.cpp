@@ -83,7 +83,7 @@ std::vector<PointSprings::Now> PointSprings::now(const Model& model, const State
 
 void PointSprings::set_force(const Model& model, const State& state, std::size_t k, double force,
                              std::span<double> memory) const {
-  memory[k] = norm(chord(model, state, k)) - springs_[k].length - force / stiffness_of(model, k);
+  memory[k] = norm(chord(model, state, k)) - springs_[k].length() - force / stiffness_of(model, k);
 }
 
 void PointSprings::install(const Model& model, const State& state, std::span<const std::uint8_t> now,
@@ -91,7 +91,7 @@ void PointSprings::install(const Model& model, const State& state, std::span<con
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const int staged = springs_[k].staged;
     if (staged >= 0 && now[at(staged)] != 0)
-      memory[k] = memory[installed(k)] = norm(chord(model, state, k)) - springs_[k].length;
+      memory[k] = memory[installed(k)] = norm(chord(model, state, k)) - springs_[k].length();
   }
 }
 
@@ -136,7 +136,11 @@ double PointSprings::stored_energy(const Model& model, const State& state, doubl
 
 std::vector<Element> PointSprings::elements() const {
   std::vector<Element> all;
-  for (const PointSpring& spring : springs_) all.push_back({"spring", spring.name, spring.yield});
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const PointSpring& spring = springs_[k];
+    all.push_back(
+        {"spring", spring.name, spring.yield, {spring.from, end(k, 0).block}, {spring.to, end(k, 1).block}});
+  }
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coupling/coupling.h"
+#include "coupling/facets.h"
 #include "model/model.h"
 
 namespace keyblock::dynamics {
@@ -14,9 +15,12 @@ struct PointSpring {
   std::string name;
   double stiffness = 0.0;  ///< N/m per thickness
   double yield =
-      0.0;  ///< N per thickness, largest force in tension and compression; infinite: it never yields
-  double length = 0.0;  ///< m, without force, before the run
-  int staged = -1;      ///< State::installed that says whether it is there; −1: always
+      0.0;          ///< N per thickness, largest force in tension and compression; infinite: it never yields
+  Vec2 from, to;    ///< m, its ends before the run, when it has no force
+  int staged = -1;  ///< State::installed that says whether it is there; −1: always
+
+  /// m, without force.
+  [[nodiscard]] double length() const { return norm(from - to); }
 };
 
 /// Springs between points of blocks: a coupling by rows. The shear spring of a row acts along the line between its points,
@@ -26,7 +30,7 @@ struct PointSpring {
 /// with p the elongation that leaves no force, in the memory: what has yielded, what it was long when a stage installed it, and what pretension
 /// asked for. The memory has what has yielded beside it, and how much longer than without force the spring was when it was installed. The normal spring acts across the line with T/L where T pulls: by that the force
 /// turns with the line within the step. Lengths are those of the positions at the start of the step, so that nothing drifts.
-class PointSprings final : public Coupling {
+class PointSprings final : public Coupling, public StagedSupports {
  public:
   /// points: two for each spring, its first end and its second.
   PointSprings(std::vector<PointSpring> springs, std::vector<MaterialPoint> points)
@@ -52,6 +56,7 @@ class PointSprings final : public Coupling {
   [[nodiscard]] std::size_t rows() const override { return springs_.size(); }
   RowFacts build(const Model& model, const State& state, const Drive& drive, std::span<const double> memory,
                  CouplingRows out) const override;
+  [[nodiscard]] const StagedSupports* staged_supports() const override { return this; }
   void install(const Model& model, const State& state, std::span<const std::uint8_t> now,
                std::span<double> memory) const override;
   CouplingTotals account(const Attempt& attempt, std::span<const double> spin, std::size_t first,
@@ -83,7 +88,7 @@ class PointSprings final : public Coupling {
   [[nodiscard]] Vec2 chord(const Model& model, const State& state, std::size_t k) const;
   /// m, that has not yielded, of a spring of this length.
   [[nodiscard]] double stretch_of(std::size_t k, double length, std::span<const double> memory) const {
-    return length - springs_[k].length - memory[k];
+    return length - springs_[k].length() - memory[k];
   }
 
   std::vector<PointSpring> springs_;

@@ -207,7 +207,7 @@ class SeismicBoundary::Step {
 
 SeismicBoundary::SeismicBoundary(std::vector<BoundaryPoint> points, std::vector<FarRock> far,
                                  std::optional<MassDamping> damping)
-    : points_(std::move(points)), far_(std::move(far)), damping_(std::move(damping)) {
+    : points_(std::move(points)), sides_(points_), far_(std::move(far)), damping_(std::move(damping)) {
   if (!damping_ || far_.empty()) return;
   for (const MassPoint& point : damping_->points()) damped_.push_back(far_place(point.place));
 }
@@ -287,6 +287,13 @@ double SeismicBoundary::stored_energy(const Model& model, const State& state, do
     sum += stored(model, state, PointMemory::read(memory, k), k);
   }
   return sum;
+}
+
+std::vector<Carried> SeismicBoundary::carried(const Model& model, const State& state,
+                                              std::span<const double> memory) const {
+  std::vector<Vec2> tractions;
+  for (std::size_t k = 0; k < points_.size(); ++k) tractions.push_back(PointMemory::read(memory, k).traction);
+  return sides_.carried(points_, tractions, model, state);
 }
 
 FarPlace SeismicBoundary::far_place(Vec2 place) const {

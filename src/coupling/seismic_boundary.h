@@ -3,7 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "coupling/boundary_sides.h"
 #include "coupling/coupling.h"
+#include "coupling/facets.h"
 #include "coupling/mass_damping.h"
 #include "coupling/rock_column.h"
 
@@ -21,12 +23,6 @@ struct BoundaryPoint {
   Vec2 dashpots;         ///< Pa s/m, in x and in y, of those steps
   int far = -1;          ///< the far rock whose stress and motion it has then; −1: rock at rest
   RockColumn::Place in_far;  ///< where it is in that rock
-};
-
-/// Rock far away, beside the model.
-struct FarRock {
-  RockColumn column;
-  double x = 0.0;  ///< m, of the side of the model that it is beside
 };
 
 /// A place among columns of rock far away: between what the outer two do at its height.
@@ -47,7 +43,7 @@ struct FarPlace {
 ///
 /// Memory: which kind the last step was; of each point u_a, t_a or t_0 (less the traction before the run), and the traction; of each column
 /// its motion, and the displacement that it had when the dynamic steps began.
-class SeismicBoundary final : public Coupling {
+class SeismicBoundary final : public Coupling, public FarField {
  public:
   SeismicBoundary(std::vector<BoundaryPoint> points, std::vector<FarRock> far,
                   std::optional<MassDamping> damping = {});
@@ -59,14 +55,18 @@ class SeismicBoundary final : public Coupling {
                          std::span<double> memory, State& state) const override;
   [[nodiscard]] double stored_energy(const Model& model, const State& state, double time,
                                      std::span<const double> memory) const override;
+  [[nodiscard]] std::vector<Element> elements() const override { return sides_.elements(points_); }
+  [[nodiscard]] std::vector<Carried> carried(const Model& model, const State& state,
+                                             std::span<const double> memory) const override;
+  [[nodiscard]] const FarField* far_field() const override { return this; }
   [[nodiscard]] GroundMove far_ground(std::span<const double> memory, Vec2 place) const override;
+  [[nodiscard]] std::span<const FarRock> far_rock() const override { return far_; }
+  [[nodiscard]] RockPlaneState plane(std::span<const double> memory, std::size_t far,
+                                     std::size_t k) const override;
   void add_held_blocks(std::vector<int>& blocks) const override;
   void add_rounding_forces(const Model& model, double extent, std::span<double> force) const override;
 
   [[nodiscard]] std::span<const BoundaryPoint> boundary_points() const { return points_; }
-  [[nodiscard]] std::span<const FarRock> far_rock() const { return far_; }
-  /// Plane k of far rock `far`.
-  [[nodiscard]] RockPlaneState plane(std::span<const double> memory, std::size_t far, std::size_t k) const;
 
  private:
   struct PointMemory;
@@ -80,6 +80,7 @@ class SeismicBoundary final : public Coupling {
   [[nodiscard]] GroundMove far_ground(std::span<const double> memory, const FarPlace& place) const;
 
   std::vector<BoundaryPoint> points_;
+  BoundarySides sides_;
   std::vector<FarRock> far_;  ///< from left to right
   std::optional<MassDamping> damping_;
   std::vector<FarPlace> damped_;  ///< where its points are; empty without rock far away

@@ -61,8 +61,7 @@ void StepProblem::name_rows(std::vector<Coupling::RowKey>& keys) const {
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     const Coupling& coupling = *parts_[k].coupling;
     for (std::size_t row = 0, rows = coupling.rows(); row < rows; ++row) {
-      const auto [first, second] = coupling.key(row);
-      keys.emplace_back(first - static_cast<int>(k), second);
+      keys.push_back({static_cast<int>(k), coupling.key(row)});
     }
   }
 }

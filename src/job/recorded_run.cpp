@@ -89,8 +89,8 @@ void restore_conclusions(const std::filesystem::path& folder) {
   if (!report && !histories) return;
   const results::RunData data = results::read_run(folder);
   if (report) report::write_report(data, folder);
-  if (histories && !data.model.history_names.empty())
-    results::write_histories_csv(folder, data.model.history_names, data.histories);
+  if (histories && results::has_histories(data.model))
+    results::write_histories_csv(folder, data.model, data.histories);
 }
 
 }  // namespace keyblock::job

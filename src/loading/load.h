@@ -28,6 +28,7 @@ struct Load {
 
 /// Springs from material points, or from every point of a straight stretch of boundary, to the ground.
 struct Support {
+  std::string name;  ///< may be empty
   std::string block;
   bool is_edge = false;
   std::vector<Vec2> points;  ///< the points, or the two ends of the stretch

@@ -96,6 +96,33 @@ void add_frames(const results::RunData& run, const std::vector<std::size_t>& cho
            }));
 }
 
+void add_elements(const results::RunData& run, const std::vector<std::size_t>& chosen, ArrayPack& pack) {
+  if (run.model.elements.empty()) return;
+  std::vector<float> reference, ends, numbers;
+  std::vector<std::uint8_t> present;
+  const auto add = [](std::vector<float>& to, Vec2 p) {
+    to.push_back(static_cast<float>(p.x));
+    to.push_back(static_cast<float>(p.y));
+  };
+  for (const simulation::ElementDescription& e : run.model.elements) {
+    add(reference, e.from);
+    add(reference, e.to);
+  }
+  for (const std::size_t f : chosen) {
+    for (const simulation::ElementState& e : run.frames[f].elements) {
+      add(ends, e.from);
+      add(ends, e.to);
+      for (const auto& field : simulation::element_state_fields)
+        numbers.push_back(static_cast<float>(e.*field.number));
+      present.push_back(e.present ? 1 : 0);
+    }
+  }
+  pack.add("element.reference", reference);
+  pack.add("element.ends", ends);
+  pack.add("element.numbers", numbers);
+  pack.add("element.present", present);
+}
+
 void add_contacts(const results::RunData& run, const std::vector<std::size_t>& frames, ArrayPack& pack) {
   std::vector<int> stages;
   for (const ContactFrame& snapshot : run.contacts) stages.push_back(snapshot.stage);
@@ -145,7 +172,9 @@ void add_curves(std::string_view x_name, std::string_view values_name, const Cur
 void add_histories(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
   constexpr std::size_t quantities = std::size(results::history_fields);
-  curves.columns.resize(1 + quantities * run.model.history_names.size());
+  constexpr std::size_t of_element = simulation::element_history_fields.size();
+  const std::size_t first_element = 1 + quantities * run.model.history_names.size();
+  curves.columns.resize(first_element + of_element * run.model.element_histories.size());
   for (const simulation::HistoryRow& row : run.histories) {
     curves.x.push_back(row.time);
     curves.columns[0].push_back(static_cast<double>(row.step));
@@ -153,6 +182,11 @@ void add_histories(const results::RunData& run, ArrayPack& pack) {
       const auto& q = row.points[p];
       for (std::size_t c = 0; c < quantities; ++c)
         curves.columns[1 + quantities * p + c].push_back(q.*results::history_fields[c].member);
+    }
+    std::size_t column = first_element;
+    for (const simulation::ElementState& element : row.elements) {
+      for (const auto& field : simulation::element_history_fields)
+        curves.columns[column++].push_back(element.*field.number);
     }
   }
   add_curves("history.time", "history.values", curves, pack);
@@ -242,6 +276,7 @@ ArrayPack page_arrays(const results::RunData& run) {
   add_model(run, pack);
   const std::vector<std::size_t> frames = chosen_frames(run);
   add_frames(run, frames, pack);
+  add_elements(run, frames, pack);
   add_contacts(run, frames, pack);
   add_histories(run, pack);
   add_steps(run, pack);

@@ -94,6 +94,8 @@ ordered_json model_json(const results::RunData& data) {
           {"excavation_outlines", outlines},
           {"pressure_search", pressure_search(data)},
           {"histories", model.history_names},
+          {"elements", results::element_names_json(model)},
+          {"element_histories", results::element_histories_json(model)},
           {"opening_width_m", results::or_null(model.opening_width)},
           {"slip_limit_m", results::or_null(model.slip_limit)},
           {"opening_limit_m", results::or_null(model.opening_limit)},
@@ -166,6 +168,7 @@ std::string page_header(const results::RunData& run, const ArrayPack& arrays) {
                              {"stage", "time", "iterations", "step_size", "penetration", "max_displacement",
                               "closed_contacts", "kinetic", "strain", "gravity", "contact", "friction",
                               "damping", "radiated", "numerical", "input", "residual"}},
+                            {"damage_measures", results::damage_measures_json()},
                             {"arrays", entries}};
   return script_json(header.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }

@@ -51,19 +51,38 @@ std::string csv_field(std::string_view text) {
   return out + "\"";
 }
 
-std::vector<std::string> history_columns(const std::vector<std::string>& names) {
+bool has_histories(const simulation::ModelRecord& model) {
+  return !model.history_names.empty() || !model.element_histories.empty();
+}
+
+std::vector<std::string> history_columns(const simulation::ModelRecord& model) {
   std::vector<std::string> columns{"time"};
-  for (const std::string& name : names) {
+  for (const std::string& name : model.history_names) {
     for (const HistoryField& field : history_fields)
       columns.push_back(fmt::format("{}.{}", name, field.name));
+  }
+  for (const simulation::ElementHistory& history : model.element_histories) {
+    for (const auto& field : simulation::element_history_fields)
+      columns.push_back(fmt::format("{}.{}", history.name, field.name));
   }
   return columns;
 }
 
-std::string histories_csv(const std::vector<std::string>& names,
+std::vector<double> history_numbers(const simulation::HistoryRow& row) {
+  std::vector<double> numbers{row.time};
+  for (const auto& p : row.points) {
+    for (const HistoryField& field : history_fields) numbers.push_back(p.*field.member);
+  }
+  for (const simulation::ElementState& element : row.elements) {
+    for (const auto& field : simulation::element_history_fields) numbers.push_back(element.*field.number);
+  }
+  return numbers;
+}
+
+std::string histories_csv(const simulation::ModelRecord& model,
                           const std::vector<simulation::HistoryRow>& rows) {
   std::string text;
-  for (const std::string& column : history_columns(names))
+  for (const std::string& column : history_columns(model))
     text += (text.empty() ? "" : ",") + csv_field(column);
   text += "\n";
   for (const simulation::HistoryRow& row : rows) {
@@ -76,14 +95,20 @@ std::string histories_csv(const std::vector<std::string>& names,
         if (is_there) fmt::format_to(out, "{}", p.*field.member);
       }
     }
+    for (const simulation::ElementState& element : row.elements) {
+      for (const auto& field : simulation::element_history_fields) {
+        text += ',';
+        if (!std::isnan(element.*field.number)) fmt::format_to(out, "{}", element.*field.number);
+      }
+    }
     text += "\n";
   }
   return text;
 }
 
-void write_histories_csv(const std::filesystem::path& directory, const std::vector<std::string>& names,
+void write_histories_csv(const std::filesystem::path& directory, const simulation::ModelRecord& model,
                          const std::vector<simulation::HistoryRow>& rows) {
-  write_file_atomically(directory / "histories.csv", histories_csv(names, rows));
+  write_file_atomically(directory / "histories.csv", histories_csv(model, rows));
 }
 
 }  // namespace keyblock::results

@@ -12,7 +12,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 struct Meaning {
-  const char* dataset;
+  std::string dataset;
   std::string
       unit;  ///< "1": a number without a unit; "": text; of columns that differ, one for each, after commas
   const char* description;
@@ -22,11 +22,11 @@ struct Meaning {
 
 /// The dimensions of datasets, by the scales that they are; of all others nothing is said.
 struct Dimensions {
-  const char* dataset;
+  std::string dataset;
   Names scales;
 };
 
-std::vector<Dimensions> dimensions() {
+std::vector<Dimensions> dimensions(const simulation::ModelRecord& model) {
   const char *const frame = "frames/time", *const snapshot = "contacts/time",
                     *const contact = "contacts/contact", *const row = "histories/time",
                     *const step = "steps/time";
@@ -61,6 +61,20 @@ std::vector<Dimensions> dimensions() {
        {"model/block_name", "model/block_order", "model/block_fixed", "model/block_area",
         "model/block_density", "model/block_stress_ratio_zz", "model/block_young", "model/block_poisson"})
     all.push_back({name, {"block"}});
+  if (!model.elements.empty()) {
+    for (const char* name : {"elements/name", "elements/kind", "elements/limit"})
+      all.push_back({name, {"element"}});
+    all.push_back({"elements/reference", {"element", "end", "component"}});
+    all.push_back({"elements/block", {"element", "end"}});
+    all.push_back({"elements/ends", {frame, "element", "end", "component"}});
+    all.push_back({"elements/present", {frame, "element"}});
+    for (const auto& field : simulation::element_state_fields)
+      all.push_back({"elements/" + std::string(field.name), {frame, "element"}});
+  }
+  if (!model.element_histories.empty()) {
+    all.push_back({"histories/element_names", {"element_history"}});
+    all.push_back({"histories/element_values", {row, "element_history", "element_quantity"}});
+  }
   return all;
 }
 
@@ -202,26 +216,61 @@ std::vector<Meaning> of_rows() {
       {"summary", "", "the text of summary.json, bytes"}};
 }
 
-std::vector<Meaning> all_meanings() {
+std::vector<Meaning> of_elements(const simulation::ModelRecord& model) {
+  if (model.elements.empty()) return {};
+  std::vector<Meaning> all{{"element", "1", "number of the element"},
+                           {"end", "", "of elements"},
+                           {"elements/name", "", "names, as in summary.json"},
+                           {"elements/kind", "", "what each is: spring, support, boundary, pressure"},
+                           {"elements/limit", "N/m", "largest force that it can carry; infinite: none"},
+                           {"elements/reference",
+                            "m",
+                            "ends before the run, or those of the stretch that it supports",
+                            {"x", "y"}},
+                           {"elements/block", "1", "blocks of the ends, -1: of several", {"from", "to"}},
+                           {"elements/ends", "m", "ends in each frame", {"x", "y"}},
+                           {"elements/present", "1", "whether it is there", {}, {"not there", "there"}}};
+  for (const auto& field : simulation::element_state_fields)
+    all.push_back({"elements/" + std::string(field.name), field.unit, field.meaning});
+  return all;
+}
+
+std::vector<Meaning> of_element_histories(const simulation::ModelRecord& model) {
+  if (model.element_histories.empty()) return {};
+  Names names;
+  std::string units;
+  for (const auto& field : simulation::element_history_fields) {
+    names.emplace_back(field.name);
+    units += (units.empty() ? "" : ", ") + std::string(field.unit);
+  }
+  return {{"element_history", "1", "number of the history that follows an element"},
+          {"element_quantity", "", "of these histories"},
+          {"histories/element_names", "", "names of the histories that follow elements"},
+          {"histories/element_values", units, "of every such history; NaN where the element is not there",
+           names}};
+}
+
+std::vector<Meaning> all_meanings(const simulation::ModelRecord& model) {
   std::vector<Meaning> all;
-  for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows()})
+  for (auto& meanings : {of_the_model(), of_frames(), of_contacts(), of_rows(), of_elements(model),
+                         of_element_histories(model)})
     all.insert(all.end(), meanings.begin(), meanings.end());
   return all;
 }
 
 }  // namespace
 
-nlohmann::ordered_json dataset_names() {
+nlohmann::ordered_json dataset_names(const simulation::ModelRecord& model) {
   nlohmann::ordered_json names = nlohmann::ordered_json::object();
-  for (const Meaning& meaning : all_meanings()) {
+  for (const Meaning& meaning : all_meanings(model)) {
     if (!meaning.columns.empty()) names[meaning.dataset]["columns"] = meaning.columns;
     if (!meaning.values.empty()) names[meaning.dataset]["values"] = meaning.values;
   }
   return names;
 }
 
-void describe_datasets(hid_t file) {
-  for (const Meaning& meaning : all_meanings()) {
+void describe_datasets(hid_t file, const simulation::ModelRecord& model) {
+  for (const Meaning& meaning : all_meanings(model)) {
     const hdf5::Handle dataset = hdf5::open_dataset(file, meaning.dataset);
     if (!meaning.unit.empty()) hdf5::write_attribute(dataset, "units", meaning.unit);
     hdf5::write_attribute(dataset, "description", std::string(meaning.description));
@@ -231,7 +280,7 @@ void describe_datasets(hid_t file) {
   for (const char* group : {"frames", "contacts", "histories", "steps"})
     hdf5::make_scale(hdf5::open_dataset(file, std::string(group) + "/time"), "time");
   hdf5::make_scale(hdf5::open_dataset(file, "contacts/contact"), "contact");
-  for (const Dimensions& of : dimensions())
+  for (const Dimensions& of : dimensions(model))
     hdf5::attach_scales(file, hdf5::open_dataset(file, of.dataset), of.scales);
 }
 

@@ -6,12 +6,14 @@
 #include <iterator>
 
 #include "core/checked_json.h"
+#include "core/error.h"
 #include "results/csv.h"
 
 namespace keyblock::results {
 
 using nlohmann::ordered_json;
 using simulation::element_fields;
+using simulation::element_state_fields;
 using simulation::ElementRecord;
 
 namespace {
@@ -25,6 +27,40 @@ Vec2 read_place(const ordered_json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>()};
 }
 }  // namespace
+
+ordered_json element_names_json(const simulation::ModelRecord& model) {
+  ordered_json json = ordered_json::array();
+  for (const auto& e : model.elements)
+    json.push_back({{"name", e.name}, {"kind", e.kind}, {"limit_n_m", number_or_null(e.limit)}});
+  return json;
+}
+
+ordered_json element_histories_json(const simulation::ModelRecord& model) {
+  ordered_json json = ordered_json::array();
+  for (const auto& h : model.element_histories) json.push_back({{"name", h.name}, {"element", h.element}});
+  return json;
+}
+
+void add_element_names(const simulation::ModelRecord& model, ordered_json& json) {
+  if (!model.elements.empty()) json["elements"] = element_names_json(model);
+  if (!model.element_histories.empty()) json["element_histories"] = element_histories_json(model);
+}
+
+void read_element_names(const ordered_json& json, simulation::ModelRecord& model) {
+  if (!json.contains("elements")) return;
+  for (const ordered_json& one : json.at("elements")) {
+    simulation::ElementDescription& e = model.elements.emplace_back();
+    one.at("name").get_to(e.name);
+    one.at("kind").get_to(e.kind);
+  }
+  if (!json.contains("element_histories")) return;
+  for (const ordered_json& one : json.at("element_histories")) {
+    const auto& h = model.element_histories.emplace_back(
+        simulation::ElementHistory{one.at("name").get<std::string>(), one.at("element").get<int>()});
+    if (h.element < 0 || static_cast<std::size_t>(h.element) >= model.elements.size())
+      throw RunError("a history follows an element that is not there");
+  }
+}
 
 ordered_json elements_json(const std::vector<ElementRecord>& elements, Vec2 origin) {
   ordered_json json = ordered_json::array();
@@ -77,6 +113,28 @@ std::string element_table(const std::vector<ElementRecord>& elements, Vec2 origi
       text += std::isfinite(value) ? fmt::format(",{}", value) : ",";
     }
     fmt::format_to(out, ",{}\n", csv_field(e.peak_stage));
+  }
+  return text;
+}
+
+std::string element_state_table(const RunData& run) {
+  const simulation::ModelRecord& model = run.model;
+  if (model.elements.empty()) return {};
+  std::string text = "frame,time,stage,step,element,name,kind,present,from_x,from_y,to_x,to_y";
+  for (const auto& field : element_state_fields) text += fmt::format(",{}", field.name);
+  text += ",utilization\n";
+  auto out = std::back_inserter(text);
+  for (std::size_t f = 0; f < run.frames.size(); ++f) {
+    const simulation::Frame& frame = run.frames[f];
+    for (std::size_t k = 0; k < frame.elements.size(); ++k) {
+      const simulation::ElementDescription& of = model.elements[k];
+      const simulation::ElementState& e = frame.elements[k];
+      const Vec2 from = e.from + model.origin, to = e.to + model.origin;
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}", f, frame.time, frame.stage, frame.step, k,
+                     csv_field(of.name), of.kind, e.present ? 1 : 0, from.x, from.y, to.x, to.y);
+      for (const auto& field : element_state_fields) fmt::format_to(out, ",{}", e.*field.number);
+      text += std::isfinite(of.limit) ? fmt::format(",{}\n", e.utilization(of)) : ",\n";
+    }
   }
   return text;
 }

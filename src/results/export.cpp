@@ -169,10 +169,12 @@ std::vector<std::filesystem::path> export_csv(const RunData& data, FileSet& out)
   std::vector<std::filesystem::path> files{out.write("blocks.csv", block_table(data)),
                                            out.write("contacts.csv", contact_table(data)),
                                            out.write("steps.csv", step_table(data))};
-  if (!data.model.history_names.empty())
-    files.push_back(out.write("histories.csv", histories_csv(data.model.history_names, data.histories)));
+  if (has_histories(data.model))
+    files.push_back(out.write("histories.csv", histories_csv(data.model, data.histories)));
   if (const std::string elements = element_table(data.run.elements, data.model.origin); !elements.empty())
     files.push_back(out.write("elements.csv", elements));
+  if (const std::string states = element_state_table(data); !states.empty())
+    files.push_back(out.write("element_frames.csv", states));
   if (const std::string releases = release_table(data); !releases.empty())
     files.push_back(out.write("release.csv", releases));
   return files;

@@ -92,6 +92,8 @@ std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out)
   add(data.frames, "centres", "vtp", [&](const Frame& frame) { return blocks.centres(frame); });
   add(data.contacts, "forces", "vtp",
       [&](const ContactFrame& frame) { return vtk_contact_forces(data.model, frame); });
+  if (!data.model.elements.empty())
+    add(data.frames, "elements", "vtp", [&](const Frame& frame) { return vtk_elements(data.model, frame); });
   first.push_back(out.write("view.py", vtk_view(data)));
   first.insert(first.end(), others.begin(), others.end());
   return first;

@@ -25,18 +25,38 @@ ordered_json or_null(const std::optional<int>& value) {
 
 ordered_json damage_json(const simulation::Damage& damage) {
   ordered_json json;
-  for (const auto& [name, member] : damage_counts) json[name] = damage.*member;
-  for (const auto& [name, member] : damage_fields) json[name] = damage.*member;
+  simulation::for_damage_fields([&](const auto& field) { json[field.name] = damage.*field.number; });
   return json;
+}
+
+ordered_json damage_measures_json() {
+  constexpr std::pair<simulation::DamageTable, const char*> tables[] = {
+      {simulation::DamageTable::none, nullptr},
+      {simulation::DamageTable::rock, "rock"},
+      {simulation::DamageTable::joints, "joints"},
+      {simulation::DamageTable::elements, "elements"}};
+  ordered_json all = ordered_json::array();
+  simulation::for_damage_fields([&](const auto& field) {
+    const char* table = tables[static_cast<std::size_t>(field.column.table)].second;
+    if (table == nullptr) return;
+    all.push_back({{"name", field.name},
+                   {"table", table},
+                   {"title", field.column.title},
+                   {"unit", field.shown.unit},
+                   {"factor", field.shown.factor},
+                   {"decimals", field.column.decimals},
+                   {"known_with", field.known_with == nullptr ? field.name : field.known_with}});
+  });
+  return all;
 }
 
 simulation::Damage read_damage(const ordered_json& json) {
   simulation::Damage damage;
-  json.at("fallen_blocks").get_to(damage.fallen_blocks);
   // Files of earlier versions have fewer.
-  if (json.contains("hinges")) json.at("hinges").get_to(damage.hinges);
-  for (const auto& [name, member] : damage_fields)
-    damage.*member = json.contains(name) ? number(json.at(name)) : std::nan("");
+  for (const auto& field : damage_counts)
+    if (json.contains(field.name)) json.at(field.name).get_to(damage.*field.number);
+  for (const auto& field : damage_fields)
+    damage.*field.number = json.contains(field.name) ? number(json.at(field.name)) : std::nan("");
   return damage;
 }
 

@@ -13,6 +13,8 @@
 namespace keyblock::results {
 
 nlohmann::ordered_json damage_json(const simulation::Damage& damage);
+/// The columns of damage in the report of a run: interface DamageMeasure in viewer/src/data.ts.
+nlohmann::ordered_json damage_measures_json();
 nlohmann::ordered_json fallen_json(const std::vector<simulation::FallenBlock>& fallen);
 /// What the stage waits for; null where it is nothing.
 nlohmann::ordered_json wait_json(const std::optional<simulation::StageWait>& wait);

@@ -94,8 +94,13 @@ void write_texts(hid_t file, const simulation::ModelRecord& model) {
   nlohmann::ordered_json texts{{"scenario", model.scenario}, {"record", model_json(model)}};
   for (const auto& block : model.blocks) texts["block_names"].push_back(block.name);
   texts["history_names"] = model.history_names;
+  for (const auto& element : model.elements) {
+    texts["element_names"].push_back(element.name);
+    texts["element_kinds"].push_back(element.kind);
+  }
+  for (const auto& history : model.element_histories) texts["element_history_names"].push_back(history.name);
   for (const auto& [name, member] : energy_fields) texts["energy_names"].push_back(name);
-  texts["meanings"] = dataset_names();
+  texts["meanings"] = dataset_names(model);
   TextColumn column(file, "texts");
   column.append(texts.dump());
   column.flush();
@@ -112,6 +117,8 @@ void write_scales(hid_t file, const simulation::ModelRecord& model) {
   numbered("block", model.blocks.size());
   numbered("vertex", model.vertices.size());
   numbered("point", model.history_names.size());
+  if (!model.elements.empty()) numbered("element", model.elements.size());
+  if (!model.element_histories.empty()) numbered("element_history", model.element_histories.size());
   const auto named = [&](const char* name, const std::vector<std::string>& names) {
     hdf5::write_strings(file, name, names);
     hdf5::make_scale(hdf5::open_dataset(file, name), name);
@@ -122,6 +129,12 @@ void write_scales(hid_t file, const simulation::ModelRecord& model) {
   std::vector<std::string> energies;
   for (const auto& [name, member] : energy_fields) energies.emplace_back(name);
   named("energy_term", energies);
+  if (!model.elements.empty()) named("end", {"from", "to"});
+  if (!model.element_histories.empty()) {
+    std::vector<std::string> quantities;
+    for (const auto& field : simulation::element_history_fields) quantities.emplace_back(field.name);
+    named("element_quantity", quantities);
+  }
 }
 
 struct Texts {
@@ -204,6 +217,7 @@ void write_model(hid_t file, const simulation::ModelRecord& model) {
   write_points(group, "vertices", model.vertices);
   write_column(group, "edge_kind", edge_kind);
   write_column(group, "edge_index", edge_index);
+  write_element_catalogue(file, model);
 }
 
 simulation::ModelRecord read_model(hid_t file) {
@@ -247,6 +261,7 @@ simulation::ModelRecord read_model(hid_t file) {
     model.edge_label.push_back({static_cast<cutting::EdgeKind>(edge_kind.values[k]), edge_index.values[k]});
   }
   check_places(model);
+  read_element_catalogue(file, model);
   return model;
 }
 

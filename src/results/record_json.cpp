@@ -88,27 +88,28 @@ std::string model_json(const simulation::ModelRecord& model) {
   for (const auto& outline : model.excavation_outlines) outlines.push_back(points_json(outline));
   visit_cutting(model.cutting, Write{cutting});
   visit_later_cutting(model.cutting, Write{cutting});
-  const ordered_json json{{"title", model.title},
-                          {"version", model.version},
-                          {"seed", model.seed},
-                          {"realization", model.realization},
-                          {"threads", model.threads},
-                          {"step_size", model.step_size},
-                          {"origin", {model.origin.x, model.origin.y}},
-                          {"stage_names", model.stage_names},
-                          {"joint_set_names", model.joint_set_names},
-                          {"trace_map_names", model.trace_map_names},
-                          {"excavation_names", model.excavation_names},
-                          {"excavation_outlines", outlines},
-                          {"history_names", model.history_names},
-                          {"opening_width", or_null(model.opening_width)},
-                          {"slip_limit", or_null(model.slip_limit)},
-                          {"opening_limit", or_null(model.opening_limit)},
-                          {"cutting", cutting},
-                          {"warnings", model.warnings},
-                          {"closure_is_lower_bound", model.closure_is_lower_bound},
-                          {"ground", ground_json(model.ground)},
-                          {"hooks", model.hooks}};
+  ordered_json json{{"title", model.title},
+                    {"version", model.version},
+                    {"seed", model.seed},
+                    {"realization", model.realization},
+                    {"threads", model.threads},
+                    {"step_size", model.step_size},
+                    {"origin", {model.origin.x, model.origin.y}},
+                    {"stage_names", model.stage_names},
+                    {"joint_set_names", model.joint_set_names},
+                    {"trace_map_names", model.trace_map_names},
+                    {"excavation_names", model.excavation_names},
+                    {"excavation_outlines", outlines},
+                    {"history_names", model.history_names},
+                    {"opening_width", or_null(model.opening_width)},
+                    {"slip_limit", or_null(model.slip_limit)},
+                    {"opening_limit", or_null(model.opening_limit)},
+                    {"cutting", cutting},
+                    {"warnings", model.warnings},
+                    {"closure_is_lower_bound", model.closure_is_lower_bound},
+                    {"ground", ground_json(model.ground)},
+                    {"hooks", model.hooks}};
+  add_element_names(model, json);
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
@@ -128,6 +129,7 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     for (const auto& outline : json.at("excavation_outlines"))
       model.excavation_outlines.push_back(read_points(outline));
     json.at("history_names").get_to(model.history_names);
+    read_element_names(json, model);
     model.opening_width = optional_number(json.at("opening_width"));
     model.slip_limit = later_number(json, "slip_limit");
     model.opening_limit = later_number(json, "opening_limit");

@@ -78,7 +78,7 @@ auto with_file(const std::filesystem::path& directory, const Read& read) {
 
 simulation::Damage unknown_damage() {
   simulation::Damage damage;
-  for (const auto& [name, member] : damage_fields) damage.*member = std::nan("");
+  for (const auto& field : damage_fields) damage.*field.number = std::nan("");
   return damage;
 }
 
@@ -213,6 +213,8 @@ void check_rows(const RunData& data) {
   for (const simulation::HistoryRow& row : data.histories) {
     if (row.points.size() != data.model.history_names.size())
       throw RunError("histories/values does not fit histories/names");
+    if (row.elements.size() != data.model.element_histories.size())
+      throw RunError("histories/element_values does not fit the names of these histories");
   }
 }
 
@@ -237,7 +239,7 @@ RunData read_run(const std::filesystem::path& directory) {
   return with_file(directory, [](hid_t file) {
     RunData data;
     data.model = read_model(file);
-    data.frames = FrameTable::read(file);
+    data.frames = FrameTable::read(file, data.model);
     data.contacts = ContactTable::read(file);
     data.histories = HistoryTable::read(file);
     data.steps = StepTable::read(file);

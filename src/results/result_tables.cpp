@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "results/record_fields.h"
+#include "results/table_rows.h"
 
 namespace keyblock::results {
 namespace {
@@ -19,30 +20,8 @@ using hdf5::read_column;
 
 constexpr std::size_t energy_terms = std::size(energy_fields);
 constexpr std::size_t first_energy_terms = 9;  // of results of the first version
-constexpr std::size_t history_values = std::size(history_fields);
-constexpr std::size_t first_history_values = 7;  // of results of earlier versions
 
 static_assert(sizeof(Vec2) == 2 * sizeof(double));
-
-template <class T>
-std::span<const T> flat(const T* values, std::size_t count) {
-  return {values, count};
-}
-
-// Rows whose time is written.
-std::size_t complete_rows(const Array<double>& time) {
-  const auto unwritten =
-      std::find_if(time.values.begin(), time.values.end(), [](double t) { return std::isnan(t); });
-  return static_cast<std::size_t>(unwritten - time.values.begin());
-}
-
-std::size_t common_rows(const Array<double>& time, std::initializer_list<std::size_t> others) {
-  return std::min(complete_rows(time), std::min(others));
-}
-
-void require(bool holds, const char* what) {
-  if (!holds) throw RunError(fmt::format("{} does not fit the rest of the file", what));
-}
 
 // The value as one of an enumeration that ends with `last`.
 template <class Enum>
@@ -57,6 +36,7 @@ Enum enumerator(std::uint8_t value, Enum last, const char* what) {
 FrameTable::FrameTable(hid_t file, const simulation::ModelRecord& model)
     : vertices_(model.vertices.size()),
       blocks_(model.blocks.size()),
+      elements_(file, model),
       group_(hdf5::create_group(file, "frames")),
       displacement_(group_, "displacement", {vertices_, 2}),
       stress_(group_, "stress", {blocks_, 3}),
@@ -81,6 +61,7 @@ void FrameTable::append(const simulation::Frame& frame) {
   for (const simulation::BlockStatus s : frame.status) status.push_back(static_cast<std::uint8_t>(s));
   status_.append_row(status);
   order_.append_row(frame.order);
+  elements_.append(frame.elements);
   stage_.append(frame.stage);
   step_.append(frame.step);
   time_.append(frame.time);
@@ -92,12 +73,13 @@ void FrameTable::flush() {
   velocity_.flush();
   status_.flush();
   order_.flush();
+  elements_.flush();
   stage_.flush();
   step_.flush();
   time_.flush();
 }
 
-std::vector<simulation::Frame> FrameTable::read(hid_t file) {
+std::vector<simulation::Frame> FrameTable::read(hid_t file, const simulation::ModelRecord& model) {
   const hdf5::Handle group = hdf5::open_group(file, "frames");
   const auto time = read_column<double>(group, "time");
   const auto displacement = read_array<float>(group, "displacement"),
@@ -136,6 +118,7 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file) {
           enumerator(status.values[nb * f + b], simulation::BlockStatus::excavated, "frames/status"));
     }
   }
+  ElementTable::read(file, model.elements.size(), frames);
   return frames;
 }
 
@@ -241,49 +224,6 @@ std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
     frames.push_back(std::move(frame));
   }
   return frames;
-}
-
-HistoryTable::HistoryTable(hid_t file, const simulation::ModelRecord& model)
-    : points_(model.history_names.size()),
-      group_(hdf5::create_group(file, "histories")),
-      values_(group_, "values", {points_, history_values}),
-      step_(group_, "step", {}),
-      time_(group_, "time", {}) {
-  hdf5::write_strings(group_, "names", model.history_names);
-}
-
-void HistoryTable::append(const simulation::HistoryRow& row) {
-  if (row.points.size() != points_) throw std::invalid_argument("a history row of another model");
-  values_.append_row(flat(reinterpret_cast<const double*>(row.points.data()), history_values * points_));
-  step_.append(row.step);
-  time_.append(row.time);
-}
-
-void HistoryTable::flush() {
-  values_.flush();
-  step_.flush();
-  time_.flush();
-}
-
-std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
-  const hdf5::Handle group = hdf5::open_group(file, "histories");
-  const auto time = read_column<double>(group, "time"), values = read_array<double>(group, "values");
-  const auto step = read_column<std::int64_t>(group, "step");
-  const std::size_t quantities = values.shape.size() == 3 ? values.shape[2] : 0;
-  require(quantities == history_values || quantities == first_history_values, "histories/values");
-  const std::size_t points = values.shape[1];
-  std::vector<simulation::HistoryRow> rows(common_rows(time, {values.rows(), step.rows()}));
-  const double* next = values.values.data();
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    rows[k].time = time.values[k];
-    rows[k].step = step.values[k];
-    for (std::size_t p = 0; p < points; ++p) {
-      simulation::HistoryRow::Point& point = rows[k].points.emplace_back();
-      for (std::size_t q = 0; q < history_values; ++q)
-        point.*history_fields[q].member = q < quantities ? *next++ : std::nan("");
-    }
-  }
-  return rows;
 }
 
 StepTable::StepTable(hid_t file)

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "results/element_table.h"
 #include "results/hdf5_file.h"
 #include "results/run_data.h"
 
@@ -18,19 +19,20 @@ simulation::ModelRecord read_model(hid_t file);
 
 /// Gives every dataset of a new file its attributes: what it is, its unit, the names of its columns and of its values where these are numbers
 /// that stand for words; and its dimensions, by which netCDF knows them.
-void describe_datasets(hid_t file);
+void describe_datasets(hid_t file, const simulation::ModelRecord& model);
 /// The names of columns and values, by dataset: {"frames/status": {"values": […]}}.
-nlohmann::ordered_json dataset_names();
+nlohmann::ordered_json dataset_names(const simulation::ModelRecord& model);
 
 class FrameTable {
  public:
   FrameTable(hid_t file, const simulation::ModelRecord& model);
   void append(const simulation::Frame& frame);
   void flush();
-  static std::vector<simulation::Frame> read(hid_t file);
+  static std::vector<simulation::Frame> read(hid_t file, const simulation::ModelRecord& model);
 
  private:
   std::size_t vertices_, blocks_;
+  ElementTable elements_;
   hdf5::Handle group_;
   hdf5::Column<float> displacement_, stress_, velocity_;
   hdf5::Column<std::uint8_t> status_;
@@ -67,9 +69,9 @@ class HistoryTable {
   static std::vector<simulation::HistoryRow> read(hid_t file);
 
  private:
-  std::size_t points_;
+  std::size_t points_, elements_;
   hdf5::Handle group_;
-  hdf5::Column<double> values_;
+  hdf5::Column<double> values_, element_values_;
   hdf5::Column<std::int64_t> step_;
   hdf5::Column<double> time_;
 };

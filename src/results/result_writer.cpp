@@ -135,7 +135,8 @@ void ResultWriter::State::copy_earlier() {
   };
   const RunData data = read_run(directory);
   if (data.model.vertices != model.vertices || data.model.blocks.size() != model.blocks.size() ||
-      data.model.history_names != model.history_names) {
+      data.model.history_names != model.history_names || data.model.elements != model.elements ||
+      data.model.element_histories != model.element_histories) {
     refuse(fmt::format("results of another model ({} blocks)", data.model.blocks.size()),
            fmt::format("results of the run to be resumed ({} blocks)", model.blocks.size()));
   }
@@ -206,7 +207,7 @@ void ResultWriter::begin(const simulation::ModelRecord& model) {
   state_->temporary = made.path;
   state_->change_file([&] {
     state_->file.emplace(state_->temporary, model);
-    describe_datasets(state_->file->file);
+    describe_datasets(state_->file->file, model);
     state_->file->flush_whole();
   });
   state_->start = state_->last_flush = Clock::now();
@@ -282,8 +283,8 @@ void ResultWriter::end(const simulation::RunRecord& run) {
     state_->file->flush_whole();
   });
   state_->file.reset();
-  const auto& names = state_->model.history_names;
-  if (!names.empty()) write_histories_csv(state_->directory, names, read_histories(state_->directory));
+  if (has_histories(state_->model))
+    write_histories_csv(state_->directory, state_->model, read_histories(state_->directory));
   write_summary(state_->directory, state_->model, run);  // last: has_ended looks for it
 }
 

@@ -48,6 +48,9 @@ std::string vtk_contact_lines(const RunData& data, const JointLocator& locator,
 /// A point at each contact that carries force, for arrows.
 std::string vtk_contact_forces(const simulation::ModelRecord& model, const simulation::ContactFrame& frame);
 
+/// A line for each element that is there.
+std::string vtk_elements(const simulation::ModelRecord& model, const simulation::Frame& frame);
+
 /// Field data of a file: time, stage, step, and the local origin.
 void add_vtk_moment(VtkFile& file, const simulation::ModelRecord& model, double time, int stage, long step);
 

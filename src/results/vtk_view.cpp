@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view script =
     R"py("""Opens this export in ParaView: paraview --script=view.py, in this folder; or saves a picture: pvpython view.py blocks.png.
 
-Shown are the blocks, coloured by displacement, and their outlines. Ready in the pipeline, to be switched on by
+Shown are the blocks, coloured by displacement, and their outlines; springs, supports and other elements by their force. Ready in the pipeline, to be switched on by
 the eye beside them: forces of contacts, principal stresses and velocities.
 """
 import os
@@ -77,6 +77,13 @@ arrows("forces of contacts", forces, "force", [0.8, 0.1, 0.1])
 arrows("principal stress 1", centres, "principal_1_vector", [0.1, 0.3, 0.8], "Line")
 arrows("principal stress 2", centres, "principal_2_vector", [0.8, 0.3, 0.1], "Line")
 arrows("velocities", centres, "velocity", [0.1, 0.5, 0.1])
+
+if os.path.exists(os.path.join(folder, "elements.pvd")):
+    elements = series("elements")
+    look = Show(elements, view)
+    ColorBy(look, ("CELLS", "force"))
+    look.LineWidth = 3.0
+    look.Position = [0.0, 0.0, 0.015 * size]
 
 view.Background = [1.0, 1.0, 1.0]
 view.OrientationAxesVisibility = 0

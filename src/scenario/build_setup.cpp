@@ -7,6 +7,7 @@
 #include "scenario/build.h"
 #include "scenario/closure_bound.h"
 #include "scenario/dynamic_checks.h"
+#include "scenario/element_histories.h"
 #include "scenario/expected_blocks.h"
 #include "scenario/far_rock.h"
 #include "scenario/ground_facts.h"
@@ -104,7 +105,8 @@ JointProperties joint_properties(const JointKeys& own, const JointKeys& standard
     // A set may have less strength than what [joints] say is left.
     joint.residual = {std::min(friction, joint.friction), std::min(cohesion, joint.cohesion),
                       pick(own.weakening_slip, standard.weakening_slip).value_or(0.0)};
-    if (joint.residual->friction == joint.friction && joint.residual->cohesion == 0.0 && joint.residual->slip == 0.0)
+    if (joint.residual->friction == joint.friction && joint.residual->cohesion == 0.0 &&
+        joint.residual->slip == 0.0)
       joint.residual.reset();  // a bond that slips loses its cohesion anyway
   }
   reduce_strength(joint, pick(own.strength_factor, standard.strength_factor).value_or(1.0));
@@ -190,6 +192,10 @@ void place_histories(const Scenario& scenario, RunSetup& setup, std::vector<std:
     const std::string key = join_path(join_path("history", given.name), "point");
     simulation::History history = given;
     history.point -= setup.system.origin;
+    if (!history.element.empty()) {
+      setup.histories.push_back(std::move(history));
+      continue;
+    }
     if (history.column) {
       check_column(scenario, setup, history);
       setup.histories.push_back(std::move(history));
@@ -403,6 +409,7 @@ RunSetup build_setup(const Scenario& scenario, int realization, const BlockModel
   add_box_fact(setup);
   add_block_warnings(scenario, blocks, notes);
   add_setup_warnings(scenario, setup, notes);
+  check_element_histories(scenario, setup);
   if (warnings != nullptr) {
     add_overlap_warnings(scenario, setup.system, notes);
     warnings->insert(warnings->end(), notes.begin(), notes.end());

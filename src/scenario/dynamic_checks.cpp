@@ -109,7 +109,7 @@ class DampedSprings {
     for (std::size_t k = 0; k < setup.springs.size(); ++k) {
       const simulation::SpringBlocks blocks = simulation::spring_blocks(setup, k);
       const loading::Spring& spring = setup.springs[k];
-      see(spring.name.empty() ? join_index("spring", k) : join_path("spring", spring.name), spring.stiffness,
+      see(join_element("spring", spring.name, k), spring.stiffness,
           slowness(blocks.from) + slowness(blocks.to));
     }
     for (std::size_t k = 0; k < setup.supports.size(); ++k) see_support(k);
@@ -136,7 +136,7 @@ class DampedSprings {
     if (block == setup_.properties.end()) return;
     const double length = support.is_edge ? norm(support.points.back() - support.points.front())
                                           : static_cast<double>(support.points.size());
-    see(join_index("support", k), *support.stiffness * length,
+    see(join_element("support", support.name, k), *support.stiffness * length,
         slowness(static_cast<std::size_t>(block - setup_.properties.begin())));
   }
   void see(const std::string& path, double stiffness, double slowness) {

@@ -166,8 +166,9 @@ class Facts {
     if (joints.residual_friction) parts.push_back("φr " + number(*joints.residual_friction) + "°");
     if (joints.residual_cohesion) parts.push_back("cr " + pressure(*joints.residual_cohesion));
     if (joints.weakening_slip)
-      parts.push_back(*joints.weakening_slip > 0.0 ? "after a slip of " + number(*joints.weakening_slip) + " m"
-                                                   : "at the first slip");
+      parts.push_back(*joints.weakening_slip > 0.0
+                          ? "after a slip of " + number(*joints.weakening_slip) + " m"
+                          : "at the first slip");
     return joined(parts);
   }
 

@@ -25,6 +25,10 @@ std::string path_segment(std::string_view key);
 /// `path.key`, or the key alone when the path is empty.
 std::string join_path(std::string_view path, std::string_view key);
 std::string join_index(std::string_view path, std::size_t index);
+/// An element of a list of tables: by its name, or by its index where it has none.
+inline std::string join_element(std::string_view list, std::string_view name, std::size_t index) {
+  return name.empty() ? join_index(list, index) : join_path(list, name);
+}
 
 /// The candidate that `word` was probably meant to be: the only one that begins with it (four letters or more), or that differs least, by
 /// one letter left out, put in, swapped with its neighbour or, which counts a little more, replaced; two in words of nine letters and more.

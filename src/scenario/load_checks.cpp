@@ -59,8 +59,8 @@ class LoadChecks {
     for (const BlockSpec& block : scenario_.blocks)
       if (block.fixed) check_way(join_path(block.path, "motion"), block.motion_x, block.motion_y);
     for (std::size_t k = 0; k < scenario_.supports.size(); ++k)
-      check_way(join_path(join_index("support", k), "motion"), scenario_.supports[k].motion_x,
-                scenario_.supports[k].motion_y);
+      check_way(join_path(join_element("support", scenario_.supports[k].name, k), "motion"),
+                scenario_.supports[k].motion_x, scenario_.supports[k].motion_y);
   }
 
  private:

@@ -181,6 +181,8 @@ loading::TimeTable read_ground_end(TableReader& t, std::string_view key, bool he
 void read_support(TableReader& t, Support& support, const Scenario& scenario) {
   support.is_edge = t.find("from") != nullptr || t.find("to") != nullptr;
   const bool documenting = t.documenting();
+  t.name("name", support.name, "support",
+         {.meaning = "Name in results, and for histories.", .fallback = "support[0] and so on"});
   t.reference("block", support.block, "block", {.meaning = "The block it holds.", .required = true});
   const BlockSpec* block = find_block(scenario, support.block);
   check_moves(t, block);

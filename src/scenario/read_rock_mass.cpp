@@ -173,28 +173,31 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
        .at_least = 0.0,
        .fallback = defaults.zero,
        .usual = &usual::strength});
-  t.number("residual_friction", joints.residual_friction,
-           {.meaning = "Friction angle that is left after weakening_slip, and of contacts where no joint was in "
-                       "place.",
-            .unit = "°",
-            .at_least = 0.0,
-            .below = 90.0,
-            .fallback = defaults.residual_friction,
-            .usual = &usual::friction});
-  t.number("residual_cohesion", joints.residual_cohesion,
-           {.meaning = "Cohesion that is left after weakening_slip, until the joint opens. The same as cohesion: "
-                       "slip takes none (ideal plasticity).",
-            .unit = "Pa",
-            .at_least = 0.0,
-            .fallback = defaults.zero,
-            .usual = &usual::strength});
-  t.number("weakening_slip", joints.weakening_slip,
-           {.meaning = "Slip over which friction, cohesion and tension fall to what is left of them. 0: all at "
-                       "once when the joint first slips.",
-            .unit = "m",
-            .at_least = 0.0,
-            .fallback = defaults.zero,
-            .usual = &usual::small_way});
+  t.number(
+      "residual_friction", joints.residual_friction,
+      {.meaning = "Friction angle that is left after weakening_slip, and of contacts where no joint was in "
+                  "place.",
+       .unit = "°",
+       .at_least = 0.0,
+       .below = 90.0,
+       .fallback = defaults.residual_friction,
+       .usual = &usual::friction});
+  t.number(
+      "residual_cohesion", joints.residual_cohesion,
+      {.meaning = "Cohesion that is left after weakening_slip, until the joint opens. The same as cohesion: "
+                  "slip takes none (ideal plasticity).",
+       .unit = "Pa",
+       .at_least = 0.0,
+       .fallback = defaults.zero,
+       .usual = &usual::strength});
+  t.number(
+      "weakening_slip", joints.weakening_slip,
+      {.meaning = "Slip over which friction, cohesion and tension fall to what is left of them. 0: all at "
+                  "once when the joint first slips.",
+       .unit = "m",
+       .at_least = 0.0,
+       .fallback = defaults.zero,
+       .usual = &usual::small_way});
   t.number("normal_stiffness", joints.normal_stiffness,
            {.meaning = "Normal stiffness of the joint.",
             .unit = "Pa/m",
@@ -209,7 +212,7 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
             .usual = &usual::stiffness});
 }
 
-constexpr JointDefaults joint_defaults{true, "0", "", "20 young per metre", "0.4 normal_stiffness",
+constexpr JointDefaults joint_defaults{true,      "0", "", "20 young per metre", "0.4 normal_stiffness",
                                        "friction"};
 constexpr JointDefaults set_defaults{false,         "of [joints]", "of [joints]",
                                      "of [joints]", "of [joints]", "of [joints]; else friction"};
@@ -228,7 +231,8 @@ double given(const std::optional<double>& own, const std::optional<double>& stan
 
 /// Strength that is left is no more than strength at the peak, and belongs to something that falls.
 void check_residual(TableReader& t, const JointKeys& own, const JointKeys& standard) {
-  const double friction = given(own.friction, standard.friction), cohesion = given(own.cohesion, standard.cohesion);
+  const double friction = given(own.friction, standard.friction),
+               cohesion = given(own.cohesion, standard.cohesion);
   if (own.residual_friction && *own.residual_friction > friction)
     t.fail("residual_friction", fmt::format("{}, above friction = {}", *own.residual_friction, friction),
            "no more than the friction of the peak");

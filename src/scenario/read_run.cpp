@@ -124,8 +124,9 @@ void read_wear(TableReader& t, Stage& stage, const Scenario& scenario) {
       "wears_joints", wears,
       only(some, "joints that have residual_friction, residual_cohesion or weakening_slip",
            {.meaning = "Whether slip counts for the strength of joints that weaken.",
-            .fallback = "false while gravity is turned on: in the first `settle` stages, without an excavation, "
-                        "k_h, k_v or install, before others"}));
+            .fallback =
+                "false while gravity is turned on: in the first `settle` stages, without an excavation, "
+                "k_h, k_v or install, before others"}));
   if (is_given) stage.wears_joints = wears;
 }
 
@@ -206,12 +207,14 @@ void check_history(TableReader& t, const simulation::History& history, const Sce
 }
 
 /// In the place of a point of a block: rock far away.
-void read_column(TableReader& t, simulation::History& history, const Scenario& scenario) {
+void read_column(TableReader& t, simulation::History& history, bool applies, const Scenario& scenario) {
   t.word(
       "column", history.column, column_sides,
       {.meaning = "In the place of a point: the rock beside the model, on this side, which moves as if the "
                   "model were not there. It has displacement and velocity, and no stress.",
-       .fallback = "none"});
+       .fallback = "none",
+       .applies = applies,
+       .condition = "no element"});
   const bool given = history.column || t.documenting();
   t.number("y", history.point.y,
            only(given, "column",
@@ -230,27 +233,57 @@ void read_column(TableReader& t, simulation::History& history, const Scenario& s
       "a [boundary] with rock beside the model, sides = \"free-field\" or \"viscous\"");
 }
 
+/// In the place of a point: an element, any by its name or one of a list of the scenario.
+void read_element(TableReader& t, simulation::History& history) {
+  std::vector<std::string> given;
+  const auto take = [&](const std::string& name) {
+    given.push_back(name);
+    history.element = name;
+  };
+  std::string name;
+  if (t.string("element", name,
+               {.meaning = "In the place of a point: what an element carries, its force and elongation. The "
+                           "name is that in `elements` of summary.json: of a spring, a support, a side of "
+                           "the boundary (`boundary.base`) or a wall under pressure (`tunnel.crown`).",
+                .fallback = "none"}))
+    take(name);
+  if (t.reference("spring", name, "spring",
+                  {.meaning = "The same, for a spring by its name.", .fallback = "none"}))
+    take(name);
+  if (t.reference("support", name, "support",
+                  {.meaning = "The same, for a support by its name.", .fallback = "none"}))
+    take(name);
+  if (given.size() > 1)
+    t.fail("element", fmt::format("{} elements", given.size()),
+           "one of the keys element, spring and support");
+}
+
 void read_history(TableReader& t, simulation::History& history, const Scenario& scenario) {
   t.name("name", history.name, "history",
          {.meaning = "Name of its columns in histories.csv.", .required = true});
-  read_column(t, history, scenario);
-  const bool of_block = !history.column;
+  read_element(t, history);
+  const bool of_element =
+      t.find("element") != nullptr || t.find("spring") != nullptr || t.find("support") != nullptr;
+  read_column(t, history, !of_element, scenario);
+  const bool of_block = !history.column && !of_element;
   t.reference("block", history.block, "block",
-              only(of_block, "no column",
+              only(of_block, "neither column nor element",
                    {.meaning = "The block it belongs to.",
                     .fallback = "the block that holds the point; of several with a common border, one that "
                                 "no stage excavates or the one excavated last"}));
   if (t.point("point", history.point,
-              only(of_block, "no column",
+              only(of_block, "neither column nor element",
                    {.meaning = "Material point, by its place before the run.",
                     .unit = "m",
                     .required = of_block && !t.documenting(),
-                    .fallback = "required, or column and y"}))) {
+                    .fallback = "required, or column and y, or element"}))) {
     check_history(t, history, scenario);
   }
   t.word("frame", history.absolute, history_frames,
-         {.meaning = "`relative`: motion against the base, or against the outcrop over a "
-                     "compliant base. `absolute`: with the motion of these, the integrals of the record."});
+         only(!of_element, "no element",
+              {.meaning =
+                   "`relative`: motion against the base, or against the outcrop over a "
+                   "compliant base. `absolute`: with the motion of these, the integrals of the record."}));
 }
 
 void read_damage(TableReader& t, simulation::DamageLimits& damage) {

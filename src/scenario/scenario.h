@@ -193,7 +193,7 @@ struct Scenario {
   std::optional<BoundarySpec> boundary;
   RockKeys rock;  ///< all set
   JointKeys joints;
-  double load_factor = 1.0;      ///< of all loads
+  double load_factor = 1.0;  ///< of all loads
   std::vector<JointSetSpec> joint_sets;
   std::vector<TraceMapSpec> trace_maps;
   CuttingKeys cutting;

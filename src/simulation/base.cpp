@@ -33,7 +33,9 @@ bool move_alike(std::span<const FixedMotion> fixed) {
 dynamics::GroundMove far_ground(const dynamics::Model& model, const dynamics::State& state, Vec2 place) {
   dynamics::GroundMove move;
   for (std::size_t k = 0; k < model.couplings.size(); ++k) {
-    const dynamics::GroundMove of_one = model.couplings[k]->far_ground(state.couplings[k], place);
+    const dynamics::FarField* far = model.couplings[k]->far_field();
+    if (far == nullptr) continue;
+    const dynamics::GroundMove of_one = far->far_ground(state.couplings[k], place);
     move.displacement += of_one.displacement;
     move.velocity += of_one.velocity;
   }

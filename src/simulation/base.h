@@ -3,6 +3,7 @@
 #include <span>
 
 #include "coupling/coupling.h"
+#include "coupling/facets.h"
 #include "loading/time_table.h"
 #include "model/model.h"
 #include "model/state.h"

@@ -213,7 +213,7 @@ std::vector<PlaneRecord> planes_beside(const RunSetup& setup, const dynamics::Mo
   std::vector<PlaneRecord> planes;
   if (!setup.boundary || setup.boundary->planes.empty()) return planes;
   for (std::size_t k = 0; k < model.couplings.size(); ++k) {
-    const auto* boundary = dynamic_cast<const dynamics::SeismicBoundary*>(model.couplings[k].get());
+    const dynamics::FarField* boundary = model.couplings[k]->far_field();
     if (boundary == nullptr) continue;
     for (std::size_t f = 0; f < boundary->far_rock().size(); ++f) {
       const FarRock& far = boundary->far_rock()[f];

@@ -36,8 +36,8 @@ contact::JointLaw law_of(const JointProperties& joint) {
                         .normal_stiffness = joint.normal_stiffness.value_or(0.0),
                         .stiffness_ratio = joint.stiffness_ratio};
   if (joint.residual)
-    law.residual = contact::JointLaw::Residual{coefficient_of(joint.residual->friction), joint.residual->cohesion,
-                                               joint.residual->slip};
+    law.residual = contact::JointLaw::Residual{coefficient_of(joint.residual->friction),
+                                               joint.residual->cohesion, joint.residual->slip};
   return law;
 }
 
@@ -141,7 +141,8 @@ void add_supports(const RunSetup& setup, Model& model) {
   std::vector<dynamics::SupportedPlace> places;
   for (std::size_t k = 0; k < setup.supports.size(); ++k) {
     const loading::Support& support = setup.supports[k];
-    const std::string key = fmt::format("support[{}]", k);
+    const std::string key =
+        support.name.empty() ? fmt::format("support[{}]", k) : fmt::format("support.{}", support.name);
     const std::size_t b = block_named(setup, support.block, key + ".block");
     const Block& block = model.blocks[b];
     for (const Vec2 p : support.points) require_on_block(block.reference, p, key, support.block);
@@ -154,8 +155,9 @@ void add_supports(const RunSetup& setup, Model& model) {
       block.basis.evaluate(where, phi.data());
       return phi;
     };
-    places.push_back(
-        {key, static_cast<int>(b), phi_at(support.points.front()), phi_at(support.points.back())});
+    places.push_back({support.name.empty() ? key : support.name, static_cast<int>(b),
+                      phi_at(support.points.front()), phi_at(support.points.back()), support.points.front(),
+                      support.points.back()});
     if (!support.is_edge) {
       for (const Vec2 p : support.points) add(p, 1.0);
     } else {
@@ -183,7 +185,7 @@ void add_springs(const RunSetup& setup, Model& model) {
       model.blocks[block].basis.evaluate(p, point.phi.data());
     }
     springs.push_back({spring.name.empty() ? fmt::format("spring[{}]", k) : spring.name, spring.stiffness,
-                       spring.yield.value_or(HUGE_VAL), norm(spring.from - spring.to), spring.staged});
+                       spring.yield.value_or(HUGE_VAL), spring.from, spring.to, spring.staged});
   }
   if (!springs.empty())
     model.couplings.push_back(

@@ -69,7 +69,8 @@ bool comes_before(const contact::Candidate& x, const contact::Candidate& y) {
 bool is_memory(const contact::Memory& m) {
   const double numbers[] = {m.offset,         m.stiffness, m.shear,       m.normal_force,
                             m.bounding_force, m.stored,    m.bond_length, m.worn};
-  return m.state <= contact::State::locked && is_bool(m.bonded) && is_bool(m.in_face) && is_bool(m.is_torn) && all_finite(numbers);
+  return m.state <= contact::State::locked && is_bool(m.bonded) && is_bool(m.in_face) && is_bool(m.is_torn) &&
+         all_finite(numbers);
 }
 
 bool are_pieces(const contact::CandidateList& list, const contact::Surface& surface) {

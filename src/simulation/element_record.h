@@ -1,10 +1,65 @@
 #pragma once
 #include <limits>
+#include <span>
 #include <string>
 
 #include "geometry/vec2.h"
 
 namespace keyblock::simulation {
+
+/// Whether an element of a limit has reached it; the force is that but for rounding then.
+inline bool reaches_limit(double force, double limit) {
+  return force >= (1.0 - 1e-9) * limit;
+}
+
+/// An element of a model (dynamics::Element).
+struct ElementDescription {
+  std::string name, kind;
+  double limit = std::numeric_limits<double>::infinity();  ///< N per thickness; infinite: none
+  Vec2 from, to;                                           ///< m, local, before the run
+  int from_block = -1, to_block = -1;                      ///< −1: of several
+
+  friend bool operator==(const ElementDescription&, const ElementDescription&) = default;
+};
+
+/// A history of what an element carries.
+struct ElementHistory {
+  std::string name;
+  int element = 0;
+
+  friend bool operator==(const ElementHistory&, const ElementHistory&) = default;
+};
+
+/// What an element carries at a moment (dynamics::Carried).
+struct ElementState {
+  Vec2 from, to;                                        ///< m, local
+  double force = 0.0, elongation = 0.0, yielded = 0.0;  ///< N per thickness, m, m
+  bool present = false;
+
+  /// Force over the limit of its element; 0 without one.
+  [[nodiscard]] double utilization(const ElementDescription& of) const {
+    return (force < 0.0 ? -force : force) / of.limit;
+  }
+};
+
+/// The numbers of an element at a moment, as files have them.
+struct ElementStateField {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double ElementState::*number;
+};
+inline constexpr ElementStateField element_state_fields[] = {
+    {"force", "N/m",
+     "force per metre of thickness; of springs tension is positive, of all else it is the size of the "
+     "resultant",
+     &ElementState::force},
+    {"elongation", "m",
+     "since it was put in; of supports, boundaries and walls the mean way of what they hold",
+     &ElementState::elongation},
+    {"yielded", "m", "of the elongation, that does not come back", &ElementState::yielded}};
+/// Those that histories have.
+inline constexpr std::span element_history_fields = std::span(element_state_fields).first<2>();
 
 /// An element at the end of a run.
 struct ElementRecord {
@@ -20,8 +75,7 @@ struct ElementRecord {
 
   /// Largest force over the limit; 0 without one.
   [[nodiscard]] double utilization() const { return peak_force / limit; }
-  /// It has reached its limit; the force is that but for rounding then.
-  [[nodiscard]] bool has_yielded() const { return peak_force >= (1.0 - 1e-9) * limit; }
+  [[nodiscard]] bool has_yielded() const { return reaches_limit(peak_force, limit); }
 };
 
 /// The numbers of an element as files have them.

@@ -1,9 +1,14 @@
 #include "simulation/elements.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/index.h"
 #include "coupling/coupling.h"
+#include "simulation/refuse.h"
 
 namespace keyblock::simulation {
 
@@ -30,6 +35,59 @@ std::size_t element_count(const Model& model) {
   std::size_t count = 0;
   for (const auto& coupling : model.couplings) count += coupling->elements().size();
   return count;
+}
+
+void measure_elements(const Model& model, const std::vector<ElementPeak>& peaks, Damage& damage) {
+  damage.yielded_elements = 0;
+  damage.largest_utilization = std::nan("");
+  const std::vector<ElementDescription> all = element_descriptions(model);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!std::isfinite(all[k].limit)) continue;
+    const double peak = k < peaks.size() ? peaks[k].force : 0.0;
+    damage.yielded_elements += reaches_limit(peak, all[k].limit) ? 1 : 0;
+    damage.largest_utilization = std::fmax(damage.largest_utilization, peak / all[k].limit);
+  }
+}
+
+std::vector<ElementDescription> element_descriptions(const Model& model) {
+  std::vector<ElementDescription> all;
+  for (const auto& coupling : model.couplings) {
+    for (const dynamics::Element& e : coupling->elements())
+      all.push_back({e.name, e.kind, e.limit, e.from.place, e.to.place, e.from.block, e.to.block});
+  }
+  return all;
+}
+
+std::vector<ElementState> element_states(const Model& model, const State& state) {
+  std::vector<ElementState> all;
+  for_carried(model, state, [&](const auto& /*coupling*/, const std::vector<Carried>& carried) {
+    for (const Carried& c : carried)
+      all.push_back({c.from, c.to, c.force, c.elongation, c.yielded, c.present});
+  });
+  return all;
+}
+
+int element_of(const Model& model, const History& history) {
+  const std::vector<ElementDescription> all = element_descriptions(model);
+  const auto found = std::ranges::find(all, history.element, &ElementDescription::name);
+  const auto count = std::ranges::count(all, history.element, &ElementDescription::name);
+  if (count == 1) return static_cast<int>(found - all.begin());
+  const std::string key = fmt::format("history.{}.element", history.name);
+  if (count > 1)
+    refuse(key, fmt::format("\"{}\", which {} elements have", history.element, count),
+           "a name that one element has");
+  std::string names;
+  constexpr std::ptrdiff_t most_names = 20;
+  for (auto e = all.begin(); e != all.end(); ++e) {
+    if (e - all.begin() == most_names) {
+      names += ", …";
+      break;
+    }
+    names += (names.empty() ? "" : ", ") + e->name;
+  }
+  refuse(key, fmt::format("\"{}\"", history.element),
+         all.empty() ? "an element; the model has no springs, supports, boundaries or pressures"
+                     : "the name of an element: " + names);
 }
 
 void keep_peaks(const Model& model, const State& state, int stage, std::vector<ElementPeak>& peaks) {

@@ -5,9 +5,11 @@
 #include "model/model.h"
 #include "model/state.h"
 #include "simulation/element_record.h"
+#include "simulation/record.h"
+#include "simulation/setup.h"
 #include "simulation/stage.h"
 
-/// What the elements of a model carry, springs and supports, and have carried at the most (dynamics::Element).
+/// What the elements of a model carry, springs, supports, boundaries and walls under pressure, and have carried at the most (dynamics::Element).
 namespace keyblock::simulation {
 
 /// The largest force that an element has carried in a run; its memory, which a checkpoint has.
@@ -24,6 +26,13 @@ void keep_peaks(const dynamics::Model& model, const dynamics::State& state, int 
 std::vector<ElementRecord> element_records(const dynamics::Model& model, const dynamics::State& state,
                                            const std::vector<ElementPeak>& peaks,
                                            const std::vector<Stage>& stages);
+/// Measures of damage that elements have.
+void measure_elements(const dynamics::Model& model, const std::vector<ElementPeak>& peaks, Damage& damage);
 std::size_t element_count(const dynamics::Model& model);
+std::vector<ElementDescription> element_descriptions(const dynamics::Model& model);
+/// What they carry now, in the same order.
+std::vector<ElementState> element_states(const dynamics::Model& model, const dynamics::State& state);
+/// The element that a history follows, by its name. Throws InputError where there is none.
+int element_of(const dynamics::Model& model, const History& history);
 
 }  // namespace keyblock::simulation

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "coupling/coupling.h"
+#include "coupling/facets.h"
 
 namespace keyblock::simulation {
 
@@ -14,8 +15,10 @@ void install(const RunSetup& setup, const Stage& stage, const dynamics::Model& m
     if (std::ranges::find(stage.install, setup.staged_supports[k]) != stage.install.end())
       now[k] = state.installed[k] = 1;
   }
-  for (std::size_t c = 0; c < model.couplings.size(); ++c)
-    model.couplings[c]->install(model, state, now, state.couplings[c]);
+  for (std::size_t c = 0; c < model.couplings.size(); ++c) {
+    if (const dynamics::StagedSupports* supports = model.couplings[c]->staged_supports())
+      supports->install(model, state, now, state.couplings[c]);
+  }
 }
 
 }  // namespace keyblock::simulation

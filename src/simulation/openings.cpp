@@ -14,14 +14,13 @@ Vec2 nearest_on_edge(Vec2 a, Vec2 b, Vec2 p) {
   return length > 0.0 ? a + std::clamp(dot(p - a, along) / length, 0.0, 1.0) * along : a;
 }
 
-// Up and down within 45°, sides else.
+}  // namespace
+
 WallPart part_towards(Vec2 out, Vec2 down) {
   const double below = dot(out, down), right = cross(down, out);
   if (std::abs(below) >= std::abs(right)) return below > 0.0 ? WallPart::invert : WallPart::crown;
   return right > 0.0 ? WallPart::right : WallPart::left;
 }
-
-}  // namespace
 
 void Openings::unite(std::span<const Excavation> excavations, std::span<const std::uint8_t> open) {
   std::vector<Polygon> outlines;

@@ -9,6 +9,9 @@
 
 namespace keyblock::simulation {
 
+/// By a direction out of an opening: up and down within 45°, sides else. `down`: unit vector.
+WallPart part_towards(Vec2 out, Vec2 down);
+
 /// What the outlines of the excavations that are open cover together. Coordinates are those of the reference position.
 class Openings {
  public:

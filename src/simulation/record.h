@@ -74,7 +74,9 @@ struct ModelRecord {
   std::vector<std::string> stage_names;  ///< of the whole plan; a run that is stopped has records of fewer
   std::vector<std::string> joint_set_names, trace_map_names, excavation_names;
   std::vector<std::vector<Vec2>> excavation_outlines;
-  std::vector<std::string> history_names;
+  std::vector<std::string> history_names;  ///< of those that follow points
+  std::vector<ElementDescription> elements;
+  std::vector<ElementHistory> element_histories;
   std::optional<double> opening_width;              ///< m
   std::optional<double> slip_limit, opening_limit;  ///< m, beyond which a joint counts as slipped, opened
   cutting::CutStatistics cutting;
@@ -96,6 +98,7 @@ struct Frame {
   std::vector<BlockStatus> status;                 ///< of every block
   std::vector<std::array<float, 2>> velocity;  ///< of the mass centre of every block, m/s; empty: not known
   std::vector<std::int16_t> order;             ///< of every block
+  std::vector<ElementState> elements;          ///< of every element of the model
 };
 
 enum class ContactState : std::uint8_t { open = 0, sliding = 1, locked = 2 };
@@ -148,6 +151,8 @@ struct HistoryRow {
   };
   std::vector<Point> points;
   long step = 0;  ///< of the run, over all stages
+  std::vector<ElementState>
+      elements;  ///< of histories that follow one; forces and ways are NaN where it is not there
 };
 
 /// Energies in J per metre thickness. Losses and inputs accumulate from the start of the first stage.
@@ -221,6 +226,10 @@ struct Damage {
   /// m, of these and of joints beside blocks that have fallen: the largest up to now.
   double slip_max_ever = 0.0, opening_max_ever = 0.0, slipped_length_ever = 0.0, opened_length_ever = 0.0;
   double closure_vertical = 0.0, closure_horizontal = 0.0;  ///< m
+  /// Since the start of the run: elements that have reached their limit, and the largest force over the limit of its element; NaN where no
+  /// element has a limit.
+  int yielded_elements = 0;
+  double largest_utilization = 0.0;
 };
 
 struct MovingBlock {

@@ -9,12 +9,13 @@
 
 #include "core/error.h"
 #include "core/index.h"
-#include "coupling/seismic_boundary.h"
+#include "coupling/facets.h"
 #include "overlap/overlap.h"
 #include "simulation/base.h"
 #include "simulation/build_boundary.h"
 #include "simulation/build_model.h"
 #include "simulation/damping_table.h"
+#include "simulation/elements.h"
 #include "simulation/history_block.h"
 
 namespace keyblock::simulation {
@@ -29,9 +30,9 @@ namespace {
 std::vector<ColumnRecord> columns_of(const dynamics::Model& model) {
   std::vector<ColumnRecord> columns;
   for (const auto& coupling : model.couplings) {
-    const auto* boundary = dynamic_cast<const dynamics::SeismicBoundary*>(coupling.get());
-    if (boundary == nullptr) continue;
-    for (const dynamics::FarRock& far : boundary->far_rock()) {
+    const dynamics::FarField* field = coupling->far_field();
+    if (field == nullptr) continue;
+    for (const dynamics::FarRock& far : field->far_rock()) {
       const std::span<const double> heights = far.column.heights();
       ColumnRecord column{far.x, heights.front(), heights.back()};
       for (std::size_t k = 1; k < heights.size(); ++k)
@@ -74,7 +75,14 @@ Recorder::Recorder(const RunSetup& setup, const dynamics::Model& model, const Da
                           ? of_outline[at(edge)]
                           : cutting::EdgeLabel{cutting::EdgeKind::domain, 0});  // of the frame
   }
-  for (const History& history : setup.histories) points_.push_back(point_of(history));
+  for (const History& history : setup.histories) {
+    if (history.element.empty()) {
+      points_.push_back(point_of(history));
+      point_names_.push_back(history.name);
+    } else {
+      element_histories_.push_back({history.name, element_of(model, history)});
+    }
+  }
   orders_changed();
 }
 
@@ -148,7 +156,9 @@ ModelRecord Recorder::model() const {
     record.excavation_names.push_back(excavation.name);
     record.excavation_outlines.push_back(excavation.outline);
   }
-  for (const History& history : setup_.histories) record.history_names.push_back(history.name);
+  record.history_names = point_names_;
+  record.elements = element_descriptions(model_);
+  record.element_histories = element_histories_;
   record.opening_width = gauge_.opening_width();
   record.slip_limit = setup_.damage.slip;
   record.opening_limit = setup_.damage.opening;
@@ -181,6 +191,7 @@ Frame Recorder::frame(const dynamics::State& state, int stage) const {
     frame.order.push_back(static_cast<std::int16_t>(block.basis.order()));
   }
   frame.status = gauge_.status(state);
+  frame.elements = element_states(model_, state);
   return frame;
 }
 
@@ -289,7 +300,19 @@ HistoryRow Recorder::history(const dynamics::State& state, const dynamics::Groun
     const Vec2 a = before.empty() ? Vec2{} : (v - before[k]) / setup_.time_step;
     row.points.push_back({u.x, u.y, v.x, v.y, s.xx, s.yy, s.xy, a.x, a.y});
   }
+  put_element_histories(state, row);
   return row;
+}
+
+void Recorder::put_element_histories(const dynamics::State& state, HistoryRow& row) const {
+  if (element_histories_.empty()) return;
+  const std::vector<ElementState> all = element_states(model_, state);
+  for (const ElementHistory& history : element_histories_) {
+    ElementState& element = row.elements.emplace_back(all[at(history.element)]);
+    if (element.present) continue;
+    for (const ElementStateField& field : element_state_fields)
+      element.*field.number = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 std::optional<OverlapRecord> Recorder::overlap(const dynamics::State& state, int stage,

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "coupling/rock_column.h"
@@ -14,7 +15,7 @@ namespace keyblock::simulation {
 /// Turns the state of a run into the records that observers receive.
 class Recorder {
  public:
-  /// Throws InputError when a history point lies in no block.
+  /// Throws InputError when a history point lies in no block, or there is no element of the name that a history follows.
   Recorder(const RunSetup& setup, const dynamics::Model& model, const DamageGauge& gauge, int threads);
 
   [[nodiscard]] ModelRecord model() const;
@@ -48,6 +49,7 @@ class Recorder {
     bool absolute = false;
   };
   [[nodiscard]] Point point_of(const History& history) const;
+  void put_element_histories(const dynamics::State& state, HistoryRow& row) const;
   [[nodiscard]] bool is_there(const Point& point) const;
   /// In the frame of the point.
   [[nodiscard]] dynamics::GroundMove move_of(const Point& point, const dynamics::State& state,
@@ -59,6 +61,8 @@ class Recorder {
   int threads_;
   std::vector<cutting::EdgeLabel> labels_;
   std::vector<Point> points_;
+  std::vector<std::string> point_names_;
+  std::vector<ElementHistory> element_histories_;
 };
 
 }  // namespace keyblock::simulation

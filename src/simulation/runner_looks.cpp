@@ -1,4 +1,5 @@
 #include "simulation/build_model.h"
+#include "simulation/elements.h"
 #include "simulation/runner.h"
 #include "simulation/slender.h"
 
@@ -7,7 +8,9 @@ namespace keyblock::simulation {
 std::optional<Damage> Runner::damage() const {
   if (!gauge_.started()) return {};
   DamageGauge looking = gauge_;  // a look is remembered
-  return looking.measure(now_.mechanics);
+  Damage damage = looking.measure(now_.mechanics);
+  measure_elements(model_, now_.peaks, damage);
+  return damage;
 }
 
 std::vector<BlockStatus> Runner::status() const {

@@ -55,6 +55,7 @@ struct Excavation {
   SupportPressure pressure = {};
 };
 
+/// Follows a point of a block, rock far away, or what an element carries.
 struct History {
   std::string name;
   std::string block;  ///< empty: the block that holds the point, see history_block.h
@@ -62,7 +63,8 @@ struct History {
   bool absolute =
       false;  ///< motion against a place that does not move; else against the base, or the outcrop
   std::optional<ColumnSide> column =
-      {};  ///< of rock far away, at the height of the point; no block has it then
+      {};                    ///< of rock far away, at the height of the point; no block has it then
+  std::string element = {};  ///< its name; then there is no point. Empty: it follows a point
 };
 
 /// Limits of the damage measures; see the user guide.

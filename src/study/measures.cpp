@@ -14,39 +14,6 @@ namespace keyblock::study {
 
 namespace {
 
-/// Titles and units, in the order of the names.
-constexpr std::pair<const char*, const char*> titles[] = {
-    {"fallen blocks", ""},
-    {"hinges", ""},
-    {"fallen area", "m²"},
-    {"weight of fallen rock", "N/m"},
-    {"weight of the largest fallen block over its width", "Pa"},
-    {"area of the largest fallen block", "m²"},
-    {"weight of the largest fallen block", "N/m"},
-    {"depth of fallen rock behind the wall", "m"},
-    {"depth of fallen rock behind the crown", "m"},
-    {"depth of fallen rock behind the left wall", "m"},
-    {"depth of fallen rock behind the right wall", "m"},
-    {"depth of fallen rock behind the invert", "m"},
-    {"filled share of the opening", ""},
-    {"loosened area", "m²"},
-    {"largest displacement", "m"},
-    {"largest rotation", "°"},
-    {"largest slip in place", "m"},
-    {"largest slip ever", "m"},
-    {"mean slip in place", "m"},
-    {"slipped length in place", "m"},
-    {"slipped length ever", "m"},
-    {"largest opening in place", "m"},
-    {"largest opening ever", "m"},
-    {"opened length in place", "m"},
-    {"opened length ever", "m"},
-    {"vertical closure", "m"},
-    {"horizontal closure", "m"}};
-static_assert(std::size(titles) ==
-                  std::size(simulation::damage_counts) + std::size(simulation::damage_fields),
-              "a measure of the damage is missing");
-
 /// Differences are taken to this many per unit: far below what a measure means, far above its rounding.
 constexpr double difference_grain = 1e9;
 constexpr double largest_rounded = 1e6;  ///< beyond, the grain is finer than the numbers themselves
@@ -71,10 +38,9 @@ double Measure::of(const simulation::Damage& damage) const {
 std::span<const Measure> measures() {
   static const std::vector<Measure> all = [] {
     std::vector<Measure> made;
-    for (const std::string& name : simulation::damage_names()) {
-      const auto [title, unit] = titles[made.size()];
-      made.push_back({name, title, unit});
-    }
+    simulation::for_damage_fields([&](const auto& field) {
+      made.push_back({field.name, field.title, field.unit, field.shown.unit, field.shown.factor});
+    });
     return made;
   }();
   return all;
@@ -99,9 +65,9 @@ std::optional<simulation::Damage> damage_between(const RunResult& run, std::stri
   if (since.empty()) return damage;
   const auto start = named(since);
   if (start == run.stages.end()) return std::nullopt;
-  for (const auto& [name, member] : simulation::damage_counts) damage.*member -= start->damage.*member;
-  for (const auto& [name, member] : simulation::damage_fields)
-    damage.*member = difference(damage.*member, start->damage.*member);
+  for (const auto& field : simulation::damage_counts) damage.*field.number -= start->damage.*field.number;
+  for (const auto& field : simulation::damage_fields)
+    damage.*field.number = difference(damage.*field.number, start->damage.*field.number);
   // What fell between: the difference of two extremes would be of no block.
   std::vector<simulation::FallenBlock> fallen;
   for (const FallenBlock& f : run.fallen) {

@@ -11,9 +11,11 @@ namespace keyblock::study {
 
 /// A measure of damage, as summary.json has it.
 struct Measure {
-  std::string name;   ///< "fallen_area_m2"
-  std::string title;  ///< "fallen area"
-  std::string unit;   ///< "m²"; empty for counts and ratios
+  std::string name;           ///< "fallen_area_m2"
+  std::string title;          ///< "fallen area"
+  std::string unit;           ///< "m²"; empty for counts and ratios
+  std::string shown_unit;     ///< in which pages show it: of a weight, "kN/m" per metre of tunnel
+  double shown_factor = 1.0;  ///< numbers times this are in that unit
   [[nodiscard]] double of(const simulation::Damage& damage) const;
 };
 

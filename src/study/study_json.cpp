@@ -175,6 +175,17 @@ ordered_json points(const std::vector<Vec2>& outline) {
   return rows;
 }
 
+ordered_json measures_json() {
+  ordered_json all = ordered_json::array();
+  for (const Measure& m : measures())
+    all.push_back({{"name", m.name},
+                   {"title", m.title},
+                   {"unit", m.unit},
+                   {"shown_unit", m.shown_unit},
+                   {"shown_factor", m.shown_factor}});
+  return all;
+}
+
 ordered_json head(const StudyData& study, const Summary& summary) {
   ordered_json axes = ordered_json::array();
   for (std::size_t a = 0; a < study.axes.size(); ++a)
@@ -185,9 +196,6 @@ ordered_json head(const StudyData& study, const Summary& summary) {
   for (const DamageLevel& level : study.levels)
     levels.push_back(
         {{"name", level.name}, {"measure", level.measure}, {"threshold", number(level.threshold)}});
-  ordered_json units = ordered_json::array();
-  for (const Measure& m : measures())
-    units.push_back({{"name", m.name}, {"title", m.title}, {"unit", m.unit}});
   ordered_json kinds = ordered_json::array();
   for (const Intensity& i : intensities())
     kinds.push_back({{"name", i.name}, {"title", i.title}, {"unit", i.unit}});
@@ -212,7 +220,7 @@ ordered_json head(const StudyData& study, const Summary& summary) {
       {"bootstrap_resamples", statistics::usual_resamples},
       {"axes", axes},
       {"levels", levels},
-      {"measures", units},
+      {"measures", measures_json()},
       {"intensities", kinds}};
   json["precision"] = nullptr;
   if (study.precision) {

@@ -54,14 +54,10 @@ class Memory final : public simulation::RunObserver {
   void begin(const simulation::ModelRecord& model) override {
     model_ = model;
     if (!outcome_.columns.empty()) return;  // resumed
-    outcome_.columns = results::history_columns(model.history_names);
+    outcome_.columns = results::history_columns(model);
   }
   void history(const simulation::HistoryRow& row) override {
-    std::vector<double> numbers{row.time};
-    for (const auto& p : row.points) {
-      for (const results::HistoryField& field : results::history_fields) numbers.push_back(p.*field.member);
-    }
-    outcome_.rows.push_back(std::move(numbers));
+    outcome_.rows.push_back(results::history_numbers(row));
   }
   void contacts(const simulation::ContactFrame& frame) override { last_ = frame; }
   void stage_end(int, const simulation::StageRecord& record) override {

@@ -64,6 +64,13 @@ print(json.dumps({"on_slider": [a - b for a, b in zip(total, against)],
                   "units": [round(n[0] ** 2 + n[1] ** 2, 9) for n in normals], "points": forces.GetNumberOfPoints()}))
 """
 
+ELEMENTS = """
+found = read("elements_%05d.vtp" % int(sys.argv[2]))
+data = found.GetCellData()
+print(json.dumps({n: [v[0] for v in values(data.GetArray(n))] for n in ("element", "force", "elongation", "utilization")}
+                 | {"ends": [found.GetPoint(k)[:2] for k in range(found.GetNumberOfPoints())]}))
+"""
+
 VIEW = """
 import runpy
 sys.path.insert(0, sys.argv[2])
@@ -131,6 +138,24 @@ class Vtk(Scenario):
         self.assertAlmostEqual(
             xx * first[0] ** 2 + 2 * xy * first[0] * first[1] + yy * first[1] ** 2, larger**3, delta=1e-4 * abs(smaller) ** 3
         )
+
+    def test_elements_are_lines_with_their_force(self):
+        self.run_and_export(ROOT / "verification/scenarios/staged_support.toml", "--set", "spring.first.yield=1e5")
+        last = len(list((self.folder / "out/vtk").glob("elements_*.vtp"))) - 1
+        found = self.read(ELEMENTS, "out/vtk", last)
+        weight = 2600.0 * 9.81
+        self.assertEqual(found["element"], [0.0, 1.0])
+        # The ballast of a fifth of the block is gone, and lifts both springs alike.
+        self.assertAlmostEqual(found["force"][0] / weight, 1.1, delta=1e-3)
+        self.assertAlmostEqual(found["force"][1] / weight, -0.1, delta=1e-3)
+        self.assertAlmostEqual(found["elongation"][0] * 6.28319e7 / weight, 1.1, delta=1e-3)
+        self.assertAlmostEqual(found["utilization"][0], 1.1 * weight / 1e5, delta=1e-3)
+        self.assertNotEqual(found["utilization"][1], found["utilization"][1])  # no limit: not a number
+        self.assertEqual([round(c, 2) for c in found["ends"][0]], [0.5, 3.0])
+        before = self.read(ELEMENTS, "out/vtk", 0)
+        self.assertEqual(before["element"], [0.0])  # the second is not installed yet
+        shown = self.read(VIEW, "out/vtk", ROOT / "tests/integration/stand_ins")
+        self.assertIn(["elements", True], shown)
 
     def test_the_view_opens(self):
         settle = ("--set", 'stage.slide.kind="settle"', "--set", "joints.friction=40.0")

@@ -92,6 +92,17 @@ class KnownAnswers(Limit):
         self.limit("pushed.toml", "--key", "load_factor", "--from", 0, "--to", 100, "--until", "collapsed", "--tolerance", 0.005)
         self.check_bracket(2600 * 9.81 * math.tan(math.radians(30)) / 1000, 0.005)
 
+    def test_the_strength_at_which_an_anchor_yields(self):
+        """A block on a spring, with ballast of a fifth of its weight: the spring yields below 1.2 times the weight, and is at 80 % of 1.5 times that."""
+        weight = 2600.0 * 9.81
+        hung = CASES / "staged_support.toml"
+        words = (hung, "--key", "spring.first.yield", "--from", 2.0 * weight, "--to", 1.1 * weight, "--tolerance", 0.005)
+        self.limit(*words, "--until", "yielded_elements")
+        self.check_bracket(1.2 * weight, 0.005)
+        said = self.limit(*words, "--until", "largest_utilization", "--above", 0.8, out="used")
+        self.check_bracket(1.5 * weight, 0.005, out="used")
+        self.assertIn("largest utilization of an element", said.stdout)
+
     def test_pressure_under_a_key_block(self):
         self.limit(CASES / "held_block.toml", "--key", "excavation.room.pressure", "--from", 5e4, "--to", 0, "--until", "moved", "--tolerance", 0.005)
         self.check_bracket(2600 * 9.81, 0.01)

@@ -1,7 +1,15 @@
 // result_browser_test.mjs SAMPLES NODE_MODULES: what a run's report says of its result, in headless Chromium.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { close, openers, run, sidewaysOverflow, text } from "./browser.mjs";
+import {
+  close,
+  openers,
+  run,
+  settle,
+  sidewaysOverflow,
+  slideTo,
+  text,
+} from "./browser.mjs";
 
 const { screenshots, open, shoot } = await openers();
 /** What the table of stages says of the equilibrium of each. */
@@ -45,6 +53,43 @@ const tests = {
     assert.doesNotMatch(await text(other, "#damage"), /lower bound/);
     assert.equal(await other.locator("#quality .warnings").count(), 0);
     await close(other);
+  },
+
+  async "elements are drawn with their force, and told by the pointer"() {
+    const page = await open("anchored");
+    const plain = await open("tunnel");
+    await slideTo(page, 1000);
+    assert.match(
+      await text(page, "#animation .legends"),
+      /Force of the elements over their limit[\s\S]*100 % without a limit: the largest in the run, boundary 2,000 kN\/m/,
+    );
+    assert.doesNotMatch(
+      await text(plain, "#animation .legends"),
+      /Force of the elements/,
+    );
+    // Upwards from the bottom of the picture the pointer comes upon the base.
+    const canvas = page.locator("#animation canvas").first();
+    await canvas.scrollIntoViewIfNeeded();
+    const box = await canvas.boundingBox();
+    let words = "";
+    for (let up = 25; up < 0.4 * box.height && !/kind/.test(words); up += 5) {
+      await page.mouse.move(
+        box.x + 0.2 * box.width,
+        box.y + box.height - up,
+      );
+      await settle(page);
+      words = (await text(page, ".tooltip")).replace(/\s+/g, " ");
+    }
+    assert.match(words, /^boundary\.base kind boundary force 2,000 kN\/m/);
+    assert.match(
+      await text(page, "#histories"),
+      /load cell \(spring anchor <1>\)[\s\S]*Force\s*kN\/m[\s\S]*Elongation\s*mm/,
+    );
+    assert.match(await text(page, "#damage"), /Largest utilization/);
+    assert.doesNotMatch(await text(plain, "#damage"), /utilization/);
+    await shoot(page, "anchored-1400");
+    await close(page);
+    await close(plain);
   },
 
   async "an opening in parts has its ground reaction curve"() {
@@ -201,10 +246,10 @@ const tests = {
     );
     assert.deepEqual(columns, [
       "At the end of",
-      "Largest slip ever",
-      "Largest slip in place",
-      "Largest rotation",
       "Hinges",
+      "Largest rotation",
+      "Largest slip in place",
+      "Largest slip ever",
     ]);
     assert.equal(await page.locator("#damage tbody tr").count(), 4);
     assert.equal(await text(page, ".badge"), "Stands");

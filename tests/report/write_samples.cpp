@@ -15,7 +15,7 @@ void forget_end(keyblock::results::RunData& data) {
   keyblock::simulation::RunRecord& run = data.run;
   keyblock::simulation::StageRecord& last = run.stages.back();
   const keyblock::simulation::Damage known = last.damage;
-  for (const auto& [name, measure] : keyblock::simulation::damage_fields) last.damage.*measure = unknown;
+  for (const auto& field : keyblock::simulation::damage_fields) last.damage.*field.number = unknown;
   last.damage.fallen_area = known.fallen_area;
   last.damage.loosened_area = known.loosened_area;
   last.wall_time = last.worst_residual_ratio = unknown;
@@ -34,6 +34,32 @@ void move_block(keyblock::results::RunData& data, std::size_t block, float up) {
     for (int v = start.front(); v < start.back(); ++v)
       frame.displacement[static_cast<std::size_t>(v)][1] += up;
   }
+}
+
+/// Puts an anchor of 100 kN/m in with the second stage, to 80 % of that in the last frame; and the base of the model, without a limit.
+void add_elements(keyblock::results::RunData& data) {
+  using keyblock::simulation::ElementState;
+  keyblock::simulation::ModelRecord& model = data.model;
+  keyblock::Box box;
+  for (const keyblock::Vec2 p : model.vertices) box.add(p);
+  model.elements = {{"anchor <1>", "spring", 1e5, {2.0, 2.5}, {2.0, 4.5}, 0, 1},
+                    {"boundary.base", "boundary", HUGE_VAL, {box.min.x, 0.0}, {box.max.x, 0.0}, -1, -1}};
+  model.element_histories = {{"load cell", 0}};
+  const auto at = [&](double share, bool present) {
+    return std::vector<ElementState>{
+        {{2.0, 2.5 - 0.1 * share}, {2.0, 4.5}, 8e4 * share, 0.1 * share, 0.0, present},
+        {{box.min.x, 0.0}, {box.max.x, 0.0}, 2e6, 1e-3, 0.0, true}};
+  };
+  for (std::size_t f = 0; f < data.frames.size(); ++f) {
+    const double share = static_cast<double>(f + 1) / static_cast<double>(data.frames.size());
+    data.frames[f].elements = at(share, data.frames[f].stage > 0);
+  }
+  for (std::size_t k = 0; k < data.histories.size(); ++k) {
+    ElementState cell = at(static_cast<double>(k) / static_cast<double>(data.histories.size()), true)[0];
+    if (k == 0) cell.force = cell.elongation = std::nan("");
+    data.histories[k].elements = {cell};
+  }
+  for (auto& stage : data.run.stages) stage.damage.largest_utilization = 0.8;
 }
 
 }  // namespace
@@ -65,6 +91,10 @@ int main(int argc, char** argv) {
   marginal.run.stages[2].release = {{5000, 1.0, 9e-3, 4e-3, 6e-3, 0}};
   std::filesystem::create_directories(std::filesystem::path(argv[1]) / "marginal");
   keyblock::report::write_report(marginal, std::filesystem::path(argv[1]) / "marginal");
+  keyblock::results::RunData anchored = synthetic_run({});
+  add_elements(anchored);
+  std::filesystem::create_directories(std::filesystem::path(argv[1]) / "anchored");
+  keyblock::report::write_report(anchored, std::filesystem::path(argv[1]) / "anchored");
   write("interrupted", {.interrupted = true});
   keyblock::results::RunData killed = synthetic_run({.interrupted = true});
   forget_end(killed);

@@ -23,6 +23,7 @@ export class Animation {
   private readonly figure: HTMLElement;
   private pointer: [number, number] | null = null;
   private pending = false;
+  private hoveredElement = -1;
 
   constructor(
     private readonly run: Run,
@@ -235,7 +236,11 @@ export class Animation {
 
   private updateLegends(): void {
     const { look } = this.view;
-    const legends = [this.fields.blockLegend(look.blocks, look.since), this.fields.jointLegend(look.joints)];
+    const legends = [
+      this.fields.blockLegend(look.blocks, look.since),
+      this.fields.jointLegend(look.joints),
+      this.fields.elements.legend(),
+    ];
     this.legends.replaceChildren(...legends.filter((l) => l !== null).map(legendElement));
   }
 
@@ -252,7 +257,8 @@ export class Animation {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      this.view.hovered = this.pointer ? this.view.blockAt(...this.pointer) : -1;
+      this.hoveredElement = this.pointer ? this.view.elementAt(...this.pointer) : -1;
+      this.view.hovered = this.pointer && this.hoveredElement < 0 ? this.view.blockAt(...this.pointer) : -1;
       this.view.draw();
       this.updateTooltip();
     });
@@ -284,9 +290,14 @@ export class Animation {
 
   private updateTooltip(): void {
     const block = this.view.hovered;
-    this.tooltip.hidden = block < 0 || this.pointer === null;
+    const element = this.hoveredElement;
+    this.tooltip.hidden = (block < 0 && element < 0) || this.pointer === null;
     if (this.tooltip.hidden || !this.pointer) return;
-    this.tooltip.replaceChildren(...blockFacts(this.run, this.view, block));
+    const facts =
+      element >= 0
+        ? this.fields.elements.facts(element, this.view.look.moment)
+        : blockFacts(this.run, this.view, block);
+    this.tooltip.replaceChildren(...facts);
     const [x, y] = this.pointer;
     const box = this.figure.getBoundingClientRect();
     const { offsetWidth: w, offsetHeight: hh } = this.tooltip;

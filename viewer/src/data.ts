@@ -8,31 +8,21 @@ export interface Damage {
   /** Holds where the area of the fallen blocks is known. */
   fallen_blocks: number;
   hinges: number;
-  fallen_area_m2: number | null;
-  fallen_weight_n_m: number | null;
-  largest_block_pressure_pa: number | null;
-  largest_fallen_area_m2: number | null;
-  largest_fallen_weight_n_m: number | null;
-  fallen_depth_m: number | null;
-  fallen_depth_crown_m: number | null;
-  fallen_depth_left_m: number | null;
-  fallen_depth_right_m: number | null;
-  fallen_depth_invert_m: number | null;
-  opening_filled_ratio: number | null;
-  loosened_area_m2: number | null;
-  displacement_max_m: number | null;
-  rotation_max_deg: number | null;
-  slip_max_m: number | null;
-  slip_max_ever_m: number | null;
-  slip_mean_m: number | null;
-  slipped_length_m: number | null;
-  slipped_length_ever_m: number | null;
-  opening_max_m: number | null;
-  opening_max_ever_m: number | null;
-  opened_length_m: number | null;
-  opened_length_ever_m: number | null;
-  closure_vertical_m: number | null;
-  closure_horizontal_m: number | null;
+  [measure: string]: number | null;
+}
+
+/** A column of damage, described once in src/simulation/damage_fields.h. */
+export interface DamageMeasure {
+  name: string;
+  table: "rock" | "joints" | "elements";
+  title: string;
+  /** Numbers times the factor are in this unit. */
+  unit: string;
+  factor: number;
+  /** At least so many. */
+  decimals: number;
+  /** It is known where this measure is a number. */
+  known_with: string;
 }
 
 export interface Stage {
@@ -106,6 +96,10 @@ export interface Header {
     /** The command that finds the support pressure which holds the rock; empty where none is asked for. */
     pressure_search?: string;
     histories: string[];
+    /** Springs, supports and all else that carries a force. Pages of earlier versions do not have them. */
+    elements?: ElementInModel[];
+    /** Histories of what an element carries, by its number. */
+    element_histories?: { name: string; element: number }[];
     opening_width_m: number | null;
     slip_limit_m: number | null;
     opening_limit_m: number | null;
@@ -152,7 +146,7 @@ export interface Header {
     /** Energy that the time integration made, over the largest other term. */
     made_ratio: number | null;
     energy: Record<string, number | null>;
-    /** Springs and supports. Pages of earlier versions do not have them. */
+    /** Springs, supports and other elements. Pages of earlier versions do not have them. */
     elements?: ElementAtEnd[];
     stages: Stage[];
     interrupted: boolean;
@@ -163,12 +157,19 @@ export interface Header {
   displacement_quantum: number;
   stress_quantum: number;
   step_columns: string[];
+  damage_measures: DamageMeasure[];
   /** The smallest number of steps from one row of a stage to the next; 0 where there are none. */
   steps_between_rows: number;
   arrays: ArrayEntry[];
 }
 
-/** A spring or a support: what it carries at the end, and carried at the most. */
+export interface ElementInModel {
+  name: string;
+  kind: string;
+  limit_n_m: number | null;
+}
+
+/** A spring, a support or another element: what it carries at the end, and carried at the most. */
 export interface ElementAtEnd {
   name: string;
   kind: string;

@@ -1,5 +1,6 @@
 import { magma, mako, palette, place, table, viridis, type Rgb, type Scale } from "./colors";
 import { css } from "./dom";
+import { Elements } from "./elements";
 import { length, niceAbove, stress } from "./format";
 import { EdgeKind, Run, Status, statusNames, type Moment } from "./run";
 
@@ -93,12 +94,15 @@ export class Fields {
   private statusColors: string[] = [];
   private stateStyles: { name: string; color: string; width: number }[] = [];
   private plain = "";
+  readonly elements: Elements;
 
   constructor(readonly run: Run) {
+    this.elements = new Elements(run);
     this.readTheme();
   }
 
   readTheme(): void {
+    this.elements.readTheme();
     this.plain = css("--rock");
     this.statusColors = [css("--rock"), "#e69f00", "#d55e00", "transparent"];
     this.stateStyles = [

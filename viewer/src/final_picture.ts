@@ -29,12 +29,12 @@ export class FinalPicture {
       { moment, since, exaggeration: 1, blocks, joints: "plain" },
       { axes: true, label: `Block system at the end: ${title}`, maxHeight: mostHeight },
     );
-    const legend = fields.blockLegend(blocks, since);
+    const legends = [fields.blockLegend(blocks, since), fields.elements.legend()].filter((l) => l !== null);
     this.element = h(
       "figure",
       { class: "final" },
       this.view.canvas,
-      h("figcaption", {}, h("strong", {}, title), legend ? legendElement(legend) : null),
+      h("figcaption", {}, h("strong", {}, title), ...legends.map(legendElement)),
     );
     new ResizeObserver(() => this.redraw()).observe(this.element);
     addEventListener("resize", () => this.redraw());

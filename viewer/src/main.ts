@@ -95,12 +95,12 @@ function build(run: Run, main: HTMLElement): void {
     parts.push(
       section(
         "elements",
-        "Springs and supports",
+        "Elements",
         elements,
         h(
           "p",
           { class: "hint" },
-          "Per metre of thickness. Of springs tension is positive; of supports the force is the size of the resultant.",
+          "Springs, supports, sides of the boundary and walls under pressure. Forces are per metre of thickness. Of springs tension is positive; of all else the force is the size of the resultant.",
         ),
       ),
     );
@@ -159,7 +159,9 @@ function build(run: Run, main: HTMLElement): void {
     parts.push(
       section(
         "histories",
-        "Histories of chosen points",
+        (run.header.model.element_histories?.length ?? 0) > 0
+          ? "Histories of chosen points and elements"
+          : "Histories of chosen points",
         ...histories.flatMap(({ name, plots: made }) => [
           h("h3", {}, name),
           h("div", { class: "plots" }, ...track(made)),

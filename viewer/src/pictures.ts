@@ -151,7 +151,11 @@ export class Pictures {
 
   private legendElements(): HTMLElement[] {
     const { look } = this;
-    return [this.fields.blockLegend(look.blocks, look.since), this.fields.jointLegend(look.joints)]
+    return [
+      this.fields.blockLegend(look.blocks, look.since),
+      this.fields.jointLegend(look.joints),
+      this.fields.elements.legend(),
+    ]
       .filter((l) => l !== null)
       .map(legendElement);
   }

@@ -118,13 +118,16 @@ export function damagePlots(run: Run, clock: Clock): Plot[] {
 
 /** How many values each chosen point has: ux, uy, vx, vy, sxx, syy, sxy, ax, ay. */
 const historyValues = 9;
+/** How many each element has: force, elongation. */
+const elementHistoryValues = 2;
 
 /** Displacement, velocity, acceleration and stress of each chosen point. */
 export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plot[] }[] {
   const names = run.header.model.histories;
   const time = run.arrays.get("history.time", "f64");
   const rows = time.length;
-  if (names.length === 0 || rows === 0) return [];
+  const followed = run.header.model.element_histories ?? [];
+  if (names.length + followed.length === 0 || rows === 0) return [];
   const values = run.arrays.get("history.values", "f32");
   const column = (point: number, c: number) =>
     values.subarray((1 + historyValues * point + c) * rows, (2 + historyValues * point + c) * rows);
@@ -132,7 +135,27 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
   const isStatic = time[rows - 1] <= time[0];
   const x = isStatic ? Float64Array.from(values.subarray(0, rows)) : time;
   const axis = isStatic ? overSteps(run, clock) : overTime(run, clock);
-  return names.map((name, p) => {
+  const ofElements = followed.map(({ name, element }, k) => {
+    const first = 1 + historyValues * names.length + elementHistoryValues * k;
+    const line = (label: string, c: number, factor: number): Series => ({
+      name: label,
+      values: Array.from(values.subarray((first + c) * rows, (first + c + 1) * rows), (v) =>
+        Number.isNaN(v) ? null : factor * v,
+      ),
+      color: `--curve-${c + 1}`,
+    });
+    const plot = (title: string, unit: string, series: Series) =>
+      new Plot({ ...axis, title, unit, x, series: [series] }, clock);
+    const of = run.header.model.elements?.[element];
+    return {
+      name: of && of.name !== name ? `${name} (${of.kind} ${of.name})` : name,
+      plots: [
+        plot("Force", "kN/m", line("force", 0, 1e-3)),
+        plot("Elongation", "mm", line("elongation", 1, 1e3)),
+      ],
+    };
+  });
+  const ofPoints = names.map((name, p) => {
     const inMetres = [0, 1].some((c) => column(p, c).some((u) => Math.abs(u) >= 1));
     const plot = (title: string, unit: string, series: Series[]) =>
       new Plot({ ...axis, title, unit, x, series }, clock);
@@ -160,6 +183,7 @@ export function historyPlots(run: Run, clock: Clock): { name: string; plots: Plo
       ],
     };
   });
+  return [...ofPoints, ...ofElements];
 }
 
 /** Of which steps there are rows; peaks of the others are not in the plots. */

@@ -180,6 +180,11 @@ export class SectionView {
     return -1;
   }
 
+  /** The element under a pixel, −1 for none. */
+  elementAt(px: number, py: number): number {
+    return this.fields.elements.at(px, py, this.look, (x, y) => this.toPixel(x, y));
+  }
+
   private tracePath(block: number): void {
     const { run, drawn, context: c } = this;
     const n = run.vertexCount;
@@ -212,6 +217,12 @@ export class SectionView {
     this.drawBlocks();
     this.drawOutlines();
     this.drawJoints();
+    this.fields.elements.draw(
+      c,
+      this.look,
+      (x, y) => [this.ax + this.scaleNow * x, this.ay - this.scaleNow * y],
+      this.options.axes ? 1 : 0.6,
+    );
     this.drawMarked();
     this.drawOutside();
     c.restore();

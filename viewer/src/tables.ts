@@ -101,7 +101,7 @@ export function stageTable(run: Run): HTMLElement {
   return tableBox("Stages as they were run", [head], rows);
 }
 
-/** Springs and supports; null where there are none. */
+/** Springs, supports and other elements; null where there are none. */
 export function elementTable(run: Run): HTMLElement | null {
   const elements = run.header.run.elements ?? [];
   if (elements.length === 0) return null;

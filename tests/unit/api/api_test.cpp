@@ -243,6 +243,38 @@ TEST(Api, SingleContactsHaveStrengthsOfTheirOwn) {
   EXPECT_TRUE(freed.contact_strengths().empty());
 }
 
+TEST(Api, ResultsHaveElements) {
+  const FreshFolder folder;
+  RunOptions options;
+  options.folder = folder / "out";
+  Scenario scenario = Scenario::parse(falling);
+  scenario.append("spring",
+                  "{ name = \"rope\", from = [1.0, -0.5], to = [1.0, 1.0], stiffness = 1e6, yield = 2e4 }");
+  scenario.append("history", "{ name = \"cell\", element = \"rope\" }");
+  Simulation run(scenario, options);
+  while (run.advance()) {
+  }
+  run.finish();
+  const Results results(options.folder);
+  ASSERT_EQ(results.elements().size(), 1U);
+  const Element rope = results.elements()[0];
+  EXPECT_EQ(rope.name, "rope");
+  EXPECT_EQ(rope.kind, "spring");
+  EXPECT_EQ(rope.limit, 2e4);
+  EXPECT_EQ(rope.to[1], 1.0);
+  EXPECT_EQ(rope.to_block, 1);
+  const Frame last = results.frame(results.frames() - 1);
+  ASSERT_EQ(last.elements.size(), 1U);
+  EXPECT_LT(last.elements[0].force, 0.0);  // the stone presses it
+  EXPECT_TRUE(last.elements[0].present);
+  ASSERT_EQ(results.element_histories().size(), 1U);
+  const HistoryOfElement cell = results.element_histories()[0];
+  EXPECT_EQ(cell.element, 0U);
+  EXPECT_EQ(cell.force.size(), results.history_times().size());
+  EXPECT_EQ(cell.force.back(), last.elements[0].force);
+  EXPECT_TRUE(results.histories().empty());
+}
+
 TEST(Api, ResultsHaveContactsHistoriesAndEnergies) {
   const FreshFolder folder;
   RunOptions options;

@@ -79,9 +79,17 @@ TEST(Export, Csv) {
   const auto folder = fresh / "made";
   const RunData data = small_motions();
   const auto files = export_run(data, folder, ExportFormat::csv);
-  EXPECT_THAT(files,
-              testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv", folder / "steps.csv",
-                                   folder / "histories.csv", folder / "release.csv"));
+  EXPECT_THAT(files, testing::ElementsAre(folder / "blocks.csv", folder / "contacts.csv",
+                                          folder / "steps.csv", folder / "histories.csv",
+                                          folder / "element_frames.csv", folder / "release.csv"));
+  const auto elements = lines(folder / "element_frames.csv");
+  EXPECT_EQ(
+      elements[0],
+      "frame,time,stage,step,element,name,kind,present,from_x,from_y,to_x,to_y,force,elongation,yielded,"
+      "utilization");
+  EXPECT_EQ(elements.size(), 1U + 6 * 2);
+  EXPECT_THAT(elements[1], HasSubstr(",0,\"anchor, \"\"3\"\"\",spring,"));
+  EXPECT_THAT(elements[2], testing::EndsWith(","));  // no limit
   const auto blocks = lines(folder / "blocks.csv");
   EXPECT_EQ(blocks[0], "frame,time,stage,step,block,name,status,x,y,ux,uy,sxx,syy,sxy");
   EXPECT_EQ(blocks.size(), 1U + 2 * 3 + 4 * 2);  // without the excavated block in the last four of six frames
@@ -103,7 +111,9 @@ TEST(Export, HistoriesOfExcavatedRockAreEmptyCells) {
   simulation::HistoryRow row;
   row.time = 0.5;
   row.points = {{none, none, none, none, none, none, none}, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
-  EXPECT_THAT(histories_csv({"a", "b"}, {row}), testing::EndsWith("\n0.5,,,,,,,,,,1,2,3,4,5,6,7,8,9\n"));
+  simulation::ModelRecord model;
+  model.history_names = {"a", "b"};
+  EXPECT_THAT(histories_csv(model, {row}), testing::EndsWith("\n0.5,,,,,,,,,,1,2,3,4,5,6,7,8,9\n"));
 }
 
 TEST(Export, GeoJsonOfEveryStageEnd) {
@@ -143,6 +153,7 @@ TEST(Export, TakesThePlaceOfAnEarlierOne) {
   write_file_atomically(folder / "scene.pvsm", "mine");
   data.frames.resize(4);
   data.model.history_names.clear();
+  data.model.element_histories.clear();
   export_run(data, folder, ExportFormat::vtk);
   EXPECT_TRUE(std::filesystem::exists(folder / "blocks_00003.vtu"));
   EXPECT_FALSE(std::filesystem::exists(folder / "blocks_00004.vtu"));
@@ -230,8 +241,9 @@ TEST(Export, VtkSeriesHasTimesThatAscend) {
   EXPECT_EQ(files[2], folder / "outlines.pvd");
   EXPECT_EQ(files[3], folder / "centres.pvd");
   EXPECT_EQ(files[4], folder / "forces.pvd");
-  EXPECT_EQ(files[5], folder / "view.py");
-  EXPECT_EQ(files.size(), 6U + 3 * 6 + 2 * 3);
+  EXPECT_EQ(files[5], folder / "elements.pvd");
+  EXPECT_EQ(files[6], folder / "view.py");
+  EXPECT_EQ(files.size(), 7U + 4 * 6 + 2 * 3);
   for (const std::size_t series : {2U, 3U}) EXPECT_EQ(series_times(files[series]), series_times(files[0]));
   EXPECT_EQ(series_times(files[4]), series_times(files[1]));
   const std::vector<double> times = series_times(files[0]);

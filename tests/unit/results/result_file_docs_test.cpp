@@ -119,7 +119,7 @@ f.visititems(look)
 for name in ("frames/status", "contacts/state", "model/edge_kind", "contacts/edge_kind", "model/block_fixed"):
     print(name, ", ".join(f[name].attrs["values"].astype("U")))
 for name in ("frames/stress", "frames/velocity", "contacts/shear_force", "histories/values", "model/block_young",
-             "steps/energy"):
+             "steps/energy", "elements/force", "histories/element_values"):
     print(name, f[name].attrs["units"].decode())
 print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["steps/energy_names"][:]).decode())
 )",
@@ -137,6 +137,8 @@ print("/".join(f["steps/energy"].attrs["columns"].astype("U")) == b"/".join(f["s
             "histories/values m, m, m/s, m/s, Pa, Pa, Pa, m/s2, m/s2\n"
             "model/block_young Pa\n"
             "steps/energy J/m, J/m, J/m, J/m, J/m, J/m, J/m, J/m, 1, J/m\n"
+            "elements/force N/m\n"
+            "histories/element_values N/m, m\n"
             "True\n");
 }
 

@@ -104,6 +104,7 @@ TEST(ResultFile, ARunWithoutContactsHistoriesOrFrames) {
   const FreshFolder folder;
   SampleRun sample;
   sample.model.history_names.clear();
+  sample.model.element_histories.clear();
   simulation::RunRecord run = sample.run();
   {
     ResultWriter writer(folder);

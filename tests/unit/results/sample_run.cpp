@@ -62,6 +62,8 @@ void expect_equal(const simulation::ModelRecord& a, const simulation::ModelRecor
   EXPECT_EQ(a.excavation_names, b.excavation_names);
   EXPECT_EQ(a.excavation_outlines, b.excavation_outlines);
   EXPECT_EQ(a.history_names, b.history_names);
+  EXPECT_EQ(a.elements, b.elements);
+  EXPECT_EQ(a.element_histories, b.element_histories);
   EXPECT_EQ(a.opening_width, b.opening_width);
   EXPECT_EQ(a.slip_limit, b.slip_limit);
   EXPECT_EQ(a.opening_limit, b.opening_limit);
@@ -107,6 +109,13 @@ void expect_equal(const simulation::Frame& a, const simulation::Frame& b) {
   }
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.order, b.order);
+  ASSERT_EQ(a.elements.size(), b.elements.size());
+  for (std::size_t k = 0; k < a.elements.size(); ++k) {
+    const auto &p = a.elements[k], &q = b.elements[k];
+    EXPECT_TRUE(same(p.from, q.from) && same(p.to, q.to));
+    EXPECT_TRUE(same(p.force, q.force) && same(p.elongation, q.elongation) && same(p.yielded, q.yielded));
+    EXPECT_EQ(p.present, q.present);
+  }
 }
 
 void expect_equal(const simulation::ContactFrame& a, const simulation::ContactFrame& b) {
@@ -136,6 +145,11 @@ void expect_equal(const simulation::HistoryRow& a, const simulation::HistoryRow&
     EXPECT_TRUE(same(p.ux, q.ux) && same(p.uy, q.uy) && same(p.vx, q.vx) && same(p.vy, q.vy));
     EXPECT_TRUE(same(p.sxx, q.sxx) && same(p.syy, q.syy) && same(p.sxy, q.sxy));
     EXPECT_TRUE(same(p.ax, q.ax) && same(p.ay, q.ay));
+  }
+  ASSERT_EQ(a.elements.size(), b.elements.size());
+  for (std::size_t k = 0; k < a.elements.size(); ++k) {
+    EXPECT_TRUE(same(a.elements[k].force, b.elements[k].force));
+    EXPECT_TRUE(same(a.elements[k].elongation, b.elements[k].elongation));
   }
 }
 
@@ -180,8 +194,8 @@ void expect_equal(const simulation::StageRecord& a, const simulation::StageRecor
     EXPECT_TRUE(same(p.springline, q.springline) && same(p.mean, q.mean));
   }
   EXPECT_EQ(a.damage.fallen_blocks, b.damage.fallen_blocks);
-  for (const auto& [name, member] : simulation::damage_fields)
-    EXPECT_TRUE(same(a.damage.*member, b.damage.*member)) << name;
+  for (const auto& field : simulation::damage_fields)
+    EXPECT_TRUE(same(a.damage.*field.number, b.damage.*field.number)) << field.name;
   ASSERT_EQ(a.fallen.size(), b.fallen.size());
   for (std::size_t k = 0; k < a.fallen.size(); ++k) {
     EXPECT_EQ(a.fallen[k].block, b.fallen[k].block);
@@ -235,6 +249,9 @@ SampleRun::SampleRun() {
   model.excavation_names = {"tunnel", "niche"};
   model.excavation_outlines = {{{0, 0}, {1, 0}, {0.1, 1}}, {}};
   model.history_names = {"crown", "a/b, \"c\""};
+  model.elements = {{"anchor, \"3\"", "spring", 1e5 / 3.0, {0.1, 0.2}, {5.0, 5.5}, 0, 1},
+                    {"boundary.base", "boundary", HUGE_VAL, {0.0, 0.0}, {8.0, 0.0}, -1, 2}};
+  model.element_histories = {{"load cell", 0}};
   model.opening_width = 5.5;
   model.slip_limit = 0.1 / 3.0;
   model.warnings = {"rock.density = 2.6 kg/m3", "a \"quoted\" one"};
@@ -259,6 +276,14 @@ simulation::Frame SampleRun::frame(int stage, long step) {
     frame.velocity.push_back(
         {static_cast<float>(noise(step, 200 + k)), static_cast<float>(noise(step, 300 + k))});
     frame.order.push_back(static_cast<std::int16_t>(1 + (step + k) % 300));
+  }
+  for (int k = 0; k < static_cast<int>(model.elements.size()); ++k) {
+    frame.elements.push_back({{noise(step, 400 + k), noise(step, 410 + k)},
+                              {noise(step, 420 + k), 0.1 / 3.0},
+                              noise(step, 430 + k),
+                              noise(step, 440 + k),
+                              noise(step, 450 + k),
+                              (step + k) % 3 != 0});
   }
   return frame;
 }
@@ -288,6 +313,11 @@ simulation::HistoryRow SampleRun::history(long step) {
   for (int k = 0; k < 2; ++k) {
     row.points.push_back({noise(step, k), noise(step, k + 2), noise(step, k + 4), noise(step, k + 6),
                           noise(step, k + 8), 1e300, -5e-324, noise(step, k + 10), noise(step, k + 12)});
+  }
+  for (std::size_t k = 0; k < model.element_histories.size(); ++k) {
+    simulation::ElementState& element = row.elements.emplace_back();
+    element.force = step < 4 ? std::nan("") : noise(step, 14);
+    element.elongation = step < 4 ? std::nan("") : noise(step, 15);
   }
   return row;
 }
@@ -338,7 +368,7 @@ simulation::StageRecord SampleRun::stage(int index) {
   record.largest_speed = noise(index, 5);
   if (index > 0) record.standing = simulation::Standing::collapsed;
   double value = noise(index, 1);
-  for (const auto& [name, member] : simulation::damage_fields) record.damage.*member = value *= -0.7;
+  for (const auto& field : simulation::damage_fields) record.damage.*field.number = value *= -0.7;
   record.damage.closure_horizontal = 1e-17;
   record.fallen = {{0, noise(index, 2), noise(index, 3), noise(index, 4), simulation::WallPart::invert},
                    {2, 0.1, 0.0, std::numeric_limits<double>::quiet_NaN(), simulation::WallPart::none}};

@@ -139,7 +139,7 @@ TEST(Summary, WhatIsNoNumberIsNull) {
 TEST(HistoriesCsv, HeaderAndRows) {
   SampleRun sample;
   const std::vector<simulation::HistoryRow> rows{sample.history(1), sample.history(2)};
-  const std::string text = histories_csv({"crown", "a/b, \"c\""}, rows);
+  const std::string text = histories_csv(sample.model, rows);
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
@@ -155,13 +155,17 @@ TEST(HistoriesCsv, HeaderAndRows) {
     values.push_back(std::strtod(lines[2].c_str() + begin, nullptr));
     begin = end + 1;
   }
-  ASSERT_EQ(values.size(), 19U);
+  EXPECT_THAT(lines[0], testing::EndsWith(",load cell.force,load cell.elongation"));
+  EXPECT_THAT(lines[1], testing::EndsWith(",,"));  // it is not there yet
+  ASSERT_EQ(values.size(), 21U);
   EXPECT_EQ(values[0], rows[1].time);
   EXPECT_EQ(values[1], rows[1].points[0].ux);
   EXPECT_EQ(values[10], rows[1].points[1].ux);
   EXPECT_EQ(values[15], 1e300);
   EXPECT_EQ(values[18], rows[1].points[1].ay);
-  EXPECT_EQ(histories_csv({"p"}, {}), "time,p.ux,p.uy,p.vx,p.vy,p.sxx,p.syy,p.sxy,p.ax,p.ay\n");
+  simulation::ModelRecord one;
+  one.history_names = {"p"};
+  EXPECT_EQ(histories_csv(one, {}), "time,p.ux,p.uy,p.vx,p.vy,p.sxx,p.syy,p.sxy,p.ax,p.ay\n");
 }
 
 }  // namespace

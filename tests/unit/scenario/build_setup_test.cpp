@@ -278,5 +278,36 @@ TEST(Examples, AllCanBeBuilt) {
   EXPECT_GE(count, 5);
 }
 
+TEST(BuildSetup, HistoriesOfElementsNameOne) {
+  const std::string text = two_blocks + R"(
+[[spring]]
+name = "anchor"
+from = [1.0, 0.5]
+to = [1.0, 1.5]
+stiffness = 1e6
+
+[[history]]
+name = "cell"
+element = "NAME"
+)";
+  const auto named = [&](const std::string& name) {
+    std::string of = text;
+    return of.replace(of.find("NAME"), 4, name);
+  };
+  const auto setup = build_setup(parse(named("anchor")), 0);
+  EXPECT_EQ(setup.histories[0].element, "anchor");
+  try {
+    build_setup(parse(named("ancor")), 0);
+    FAIL();
+  } catch (const InputError& error) {
+    const Diagnostic& d = error.diagnostics().front();
+    EXPECT_EQ(d.key, "history.cell.element");
+    EXPECT_GT(d.where.line, 1);
+    EXPECT_EQ(d.where.column, 11);
+    EXPECT_THAT(d.expected, HasSubstr("anchor"));
+    EXPECT_THAT(d.hint, HasSubstr("anchor"));
+  }
+}
+
 }  // namespace
 }  // namespace keyblock::scenario

@@ -108,9 +108,9 @@ TEST(JointGauge, AResumedRunRemembersTheSame) {
   const RunRecord resumed = run(dropping_block(), options, nobody);
   ASSERT_EQ(resumed.state_hash, whole.state_hash);
   for (std::size_t k = 0; k < 3; ++k) {
-    for (const auto& [name, member] : damage_fields) {
-      const double one = resumed.stages[k].damage.*member, other = whole.stages[k].damage.*member;
-      EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other))) << name;
+    for (const auto& field : damage_fields) {
+      const double one = resumed.stages[k].damage.*field.number, other = whole.stages[k].damage.*field.number;
+      EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other))) << field.name;
     }
   }
 }

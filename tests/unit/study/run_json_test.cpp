@@ -33,7 +33,7 @@ RunResult sample_run() {
   StageMeasures stage{"first earthquake", StageKind::shake, 1.1, 0.2, 0.3, {}};
   stage.damage.fallen_blocks = 4;
   double value = 0.1;
-  for (const auto& [name, member] : simulation::damage_fields) stage.damage.*member = value += 1.0 / 7.0;
+  for (const auto& field : simulation::damage_fields) stage.damage.*field.number = value += 1.0 / 7.0;
   run.stages = {stage, {"rest", StageKind::rest, 0.0, 0.0, 0.0, {}}};
   run.fallen = {{3, "slab", 1, {0.1, -0.2}, 0.7, 1.0 / 7.0, 0.9, simulation::WallPart::right},
                 {4, "", 1, {0.1, -0.2}, 0.7, 0.1, std::nan(""), simulation::WallPart::none}};

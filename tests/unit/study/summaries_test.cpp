@@ -274,7 +274,7 @@ TEST(Summarize, RunsWithoutAMeasureAreNoPartOfItsSample) {
 TEST(Measures, AreThoseOfTheSummary) {
   ASSERT_EQ(measures().size(), simulation::damage_names().size());
   EXPECT_EQ(measures()[0].name, "fallen_blocks");
-  EXPECT_EQ(find_measure("closure_horizontal_m"), measures().size() - 1);
+  EXPECT_EQ(find_measure("largest_utilization"), measures().size() - 1);
   EXPECT_FALSE(find_measure("fallen").has_value());
 }
 

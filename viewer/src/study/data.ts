@@ -94,6 +94,9 @@ export interface Quantity {
   name: string;
   title: string;
   unit: string;
+  /** In which pages show it: numbers times the factor. Of measures alone. */
+  shown_unit?: string;
+  shown_factor?: number;
 }
 
 export interface StudyJson {

@@ -1,22 +1,6 @@
 import { significant } from "../format";
 import type { Estimate, Quantity } from "./data";
 
-/** In what unit a measure is shown, where that is not its own. */
-const shown: Record<string, { factor: number; unit: string }> = {
-  fallen_weight_n_m: { factor: 1e-3, unit: "kN/m" },
-  largest_fallen_weight_n_m: { factor: 1e-3, unit: "kN/m" },
-  largest_block_pressure_pa: { factor: 1e-3, unit: "kPa" },
-  opening_filled_ratio: { factor: 100, unit: "%" },
-  displacement_max_m: { factor: 1e3, unit: "mm" },
-  slip_max_m: { factor: 1e3, unit: "mm" },
-  slip_max_ever_m: { factor: 1e3, unit: "mm" },
-  slip_mean_m: { factor: 1e3, unit: "mm" },
-  opening_max_m: { factor: 1e3, unit: "mm" },
-  opening_max_ever_m: { factor: 1e3, unit: "mm" },
-  closure_vertical_m: { factor: 1e3, unit: "mm" },
-  closure_horizontal_m: { factor: 1e3, unit: "mm" },
-};
-
 export interface Shown {
   name: string;
   title: string;
@@ -25,8 +9,7 @@ export interface Shown {
 }
 
 export function shownAs(q: Quantity): Shown {
-  const own = shown[q.name] ?? { factor: 1, unit: q.unit };
-  return { name: q.name, title: q.title, ...own };
+  return { name: q.name, title: q.title, unit: q.shown_unit ?? q.unit, factor: q.shown_factor ?? 1 };
 }
 
 /** "fallen area (m²)" */

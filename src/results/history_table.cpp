@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "core/error.h"
+#include "results/record_fields.h"
+#include "results/result_tables.h"
+#include "results/table_rows.h"
+
+namespace keyblock::results {
+namespace {
+
+using hdf5::Array;
+using hdf5::read_array;
+using hdf5::read_column;
+
+constexpr std::size_t history_values = std::size(history_fields);
+constexpr std::size_t element_values = simulation::element_history_fields.size();
+constexpr std::size_t first_history_values = 7;  // of results of earlier versions
+
+}  // namespace
+
+HistoryTable::HistoryTable(hid_t file, const simulation::ModelRecord& model)
+    : points_(model.history_names.size()),
+      elements_(model.element_histories.size()),
+      group_(hdf5::create_group(file, "histories")),
+      values_(group_, "values", {points_, history_values}),
+      step_(group_, "step", {}),
+      time_(group_, "time", {}) {
+  hdf5::write_strings(group_, "names", model.history_names);
+  if (elements_ == 0) return;
+  std::vector<std::string> names;
+  for (const simulation::ElementHistory& history : model.element_histories) names.push_back(history.name);
+  hdf5::write_strings(group_, "element_names", names);
+  element_values_ = hdf5::Column<double>(group_, "element_values", {elements_, element_values});
+}
+
+void HistoryTable::append(const simulation::HistoryRow& row) {
+  if (row.points.size() != points_ || row.elements.size() != elements_)
+    throw std::invalid_argument("a history row of another model");
+  values_.append_row(flat(reinterpret_cast<const double*>(row.points.data()), history_values * points_));
+  std::vector<double> of_elements;
+  for (const simulation::ElementState& element : row.elements) {
+    for (const auto& field : simulation::element_history_fields) of_elements.push_back(element.*field.number);
+  }
+  if (elements_ > 0) element_values_.append(of_elements);
+  step_.append(row.step);
+  time_.append(row.time);
+}
+
+void HistoryTable::flush() {
+  values_.flush();
+  if (elements_ > 0) element_values_.flush();
+  step_.flush();
+  time_.flush();
+}
+
+std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
+  const hdf5::Handle group = hdf5::open_group(file, "histories");
+  const auto time = read_column<double>(group, "time"), values = read_array<double>(group, "values");
+  const auto step = read_column<std::int64_t>(group, "step");
+  const std::size_t quantities = values.shape.size() == 3 ? values.shape[2] : 0;
+  require(quantities == history_values || quantities == first_history_values, "histories/values");
+  const std::size_t points = values.shape[1];
+  const bool of_elements = H5Lexists(group, "element_values", H5P_DEFAULT) > 0;
+  const auto elements = of_elements ? read_array<double>(group, "element_values") : Array<double>{};
+  require(!of_elements || (elements.shape.size() == 3 && elements.shape[2] == element_values),
+          "histories/element_values");
+  std::vector<simulation::HistoryRow> rows(
+      common_rows(time, {values.rows(), step.rows(), of_elements ? elements.rows() : values.rows()}));
+  const double *next = values.values.data(), *of_element = elements.values.data();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].time = time.values[k];
+    rows[k].step = step.values[k];
+    for (std::size_t p = 0; p < points; ++p) {
+      simulation::HistoryRow::Point& point = rows[k].points.emplace_back();
+      for (std::size_t q = 0; q < history_values; ++q)
+        point.*history_fields[q].member = q < quantities ? *next++ : std::nan("");
+    }
+    if (of_elements) rows[k].elements.resize(elements.shape[1]);
+    for (simulation::ElementState& element : rows[k].elements) {
+      for (const auto& field : simulation::element_history_fields) element.*field.number = *of_element++;
+      element.present = !std::isnan(element.force);
+    }
+  }
+  return rows;
+}
+
+}  // namespace keyblock::results

@@ -1,0 +1,46 @@
+#include <cmath>
+
+#include "results/vtk_parts.h"
+
+namespace keyblock::results {
+
+std::string vtk_elements(const simulation::ModelRecord& model, const simulation::Frame& frame) {
+  std::vector<double> points, utilization;
+  std::vector<double> numbers[std::size(simulation::element_state_fields)];
+  std::vector<std::int64_t> vertices, end;
+  std::vector<std::int32_t> number;
+  for (std::size_t k = 0; k < frame.elements.size(); ++k) {
+    const simulation::ElementState& e = frame.elements[k];
+    if (!e.present) continue;
+    for (const Vec2 p : {e.from, e.to}) {
+      vertices.push_back(static_cast<std::int64_t>(vertices.size()));
+      points.insert(points.end(), {p.x, p.y, 0.0});
+    }
+    end.push_back(static_cast<std::int64_t>(vertices.size()));
+    number.push_back(static_cast<std::int32_t>(k));
+    const simulation::ElementDescription& of = model.elements[k];
+    utilization.push_back(std::isfinite(of.limit) ? e.utilization(of) : std::nan(""));
+    for (std::size_t n = 0; n < std::size(numbers); ++n)
+      numbers[n].push_back(e.*simulation::element_state_fields[n].number);
+  }
+  VtkFile file("PolyData");
+  add_vtk_moment(file, model, frame.time, frame.stage, frame.step);
+  file.open("Piece", vtk_piece(vertices.size(), 0, end.size()));
+  file.open("CellData", "Scalars=\"force\"");
+  file.array("element", view(number));
+  for (std::size_t n = 0; n < std::size(numbers); ++n)
+    file.array(simulation::element_state_fields[n].name, view(numbers[n]));
+  file.array("utilization", view(utilization));
+  file.close("CellData");
+  file.open("Points");
+  file.array("Points", view(points), 3);
+  file.close("Points");
+  file.open("Lines");
+  file.array("connectivity", view(vertices));
+  file.array("offsets", view(end));
+  file.close("Lines");
+  file.close("Piece");
+  return file.text();
+}
+
+}  // namespace keyblock::results
