@@ -154,7 +154,7 @@ std::vector<Carried> PointSprings::carried(const Model& model, const State& stat
     one.present = true;
     one.force = springs[k].force;
     one.yielded = memory[yielded(k)];
-    one.elongation = springs[k].length - springs_[k].length - memory[installed(k)];
+    one.elongation = springs[k].length - springs_[k].length() - memory[installed(k)];
   }
   return all;
 }
