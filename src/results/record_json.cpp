@@ -265,6 +265,7 @@ std::string run_json(const simulation::RunRecord& run) {
                           {"energy", energy_json(run.energy)},
                           {"made_ratio", run.made.ratio},
                           {"made_time", run.made.time},
+                          {"made_share", run.made.share()},
                           {"planes", planes_json(run.planes, {})},
                           {"elements", elements_json(run.elements, {})},
                           {"interrupted", run.interrupted}};
@@ -287,6 +288,10 @@ simulation::RunRecord read_run_json(const std::string& text) {
     run.energy = read_energy(json.at("energy"));
     if (json.contains("made_ratio")) run.made.ratio = number(json.at("made_ratio"));
     if (json.contains("made_time")) run.made.time = number(json.at("made_time"));
+    if (json.contains("made_share")) {
+      run.made.most = number(json.at("made_share"));
+      run.made.largest = 1.0;
+    }
     if (json.contains("planes")) run.planes = read_planes(json.at("planes"));
     if (json.contains("elements")) run.elements = read_elements(json.at("elements"));
     json.at("interrupted").get_to(run.interrupted);

@@ -60,7 +60,9 @@ Energy energy_audit(const dynamics::Model& model, const dynamics::State& state, 
 
 void watch_made(const dynamics::Model& model, const Energy& energy, double time, MadeEnergy& made) {
   made.highest = std::max(made.highest, energy.numerical);
-  const double ratio = (made.highest - energy.numerical) / largest_but_numerical(model, energy);
+  made.largest = std::max(made.largest, largest_but_numerical(model, energy));
+  const double now = made.highest - energy.numerical, ratio = now / made.largest;
+  made.most = std::max(made.most, now);
   if (!(ratio > made.ratio)) return;
   made.ratio = ratio;
   made.time = time;

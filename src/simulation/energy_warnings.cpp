@@ -25,7 +25,7 @@ std::string reason_of_failure(const Energy& energy) {
 }
 
 bool has_made_most(const RunRecord& run) {
-  return run.made.ratio > failed_made;
+  return run.made.share() > failed_made;
 }
 
 std::string made(const RunRecord& run) {

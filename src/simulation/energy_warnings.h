@@ -12,7 +12,7 @@ inline constexpr double doubtful_residual = 0.01;
 inline constexpr double failed_residual = 0.05;
 /// MadeEnergy::ratio, above which the time integration drives what moves.
 inline constexpr double doubtful_made = 0.1;
-/// … and above which the results are none: most of what moves has its energy from nothing.
+/// MadeEnergy::share, above which the results are none: most of what moved has its energy from nothing.
 inline constexpr double failed_made = 0.5;
 
 /// What the balance of energies says against the results of a run, in plain words; empty: nothing.

@@ -172,12 +172,18 @@ struct Energy {
   double radiated = 0.0;  ///< carried away by waves through a seismic boundary
 };
 
-/// Energy that the time integration makes rather than dissipates: how far Energy::numerical has come down from its highest value before, over
-/// the largest of the other terms at that moment. A later loss of any size does not make up for it. Static steps count none.
+/// Energy that the time integration makes rather than dissipates: how far Energy::numerical has come down from its highest value before in a
+/// dynamic stage. A later loss of any size does not make up for it. It is measured by the largest of the other terms until then, as single
+/// terms go through zero.
 struct MadeEnergy {
-  double ratio = 0.0;    ///< at the worst moment that was looked at
+  double ratio = 0.0;    ///< made over the largest other term, at the worst moment that was looked at
   double time = 0.0;     ///< s, of that moment
   double highest = 0.0;  ///< J per thickness, of `numerical` in the dynamic stage at hand so far
+  double most = 0.0;     ///< J per thickness, made
+  double largest = 0.0;  ///< J per thickness, of all other terms so far
+
+  /// Of the largest term of the whole run: what is made before rock falls is little of that fall.
+  [[nodiscard]] double share() const { return most > 0.0 ? most / largest : 0.0; }
 };
 
 /// How the steps went, one row now and then.

@@ -211,11 +211,12 @@ class OddInput(unittest.TestCase):
     def test_energy_from_nothing_is_told(self):
         _, said = self.run_it("energy-92", code=2)
         self.assertRegex(said, r"the rule of time integration has made energy, [1-9]\d\d % .* at 0\.\d+ s")
-        # How much hangs on the last bits of a chaotic scene: an error of the computation from 50 % on, a note before.
+        # How much hangs on the last bits of a chaotic scene: an error of the computation from 50 % of the whole run on, a note before.
         done = subprocess.run([PROGRAM, "run", str(self.here / "energy-97.toml"), "-o", str(self.here / "of-97")], capture_output=True, text=True)
         shares = re.findall(r"the rule of time integration has made energy, (\S+) %", done.stdout)
         self.assertGreater(len(shares), 0, done.stdout)
-        self.assertEqual(done.returncode, 2 if float(shares[0]) > 50 else 0, done.stdout)
+        self.assertEqual(done.returncode, 2 if "results are not to be used" in done.stdout else 0, done.stdout)
+        self.assertTrue(done.returncode == 0 or float(shares[0]) > 50, done.stdout)
         # The worst moment counts: in the end the sum is a loss.
         summary, said = self.run_it("small-bounce", code=2)
         self.assertGreater(summary["energy"]["numerical"], 0.0)

@@ -54,7 +54,13 @@ TEST(EnergyWarnings, SayWhatTheTimeIntegrationHasMade) {
   run.made.ratio = 0.1;
   EXPECT_THAT(energy_warnings(run), IsEmpty());
   run.made.ratio = 1.37;
-  EXPECT_THAT(energy_warnings(run), ElementsAre(HasSubstr("has made energy, 137 % of the largest term")));
+  run.made.time = 2.5;
+  EXPECT_THAT(energy_warnings(run),
+              ElementsAre(HasSubstr(
+                  "has made energy, 137 % of the largest term that is accounted for at 2.5 s: compare")));
+  run.made.most = 0.6;
+  run.made.largest = 1.0;
+  EXPECT_THAT(energy_warnings(run), ElementsAre(HasSubstr("the results are not to be used")));
   run.energy.residual_ratio = 0.5;
   EXPECT_EQ(energy_warnings(run).size(), 2U);
 }
@@ -106,7 +112,8 @@ TEST(EnergyAudit, EnergyThatIsMadeIsMeasuredByAllOtherTerms) {
   watch_made(s.model, energy, 1.0, made);
   EXPECT_EQ(made.ratio, 1.5);
   EXPECT_EQ(made.time, 1.0);
-  // What is lost later, or small beside later terms, does not make it good.
+  EXPECT_EQ(made.share(), 1.5);
+  // What is lost later does not make it good; what moves later may be far more.
   energy.numerical = 20.0;
   energy.friction = 1e6;
   watch_made(s.model, energy, 2.0, made);
@@ -114,6 +121,7 @@ TEST(EnergyAudit, EnergyThatIsMadeIsMeasuredByAllOtherTerms) {
   watch_made(s.model, energy, 3.0, made);
   EXPECT_EQ(made.ratio, 1.5);
   EXPECT_EQ(made.time, 1.0);
+  EXPECT_EQ(made.share(), 30.0 / 1e6);
 }
 
 /// A block of 1 m that falls by 3 mm, below the speed of an impact, and bounces.
@@ -134,7 +142,7 @@ TEST(EnergyAudit, EnergyMadeInSmallBounces) {
   const RunRecord low = run(small_bounce(0.0), {}, nobody), high = run(small_bounce(0.3), {}, nobody);
   EXPECT_LT(low.made.ratio, 1e-9);
   EXPECT_GT(high.energy.numerical, 0.0);
-  EXPECT_GT(high.made.ratio, failed_made);
+  EXPECT_GT(high.made.share(), failed_made);
   EXPECT_GT(high.made.time, 0.02);
   EXPECT_THAT(failed_balances(high), ElementsAre(HasSubstr("has made energy")));
 }
@@ -152,6 +160,7 @@ TEST(EnergyAudit, AResumedRunHasTheSameWorstMoment) {
     EXPECT_EQ(resumed.made.ratio, whole.made.ratio);
     EXPECT_EQ(resumed.made.time, whole.made.time);
     EXPECT_EQ(resumed.made.highest, whole.made.highest);
+    EXPECT_EQ(resumed.made.share(), whole.made.share());
   }
 }
 
