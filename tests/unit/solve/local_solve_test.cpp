@@ -96,7 +96,7 @@ TEST(LocalSolve, KnowsWhatItDoesToItsContacts) {
         0)
       expected.push_back(c);
   }
-  std::vector<std::size_t> contacts(wall.local.contacts().begin(), wall.local.contacts().end());
+  std::vector<std::size_t> contacts(wall.local.rows().begin(), wall.local.rows().end());
   std::ranges::sort(contacts);
   EXPECT_EQ(contacts, expected);
   const double largest = largest_of(wall.step->iterate.direction);

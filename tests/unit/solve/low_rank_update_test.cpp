@@ -78,10 +78,10 @@ TEST(LowRankUpdate, ResetForgetsTheSprings) {
   const std::vector<double> expected = plain_increment(struck.s);
   Update with(struck.s, linalg::Precision::full);
   ASSERT_TRUE(with.minimize(true));
-  EXPECT_EQ(with.update.contacts().size(), with.update.size());
+  EXPECT_EQ(with.update.rows().size(), with.update.size());
   with.update.reset();
   EXPECT_EQ(with.update.size(), 0U);
-  EXPECT_TRUE(with.update.contacts().empty());
+  EXPECT_TRUE(with.update.rows().empty());
   // The springs are found again.
   std::ranges::fill(with.step.d, 0.0);
   ASSERT_TRUE(with.minimize(true));
