@@ -57,6 +57,22 @@ bool identify(const Corners& corners, const FoundContact& found, const Candidate
   return same;
 }
 
+/// What the laws of joints make of the length that belongs to each contact. least_length: m, that gives stiffness at the least.
+template <typename SpringLaw>
+void put_springs(std::span<const SpringLaw> of_joints, Lanes least_length, LawLanes& law) {
+  const auto of_joint = [&](double SpringLaw::*number) {
+    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.*number; });
+  };
+  const auto strength_of_joint = [&](double Strength::*number) {
+    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.strength.*number; });
+  };
+  law.normal_stiffness = of_joint(&SpringLaw::per_length) * largest(law.length, least_length);
+  law.shear_stiffness = of_joint(&SpringLaw::stiffness_ratio) * law.normal_stiffness;
+  law.friction = strength_of_joint(&Strength::friction_coefficient);
+  law.cohesion = strength_of_joint(&Strength::cohesion) * law.length;
+  law.tension = strength_of_joint(&Strength::tension) * law.length;
+}
+
 }  // namespace
 
 /// The piece of joint that remembers for a contact, and how far that is worn: out, where there is none.
@@ -146,18 +162,7 @@ bool ContactDescription::describe(const Surface& surface, const Corners& corners
     contact.loss = laws[i].loss;
     contact.loss.cohesion *= law.length[i];
   }
-  const std::span<const SpringLaw> of_joints = std::span(laws).first(contacts.size());
-  const auto of_joint = [&](double SpringLaw::*number) {
-    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.*number; });
-  };
-  const auto strength_of_joint = [&](double Strength::*number) {
-    return lanes_of(of_joints, [&](const SpringLaw& one) { return one.strength.*number; });
-  };
-  law.normal_stiffness = of_joint(&SpringLaw::per_length) * largest(law.length, geometry.least_length);
-  law.shear_stiffness = of_joint(&SpringLaw::stiffness_ratio) * law.normal_stiffness;
-  law.friction = strength_of_joint(&Strength::friction_coefficient);
-  law.cohesion = strength_of_joint(&Strength::cohesion) * law.length;
-  law.tension = strength_of_joint(&Strength::tension) * law.length;
+  put_springs(std::span<const SpringLaw>(laws).first(contacts.size()), geometry.least_length, law);
   MemoryLanes memory =
       components_of<MemoryLanes>(found, [&](const FoundContact& f) { return &before(f).offset; });
   const auto is_new = lanes_where(found, [](const FoundContact& f) { return f.memory < 0; });

@@ -107,6 +107,22 @@ LaneCondition still_in_place(const Attempt& attempt, std::span<const contact::Co
   return keeps & (springs.penetration(y) >= -most);
 }
 
+/// The normal force that contacts bear, and that which bounds their friction in the next step. borne: N per thickness, negative in the tension of a
+/// bond. slides: the bound was reached, and what it missed of Coulomb's law is owed.
+void remember_forces(const Attempt& attempt, std::size_t first, Lanes borne, LaneCondition slides,
+                     contact::MemoryLanes& memory) {
+  const Lanes zero{}, pressure = where(borne > zero, borne, zero);
+  memory.normal_force = pressure;
+  memory.bounding_force = borne;
+  if (attempt.drive.is_static) return;
+  const SpringArray& springs = attempt.problem.springs();
+  const Lanes friction = load(&springs.friction[first]), constant = load(&springs.constant[first]);
+  const auto owes = slides & (friction > zero);
+  const Lanes owed =
+      pressure - (load(&springs.bound[first]) - constant) / where(owes, friction, broadcast(1.0));
+  memory.bounding_force = where(owes, pressure + owed, borne);
+}
+
 /// Of `count` contacts, at most as many as there are lanes, the first being contact `first`.
 ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::size_t count,
                               std::span<contact::Memory> remembered) {
@@ -163,16 +179,8 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   }
   accounts.leave_out_beyond(count);
   // Of faces what the contact bears: what its nodal force is beyond that belongs to others.
-  const Lanes borne = s.normal_force(y) + springs.faces.bearings(first),
-              pressure = where(borne > zero, borne, zero);
-  memory.normal_force = pressure;
-  memory.bounding_force = borne;
-  if (!drive.is_static) {
-    const Lanes friction = at_first(springs.friction), constant = at_first(springs.constant);
-    const auto slides = closed & ~locked & (friction > zero);
-    const Lanes owed = pressure - (bound - constant) / where(slides, friction, broadcast(1.0));
-    memory.bounding_force = where(slides, pressure + owed, borne);
-  }
+  remember_forces(attempt, first, s.normal_force(y) + springs.faces.bearings(first), closed & ~locked,
+                  memory);
   memory.shear = where(closed, s.elastic_shear(w), zero);
   memory.stored = accounts.balance.stored;
   contact::keep(memory, count, [&](std::size_t i) -> contact::Memory& { return remembered[i]; });

@@ -26,6 +26,8 @@ struct Subject {
 };
 constexpr Subject subjects[] = {
     {"joints.strength_factor", "the factor of safety"},
+    {"joint_set._.strength_factor", "the factor of safety of {}"},
+    {"trace_map._.strength_factor", "the factor of safety of {}"},
     {"joints.friction", "the friction angle that is needed"},
     {"joint_set._.friction", "the friction angle that {} needs"},
     {"trace_map._.friction", "the friction angle that {} needs"},

@@ -164,6 +164,19 @@ class DefaultCriterion(Limit):
         self.limit("shaken.toml", "--key", "stage.earthquake.scale", "--from", 0, "--to", 4, "--workers", 2, out="scale")
         self.assertEqual(self.found("scale")["until"], "moved")
 
+    def test_cohesion_that_slip_does_not_take_is_that_of_limit_equilibrium(self):
+        """(c L + W cos α tan φ)/(W sin α) = 1.8364, whatever the number of contacts; by the factor of all joints and of the plane alone."""
+        words = ["--from", 1, "--to", 3, "--set", "trace_map.bedding.cohesion=50e3"]
+        kept = [*words, "--set", "trace_map.bedding.residual_cohesion=50e3"]
+        for contacts in (2, 9):
+            self.limit(*self.slope(), "--key", "joints.strength_factor", *kept, "--set", f"solver.face_contacts={contacts}", out=f"by-{contacts}")
+            self.check_bracket(1.8364, 0.005, out=f"by-{contacts}")
+        said = self.limit(*self.slope(), "--key", "trace_map.bedding.strength_factor", *kept, out="plane").stdout
+        self.assertIn("The factor of safety of “bedding” is 1.84", said)
+        lost = self.limit(*self.slope(), "--key", "trace_map.bedding.strength_factor", *words, out="lost")
+        self.assertIn("residual_cohesion = 50000 keeps it, as limit equilibrium does", lost.stderr)
+        self.assertIn("residual_cohesion", " ".join(self.found("lost")["warnings"]))
+
     def test_a_slope_that_is_asked_when_rock_falls_says_what_moves(self):
         rest = '\n[[stage]]\nname = "quiet"\nkind = "rest"\nduration = 2.0\n'
         said = self.limit(*self.slope(rest), "--key", "joints.strength_factor", "--from", 1, "--to", 3, "--until", "fallen").stdout

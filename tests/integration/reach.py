@@ -24,6 +24,8 @@ SUFFIXES = {".cpp", ".h", ".ts", ".py", ".pyi"}
 KEYS = {
     "src/scenario/read_loading.cpp",
     "src/scenario/read_openings.cpp",
+    "src/scenario/read_rock_mass.cpp",
+    "src/scenario/read_run.cpp",
     "src/scenario/scenario.h",
     "src/scenario/sections.h",
     "src/scenario/build_setup.cpp",
@@ -60,6 +62,23 @@ ADDITIONS = {
                     "src/coupling/point_springs.cpp",
                     "src/simulation/build_model.cpp",
                     "src/simulation/control_forces.cpp",  # programs change springs of a running model
+                },
+            ),
+        },
+    ),
+    "a joint law with memory": (
+        9,
+        {
+            "residual strength, and how it falls with slip": (
+                r"JointLaw::Residual|struct Residual|residual_(friction|cohesion)|weakening_slip|law\.residual|has_residual",
+                {
+                    "src/contact/joint_law.h",
+                    "src/contact/joint_properties.h",
+                    "src/simulation/build_model.cpp",
+                    "src/simulation/control.cpp",  # programs change strengths of a running model
+                    "src/scenario/ground_facts.cpp",
+                    "src/scenario/plausibility.cpp",
+                    "src/scenario/synonyms.cpp",
                 },
             ),
         },
