@@ -204,30 +204,33 @@ std::vector<std::string> warnings(const RunRecord& run) {
   return texts;
 }
 
-/// "most loaded: bolt 3, 118 kN/m tension, 98 % of its limit, in "shaking"; 2 of 12 springs have yielded"
+/// "most loaded spring: bolt 3, 118 kN/m in "shaking", 98 % of its limit; 2 of 12 springs have reached theirs". Empty: nothing of this kind carried.
+std::string most_loaded_of(std::string_view kind, std::span<const simulation::ElementRecord> elements) {
+  const simulation::ElementRecord* most = nullptr;
+  long count = 0, yielded = 0;
+  const auto load = [](const auto& of) { return std::pair(of.utilization(), of.peak_force); };
+  for (const simulation::ElementRecord& e : elements) {
+    if (e.kind != kind) continue;
+    ++count;
+    yielded += e.has_yielded() ? 1 : 0;
+    if (most == nullptr || load(e) > load(*most)) most = &e;
+  }
+  if (most == nullptr || most->peak_stage.empty()) return "";
+  std::string text = fmt::format("most loaded {}: {}, {:.4g} kN/m in \"{}\"", kind, most->name,
+                                 most->peak_force / 1e3, most->peak_stage);
+  if (std::isfinite(most->limit)) text += fmt::format(", {:.0f} % of its limit", 100.0 * most->utilization());
+  if (yielded > 0) text += fmt::format("; {} of {} {}s have reached theirs", yielded, count, kind);
+  return text + "\n";
+}
+
+/// A line for each kind.
 std::string most_loaded(const RunRecord& run) {
   std::string text;
-  std::vector<std::string> kinds;
+  std::vector<std::string_view> kinds;
   for (const simulation::ElementRecord& e : run.elements) {
-    if (std::ranges::find(kinds, e.kind) == kinds.end()) kinds.push_back(e.kind);
-  }
-  for (const std::string& kind : kinds) {
-    const simulation::ElementRecord* most = nullptr;
-    long count = 0, yielded = 0;
-    for (const simulation::ElementRecord& e : run.elements) {
-      if (e.kind != kind) continue;
-      ++count;
-      yielded += e.has_yielded() ? 1 : 0;
-      const auto load = [](const auto& of) { return std::pair(of.utilization(), of.peak_force); };
-      if (most == nullptr || load(e) > load(*most)) most = &e;
-    }
-    if (most == nullptr || most->peak_stage.empty()) continue;
-    text += fmt::format("most loaded {}: {}, {:.4g} kN/m in \"{}\"", kind, most->name, most->peak_force / 1e3,
-                        most->peak_stage);
-    if (std::isfinite(most->limit))
-      text += fmt::format(", {:.0f} % of its limit", 100.0 * most->utilization());
-    if (yielded > 0) text += fmt::format("; {} of {} {}s have reached theirs", yielded, count, kind);
-    text += "\n";
+    if (std::ranges::find(kinds, e.kind) != kinds.end()) continue;
+    kinds.push_back(e.kind);
+    text += most_loaded_of(e.kind, run.elements);
   }
   return text;
 }

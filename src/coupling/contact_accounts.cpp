@@ -99,12 +99,17 @@ void remember_states(std::span<const contact::Contact> contacts, const Lanes& cl
 
 /// Joints that keep cohesion when they slip have it until their joint has opened by more than a joint in place may: where it only gapes, its
 /// sides still interlock. So the heel of a block that leans on its toe counts in full, as in limit equilibrium.
-LaneCondition still_in_place(const Attempt& attempt, std::span<const contact::Contact> contacts,
-                             const contact::SpringLanes& springs, Lanes y) {
-  if (!attempt.problem.facts().may_break) return Lanes{} > Lanes{};
+struct KeptCohesion {
+  LaneCondition holds, is_lost;
+};
+KeptCohesion kept_cohesion(const Attempt& attempt, std::span<const contact::Contact> contacts,
+                           const contact::SpringLanes& springs, Lanes y) {
+  const auto none = Lanes{} > Lanes{};
+  if (!attempt.problem.facts().may_break) return {none, none};
   const Lanes most = broadcast(contact::Tolerances(attempt.model.block_size).in_place);
-  const auto keeps = contact::lanes_where(contacts, &contact::Contact::keeps_cohesion);
-  return keeps & (springs.penetration(y) >= -most);
+  const auto keeps = contact::lanes_where(contacts, &contact::Contact::keeps_cohesion),
+             is_in_place = springs.penetration(y) >= -most;
+  return {keeps & is_in_place, keeps & ~is_in_place};
 }
 
 /// The normal force that contacts bear, and that which bounds their friction in the next step. borne: N per thickness, negative in the tension of a
@@ -155,9 +160,9 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
                                                              at_first(springs.w0) - moved_shear + slipped});
   const Lanes zero{}, pressed = springs.faces.forces(first), normal = s.normal_force(y) + pressed,
                       shear = s.shear_force(w);
-  const auto in_face = (pressed < zero) | (pressed > zero),
-             holds = in_face | still_in_place(attempt, contacts, s, y), closed = s.closed(y) | holds,
-             locked = s.locked(w);
+  const auto in_face = (pressed < zero) | (pressed > zero), locked = s.locked(w);
+  const KeptCohesion cohesion = kept_cohesion(attempt, contacts, s, y);
+  const auto holds = in_face | cohesion.holds, closed = s.closed(y) | holds;
   // What the pressure of a face stored in the last step is no more what its contacts have alone, nor the other way round.
   const auto other = contact::lanes_where(
       contacts, [](const contact::Contact& c) { return c.memory.in_face || c.was_in_face; });
@@ -185,16 +190,17 @@ ContactAccounts remember_some(const Attempt& attempt, std::size_t first, std::si
   memory.stored = accounts.balance.stored;
   contact::keep(memory, count, [&](std::size_t i) -> contact::Memory& { return remembered[i]; });
   remember_states(contacts, accounts.closed, where(locked, broadcast(1.0), zero), remembered);
+  const Lanes is_lost = where(cohesion.is_lost, broadcast(1.0), zero);
+  for (std::size_t i = 0; i < count; ++i) remembered[i].bonded &= is_lost[i] == 0.0;
   return accounts;
 }
 
 /// Slip of the step wears the joint of a contact whose strength falls with it. The step had the strength of its start, and owes that of the
 /// place in the step for which its force stands: strength falls in a straight line with slip. What is left of friction at the end has to pay, as far as it
-/// can. Cohesion is lost where the joint opens (still_in_place).
+/// can.
 void wear(const Attempt& attempt, std::size_t c, contact::Memory& memory) {
   const contact::Contact& contact = attempt.contacts[c];
   const SpringArray& springs = attempt.problem.springs();
-  if (memory.state == contact::State::open) memory.bonded = false;
   if (memory.state != contact::State::sliding || !attempt.drive.wears_joints) return;
   const double elastic = springs.force(c).shear / springs.ks[c],
                slip = std::abs(springs.w[c] - elastic + springs.slipped[c]);

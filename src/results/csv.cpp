@@ -79,6 +79,15 @@ std::vector<double> history_numbers(const simulation::HistoryRow& row) {
   return numbers;
 }
 
+namespace {
+
+void add_cell(double number, bool is_there, std::string& text) {
+  text += ',';
+  if (is_there) fmt::format_to(std::back_inserter(text), "{}", number);
+}
+
+}  // namespace
+
 std::string histories_csv(const simulation::ModelRecord& model,
                           const std::vector<simulation::HistoryRow>& rows) {
   std::string text;
@@ -86,20 +95,14 @@ std::string histories_csv(const simulation::ModelRecord& model,
     text += (text.empty() ? "" : ",") + csv_field(column);
   text += "\n";
   for (const simulation::HistoryRow& row : rows) {
-    auto out = std::back_inserter(text);
-    fmt::format_to(out, "{}", row.time);
+    fmt::format_to(std::back_inserter(text), "{}", row.time);
     for (const auto& p : row.points) {
       const bool is_there = !std::isnan(p.ux);
-      for (const HistoryField& field : history_fields) {
-        text += ',';
-        if (is_there) fmt::format_to(out, "{}", p.*field.member);
-      }
+      for (const HistoryField& field : history_fields) add_cell(p.*field.member, is_there, text);
     }
     for (const simulation::ElementState& element : row.elements) {
-      for (const auto& field : simulation::element_history_fields) {
-        text += ',';
-        if (!std::isnan(element.*field.number)) fmt::format_to(out, "{}", element.*field.number);
-      }
+      for (const auto& field : simulation::element_history_fields)
+        add_cell(element.*field.number, !std::isnan(element.*field.number), text);
     }
     text += "\n";
   }

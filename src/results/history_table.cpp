@@ -55,6 +55,25 @@ void HistoryTable::flush() {
   time_.flush();
 }
 
+namespace {
+
+/// The next point of a file that has so many quantities of each; the others are not known.
+simulation::HistoryRow::Point next_point(const double*& next, std::size_t quantities) {
+  simulation::HistoryRow::Point point;
+  for (std::size_t q = 0; q < history_values; ++q)
+    point.*history_fields[q].member = q < quantities ? *next++ : std::nan("");
+  return point;
+}
+
+simulation::ElementState next_element(const double*& next) {
+  simulation::ElementState element;
+  for (const auto& field : simulation::element_history_fields) element.*field.number = *next++;
+  element.present = !std::isnan(element.force);
+  return element;
+}
+
+}  // namespace
+
 std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
   const hdf5::Handle group = hdf5::open_group(file, "histories");
   const auto time = read_column<double>(group, "time"), values = read_array<double>(group, "values");
@@ -72,16 +91,9 @@ std::vector<simulation::HistoryRow> HistoryTable::read(hid_t file) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     rows[k].time = time.values[k];
     rows[k].step = step.values[k];
-    for (std::size_t p = 0; p < points; ++p) {
-      simulation::HistoryRow::Point& point = rows[k].points.emplace_back();
-      for (std::size_t q = 0; q < history_values; ++q)
-        point.*history_fields[q].member = q < quantities ? *next++ : std::nan("");
-    }
-    if (of_elements) rows[k].elements.resize(elements.shape[1]);
-    for (simulation::ElementState& element : rows[k].elements) {
-      for (const auto& field : simulation::element_history_fields) element.*field.number = *of_element++;
-      element.present = !std::isnan(element.force);
-    }
+    for (std::size_t p = 0; p < points; ++p) rows[k].points.push_back(next_point(next, quantities));
+    const std::size_t count = of_elements ? elements.shape[1] : 0;
+    for (std::size_t e = 0; e < count; ++e) rows[k].elements.push_back(next_element(of_element));
   }
   return rows;
 }

@@ -141,6 +141,15 @@ class Plausibility {
             "neither "
             "cohesion nor tension",
             path);
+      const double left = of(&JointKeys::residual_cohesion).value_or(0.0);
+      const bool is_inherited = own.cohesion && !own.residual_cohesion && left > 0.0;
+      if (is_inherited && left != cohesion)
+        warn(
+            "{}: cohesion {} has the residual_cohesion of [joints], {}{}; give the set its own, {} if slip "
+            "takes "
+            "none of it",
+            path, cohesion, left, left > cohesion ? ", of which it can keep no more than it has" : "",
+            cohesion);
       const bool is_reduced = of(&JointKeys::strength_factor).has_value();
       if (is_reduced && cohesion > 0.0 && !of(&JointKeys::residual_cohesion) &&
           (own.cohesion || path == "joints"))

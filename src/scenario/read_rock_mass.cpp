@@ -197,7 +197,7 @@ void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& def
        .unit = "m",
        .at_least = 0.0,
        .fallback = defaults.zero,
-       .usual = &usual::small_way});
+       .usual = &usual::weakening});
   t.number("normal_stiffness", joints.normal_stiffness,
            {.meaning = "Normal stiffness of the joint.",
             .unit = "Pa/m",

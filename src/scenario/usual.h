@@ -83,6 +83,7 @@ inline constexpr Usual spacing{"m", 0.005, 1e3, 0.05, 50.0, lengths};
 inline constexpr Usual opening{"m", 0.05, 2e2, 1.0, 50.0, lengths};
 inline constexpr Usual way{"m", 1e-5, 1e2, 1e-3, 5.0, lengths};
 inline constexpr Usual small_way{"m", 1e-6, 10.0, 1e-5, 2.0, lengths};
+inline constexpr Usual weakening{"m", 1e-7, 0.5, 1e-6, 0.3, lengths};
 inline constexpr Usual step{"s", 1e-5, 0.1, 1e-4, 0.05, times};
 inline constexpr Usual duration{"s", 0.02, 600.0, 0.1, 300.0, times};
 inline constexpr Usual interval{"s", 2e-4, 60.0, 1e-3, 10.0, times};

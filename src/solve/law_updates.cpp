@@ -169,8 +169,8 @@ bool LawUpdates::break_bonds(const StepSystem& system, Iterate& iterate) {
     const bool keeps_cohesion = contact.keeps_cohesion();
     const bool is_pulled = pulled > contact.tension && !(keeps_cohesion && contact.tension == 0.0);
     const bool is_spared = keeps_cohesion && !system.problem.model().joints_wear;
-    const bool holds = contact.is_ductile || is_spared ||
-                       std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
+    const bool holds =
+        contact.is_ductile || is_spared || std::abs(springs.ks[c] * springs.w[c]) <= springs.bound[c];
     if (!is_pulled && holds) return false;
     // A joint with residual strength keeps some cohesion until it has opened (ContactCoupling::account).
     if (!keeps_cohesion) {

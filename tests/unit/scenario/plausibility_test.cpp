@@ -62,6 +62,23 @@ TEST(Warnings, OfResidualStrengthOfWhichNothingFalls) {
   EXPECT_THAT(warnings_of(two_blocks, {"joints.weakening_slip=0.01", "joints.cohesion=5e3"}), IsEmpty());
 }
 
+TEST(Warnings, OfCohesionThatInheritsAnotherResidual) {
+  const std::vector<std::string> inherits{"joints.cohesion=3e3", "joints.residual_cohesion=3e3",
+                                          "joint_set.bedding.cohesion=1.2e4"};
+  EXPECT_THAT(
+      warnings_of(runnable_domain, inherits),
+      Contains(HasSubstr("joint_set.bedding: cohesion 12000 has the residual_cohesion of [joints], 3000;")));
+  EXPECT_THAT(warnings_of(runnable_domain,
+                          {inherits[0], inherits[1], inherits[2], "joint_set.bedding.residual_cohesion=0"}),
+              Not(Contains(HasSubstr("has the residual_cohesion"))));
+}
+
+TEST(Warnings, OfAWeakeningSlipInMillimetres) {
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.weakening_slip=5", "joints.residual_friction=20"}),
+              UnorderedElementsAre(HasSubstr("joints.weakening_slip")));
+  EXPECT_THAT(warnings_of(two_blocks, {"joints.weakening_slip=0", "joints.residual_friction=20"}), IsEmpty());
+}
+
 // Bonds break one after another, as a zip does.
 TEST(Warnings, OfAFactorOfSafetyOfCohesionThatIsLost) {
   const std::vector<std::string> reduced{"joints.strength_factor=1.2", "joints.cohesion=5e3"};

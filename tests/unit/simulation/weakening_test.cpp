@@ -19,6 +19,11 @@ Scene held_by_peak_strength(double slip) {
   return scene;
 }
 
+struct AllContacts final : RunObserver {
+  std::vector<ContactFrame> frames;
+  void contacts(const ContactFrame& frame) override { frames.push_back(frame); }
+};
+
 double worn(const Simulator& s) {
   double most = 0.0;
   for (const contact::JointPiece& piece : s.state.contacts.pieces) most = std::max(most, piece.worn);
@@ -61,6 +66,32 @@ TEST(Weakening, PiecesAreWornByTheWayOfTheSlip) {
   s.state.velocity[block.first + 1] -= std::sqrt(block.area) * along.y;
   s.run(1.0, 0.002);
   EXPECT_NEAR(worn(s) / norm(s.centroid(1) - from), 1.0, 1e-2);
+}
+
+// A tall block on a tilted plane whose joint has a stiffness of its own: its heel opens by millimetres, and has no cohesion there. Pressed contacts
+// of the face give forces to those that are open, which are no reason to hold.
+TEST(Weakening, CohesionEndsWhereAFaceHasOpened) {
+  Scene scene(1e10, 15.0, 2500.0);
+  scene.setup.joints.standard.cohesion = 1e5;
+  scene.setup.joints.standard.residual = JointProperties::Residual{15.0, 1e5, 0.0};
+  scene.setup.joints.standard.normal_stiffness = 3e9;
+  scene.setup.solver.face_contacts = 5;
+  scene.setup.gravity = -9.81 * Vec2{-std::sin(20.0 * degree), std::cos(20.0 * degree)};
+  scene.rectangle({-20.0, -1.0}, 50.0, 1.0, 0.0, true);
+  scene.rectangle({0.0, 0.0}, 4.0, 10.0);
+  scene.setup.time_step = 0.002;
+  scene.setup.stages.push_back(stage("settle", StageKind::settle));
+  AllContacts observer;
+  run(scene.setup, {}, observer);
+  ASSERT_FALSE(observer.frames.empty());
+  const double in_place = 1e-4 * std::sqrt(40.0);
+  int open = 0;
+  for (const ContactRecord& c : observer.frames.back().contacts) {
+    if (c.gap <= in_place) continue;
+    ++open;
+    EXPECT_EQ(c.shear_force, 0.0) << c.position.x;
+  }
+  EXPECT_GT(open, 1);
 }
 
 TEST(Weakening, AResumedRunKnowsWhatIsWorn) {
