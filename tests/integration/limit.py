@@ -177,6 +177,14 @@ class DefaultCriterion(Limit):
         self.assertIn("residual_cohesion = 50000 keeps it, as limit equilibrium does", lost.stderr)
         self.assertIn("residual_cohesion", " ".join(self.found("lost")["warnings"]))
 
+    def test_a_slab_with_cohesion_that_leans_on_its_toe(self):
+        """Its heel gapes. (c L + W cos α tan φ)/(W sin α), L 6 m, h 3 m, α 50°, on joints of given stiffness."""
+        slab = [ROOT / "tests/data/odd/cohesive_slide.toml", "--key", "joints.strength_factor", "--from", 0.2, "--to", 6, "--until", "collapsed"]
+        for number, more in enumerate(([], ["rock.order=2"], ["solver.face_contacts=5"], ["rock.order=3", "solver.face_contacts=9"])):
+            sets = [word for key in ["joints.residual_cohesion=60e3", *more] for word in ("--set", key)]
+            self.limit(*slab, "--tolerance", 0.004, *sets, out=f"slab-{number}")
+            self.check_bracket(1.611, 0.005, out=f"slab-{number}")
+
     def test_a_slope_that_is_asked_when_rock_falls_says_what_moves(self):
         rest = '\n[[stage]]\nname = "quiet"\nkind = "rest"\nduration = 2.0\n'
         said = self.limit(*self.slope(rest), "--key", "joints.strength_factor", "--from", 1, "--to", 3, "--until", "fallen").stdout
