@@ -17,7 +17,7 @@ from conftest import PROGRAM
 import keyblock as kb
 
 REFUSALS = (kb.FormatError, kb.DamagedError, kb.NoResultError)
-CHANGES = 120
+CHANGES = 50
 SEEDS = 4  # each with so many
 
 
