@@ -93,6 +93,12 @@ class Told:
                 self.raw.append(f"{what}: {text[:300]}")
 
 
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some of the wrong values are names of folders after all: what is written there is of the test."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def told() -> Iterator[Told]:
     calls = Told()
@@ -101,8 +107,7 @@ def told() -> Iterator[Told]:
 
 
 @pytest.mark.parametrize("of", sorted(things(Path())))
-def test_wrong_kinds_are_told_in_sentences(of: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: Told) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_wrong_kinds_are_told_in_sentences(of: str, tmp_path: Path, told: Told) -> None:
     make = things(tmp_path)[of]
     for name in methods(make()):
         for wrong in WRONG:
