@@ -92,8 +92,8 @@ inline StrengthLoss JointLaw::loss(double worn, bool bonded) const {
           bonded ? share * (cohesion - residual->cohesion) : 0.0};
 }
 
-/// N per thickness of the law of an edge and of the edge beyond its end, which has `share` of the length of the contact. What is fused is so to
-/// its end. penalty: Pa/m, normal stiffness of a joint that gives none.
+/// Between the law of an edge and that of the edge beyond its end, which has `share` of the length of the contact. What is fused is so to its
+/// end. penalty: Pa/m, normal stiffness of a joint that gives none.
 inline JointLaw mixed(const JointLaw& law, const JointLaw& beyond, double share, double penalty) {
   const auto stiffness = [&](const JointLaw& of) {
     return of.normal_stiffness > 0.0 ? of.normal_stiffness : penalty;

@@ -73,6 +73,13 @@ void add_vtk_moment(VtkFile& file, const simulation::ModelRecord& model, double 
   file.close("FieldData");
 }
 
+void add_vtk_lines(VtkFile& file, std::span<const std::int64_t> vertices, std::span<const std::int64_t> end) {
+  file.open("Lines");
+  file.array("connectivity", vertices);
+  file.array("offsets", end);
+  file.close("Lines");
+}
+
 std::vector<std::filesystem::path> export_vtk(const RunData& data, FileSet& out) {
   using simulation::ContactFrame;
   using simulation::Frame;

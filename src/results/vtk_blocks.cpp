@@ -192,10 +192,7 @@ std::string VtkBlocks::outlines(const simulation::Frame& frame) const {
   file.array("edge_index", view(edge_index));
   file.close("CellData");
   add_vertices(file, frame);
-  file.open("Lines");
-  file.array("connectivity", view(vertices));
-  file.array("offsets", view(end));
-  file.close("Lines");
+  add_vtk_lines(file, vertices, end);
   file.close("Piece");
   return file.text();
 }

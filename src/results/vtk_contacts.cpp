@@ -79,10 +79,7 @@ std::string vtk_contact_lines(const RunData& data, const JointLocator& locator,
   file.open("Points");
   file.array("Points", view(points), 3);
   file.close("Points");
-  file.open("Lines");
-  file.array("connectivity", view(vertices));
-  file.array("offsets", view(end));
-  file.close("Lines");
+  add_vtk_lines(file, vertices, end);
   file.close("Piece");
   return file.text();
 }

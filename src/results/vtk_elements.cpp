@@ -35,10 +35,7 @@ std::string vtk_elements(const simulation::ModelRecord& model, const simulation:
   file.open("Points");
   file.array("Points", view(points), 3);
   file.close("Points");
-  file.open("Lines");
-  file.array("connectivity", view(vertices));
-  file.array("offsets", view(end));
-  file.close("Lines");
+  add_vtk_lines(file, vertices, end);
   file.close("Piece");
   return file.text();
 }

@@ -54,6 +54,9 @@ std::string vtk_elements(const simulation::ModelRecord& model, const simulation:
 /// Field data of a file: time, stage, step, and the local origin.
 void add_vtk_moment(VtkFile& file, const simulation::ModelRecord& model, double time, int stage, long step);
 
+/// Lines of a piece, each by its points one after the other. end: of each line, into vertices.
+void add_vtk_lines(VtkFile& file, std::span<const std::int64_t> vertices, std::span<const std::int64_t> end);
+
 /// A script in Python that opens the whole in ParaView.
 std::string vtk_view(const RunData& data);
 

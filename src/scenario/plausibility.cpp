@@ -15,6 +15,7 @@
 #include "scenario/magnitudes.h"
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
+#include "scenario/strength_checks.h"
 #include "simulation/base.h"
 
 namespace keyblock::scenario {
@@ -39,8 +40,7 @@ class Plausibility {
   std::vector<std::string> warnings() {
     add_magnitude_warnings(scenario_, warnings_);
     check_distributions();
-    check_bonds();
-    check_weakening();
+    add_strength_warnings(scenario_, warnings_);
     check_outlines();
     check_fall_distance();
     check_automatic_order();
@@ -96,72 +96,6 @@ class Plausibility {
              distribution->mean);
       }
     }
-  }
-
-  // Where the line of Coulomb ends, at tension c / tan φ, a joint in place has no shear strength left.
-  void check_bonds() {
-    warn_of_bond("joints", scenario_.joints, {});
-    for (const JointSetSpec& spec : scenario_.joint_sets)
-      warn_of_bond(spec.path, spec.joints, scenario_.joints);
-    for (const TraceMapSpec& spec : scenario_.trace_maps)
-      warn_of_bond(spec.path, spec.joints, scenario_.joints);
-  }
-
-  void warn_of_bond(const std::string& path, const JointKeys& own, const JointKeys& standard) {
-    const double tension = own.tension.value_or(standard.tension.value_or(0.0));
-    const double cohesion = own.cohesion.value_or(standard.cohesion.value_or(0.0));
-    const bool own_bond = own.tension || own.cohesion;
-    if (!own_bond && !own.friction) return;
-    if (tension > 0.0 && cohesion == 0.0) {
-      if (own_bond)
-        warn("{}: tension without cohesion holds nothing, as the least shear breaks the joint", path);
-      return;
-    }
-    const double friction = own.friction.value_or(standard.friction.value_or(0.0));
-    const double apex = cohesion / std::tan(friction * std::numbers::pi / 180.0);
-    if (tension > apex)
-      warn(
-          "{}: the least shear breaks a joint pulled by cohesion / tan(friction), {:.4g}, before its tension "
-          "of {:.4g} is reached",
-          path, apex, tension);
-  }
-
-  void check_weakening() {
-    const auto see = [&](const std::string& path, const JointKeys& own, const JointKeys& standard) {
-      const auto of = [&](std::optional<double> JointKeys::*key) {
-        return own.*key ? own.*key : standard.*key;
-      };
-      const double cohesion = of(&JointKeys::cohesion).value_or(0.0),
-                   friction = of(&JointKeys::friction).value_or(0.0);
-      const bool falls = cohesion > 0.0 || of(&JointKeys::tension).value_or(0.0) > 0.0 ||
-                         of(&JointKeys::residual_friction).value_or(friction) < friction;
-      if (own.has_residual() && !falls)
-        warn(
-            "{}: nothing falls to residual strength, as residual_friction is not below friction and there is "
-            "neither "
-            "cohesion nor tension",
-            path);
-      const double left = of(&JointKeys::residual_cohesion).value_or(0.0);
-      const bool is_inherited = own.cohesion && !own.residual_cohesion && left > 0.0;
-      if (is_inherited && left != cohesion)
-        warn(
-            "{}: cohesion {} has the residual_cohesion of [joints], {}{}; give the set its own, {} if slip "
-            "takes "
-            "none of it",
-            path, cohesion, left, left > cohesion ? ", of which it can keep no more than it has" : "",
-            cohesion);
-      const bool is_reduced = of(&JointKeys::strength_factor).has_value();
-      if (is_reduced && cohesion > 0.0 && !of(&JointKeys::residual_cohesion) &&
-          (own.cohesion || path == "joints"))
-        warn(
-            "{}: its cohesion is lost contact by contact, so that a factor of safety comes out 10 to 50 % "
-            "too low; "
-            "residual_cohesion = {} keeps it, as limit equilibrium does",
-            path, cohesion);
-    };
-    see("joints", scenario_.joints, {});
-    for (const JointSetSpec& spec : scenario_.joint_sets) see(spec.path, spec.joints, scenario_.joints);
-    for (const TraceMapSpec& spec : scenario_.trace_maps) see(spec.path, spec.joints, scenario_.joints);
   }
 
   void check_automatic_order() {

@@ -19,8 +19,10 @@ inline Rule only(bool applies, std::string_view condition, Rule rule) {
 /// All sections in an order in which names are known before they are referred to, then what concerns several.
 void read_scenario(TableReader& root, Scenario& scenario);
 
-/// The stretch of rock: [section], [domain], [rock], [joints], [[joint_set]], [[trace_map]], [[region]].
+/// The stretch of rock: [section], [domain], [rock], what read_joints() reads, [cutting], [[region]].
 void read_rock_mass(TableReader& root, Scenario& scenario);
+/// [joints], [[joint_set]], [[trace_map]].
+void read_joints(TableReader& root, Scenario& scenario);
 /// What is built into it: [[excavation]], [[block]].
 void read_shapes(TableReader& root, Scenario& scenario);
 /// [boundary], after [domain], [rock] and what is built into them.

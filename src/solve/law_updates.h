@@ -20,7 +20,8 @@ class LawUpdates {
   /// Bonds whose shear force passes what they bear now, or what the step began with, where these differ, get what they bear now: a bound
   /// of before the load came would have them break that hold.
   bool renew_bonds(const StepSystem& system, Iterate& iterate);
-  /// Bonds whose strength is exceeded lose it for good, in the memory of their contacts too.
+  /// Bonds whose strength is exceeded lose it for good, in the memory of their contacts too: all of it, or where their joint keeps cohesion
+  /// (Contact::keeps_cohesion) the tension that is exceeded, or what the joint loses when it slips.
   bool break_bonds(const StepSystem& system, Iterate& iterate);
   /// Coulomb bounds of the normal forces at hand, if that changes the shear forces by more than `tolerance` of the bounds (L2).
   bool update_bounds(const StepSystem& system, Iterate& iterate, double tolerance);

@@ -24,7 +24,7 @@ SUFFIXES = {".cpp", ".h", ".ts", ".py", ".pyi"}
 KEYS = {
     "src/scenario/read_loading.cpp",
     "src/scenario/read_openings.cpp",
-    "src/scenario/read_rock_mass.cpp",
+    "src/scenario/read_joints.cpp",
     "src/scenario/read_run.cpp",
     "src/scenario/scenario.h",
     "src/scenario/sections.h",
@@ -77,7 +77,7 @@ ADDITIONS = {
                     "src/simulation/build_model.cpp",
                     "src/simulation/control.cpp",  # programs change strengths of a running model
                     "src/scenario/ground_facts.cpp",
-                    "src/scenario/plausibility.cpp",
+                    "src/scenario/strength_checks.cpp",
                     "src/scenario/synonyms.cpp",
                 },
             ),

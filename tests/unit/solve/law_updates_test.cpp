@@ -51,7 +51,7 @@ struct Solved {
   LawUpdates laws;
 };
 
-/// Sum of |shear force| − μ × normal force, N, over contacts that slide.
+/// N, how far the bounds of all contacts are from those of the normal forces at hand.
 double bound_error(Solved& solved) {
   double error = 0.0;
   for (std::size_t c = 0; c < solved.step.contacts.size(); ++c)

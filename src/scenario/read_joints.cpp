@@ -1,0 +1,305 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "rockmass/distribution.h"
+#include "scenario/sections.h"
+
+namespace keyblock::scenario {
+namespace {
+
+using rockmass::Distribution;
+using rockmass::DistributionKind;
+using rockmass::most_lognormal_variation;
+using rockmass::SpacingMeasure;
+
+constexpr Word<SpacingMeasure> spacing_measures[] = {{"true", SpacingMeasure::true_spacing},
+                                                     {"trace", SpacingMeasure::trace_spacing}};
+constexpr Word<DistributionKind> distribution_kinds[] = {{"constant", DistributionKind::constant},
+                                                         {"uniform", DistributionKind::uniform},
+                                                         {"normal", DistributionKind::normal},
+                                                         {"lognormal", DistributionKind::lognormal},
+                                                         {"exponential", DistributionKind::exponential}};
+
+void check_variation(TableReader& t, const Distribution& distribution) {
+  if (distribution.kind != DistributionKind::lognormal || distribution.mean <= 0.0) return;
+  const double variation = distribution.std / distribution.mean;
+  if (variation <= most_lognormal_variation) return;
+  t.fail("std", fmt::format("{:.3g} times the mean", variation),
+         fmt::format("at most {} times the mean for \"lognormal\"", most_lognormal_variation));
+}
+
+constexpr KeyKind length_kinds[] = {KeyKind::number};
+constexpr KeyKind order_kinds[] = {KeyKind::integer, KeyKind::string};
+
+void read_distribution(TableReader& t, std::string_view key, Distribution& distribution, bool zero_allowed,
+                       std::string_view meaning) {
+  const Rule rule{.meaning = meaning,
+                  .unit = "m",
+                  .required = true,
+                  .above = zero_allowed ? -HUGE_VAL : 0.0,
+                  .at_least = zero_allowed ? 0.0 : -HUGE_VAL,
+                  .group = "Distribution",
+                  .group_meaning =
+                      "A length that varies from joint to joint: a number (the same for all), or a "
+                      "table such as `{ mean = 0.3, std = 0.1, distribution = \"normal\" }`. Mean and "
+                      "standard deviation are those before the distribution is cut off at zero.",
+                  .kinds = length_kinds,
+                  .usual = &usual::spacing};
+  const Value* value = t.find(key);
+  if (value != nullptr && value->is_number()) {
+    t.number(key, distribution.mean, rule);
+    return;
+  }
+  if (!t.documenting() && (value == nullptr || !value->is(Value::Type::table))) {
+    constexpr std::string_view type = "number or table { mean, std, distribution }";
+    if (t.any(key, type, rule) != nullptr) t.fail(key, describe(*value), "a " + std::string(type) + ", in m");
+    return;
+  }
+  t.table(key, rule, [&](TableReader& d) {
+    d.word("distribution", distribution.kind, distribution_kinds,
+           {.meaning = "Its shape. `uniform` spans mean ± √3 std.", .required = true});
+    const bool constant = distribution.kind == DistributionKind::constant;
+    // One description for all lengths.
+    const bool may_be_zero = d.documenting() || (zero_allowed && constant);
+    d.number("mean", distribution.mean,
+             {.meaning = "Mean. Zero only where a constant gap is meant.",
+              .unit = "m",
+              .required = true,
+              .above = may_be_zero ? -HUGE_VAL : 0.0,
+              .at_least = may_be_zero ? 0.0 : -HUGE_VAL,
+              .usual = &usual::spacing});
+    const bool needs_std = !constant && distribution.kind != DistributionKind::exponential;
+    static const std::string std_text = fmt::format(
+        "Standard deviation. `uniform`, `normal` and `lognormal` need it; the others do not use it. For "
+        "`lognormal` it is "
+        "at most {} times the mean. Beyond that, fewer than 2 joints in 100 make half of the total length.",
+        most_lognormal_variation);
+    const bool given = d.number("std", distribution.std,
+                                {.meaning = std_text,
+                                 .unit = "m",
+                                 .required = needs_std && !t.documenting(),
+                                 .at_least = 0.0,
+                                 .fallback = "required where used",
+                                 .usual = &usual::spacing});
+    if (given) check_variation(d, distribution);
+  });
+}
+
+struct JointDefaults {
+  bool friction_required = false;
+  std::string_view zero, friction, normal, shear, residual_friction;
+};
+
+void read_joint_keys(TableReader& t, JointKeys& joints, const JointDefaults& defaults) {
+  t.number("friction", joints.friction,
+           {.meaning = "Friction angle.",
+            .unit = "°",
+            .required = defaults.friction_required,
+            .at_least = 0.0,
+            .below = 90.0,
+            .fallback = defaults.friction,
+            .usual = &usual::friction});
+  t.number("cohesion", joints.cohesion,
+           {.meaning = "Cohesion of a joint in place, lost when it slips or opens.",
+            .unit = "Pa",
+            .at_least = 0.0,
+            .fallback = defaults.zero,
+            .usual = &usual::strength});
+  t.number(
+      "tension", joints.tension,
+      {.meaning =
+           "Tensile strength of a joint in place, lost likewise. A joint that is pulled holds less shear, "
+           "cohesion − tension · tan(friction): without cohesion the least shear breaks it.",
+       .unit = "Pa",
+       .at_least = 0.0,
+       .fallback = defaults.zero,
+       .usual = &usual::strength});
+  t.number(
+      "residual_friction", joints.residual_friction,
+      {.meaning = "Friction angle that is left after weakening_slip, and of contacts where no joint was in "
+                  "place.",
+       .unit = "°",
+       .at_least = 0.0,
+       .below = 90.0,
+       .fallback = defaults.residual_friction,
+       .usual = &usual::friction});
+  t.number(
+      "residual_cohesion", joints.residual_cohesion,
+      {.meaning = "Cohesion that is left after weakening_slip, until the joint opens. The same as cohesion: "
+                  "slip takes none (ideal plasticity).",
+       .unit = "Pa",
+       .at_least = 0.0,
+       .fallback = defaults.zero,
+       .usual = &usual::strength});
+  t.number(
+      "weakening_slip", joints.weakening_slip,
+      {.meaning = "Slip over which friction, cohesion and tension fall to what is left of them. 0: all at "
+                  "once when the joint first slips.",
+       .unit = "m",
+       .at_least = 0.0,
+       .fallback = defaults.zero,
+       .usual = &usual::weakening});
+  t.number("normal_stiffness", joints.normal_stiffness,
+           {.meaning = "Normal stiffness of the joint.",
+            .unit = "Pa/m",
+            .above = 0.0,
+            .fallback = defaults.normal,
+            .usual = &usual::stiffness});
+  t.number("shear_stiffness", joints.shear_stiffness,
+           {.meaning = "Shear stiffness of the joint. Given only where a normal stiffness is given, too.",
+            .unit = "Pa/m",
+            .above = 0.0,
+            .fallback = defaults.shear,
+            .usual = &usual::stiffness});
+}
+
+constexpr JointDefaults joint_defaults{true,      "0", "", "20 young per metre", "0.4 normal_stiffness",
+                                       "friction"};
+constexpr JointDefaults set_defaults{false,         "of [joints]", "of [joints]",
+                                     "of [joints]", "of [joints]", "of [joints]; else friction"};
+
+void read_set_factor(TableReader& t, JointKeys& joints) {
+  t.number("strength_factor", joints.strength_factor,
+           {.meaning = "Its strength is divided by it, that of all other joints is not.",
+            .above = 0.0,
+            .fallback = "of [joints]",
+            .usual = &usual::strength_factor});
+}
+
+double given(const std::optional<double>& own, const std::optional<double>& standard) {
+  return own.value_or(standard.value_or(0.0));
+}
+
+/// Strength that is left is no more than strength at the peak, and belongs to something that falls.
+void check_residual(TableReader& t, const JointKeys& own, const JointKeys& standard) {
+  const double friction = given(own.friction, standard.friction),
+               cohesion = given(own.cohesion, standard.cohesion);
+  if (own.residual_friction && *own.residual_friction > friction)
+    t.fail("residual_friction", fmt::format("{}, above friction = {}", *own.residual_friction, friction),
+           "no more than the friction of the peak");
+  if (own.residual_cohesion && *own.residual_cohesion > cohesion)
+    t.fail("residual_cohesion", fmt::format("{}, above cohesion = {}", *own.residual_cohesion, cohesion),
+           "no more than the cohesion of the peak");
+}
+
+void check_joint_keys(TableReader& t, const JointKeys& own, const JointKeys& standard) {
+  check_residual(t, own, standard);
+  if (own.shear_stiffness && !own.normal_stiffness && !standard.normal_stiffness) {
+    t.fail("shear_stiffness", "a shear stiffness without a normal stiffness", "normal_stiffness as well");
+  }
+}
+
+void read_joint_set(TableReader& t, JointSetSpec& spec, const JointKeys& standard) {
+  rockmass::JointSet& set = spec.set;
+  spec.path = t.path();
+  t.name("name", set.name, "joint_set", {.meaning = "Name in results and key paths.", .required = true});
+  t.number("dip", set.dip,
+           {.meaning = "Dip of the joint planes below the horizontal.",
+            .unit = "°",
+            .required = true,
+            .at_least = 0.0,
+            .at_most = 90.0,
+            .usual = &usual::angle});
+  t.number("dip_direction", set.dip_direction,
+           {.meaning =
+                "Direction in which the planes fall, clockwise from north. Toward +x they dip to the right.",
+            .unit = "°",
+            .required = true,
+            .at_least = 0.0,
+            .at_most = 360.0,
+            .usual = &usual::angle});
+  t.number("dip_std", set.dip_std,
+           {.meaning = "Scatter of the dip from joint to joint (normal distribution).",
+            .unit = "°",
+            .at_least = 0.0,
+            .at_most = 90.0,
+            .usual = &usual::scatter});
+  t.number("dip_direction_std", set.dip_direction_std,
+           {.meaning = "Scatter of the dip direction, likewise.",
+            .unit = "°",
+            .at_least = 0.0,
+            .at_most = 180.0,
+            .usual = &usual::scatter});
+  t.word("spacing_measure", set.spacing_measure, spacing_measures,
+         {.meaning =
+              "How spacing is measured: `true`, normal to the joint planes, or `trace`, between the traces "
+              "in the section."});
+  read_distribution(t, "spacing", set.spacing, false, "Distance of neighbouring joints.");
+  read_distribution(t, "length", set.length, false, "Length of a trace in the section.");
+  read_distribution(t, "gap", set.gap, true, "Rock bridge between two traces on one line; 0: none.");
+  read_joint_keys(t, spec.joints, set_defaults);
+  read_set_factor(t, spec.joints);
+  check_joint_keys(t, spec.joints, standard);
+}
+
+void read_trace_map(TableReader& t, TraceMapSpec& map, const JointKeys& standard) {
+  map.path = t.path();
+  std::vector<std::string_view> given;
+  for (const std::string_view key : {"file", "points", "lines"}) {
+    if (t.find(key) != nullptr) given.push_back(key);
+  }
+  const bool has_file = t.find("file") != nullptr;
+  t.file("file", map.file,
+         {.meaning = "Lines as GeoJSON, WKT or a table, see [trace maps](guide/joints.md#trace-maps), in the "
+                     "coordinates of the domain. `file`, `points` or `lines` is required.",
+          .required = !t.documenting() && given.empty(),
+          .fallback = "points"});
+  std::vector<Vec2> points;
+  t.points("points", points,
+           {.meaning = "The vertices of one trace, in place of a file.", .unit = "m", .fallback = "file"});
+  t.lines("lines", map.lines,
+          {.meaning = "Several traces, each by its vertices, in place of a file.",
+           .unit = "m",
+           .fallback = "file"});
+  if (given.size() > 1)
+    t.fail(given[1], fmt::format("{} and {}", given[1], given[0] == "file" ? "a file" : given[0]),
+           "one of the two");
+  if (!points.empty() &&
+      std::all_of(points.begin(), points.end(), [&](Vec2 p) { return p == points.front(); }))
+    t.fail("points", fmt::format("{} points, all the same", points.size()), "two or more different points");
+  if (!points.empty()) map.lines = {std::move(points)};
+  t.name("name", map.name, "trace_map",
+         {.meaning = "Name in results. Required with `points` and `lines`.",
+          .required = !t.documenting() && !given.empty() && !has_file,
+          .fallback = "that of the file"});
+  if (map.name.empty()) map.name = map.file.stem().string();
+  read_joint_keys(t, map.joints, set_defaults);
+  read_set_factor(t, map.joints);
+  check_joint_keys(t, map.joints, standard);
+}
+
+}  // namespace
+
+void read_joints(TableReader& root, Scenario& scenario) {
+  const Value* blocks = root.find("block");
+  const bool has_contacts = root.find("domain") != nullptr || (blocks != nullptr && blocks->items.size() > 1);
+  root.table(
+      "joints",
+      {.meaning = "Properties of all contacts; joint sets and trace maps may have their own. Needed as soon "
+                  "as there are two blocks.",
+       .required = has_contacts},
+      [&](TableReader& t) {
+        read_joint_keys(t, scenario.joints, joint_defaults);
+        t.number(
+            "strength_factor", scenario.joints.strength_factor,
+            {.meaning = "tan(friction), cohesion and tension, residual strength too, are divided by it: the "
+                        "value at which rock just falls is a factor of safety. It is that of sets and trace "
+                        "maps that give none. The frame keeps its friction.",
+             .above = 0.0,
+             .fallback = "1",
+             .usual = &usual::strength_factor});
+        check_joint_keys(t, scenario.joints, {});
+      });
+  root.tables(
+      "joint_set", scenario.joint_sets,
+      {.meaning = "A family of parallel joints known by its statistics; traces are generated from them."},
+      [&](TableReader& t, JointSetSpec& set) { read_joint_set(t, set, scenario.joints); });
+  root.tables("trace_map", scenario.trace_maps,
+              {.meaning = "Joints mapped one by one, straight or as polylines."},
+              [&](TableReader& t, TraceMapSpec& map) { read_trace_map(t, map, scenario.joints); });
+}
+
+}  // namespace keyblock::scenario
