@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -32,7 +33,6 @@ void check_variation(TableReader& t, const Distribution& distribution) {
 }
 
 constexpr KeyKind length_kinds[] = {KeyKind::number};
-constexpr KeyKind order_kinds[] = {KeyKind::integer, KeyKind::string};
 
 void read_distribution(TableReader& t, std::string_view key, Distribution& distribution, bool zero_allowed,
                        std::string_view meaning) {

@@ -11,9 +11,9 @@
 namespace keyblock::scenario {
 namespace {
 
-
 constexpr Word<PlaneState> plane_states[] = {{"plane-stress", PlaneState::plane_stress},
                                              {"plane-strain", PlaneState::plane_strain}};
+constexpr KeyKind order_kinds[] = {KeyKind::integer, KeyKind::string};
 constexpr Word<bool> boundaries[] = {{"frame", true}, {"free", false}};
 
 void read_section(TableReader& t, Scenario& scenario) {
