@@ -167,8 +167,10 @@ void place_loading(const Scenario& scenario, Vec2 origin, RunSetup& setup) {
     spring.from -= origin;
     spring.to -= origin;
   }
-  for (const simulation::Stage& stage : scenario.stages)
-    setup.staged_supports.insert(setup.staged_supports.end(), stage.install.begin(), stage.install.end());
+  // What a stage installs that is left out never comes to life.
+  for (const auto* stages : {&scenario.stages, &scenario.left_out})
+    for (const simulation::Stage& stage : *stages)
+      setup.staged_supports.insert(setup.staged_supports.end(), stage.install.begin(), stage.install.end());
   for (loading::Spring& spring : setup.springs) {
     const auto place = std::ranges::find(setup.staged_supports, spring.name);
     if (place != setup.staged_supports.end())

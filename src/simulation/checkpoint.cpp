@@ -15,7 +15,7 @@ namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'001a;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'001b;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -44,6 +44,8 @@ void transfer_stage(Archive& archive, StageRecordOrConst& s) {
   archive(s.stage.max_steps);
   archive(s.stage.k_h);
   archive(s.stage.k_v);
+  archive(s.stage.strength_factor);
+  archive(s.stage.strength_of);
   archive(s.stage.tolerance);
   archive(s.steps);
   archive(s.start_time);
@@ -119,6 +121,7 @@ void transfer_damage(Archive& archive, MemoryOrConst& s) {
   archive(s.reference.start);
   archive(s.reference.turn);
   archive(s.reference.base);
+  archive(s.reference.of_stage);
   archive(s.reference.height);
   archive(s.reference.width);
   archive(s.pieces);
