@@ -86,7 +86,8 @@ _GROWING = frozenset("tcshk")
 def check(file: ResultFile) -> None:
     """Throws DamagedError, which names what does not fit. Reads the shapes, and the places where snapshots end."""
     sizes: dict[str, tuple[int, str]] = {}
-    for name, letters in _MODEL.items():
+    further = {f"contacts/{name}": "c" for name in file.contact_numbers()}
+    for name, letters in (further | _MODEL).items():
         if not file.has(name):
             continue
         shape = file.shape(name)

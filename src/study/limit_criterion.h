@@ -15,7 +15,7 @@ struct LimitCriterion {
   std::string measure;  ///< by its name in summary.json; of "collapsed", what is told beside the verdict
   double above = 0.0;   ///< it holds when the measure is larger; in the unit of the measure
   bool collapse =
-      false;  ///< it holds when the blocks do not stand (simulation/standing.h); `above` is then of no use
+      false;  ///< it holds when the blocks do not stand (record/standing.h); `above` is then of no use
   std::string why = {};  ///< it is the default for this model; empty: it was asked for
 
   /// `fallen area of more than 0.1 m²`.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "simulation/standing.h"
+#include "record/standing.h"
 
 namespace keyblock::study {
 namespace {
