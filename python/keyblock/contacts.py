@@ -16,8 +16,9 @@ from .frames import Frame, Moments, When
 STATES = ["open", "sliding", "locked"]
 OPEN, SLIDING, LOCKED = 0, 1, 2
 
-_NUMBERS = ["length", "gap", "slip", "shear_displacement", "normal_force", "shear_force"]
-_COLUMNS = ["block_a", "block_b", "state", "position", "normal", *_NUMBERS]
+#: Of each contact, in results of all versions.
+NUMBERS = ["length", "gap", "slip", "shear_displacement", "normal_force", "shear_force"]
+_COLUMNS = ["block_a", "block_b", "state", "position", "normal", *NUMBERS]
 
 # Sine of the largest angle between an edge of one block and the edge of the other that it lies on.
 _ALONG = 0.3
@@ -167,8 +168,8 @@ class ContactSnapshots:
         self._file = file
         self._blocks = blocks
         moments = Moments.read(file, "contacts", stage_names, "contacts")
-        self._further = [name for name in file.contact_numbers() if name not in _NUMBERS]
-        self._units = {name: file.unit(f"contacts/{self._in_file(name)}") for name in (*_NUMBERS, *self._further)}
+        self._further = [name for name in file.contact_numbers() if name not in NUMBERS]
+        self._units = {name: file.unit(f"contacts/{self._in_file(name)}") for name in (*NUMBERS, *self._further)}
         self._end = file.read("contacts/end")[: len(moments)]
         complete = int(np.searchsorted(self._end, min(file.shape(f"contacts/{self._in_file(name)}")[0] for name in (*_COLUMNS, *self._further)), "right"))
         self.moments = Moments(moments.time[:complete], moments.stage[:complete], moments.step[:complete], stage_names, "contacts")

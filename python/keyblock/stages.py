@@ -79,7 +79,7 @@ def _as_in_summary(line: record.Record, excavation_names: list[str]) -> dict[str
     ]
     fields["install"] = line.get("install") or []
     if line["kind"] != "settle":  # as in summary.json
-        fields["equilibrium"] = record.Record(dict.fromkeys(fields.get("equilibrium", ())))
+        fields["equilibrium"] = record.Record(dict.fromkeys(line.get("equilibrium", ())))
     fields["blocks_by_order"] = record.Record({str(n): count for n, count in enumerate(line.get("blocks_by_order") or []) if count})
     return fields
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/checked_json.h"
+#include "cutting/cut_fields.h"
 #include "record/computation_errors.h"
 #include "record/fallen.h"
 #include "report/page_data.h"
@@ -52,7 +53,6 @@ ordered_json model_json(const results::RunData& data) {
   ordered_json names = ordered_json::object();
   for (std::size_t b = 0; b < model.blocks.size(); ++b)
     if (!model.blocks[b].name.empty()) names[std::to_string(b)] = model.blocks[b].name;
-  const cutting::CutStatistics& cut = model.cutting;
   return {{"title", model.title},
           {"version", model.version},
           {"seed", std::to_string(model.seed)},
@@ -77,19 +77,7 @@ ordered_json model_json(const results::RunData& data) {
           {"warnings", model.warnings},
           {"closure_is_lower_bound", model.closure_is_lower_bound},
           {"ground", results::ground_json(ground_rows(data))},
-          {"cutting",
-           {{"traces", cut.traces},
-            {"joints_used", cut.joints_used},
-            {"trace_length_m", cut.trace_length},
-            {"removed_length_m", cut.removed_length},
-            {"removed_pieces", cut.removed_pieces},
-            {"merged_slivers", cut.merged_slivers},
-            {"merged_vertices", cut.merged_vertices},
-            {"domain_area_m2", cut.domain_area},
-            {"sliver_area_m2", cut.sliver_area},
-            {"merged_across_joints", cut.merged_across_joints},
-            {"highest_tooth_m", cut.highest_tooth},
-            {"slivers_left", cut.slivers_left}}}};
+          {"cutting", cutting::cutting_json<ordered_json>(model.cutting, true)}};
 }
 
 ordered_json run_json(const results::RunData& data) {

@@ -1,6 +1,7 @@
 #include "results/json_parts.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "core/checked_json.h"
 #include "record/damage_fields.h"
@@ -12,6 +13,19 @@
 namespace keyblock::results {
 
 using nlohmann::ordered_json;
+
+/// "group.name" is `name` of the object `group`.
+static const ordered_json* find_named(const ordered_json& json, std::string_view name) {
+  const std::size_t point = name.find('.');
+  const auto found = json.find(std::string(name.substr(0, point)));
+  if (found == json.end()) return nullptr;
+  return point == std::string_view::npos ? &*found : find_named(*found, name.substr(point + 1));
+}
+
+const ordered_json* find_field(const ordered_json& json, const char* name, const char* earlier) {
+  const ordered_json* found = find_named(json, name);
+  return found == nullptr && earlier != nullptr ? find_named(json, earlier) : found;
+}
 
 double number(const ordered_json& value) {
   return value.is_null() ? std::nan("") : value.get<double>();

@@ -54,6 +54,10 @@ void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapR
 std::vector<std::pair<std::string, std::string>> read_ground(const nlohmann::ordered_json& json);
 std::vector<Vec2> read_points(const nlohmann::ordered_json& json);
 
+/// The value of a field by its name, or by an earlier one, if it had one; null: there is neither.
+const nlohmann::ordered_json* find_field(const nlohmann::ordered_json& json, const char* name,
+                                         const char* earlier);
+
 /// JSON has no NaN: it is written as null.
 double number(const nlohmann::ordered_json& value);
 

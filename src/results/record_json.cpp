@@ -5,6 +5,7 @@
 
 #include "core/checked_json.h"
 #include "core/error.h"
+#include "cutting/cut_fields.h"
 #include "results/elements_json.h"
 #include "results/json_parts.h"
 #include "results/stage_json.h"
@@ -23,41 +24,20 @@ std::optional<double> later_number(const ordered_json& json, const char* name) {
   return json.contains(name) ? optional_number(json.at(name)) : std::nullopt;
 }
 
-// Field names beside members, for writing and reading alike.
-template <class Record, class Visit>
-void visit_cutting(Record& c, const Visit& visit) {
-  visit("traces", c.traces);
-  visit("joints_used", c.joints_used);
-  visit("trace_length", c.trace_length);
-  visit("removed_length", c.removed_length);
-  visit("removed_pieces", c.removed_pieces);
-  visit("merged_slivers", c.merged_slivers);
-  visit("merged_vertices", c.merged_vertices);
-  visit("domain_area", c.domain_area);
-  visit("sliver_area", c.sliver_area);
+void read(const ordered_json& json, double& value) {
+  value = number(json);
+}
+void read(const ordered_json& json, int& value) {
+  json.get_to(value);
 }
 
-// Those that files of earlier versions do not have.
-template <class Record, class Visit>
-void visit_later_cutting(Record& c, const Visit& visit) {
-  visit("merged_across_joints", c.merged_across_joints);
-  visit("highest_tooth", c.highest_tooth);
-  visit("slivers_left", c.slivers_left);
+void read_cutting(const ordered_json& json, cutting::CutStatistics& statistics) {
+  visit_cutting(statistics, [&](const cutting::CutField& field, auto& value) {
+    const ordered_json* found = find_field(json, field.name, field.earlier);
+    if (found == nullptr && field.is_late) return;
+    read(found == nullptr ? json.at(field.name) : *found, value);
+  });
 }
-
-// Calls visit_… with a function that writes into, or reads from, `json`.
-struct Write {
-  ordered_json& json;
-  template <class T>
-  void operator()(const char* name, const T& value) const {
-    json[name] = value;
-  }
-};
-struct Read {
-  const ordered_json& json;
-  void operator()(const char* name, double& value) const { value = number(json.at(name)); }
-  void operator()(const char* name, int& value) const { value = json.at(name).get<int>(); }
-};
 
 template <class Parse>
 auto parsed(const std::string& text, const Parse& parse) {
@@ -74,10 +54,8 @@ auto parsed(const std::string& text, const Parse& parse) {
 }  // namespace
 
 std::string model_json(const simulation::ModelRecord& model) {
-  ordered_json outlines = ordered_json::array(), cutting;
+  ordered_json outlines = ordered_json::array();
   for (const auto& outline : model.excavation_outlines) outlines.push_back(points_json(outline));
-  visit_cutting(model.cutting, Write{cutting});
-  visit_later_cutting(model.cutting, Write{cutting});
   ordered_json json{{"title", model.title},
                     {"version", model.version},
                     {"seed", model.seed},
@@ -94,7 +72,7 @@ std::string model_json(const simulation::ModelRecord& model) {
                     {"opening_width", or_null(model.opening_width)},
                     {"slip_limit", or_null(model.slip_limit)},
                     {"opening_limit", or_null(model.opening_limit)},
-                    {"cutting", cutting},
+                    {"cutting", cutting::cutting_json<ordered_json>(model.cutting, true)},
                     {"warnings", model.warnings},
                     {"closure_is_lower_bound", model.closure_is_lower_bound},
                     {"ground", ground_json(model.ground)},
@@ -123,9 +101,7 @@ void read_model_json(const std::string& text, simulation::ModelRecord& model) {
     model.opening_width = optional_number(json.at("opening_width"));
     model.slip_limit = later_number(json, "slip_limit");
     model.opening_limit = later_number(json, "opening_limit");
-    const ordered_json& cutting = json.at("cutting");
-    visit_cutting(model.cutting, Read{cutting});
-    if (cutting.contains("slivers_left")) visit_later_cutting(model.cutting, Read{cutting});
+    read_cutting(json.at("cutting"), model.cutting);
     // Files of earlier versions have none of these.
     if (json.contains("warnings")) json.at("warnings").get_to(model.warnings);
     if (json.contains("closure_is_lower_bound"))

@@ -106,17 +106,6 @@ std::pair<std::string, std::string> split(std::string_view name) {
   return {std::string(name.substr(0, point)), std::string(name.substr(point + 1))};
 }
 
-/// Null where there is none.
-const ordered_json* find(const ordered_json& json, const char* field) {
-  const auto [group, name] = split(field);
-  const ordered_json* in = &json;
-  if (!group.empty()) {
-    if (!json.contains(group)) return nullptr;
-    in = &json.at(group);
-  }
-  return in->contains(name) ? &in->at(name) : nullptr;
-}
-
 }  // namespace
 
 std::string stage_kind_name(StageKind kind) {
@@ -138,8 +127,7 @@ ordered_json stage_fields_json(const simulation::StageRecord& stage, simulation:
 
 void read_stage_fields(const ordered_json& json, simulation::StageRecord& stage) {
   simulation::visit_stage(stage, [&](const StageField& field, auto& value) {
-    const ordered_json* found = find(json, field.name);
-    if (found == nullptr && field.earlier != nullptr) found = find(json, field.earlier);
+    const ordered_json* found = find_field(json, field.name, field.earlier);
     if (found == nullptr && field.is_late) return;
     read(found == nullptr ? json.at(field.name) : *found, value);
   });

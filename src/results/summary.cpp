@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/checked_json.h"
+#include "cutting/cut_fields.h"
 #include "record/computation_errors.h"
 #include "record/energy_warnings.h"
 #include "results/elements_json.h"
@@ -38,18 +39,6 @@ Count count(const simulation::ModelRecord& model) {
     count.vertices += block.ring_start.back() - block.ring_start.front();
   }
   return count;
-}
-
-ordered_json cutting(const cutting::CutStatistics& c) {
-  return {{"traces", c.traces},
-          {"trace_length_m", c.trace_length},
-          {"removed_length_m", c.removed_length},
-          {"removed_pieces", c.removed_pieces},
-          {"merged_vertices", c.merged_vertices},
-          {"sliver_area_m2", c.sliver_area},
-          {"merged_across_joints", c.merged_across_joints},
-          {"highest_tooth_m", c.highest_tooth},
-          {"slivers_left", c.slivers_left}};
 }
 
 // Equilibrium is a question only where the stage seeks it.
@@ -174,7 +163,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"joints", model.cutting.joints_used},
       {"area", {{"blocks", area.blocks}, {"excavated", area.excavated}, {"domain", area.domain}}},
       {"merged_slivers", model.cutting.merged_slivers},
-      {"cutting", cutting(model.cutting)},
+      {"cutting", cutting::cutting_json<ordered_json>(model.cutting, false)},
       {"steps", run.steps},
       {"step_size", model.step_size},
       {"wall_time_s", run.wall_time},

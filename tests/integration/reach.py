@@ -48,6 +48,37 @@ ADDITIONS = {
             ),
         },
     ),
+    "a column of a joint in the results, and of contacts of a running model": (
+        6,
+        {
+            "shear displacement": (
+                r"shear_displacement",
+                {
+                    "src/record/record.h",
+                    "src/record/contact_fields.h",
+                    "src/simulation/recorder.cpp",
+                    "include/keyblock/simulation.h",  # of a running model
+                    "python/keyblock/simulated_contacts.py",  # likewise
+                    "python/keyblock/contacts.py",  # results of earlier versions have it by another name
+                },
+            ),
+        },
+    ),
+    "a field of a stage in the results": (
+        5,
+        {
+            "largest way out of balance, over the block size": (
+                r"way_share",
+                {
+                    "src/record/record.h",
+                    "src/record/stage_fields.h",
+                    "src/record/verdict.cpp",  # the verdict is judged by it
+                    "src/simulation/runner.cpp",
+                    "viewer/src/data.ts",
+                },
+            ),
+        },
+    ),
     "a coupling with all its outputs": (
         4,
         {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "../fresh_folder.h"
@@ -48,6 +49,25 @@ TEST(DescribedOnce, FieldsOfStagesAreInTheGuideAndInTheTypesOfThePage) {
     EXPECT_TRUE(is_typed || field.file == simulation::StageFile::result)
         << "viewer/src/data.ts has no " << field.name;
   });
+}
+
+// All bytes of a record are in the table but for what lies between members of different sizes, and what the scenario says of a stage.
+TEST(DescribedOnce, NoFieldOfStagesIsMissing) {
+  const simulation::StageRecord stage;
+  const auto place = [&](const auto& value) {
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(&value) -
+                                    reinterpret_cast<const char*>(&stage));
+  };
+  std::map<std::size_t, std::size_t> ends{{place(stage.stage), place(stage.stage) + sizeof(stage.stage)}};
+  simulation::visit_stage(stage, [&](const simulation::StageField&, const auto& value) {
+    if (place(value) >= ends.begin()->second) ends[place(value)] = place(value) + sizeof(value);
+  });
+  ends[sizeof(stage)] = sizeof(stage);
+  std::size_t reached = 0;
+  for (const auto& [begin, end] : ends) {
+    EXPECT_LT(begin - reached, alignof(double)) << "bytes " << reached << " to " << begin;
+    reached = end;
+  }
 }
 
 TEST(DescribedOnce, NumbersOfContactsAreOnThePageOfTheResultFile) {
