@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "interrupt.h"
 #include "limit_arguments.h"
-#include "simulation/standing.h"
+#include "record/standing.h"
 #include "study/folder.h"
 #include "study/limit_search.h"
 #include "study/limit_words.h"

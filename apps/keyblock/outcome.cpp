@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/before_shaking.h"
-#include "simulation/computation_errors.h"
-#include "simulation/energy_warnings.h"
-#include "simulation/fallen.h"
-#include "simulation/verdict.h"
+#include "record/before_shaking.h"
+#include "record/computation_errors.h"
+#include "record/energy_warnings.h"
+#include "record/fallen.h"
+#include "record/verdict.h"
 #include "terminal.h"
 
 namespace keyblock::app {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::app {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/verdict.h"
+#include "record/verdict.h"
 
 namespace keyblock::app {
 namespace {

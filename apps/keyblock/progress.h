@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 #include "terminal.h"
 
 namespace keyblock::app {

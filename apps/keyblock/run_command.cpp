@@ -15,12 +15,12 @@
 #include "model/options.h"
 #include "outcome.h"
 #include "progress.h"
+#include "record/computation_errors.h"
+#include "record/energy_warnings.h"
 #include "results/run_data.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario_arguments.h"
-#include "simulation/computation_errors.h"
-#include "simulation/energy_warnings.h"
 
 namespace keyblock::app {
 namespace {

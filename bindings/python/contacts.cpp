@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -22,7 +22,7 @@ using Numbers = py::array_t<double, py::array::c_style>;
 struct NamedColumn {
   std::string_view name;
   ContactColumn column;
-  py::array (*array)(Contacts&);
+  std::function<py::array(Contacts&)> array;
 };
 
 template <auto Column, std::size_t columns = 1>
@@ -30,35 +30,35 @@ py::array array_from(Contacts& contacts) {
   return array_of(std::move(contacts.*Column), columns);
 }
 
-constexpr NamedColumn columns[] = {
-    {"block_a", ContactColumn::block_a, &array_from<&Contacts::block_a>},
-    {"block_b", ContactColumn::block_b, &array_from<&Contacts::block_b>},
-    {"vertex", ContactColumn::vertex, &array_from<&Contacts::vertex>},
-    {"edge", ContactColumn::edge, &array_from<&Contacts::edge>},
-    {"state", ContactColumn::state, &array_from<&Contacts::state>},
-    {"position", ContactColumn::position, &array_from<&Contacts::position, 2>},
-    {"normal", ContactColumn::normal, &array_from<&Contacts::normal, 2>},
-    {"length", ContactColumn::length, &array_from<&Contacts::length>},
-    {"gap", ContactColumn::gap, &array_from<&Contacts::gap>},
-    {"slip", ContactColumn::slip, &array_from<&Contacts::slip>},
-    {"shear_displacement", ContactColumn::shear_displacement, &array_from<&Contacts::shear_displacement>},
-    {"normal_force", ContactColumn::normal_force, &array_from<&Contacts::normal_force>},
-    {"shear_force", ContactColumn::shear_force, &array_from<&Contacts::shear_force>},
-    {"friction", ContactColumn::friction, &array_from<&Contacts::friction>},
-    {"cohesion", ContactColumn::cohesion, &array_from<&Contacts::cohesion>},
-    {"tension", ContactColumn::tension, &array_from<&Contacts::tension>},
-    {"joint_code", ContactColumn::joint, &array_from<&Contacts::joint>},
-};
+const std::vector<NamedColumn>& all_columns() {
+  static const std::vector<NamedColumn> all = [] {
+    std::vector<NamedColumn> made{
+        {"block_a", ContactColumn::block_a, &array_from<&Contacts::block_a>},
+        {"block_b", ContactColumn::block_b, &array_from<&Contacts::block_b>},
+        {"vertex", ContactColumn::vertex, &array_from<&Contacts::vertex>},
+        {"edge", ContactColumn::edge, &array_from<&Contacts::edge>},
+        {"state", ContactColumn::state, &array_from<&Contacts::state>},
+        {"position", ContactColumn::position, &array_from<&Contacts::position, 2>},
+        {"normal", ContactColumn::normal, &array_from<&Contacts::normal, 2>},
+        {"joint_code", ContactColumn::joint, &array_from<&Contacts::joint>},
+    };
+    for (const ContactNumbers& numbers : contact_numbers)
+      made.push_back({numbers.name, numbers.column, [list = numbers.list](Contacts& contacts) -> py::array {
+                        return array_of(std::move(contacts.*list), 1);
+                      }});
+    return made;
+  }();
+  return all;
+}
 
 /// In one pass over the contacts.
 py::list contact_columns(const Stepped& stepped, const std::vector<std::string>& names) {
   std::vector<const NamedColumn*> wanted;
   std::vector<ContactColumn> asked;
   for (const std::string& name : names) {
-    const auto* found = std::find_if(std::begin(columns), std::end(columns),
-                                     [&](const NamedColumn& one) { return one.name == name; });
-    if (found == std::end(columns)) throw py::key_error(name);
-    wanted.push_back(found);
+    const auto found = std::ranges::find(all_columns(), name, &NamedColumn::name);
+    if (found == all_columns().end()) throw py::key_error(name);
+    wanted.push_back(&*found);
     asked.push_back(found->column);
   }
   Contacts contacts = stepped.at_rest().contacts(asked);

@@ -82,6 +82,23 @@ enum class ContactColumn : std::uint8_t {
   joint
 };
 
+/// A list of numbers of Contacts, by its name.
+struct ContactNumbers {
+  const char* name;
+  ContactColumn column;
+  std::vector<double> Contacts::*list;
+};
+inline constexpr ContactNumbers contact_numbers[] = {
+    {"length", ContactColumn::length, &Contacts::length},
+    {"gap", ContactColumn::gap, &Contacts::gap},
+    {"slip", ContactColumn::slip, &Contacts::slip},
+    {"shear_displacement", ContactColumn::shear_displacement, &Contacts::shear_displacement},
+    {"normal_force", ContactColumn::normal_force, &Contacts::normal_force},
+    {"shear_force", ContactColumn::shear_force, &Contacts::shear_force},
+    {"friction", ContactColumn::friction, &Contacts::friction},
+    {"cohesion", ContactColumn::cohesion, &Contacts::cohesion},
+    {"tension", ContactColumn::tension, &Contacts::tension}};
+
 /// What of a block stays the same in a run.
 struct BlockFacts {
   std::string name;                      ///< of an explicit block; "frame"; empty for cut ones

@@ -168,6 +168,15 @@ class ResultFile:
     def shape(self, name: str) -> tuple[int, ...]:
         return tuple(self._dataset(name).shape)
 
+    def contact_numbers(self) -> list[str]:
+        """Names of the columns of `contacts` that are numbers, one for each contact."""
+        try:
+            names = list(self._file["contacts"]) if self.has("contacts") else []
+        except _BROKEN as error:
+            raise DamagedError(f"{self.path} is damaged: contacts cannot be read ({error})") from None
+        paths = {name: f"contacts/{name}" for name in names if name != "time"}
+        return [name for name, path in paths.items() if self.kind(path) == "f" and len(self.shape(path)) == 1]
+
     def complete_times(self, group: str) -> np.ndarray:
         """Times of the rows of a group that are complete, s. While a run goes on, a row may be in the making."""
         time = self.read(f"{group}/time")

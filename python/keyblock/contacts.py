@@ -16,7 +16,9 @@ from .frames import Frame, Moments, When
 STATES = ["open", "sliding", "locked"]
 OPEN, SLIDING, LOCKED = 0, 1, 2
 
-_COLUMNS = ["block_a", "block_b", "state", "position", "normal", "length", "gap", "slip", "shear_displacement", "normal_force", "shear_force"]
+#: Of each contact, in results of all versions.
+NUMBERS = ["length", "gap", "slip", "shear_displacement", "normal_force", "shear_force"]
+_COLUMNS = ["block_a", "block_b", "state", "position", "normal", *NUMBERS]
 
 # Sine of the largest angle between an edge of one block and the edge of the other that it lies on.
 _ALONG = 0.3
@@ -51,6 +53,14 @@ class Contacts:
     edge_kind: np.ndarray = field(repr=False)  #: (n,), number in `keyblock.blocks.EDGE_KINDS`
     edge_index: np.ndarray = field(repr=False)  #: (n,), which joint set, trace map or excavation
     _blocks: Blocks = field(repr=False)
+    further: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  #: (n,) each: all other numbers that results have, by name
+    _units: dict[str, str] = field(repr=False, default_factory=dict)
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        further = self.__dict__.get("further", {})
+        if name not in further:
+            raise AttributeError(f"contacts have no {name!r}")
+        return further[name]
 
     def __len__(self) -> int:
         return len(self.block_a)
@@ -143,17 +153,11 @@ class Contacts:
                 "y": self.position[:, 1],
                 "nx": self.normal[:, 0],
                 "ny": self.normal[:, 1],
-                "length": self.length,
-                "gap": self.gap,
-                "slip": self.slip,
-                "shear_displacement": self.shear_displacement,
-                "normal_force": self.normal_force,
-                "shear_force": self.shear_force,
+                **{name: getattr(self, name) for name in self._units},
                 "edge": self.edge_names,
             }
         )
-        metres = dict.fromkeys(("x", "y", "length", "gap", "slip", "shear_displacement"), "m")
-        table.attrs["units"] = metres | {"normal_force": "N/m", "shear_force": "N/m"}
+        table.attrs["units"] = {"x": "m", "y": "m"} | self._units
         return table
 
 
@@ -164,8 +168,10 @@ class ContactSnapshots:
         self._file = file
         self._blocks = blocks
         moments = Moments.read(file, "contacts", stage_names, "contacts")
+        self._further = [name for name in file.contact_numbers() if name not in NUMBERS]
+        self._units = {name: file.unit(f"contacts/{self._in_file(name)}") for name in (*NUMBERS, *self._further)}
         self._end = file.read("contacts/end")[: len(moments)]
-        complete = int(np.searchsorted(self._end, min(file.shape(f"contacts/{self._in_file(name)}")[0] for name in _COLUMNS), "right"))
+        complete = int(np.searchsorted(self._end, min(file.shape(f"contacts/{self._in_file(name)}")[0] for name in (*_COLUMNS, *self._further)), "right"))
         self.moments = Moments(moments.time[:complete], moments.stage[:complete], moments.step[:complete], stage_names, "contacts")
 
     def _in_file(self, name: str) -> str:
@@ -195,5 +201,8 @@ class ContactSnapshots:
         columns = {name: self._file.read(f"contacts/{self._in_file(name)}", rows) for name in (*_COLUMNS, "edge_kind", "edge_index")}
         columns["slip"] = np.abs(columns["slip"])
         columns["position"] = columns["position"] + self._blocks.origin
+        further = {name: self._file.read(f"contacts/{name}", rows) for name in self._further}
         m = self.moments
-        return Contacts(float(m.time[row]), m.stage_name(row), int(m.step[row]), _blocks=self._blocks, **columns)
+        return Contacts(
+            float(m.time[row]), m.stage_name(row), int(m.step[row]), _blocks=self._blocks, further=further, _units=self._units, **columns
+        )

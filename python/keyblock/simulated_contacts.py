@@ -15,30 +15,12 @@ from .steering import read_only
 if TYPE_CHECKING:
     from . import _core
 
-#: Columns, in their order.
-COLUMNS = (
-    "block_a",
-    "block_b",
-    "vertex",
-    "edge",
-    "state",
-    "position",
-    "normal",
-    "length",
-    "gap",
-    "slip",
-    "shear_displacement",
-    "normal_force",
-    "shear_force",
-    "friction",
-    "cohesion",
-    "tension",
-    "joint_code",
-)
+class _Column(property):
+    """A column of contacts, by its name in the program."""
 
-
-def _column(name: str, doc: str) -> Any:
-    return property(lambda self: self._get(name), doc=doc)
+    def __init__(self, name: str, doc: str) -> None:
+        super().__init__(lambda contacts: contacts._get(name), doc=doc)
+        self.name = name
 
 
 class Contacts(Sealed):
@@ -68,25 +50,25 @@ class Contacts(Sealed):
 
     def _complete(self) -> None:
         """Before the simulation goes on: what was not asked for yet."""
-        self._fetch([name for name in COLUMNS if name not in self._columns])
+        self._fetch([column.name for column in vars(Contacts).values() if isinstance(column, _Column) and column.name not in self._columns])
 
-    block_a = _column("block_a", "The block with the vertex.")
-    block_b = _column("block_b", "The block with the edge.")
-    vertex = _column("vertex", "Into `sim.vertices`. Vertex and edge together say which contact it is, for as long as the run lasts.")
-    edge = _column("edge", "By the vertex where it begins, likewise.")
-    state = _column("state", "0 open, 1 sliding, 2 locked")
-    position = _column("position", "(n, 2)")
-    normal = _column("normal", "(n, 2), unit vectors out of block_b")
-    length = _column("length", "Of joint that belongs to it.")
-    gap = _column("gap", "Negative where the contact is pressed.")
-    slip = _column("slip", "Since the excavation: the magnitude.")
-    shear_displacement = _column("shear_displacement", "The same with its sign: of block_a along (−normal y, normal x).")
-    normal_force = _column("normal_force", "Compression positive.")
-    shear_force = _column("shear_force", "Against (−normal y, normal x) on block_a.")
-    friction = _column("friction", "Degrees, as it acted in the step.")
-    cohesion = _column("cohesion", "Pa, likewise; 0 where there is no bond, or none any more.")
-    tension = _column("tension", "Pa, likewise.")
-    joint_code = _column("joint_code", "Place in `joint_names`.")
+    block_a = _Column("block_a", "The block with the vertex.")
+    block_b = _Column("block_b", "The block with the edge.")
+    vertex = _Column("vertex", "Into `sim.vertices`. Vertex and edge together say which contact it is, for as long as the run lasts.")
+    edge = _Column("edge", "By the vertex where it begins, likewise.")
+    state = _Column("state", "0 open, 1 sliding, 2 locked")
+    position = _Column("position", "(n, 2)")
+    normal = _Column("normal", "(n, 2), unit vectors out of block_b")
+    length = _Column("length", "Of joint that belongs to it.")
+    gap = _Column("gap", "Negative where the contact is pressed.")
+    slip = _Column("slip", "Since the excavation: the magnitude.")
+    shear_displacement = _Column("shear_displacement", "The same with its sign: of block_a along (−normal y, normal x).")
+    normal_force = _Column("normal_force", "Compression positive.")
+    shear_force = _Column("shear_force", "Against (−normal y, normal x) on block_a.")
+    friction = _Column("friction", "Degrees, as it acted in the step.")
+    cohesion = _Column("cohesion", "Pa, likewise; 0 where there is no bond, or none any more.")
+    tension = _Column("tension", "Pa, likewise.")
+    joint_code = _Column("joint_code", "Place in `joint_names`.")
 
     @property
     def joint_names(self) -> list[str]:

@@ -11,16 +11,18 @@ import numpy as np
 from . import record, tables
 from ._hdf5 import ResultFile
 
-# Names of result.h5 and what summary.json calls them, where they differ.
-_NAMES = {
+# Names in result.h5 of earlier versions. `equilibrium` was not a table of its own there.
+_EARLIER = {
     "pga": "pga_m_s2",
     "pgv": "pgv_m_s",
     "arias": "arias_m_s",
     "largest_speed": "largest_speed_m_s",
     "wall_time": "wall_time_s",
 }
-_SAME = ["name", "kind", "steps", "start_time", "duration", "planned_duration", "scale"]
-_SAME += ["standing", "movers", "interrupted", "still", "waits_for", "damage", "fallen"]
+# What the oldest do not have.
+_LATER = ("planned_duration", "pgv_m_s", "arias_m_s", "largest_speed_m_s", "standing", "movers", "still", "waits_for", "fallen")
+# What the scenario says of a stage, and what has a place of its own in Stage.
+_NOT_TOLD = ("motion_index", "given_duration", "max_steps", "tolerance", "motion_time", "motion")
 
 
 class Stage(record.Record):
@@ -71,12 +73,13 @@ def _read_stages(file: ResultFile, summary: record.Record | None, excavation_nam
 
 
 def _as_in_summary(line: record.Record, excavation_names: list[str]) -> dict[str, Any]:
-    fields = {name: line.get(name) for name in _SAME}
-    fields |= {ours: line.get(theirs) for theirs, ours in _NAMES.items()}
+    fields = dict.fromkeys(_LATER) | {_EARLIER.get(name, name): value for name, value in line.items() if name not in _NOT_TOLD}
     fields["release"] = [
         record.Record(point, excavation=excavation_names[point["excavation"]]) for point in line.get("release") or []
     ]
     fields["install"] = line.get("install") or []
+    if line["kind"] != "settle":  # as in summary.json
+        fields["equilibrium"] = record.Record(dict.fromkeys(line.get("equilibrium", ())))
     fields["blocks_by_order"] = record.Record({str(n): count for n, count in enumerate(line.get("blocks_by_order") or []) if count})
     return fields
 

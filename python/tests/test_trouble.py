@@ -70,6 +70,38 @@ def test_results_of_earlier_versions_are_read(copy):
         assert run.frames.at().status_names[0] == "in place"
 
 
+def test_stages_by_the_names_of_earlier_versions(copy):
+    with h5py.File(copy / "result.h5", "r+") as file:
+        for name in ("summary", "run"):
+            file[name].resize(0, axis=0)
+        text = bytes(file["stages"][:])
+        for now, earlier in ((b"pga_m_s2", b"pga"), (b"wall_time_s", b"wall_time"), (b"largest_speed_m_s", b"largest_speed")):
+            assert now in text
+            text = text.replace(now, earlier)
+        file["stages"].resize(len(text), axis=0)
+        file["stages"][:] = np.frombuffer(text, dtype=np.uint8)
+    with pytest.warns(kb.UnfinishedWarning), kb.open(copy) as run:
+        assert run.stages["first earthquake"].pga_m_s2 == pytest.approx(3.0)
+        assert run.stages["first earthquake"].wall_time_s > 0.0
+
+
+def test_numbers_of_contacts_that_later_versions_add(copy):
+    with h5py.File(copy / "result.h5", "r+") as file:
+        gap = file["contacts/gap"][:]
+        file["contacts"].create_dataset("twice_the_gap", data=2.0 * gap).attrs["units"] = "m"
+    with kb.open(copy) as run:
+        contacts = run.contacts()
+        assert contacts.twice_the_gap == pytest.approx(2.0 * contacts.gap)
+        assert contacts.table()["twice_the_gap"].tolist() == contacts.twice_the_gap.tolist()
+        assert contacts.table().attrs["units"]["twice_the_gap"] == "m"
+        with pytest.raises(AttributeError, match="contacts have no 'pressure'"):
+            contacts.pressure
+    with h5py.File(copy / "result.h5", "r+") as file:
+        replace(file, "contacts/twice_the_gap", gap[:-1])
+    with pytest.raises(kb.DamagedError, match="contacts/twice_the_gap has a size of"):
+        kb.open(copy)
+
+
 def test_datasets_that_are_missing_or_do_not_fit(copy):
     with h5py.File(copy / "result.h5", "r+") as file:
         del file["frames/stress"]

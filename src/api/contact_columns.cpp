@@ -1,10 +1,35 @@
 #include "api/contact_columns.h"
 
 #include <stdexcept>
+#include <string_view>
+
+#include "record/contact_fields.h"
 
 namespace keyblock::api {
 
 using Record = simulation::ContactRecord;
+
+namespace {
+
+/// A list, and what of a record goes into it.
+struct Filled {
+  ContactNumbers list;
+  const simulation::ContactField* from;
+};
+
+/// The lists of what results keep, too.
+const std::vector<Filled>& filled_lists() {
+  static const std::vector<Filled> all = [] {
+    std::vector<Filled> found;
+    for (const ContactNumbers& list : contact_numbers)
+      for (const simulation::ContactField& field : simulation::contact_fields)
+        if (std::string_view(list.name) == field.name) found.push_back({list, &field});
+    return found;
+  }();
+  return all;
+}
+
+}  // namespace
 
 std::vector<ContactColumn> all_contact_columns() {
   std::vector<ContactColumn> all;
@@ -32,10 +57,13 @@ ContactColumns::ContactColumns(const simulation::ModelRecord& model, std::size_t
 simulation::ContactParts ContactColumns::parts() const {
   using enum ContactColumn;
   const auto wants_any = [&](const auto&... columns) { return (wants(columns) || ...); };
-  return {.places = wants_any(block_a, block_b, vertex, edge, position, normal, length, joint),
-          .slips = wants_any(slip, shear_displacement),
-          .forces = wants_any(state, gap, normal_force, shear_force),
-          .strengths = wants_any(friction, cohesion, tension)};
+  simulation::ContactParts parts{.places = wants_any(block_a, block_b, vertex, edge, position, normal, joint),
+                                 .slips = false,
+                                 .forces = wants_any(state),
+                                 .strengths = wants_any(friction, cohesion, tension)};
+  for (const Filled& filled : filled_lists())
+    if (wants(filled.list.column)) parts.*filled.from->part = true;
+  return parts;
 }
 
 // A column at a time, so that each is written in one go.
@@ -74,7 +102,6 @@ void ContactColumns::add_places(Records some) {
   fill(ContactColumn::edge, c.edge, some, of(&Record::edge));
   fill_points(ContactColumn::position, c.position, some, &Record::position);
   fill_points(ContactColumn::normal, c.normal, some, &Record::normal);
-  fill(ContactColumn::length, c.length, some, of(&Record::length));
   fill(ContactColumn::joint, c.joint, some,
        [&](const Record& record) { return names_.code_of(record.label); });
 }
@@ -83,11 +110,9 @@ void ContactColumns::add_mechanics(Records some) {
   const auto of = [](auto Record::*value) { return [value](const Record& record) { return record.*value; }; };
   Contacts& c = contacts_;
   fill(ContactColumn::state, c.state, some, of(&Record::state));
-  fill(ContactColumn::gap, c.gap, some, of(&Record::gap));
-  fill(ContactColumn::slip, c.slip, some, [](const Record& record) { return record.slip(); });
-  fill(ContactColumn::shear_displacement, c.shear_displacement, some, of(&Record::shear_displacement));
-  fill(ContactColumn::normal_force, c.normal_force, some, of(&Record::normal_force));
-  fill(ContactColumn::shear_force, c.shear_force, some, of(&Record::shear_force));
+  for (const Filled& filled : filled_lists())
+    fill(filled.list.column, c.*filled.list.list, some,
+         [&](const Record& record) { return filled.from->of(record); });
   // Most contacts are of few joints.
   double coefficient = 0.0, degrees = 0.0;
   fill(ContactColumn::friction, c.friction, some, [&](const Record& record) {

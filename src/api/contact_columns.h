@@ -7,7 +7,7 @@
 
 #include "api/edge_names.h"
 #include "keyblock/simulation.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::api {
 

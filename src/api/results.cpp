@@ -6,8 +6,8 @@
 #include "api/contact_columns.h"
 #include "job/result_folder.h"
 #include "keyblock/keyblock.h"
+#include "record/record_fields.h"
 #include "results/export.h"
-#include "results/record_fields.h"
 #include "results/run_data.h"
 #include "results/summary.h"
 
@@ -110,7 +110,7 @@ std::vector<StepEnergies> Results::energies() const {
   std::vector<StepEnergies> steps;
   for (const simulation::StepRow& row : parts_->data.steps) {
     StepEnergies& of = steps.emplace_back(StepEnergies{row.time, row.step, {}});
-    for (const auto& [name, member] : results::energy_fields)
+    for (const auto& [name, member] : simulation::energy_fields)
       of.energy.emplace_back(name, row.energy.*member);
   }
   return steps;

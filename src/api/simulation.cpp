@@ -7,9 +7,9 @@
 #include "api/simulation_parts.h"
 #include "core/out_of_memory.h"
 #include "keyblock/keyblock.h"
+#include "record/computation_errors.h"
 #include "results/summary.h"
 #include "scenario/build.h"
-#include "simulation/computation_errors.h"
 #include "simulation/feasibility.h"
 #include "simulation/refuse.h"
 

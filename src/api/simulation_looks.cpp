@@ -2,8 +2,8 @@
 
 #include "api/contact_columns.h"
 #include "api/simulation_parts.h"
+#include "record/damage_fields.h"
 #include "simulation/checkpoint.h"
-#include "simulation/damage_fields.h"
 
 // What a simulation is like.
 namespace keyblock {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "keyblock/simulation.h"
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/runner.h"
 
 namespace keyblock::api {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "job/result_folder.h"
+#include "record/fan_out.h"
 #include "results/result_writer.h"
 #include "scenario/scenario.h"
-#include "simulation/fan_out.h"
 #include "simulation/runner.h"
 
 namespace keyblock::job {

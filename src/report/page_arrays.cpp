@@ -2,11 +2,11 @@
 #include <cmath>
 #include <string>
 
+#include "record/record_fields.h"
 #include "report/frame_codec.h"
 #include "report/page_data.h"
 #include "report/thinning.h"
 #include "results/joint_pieces.h"
-#include "results/record_fields.h"
 
 namespace keyblock::report {
 
@@ -171,7 +171,7 @@ void add_curves(std::string_view x_name, std::string_view values_name, const Cur
 
 void add_histories(const results::RunData& run, ArrayPack& pack) {
   Curves curves;
-  constexpr std::size_t quantities = std::size(results::history_fields);
+  constexpr std::size_t quantities = std::size(simulation::history_fields);
   constexpr std::size_t of_element = simulation::element_history_fields.size();
   const std::size_t first_element = 1 + quantities * run.model.history_names.size();
   curves.columns.resize(first_element + of_element * run.model.element_histories.size());
@@ -181,7 +181,7 @@ void add_histories(const results::RunData& run, ArrayPack& pack) {
     for (std::size_t p = 0; p < run.model.history_names.size(); ++p) {
       const auto& q = row.points[p];
       for (std::size_t c = 0; c < quantities; ++c)
-        curves.columns[1 + quantities * p + c].push_back(q.*results::history_fields[c].member);
+        curves.columns[1 + quantities * p + c].push_back(q.*simulation::history_fields[c].member);
     }
     std::size_t column = first_element;
     for (const simulation::ElementState& element : row.elements) {

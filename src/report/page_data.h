@@ -40,7 +40,7 @@ PageData make_page_data(const results::RunData& run);
 /// | element.ends | f32 | 4 n(elements) n(frames) | m |
 /// | element.numbers | f32 | 3 n(elements) n(frames) | simulation::element_state_fields of each |
 /// | element.present | u8 | n(elements) n(frames) | |
-/// | history.values | f32 | (1 + 9 n(points) + 2 n(element histories)) rows | by column: step; results::history_fields of each point; simulation::element_history_fields of each that follows an element |
+/// | history.values | f32 | (1 + 9 n(points) + 2 n(element histories)) rows | by column: step; simulation::history_fields of each point; simulation::element_history_fields of each that follows an element |
 /// | step.step | f64 | rows | steps since the start of the run |
 /// | step.values | f32 | n(step_columns) rows | by column, as step_columns in the header names them |
 /// | motion.K.time, .x, .y | f64, f32, f32 | samples | of stage K; s since the start of the run, m/s² |

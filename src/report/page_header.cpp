@@ -3,15 +3,15 @@
 #include <cmath>
 
 #include "core/checked_json.h"
+#include "cutting/cut_fields.h"
+#include "record/computation_errors.h"
+#include "record/fallen.h"
 #include "report/page_data.h"
 #include "report/page_template.h"
 #include "results/elements_json.h"
 #include "results/json_parts.h"
-#include "results/record_json.h"
+#include "results/stage_json.h"
 #include "results/summary.h"
-#include "simulation/computation_errors.h"
-#include "simulation/fallen.h"
-#include "simulation/verdict.h"
 
 namespace keyblock::report {
 
@@ -20,33 +20,9 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json stage_json(const simulation::StageRecord& record) {
-  return {{"name", record.stage.name},
-          {"kind", results::stage_kind_name(record.stage.kind)},
-          {"excavate", record.stage.excavate},
-          {"install", record.stage.install},
-          {"scale", record.stage.scale},
-          {"k_h", record.stage.k_h},
-          {"k_v", record.stage.k_v},
-          {"tolerance", record.stage.tolerance},
-          {"steps", record.steps},
-          {"start_time", record.start_time},
-          {"duration", record.duration},
-          {"planned_duration", results::or_null(record.planned_duration)},
-          {"pga_m_s2", record.pga},
-          {"equilibrium_reached", record.equilibrium_reached},
-          {"verdict", record.stage.kind == simulation::StageKind::settle
-                          ? ordered_json(simulation::verdict_text(record))
-                          : ordered_json()},
-          {"worst_residual_ratio", record.worst_residual_ratio},
-          {"way_m", record.way},
-          {"moving", results::movements_json(record)},
-          {"release", results::release_json(record.release, {})},
-          {"damage", results::damage_json(record.damage)},
-          {"fallen", results::fallen_json(record.fallen)},
-          {"standing", results::standing_json(record.standing)},
-          {"largest_speed_m_s", record.largest_speed},
-          {"wall_time_s", record.wall_time},
-          {"interrupted", record.interrupted}};
+  ordered_json json = results::stage_fields_json(record, simulation::StageFile::page);
+  results::add_verdict(record, json["equilibrium"]);
+  return json;
 }
 
 /// What the ground is, and what it came to beside the model.
@@ -77,7 +53,6 @@ ordered_json model_json(const results::RunData& data) {
   ordered_json names = ordered_json::object();
   for (std::size_t b = 0; b < model.blocks.size(); ++b)
     if (!model.blocks[b].name.empty()) names[std::to_string(b)] = model.blocks[b].name;
-  const cutting::CutStatistics& cut = model.cutting;
   return {{"title", model.title},
           {"version", model.version},
           {"seed", std::to_string(model.seed)},
@@ -102,19 +77,7 @@ ordered_json model_json(const results::RunData& data) {
           {"warnings", model.warnings},
           {"closure_is_lower_bound", model.closure_is_lower_bound},
           {"ground", results::ground_json(ground_rows(data))},
-          {"cutting",
-           {{"traces", cut.traces},
-            {"joints_used", cut.joints_used},
-            {"trace_length_m", cut.trace_length},
-            {"removed_length_m", cut.removed_length},
-            {"removed_pieces", cut.removed_pieces},
-            {"merged_slivers", cut.merged_slivers},
-            {"merged_vertices", cut.merged_vertices},
-            {"domain_area_m2", cut.domain_area},
-            {"sliver_area_m2", cut.sliver_area},
-            {"merged_across_joints", cut.merged_across_joints},
-            {"highest_tooth_m", cut.highest_tooth},
-            {"slivers_left", cut.slivers_left}}}};
+          {"cutting", cutting::cutting_json<ordered_json>(model.cutting, true)}};
 }
 
 ordered_json run_json(const results::RunData& data) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::results {
 

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "core/atomic_file.h"
-#include "results/record_fields.h"
+#include "record/record_fields.h"
 
 namespace keyblock::results {
 
@@ -58,7 +58,7 @@ bool has_histories(const simulation::ModelRecord& model) {
 std::vector<std::string> history_columns(const simulation::ModelRecord& model) {
   std::vector<std::string> columns{"time"};
   for (const std::string& name : model.history_names) {
-    for (const HistoryField& field : history_fields)
+    for (const simulation::HistoryField& field : simulation::history_fields)
       columns.push_back(fmt::format("{}.{}", name, field.name));
   }
   for (const simulation::ElementHistory& history : model.element_histories) {
@@ -71,7 +71,8 @@ std::vector<std::string> history_columns(const simulation::ModelRecord& model) {
 std::vector<double> history_numbers(const simulation::HistoryRow& row) {
   std::vector<double> numbers{row.time};
   for (const auto& p : row.points) {
-    for (const HistoryField& field : history_fields) numbers.push_back(p.*field.member);
+    for (const simulation::HistoryField& field : simulation::history_fields)
+      numbers.push_back(p.*field.member);
   }
   for (const simulation::ElementState& element : row.elements) {
     for (const auto& field : simulation::element_history_fields) numbers.push_back(element.*field.number);
@@ -98,7 +99,8 @@ std::string histories_csv(const simulation::ModelRecord& model,
     fmt::format_to(std::back_inserter(text), "{}", row.time);
     for (const auto& p : row.points) {
       const bool is_there = !std::isnan(p.ux);
-      for (const HistoryField& field : history_fields) add_cell(p.*field.member, is_there, text);
+      for (const simulation::HistoryField& field : simulation::history_fields)
+        add_cell(p.*field.member, is_there, text);
     }
     for (const simulation::ElementState& element : row.elements) {
       for (const auto& field : simulation::element_history_fields)

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::results {
 

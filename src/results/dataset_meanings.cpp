@@ -2,8 +2,9 @@
 #include <vector>
 
 #include "core/checked_json.h"
+#include "record/contact_fields.h"
+#include "record/record_fields.h"
 #include "results/block_shape.h"
-#include "results/record_fields.h"
 #include "results/result_tables.h"
 
 namespace keyblock::results {
@@ -52,11 +53,11 @@ std::vector<Dimensions> dimensions(const simulation::ModelRecord& model) {
   for (const char* name : {"steps/stage", "steps/step", "steps/iterations", "steps/closed_contacts",
                            "steps/step_size", "steps/penetration", "steps/max_displacement"})
     all.push_back({name, {step}});
-  for (const char* name :
-       {"contacts/block_a", "contacts/block_b", "contacts/state", "contacts/length", "contacts/gap",
-        "contacts/slip", "contacts/shear_displacement", "contacts/normal_force", "contacts/shear_force",
-        "contacts/edge_kind", "contacts/edge_index"})
+  for (const char* name : {"contacts/block_a", "contacts/block_b", "contacts/state", "contacts/edge_kind",
+                           "contacts/edge_index"})
     all.push_back({name, {contact}});
+  for (const simulation::ContactField& field : simulation::contact_fields)
+    all.push_back({"contacts/" + std::string(field.name), {contact}});
   for (const char* name :
        {"model/block_name", "model/block_order", "model/block_fixed", "model/block_area",
         "model/block_density", "model/block_stress_ratio_zz", "model/block_young", "model/block_poisson"})
@@ -87,20 +88,20 @@ Names names_up_to(Enum last, std::string (*name)(Enum)) {
 
 Names energy_names() {
   Names names;
-  for (const auto& [name, member] : energy_fields) names.emplace_back(name);
+  for (const auto& [name, member] : simulation::energy_fields) names.emplace_back(name);
   return names;
 }
 
 std::string history_units() {
   std::string units;
-  for (const HistoryField& field : history_fields)
+  for (const simulation::HistoryField& field : simulation::history_fields)
     units += (units.empty() ? "" : ", ") + std::string(field.unit);
   return units;
 }
 
 std::string energy_units() {
   std::string units;
-  for (const auto& [name, member] : energy_fields) {
+  for (const auto& [name, member] : simulation::energy_fields) {
     if (!units.empty()) units += ", ";
     units += member == &simulation::Energy::residual_ratio ? "1" : "J/m";
   }
@@ -162,7 +163,7 @@ std::vector<Meaning> of_frames() {
 }
 
 std::vector<Meaning> of_contacts() {
-  return {
+  std::vector<Meaning> all{
       {"contacts/time", "s", "simulated time of each snapshot"},
       {"contacts/stage", "1", "stage, from 0"},
       {"contacts/step", "1", "step of the run"},
@@ -177,19 +178,15 @@ std::vector<Meaning> of_contacts() {
        names_up_to(simulation::ContactState::locked, contact_state_name)},
       {"contacts/position", "m", "where", {"x", "y"}},
       {"contacts/normal", "1", "unit vector out of block_b", {"x", "y"}},
-      {"contacts/length", "m", "of joint that belongs to the contact"},
-      {"contacts/gap", "m", "as the law of the joint has it, negative where it is pressed"},
-      {"contacts/slip", "m", "magnitude of shear_displacement"},
-      {"contacts/shear_displacement", "m",
-       "of block_a against block_b along (-normal_y, normal_x) since the excavation"},
-      {"contacts/normal_force", "N/m", "per metre of thickness, compression positive"},
-      {"contacts/shear_force", "N/m", "per metre of thickness; on block_a along (normal_y, -normal_x)"},
       {"contacts/edge_kind",
        "1",
        "what the edge is a piece of",
        {},
        names_up_to(cutting::EdgeKind::domain, edge_kind_name)},
       {"contacts/edge_index", "1", "which joint set, trace map or excavation of edge_kind"}};
+  for (const simulation::ContactField& field : simulation::contact_fields)
+    all.push_back({"contacts/" + std::string(field.name), field.unit, field.meaning});
+  return all;
 }
 
 std::vector<Meaning> of_rows() {
@@ -200,7 +197,7 @@ std::vector<Meaning> of_rows() {
       {"histories/values", history_units(),
        "of every chosen point: displacement, velocity, stress, and acceleration as its mean over the last "
        "step",
-       history_quantities()},
+       simulation::history_quantities()},
       {"steps/time", "s", "simulated time"},
       {"steps/stage", "1", "stage, from 0"},
       {"steps/step", "1", "step of the run"},

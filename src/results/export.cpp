@@ -9,11 +9,12 @@
 
 #include "core/checked_json.h"
 #include "cutting/edge_name.h"
+#include "record/contact_fields.h"
+#include "record/record_fields.h"
 #include "results/block_shape.h"
 #include "results/csv.h"
 #include "results/elements_json.h"
 #include "results/export_folder.h"
-#include "results/record_fields.h"
 
 namespace keyblock::results {
 namespace {
@@ -55,17 +56,22 @@ std::string edge_name(const simulation::ModelRecord& model, cutting::EdgeLabel l
 }
 
 std::string contact_table(const RunData& data) {
-  std::string text =
-      "time,stage,step,block_a,block_b,state,x,y,nx,ny,length,gap,slip,shear_displacement,normal_force,shear_"
-      "force,edge,edge_name\n";
+  std::string text = "time,stage,step,block_a,block_b,state,x,y,nx,ny";
+  for (const simulation::ContactField& field : simulation::contact_fields)
+    text += fmt::format(",{}", field.name);
+  text += ",edge,edge_name\n";
   auto out = std::back_inserter(text);
   for (const simulation::ContactFrame& frame : data.contacts) {
     for (const simulation::ContactRecord& c : frame.contacts) {
       const Vec2 p = data.model.origin + c.position;
-      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame.time, frame.stage,
-                     frame.step, c.block_a, c.block_b, contact_state_name(c.state), p.x, p.y, c.normal.x,
-                     c.normal.y, c.length, c.gap, c.slip(), c.shear_displacement, c.normal_force,
-                     c.shear_force, edge_kind_name(c.label.kind), csv_field(edge_name(data.model, c.label)));
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{}", frame.time, frame.stage, frame.step, c.block_a,
+                     c.block_b, contact_state_name(c.state), p.x, p.y, c.normal.x, c.normal.y);
+      for (const simulation::ContactField& field : simulation::contact_fields) {
+        text += ',';
+        if (const double number = field.of(c); !std::isnan(number)) fmt::format_to(out, "{}", number);
+      }
+      fmt::format_to(out, ",{},{}\n", edge_kind_name(c.label.kind),
+                     csv_field(edge_name(data.model, c.label)));
     }
   }
   return text;
@@ -73,13 +79,13 @@ std::string contact_table(const RunData& data) {
 
 std::string step_table(const RunData& data) {
   std::string text = "time,stage,step,iterations,step_size,penetration,max_displacement,closed_contacts";
-  for (const auto& [name, member] : energy_fields) text += fmt::format(",{}", name);
+  for (const auto& [name, member] : simulation::energy_fields) text += fmt::format(",{}", name);
   text += "\n";
   auto out = std::back_inserter(text);
   for (const simulation::StepRow& r : data.steps) {
     fmt::format_to(out, "{},{},{},{},{},{},{},{}", r.time, r.stage, r.step, r.iterations, r.step_size,
                    r.penetration, r.max_displacement, r.closed_contacts);
-    for (const auto& [name, member] : energy_fields) fmt::format_to(out, ",{}", r.energy.*member);
+    for (const auto& [name, member] : simulation::energy_fields) fmt::format_to(out, ",{}", r.energy.*member);
     text += "\n";
   }
   return text;

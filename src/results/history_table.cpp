@@ -3,7 +3,7 @@
 #include <iterator>
 
 #include "core/error.h"
-#include "results/record_fields.h"
+#include "record/record_fields.h"
 #include "results/result_tables.h"
 #include "results/table_rows.h"
 
@@ -14,7 +14,7 @@ using hdf5::Array;
 using hdf5::read_array;
 using hdf5::read_column;
 
-constexpr std::size_t history_values = std::size(history_fields);
+constexpr std::size_t history_values = std::size(simulation::history_fields);
 constexpr std::size_t element_values = simulation::element_history_fields.size();
 constexpr std::size_t first_history_values = 7;  // of results of earlier versions
 
@@ -61,7 +61,7 @@ namespace {
 simulation::HistoryRow::Point next_point(const double*& next, std::size_t quantities) {
   simulation::HistoryRow::Point point;
   for (std::size_t q = 0; q < history_values; ++q)
-    point.*history_fields[q].member = q < quantities ? *next++ : std::nan("");
+    point.*simulation::history_fields[q].member = q < quantities ? *next++ : std::nan("");
   return point;
 }
 

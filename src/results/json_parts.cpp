@@ -1,16 +1,31 @@
 #include "results/json_parts.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "core/checked_json.h"
-#include "results/record_fields.h"
-#include "simulation/fallen.h"
-#include "simulation/standing.h"
-#include "simulation/verdict.h"
+#include "record/damage_fields.h"
+#include "record/fallen.h"
+#include "record/record_fields.h"
+#include "record/standing.h"
+#include "record/verdict.h"
 
 namespace keyblock::results {
 
 using nlohmann::ordered_json;
+
+/// "group.name" is `name` of the object `group`.
+static const ordered_json* find_named(const ordered_json& json, std::string_view name) {
+  const std::size_t point = name.find('.');
+  const auto found = json.find(std::string(name.substr(0, point)));
+  if (found == json.end()) return nullptr;
+  return point == std::string_view::npos ? &*found : find_named(*found, name.substr(point + 1));
+}
+
+const ordered_json* find_field(const ordered_json& json, const char* name, const char* earlier) {
+  const ordered_json* found = find_named(json, name);
+  return found == nullptr && earlier != nullptr ? find_named(json, earlier) : found;
+}
 
 double number(const ordered_json& value) {
   return value.is_null() ? std::nan("") : value.get<double>();
@@ -53,9 +68,9 @@ ordered_json damage_measures_json() {
 simulation::Damage read_damage(const ordered_json& json) {
   simulation::Damage damage;
   // Files of earlier versions have fewer.
-  for (const auto& field : damage_counts)
+  for (const auto& field : simulation::damage_counts)
     if (json.contains(field.name)) json.at(field.name).get_to(damage.*field.number);
-  for (const auto& field : damage_fields)
+  for (const auto& field : simulation::damage_fields)
     damage.*field.number = json.contains(field.name) ? number(json.at(field.name)) : std::nan("");
   return damage;
 }
@@ -88,6 +103,11 @@ std::vector<simulation::FallenBlock> read_fallen(const ordered_json& json) {
 ordered_json wait_json(const std::optional<simulation::StageWait>& wait) {
   if (!wait) return nullptr;
   return {{"what", wait->what}, {"until_s", wait->until}};
+}
+
+std::optional<simulation::StageWait> read_wait(const ordered_json& json) {
+  if (json.is_null()) return std::nullopt;
+  return simulation::StageWait{number(json.at("until_s")), json.at("what").get<std::string>()};
 }
 
 ordered_json planes_json(const std::vector<simulation::PlaneRecord>& planes, Vec2 origin) {
@@ -148,13 +168,13 @@ simulation::Movers read_movers(const ordered_json& json) {
 
 ordered_json energy_json(const simulation::Energy& energy) {
   ordered_json json;
-  for (const auto& [name, member] : energy_fields) json[name] = energy.*member;
+  for (const auto& [name, member] : simulation::energy_fields) json[name] = energy.*member;
   return json;
 }
 
 simulation::Energy read_energy(const ordered_json& json) {
   simulation::Energy energy;
-  for (const auto& [name, member] : energy_fields) {
+  for (const auto& [name, member] : simulation::energy_fields) {
     if (member != &simulation::Energy::radiated || json.contains(name))
       energy.*member = number(json.at(name));
   }

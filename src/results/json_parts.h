@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/vec2.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 /// Parts of records that several files write as JSON alike. Reading throws nlohmann::json::exception for what is missing
 /// or has another type.
@@ -25,7 +25,7 @@ nlohmann::ordered_json standing_json(const std::optional<simulation::Standing>& 
 nlohmann::ordered_json movers_json(const simulation::Movers& movers);
 nlohmann::ordered_json energy_json(const simulation::Energy& energy);
 nlohmann::ordered_json moving_json(const std::vector<simulation::MovingBlock>& moving);
-/// With what each block does (simulation/verdict.h).
+/// With what each block does (record/verdict.h).
 nlohmann::ordered_json movements_json(const simulation::StageRecord& stage);
 /// With the names of excavations; where none are given, with their numbers.
 nlohmann::ordered_json release_json(const std::vector<simulation::ReleasePoint>& points,
@@ -39,6 +39,7 @@ nlohmann::ordered_json points_json(const std::vector<Vec2>& points);  ///< [[x, 
 
 simulation::Damage read_damage(const nlohmann::ordered_json& json);
 std::vector<simulation::FallenBlock> read_fallen(const nlohmann::ordered_json& json);
+std::optional<simulation::StageWait> read_wait(const nlohmann::ordered_json& json);
 std::optional<simulation::Standing> read_standing(const nlohmann::ordered_json& json);
 simulation::Movers read_movers(const nlohmann::ordered_json& json);
 simulation::Energy read_energy(const nlohmann::ordered_json& json);
@@ -52,6 +53,10 @@ simulation::ContactChecks read_contact_checks(const nlohmann::ordered_json& json
 void read_overlap_place(const nlohmann::ordered_json& json, simulation::OverlapRecord& overlap);
 std::vector<std::pair<std::string, std::string>> read_ground(const nlohmann::ordered_json& json);
 std::vector<Vec2> read_points(const nlohmann::ordered_json& json);
+
+/// The value of a field by its name, or by an earlier one, if it had one; null: there is neither.
+const nlohmann::ordered_json* find_field(const nlohmann::ordered_json& json, const char* name,
+                                         const char* earlier);
 
 /// JSON has no NaN: it is written as null.
 double number(const nlohmann::ordered_json& value);

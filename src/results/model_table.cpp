@@ -5,7 +5,7 @@
 
 #include "core/checked_json.h"
 #include "core/error.h"
-#include "results/record_fields.h"
+#include "record/record_fields.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
 
@@ -99,7 +99,7 @@ void write_texts(hid_t file, const simulation::ModelRecord& model) {
     texts["element_kinds"].push_back(element.kind);
   }
   for (const auto& history : model.element_histories) texts["element_history_names"].push_back(history.name);
-  for (const auto& [name, member] : energy_fields) texts["energy_names"].push_back(name);
+  for (const auto& [name, member] : simulation::energy_fields) texts["energy_names"].push_back(name);
   texts["meanings"] = dataset_names(model);
   TextColumn column(file, "texts");
   column.append(texts.dump());
@@ -125,9 +125,9 @@ void write_scales(hid_t file, const simulation::ModelRecord& model) {
   };
   named("component", {"x", "y"});
   named("stress_component", {"xx", "yy", "xy"});
-  named("quantity", history_quantities());
+  named("quantity", simulation::history_quantities());
   std::vector<std::string> energies;
-  for (const auto& [name, member] : energy_fields) energies.emplace_back(name);
+  for (const auto& [name, member] : simulation::energy_fields) energies.emplace_back(name);
   named("energy_term", energies);
   if (!model.elements.empty()) named("end", {"from", "to"});
   if (!model.element_histories.empty()) {

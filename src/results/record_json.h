@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 /// Records as JSON, each number to its last bit: what the result file holds as text. See docs/result-file.md.
 namespace keyblock::results {
@@ -20,8 +20,5 @@ struct StageLine {
 void read_model_json(const std::string& text, simulation::ModelRecord& model);
 StageLine read_stage_json(const std::string& text);
 simulation::RunRecord read_run_json(const std::string& text);
-
-/// Names as in the scenario: "settle", "shake", "rest".
-std::string stage_kind_name(simulation::StageKind kind);
 
 }  // namespace keyblock::results

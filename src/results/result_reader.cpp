@@ -7,7 +7,9 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/folder.h"
-#include "results/record_fields.h"
+#include "record/damage_fields.h"
+#include "record/record_fields.h"
+#include "record/stage_checks.h"
 #include "results/record_json.h"
 #include "results/result_tables.h"
 #include "results/run_data.h"
@@ -78,7 +80,7 @@ auto with_file(const std::filesystem::path& directory, const Read& read) {
 
 simulation::Damage unknown_damage() {
   simulation::Damage damage;
-  for (const auto& field : damage_fields) damage.*field.number = std::nan("");
+  for (const auto& field : simulation::damage_fields) damage.*field.number = std::nan("");
   return damage;
 }
 
@@ -159,10 +161,7 @@ void check_record(const RunData& data) {
   for (const simulation::StageRecord& stage : data.run.stages) {
     check_steps(stage.steps, "stages");
     fits = fits && stage.motion_time.size() == stage.motion.size() &&
-           std::all_of(stage.moving.begin(), stage.moving.end(),
-                       [&](const auto& m) { return is_block(m.block); }) &&
-           std::all_of(stage.fallen.begin(), stage.fallen.end(),
-                       [&](const auto& f) { return is_block(f.block); });
+           has_known_blocks(stage, data.model.blocks.size());
   }
   if (!fits) throw RunError("stages or run name blocks that the model does not have");
 }

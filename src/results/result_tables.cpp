@@ -8,7 +8,7 @@
 #include <initializer_list>
 
 #include "core/error.h"
-#include "results/record_fields.h"
+#include "record/record_fields.h"
 #include "results/table_rows.h"
 
 namespace keyblock::results {
@@ -18,18 +18,10 @@ using hdf5::Array;
 using hdf5::read_array;
 using hdf5::read_column;
 
-constexpr std::size_t energy_terms = std::size(energy_fields);
+constexpr std::size_t energy_terms = std::size(simulation::energy_fields);
 constexpr std::size_t first_energy_terms = 9;  // of results of the first version
 
 static_assert(sizeof(Vec2) == 2 * sizeof(double));
-
-// The value as one of an enumeration that ends with `last`.
-template <class Enum>
-Enum enumerator(std::uint8_t value, Enum last, const char* what) {
-  if (value > static_cast<std::uint8_t>(last))
-    throw RunError(fmt::format("{} holds the unknown value {}", what, value));
-  return static_cast<Enum>(value);
-}
 
 }  // namespace
 
@@ -122,110 +114,6 @@ std::vector<simulation::Frame> FrameTable::read(hid_t file, const simulation::Mo
   return frames;
 }
 
-ContactTable::ContactTable(hid_t file)
-    : group_(hdf5::create_group(file, "contacts")),
-      block_a_(group_, "block_a", {}),
-      block_b_(group_, "block_b", {}),
-      state_(group_, "state", {}),
-      edge_kind_(group_, "edge_kind", {}),
-      edge_index_(group_, "edge_index", {}),
-      position_(group_, "position", {2}),
-      normal_(group_, "normal", {2}),
-      length_(group_, "length", {}),
-      gap_(group_, "gap", {}),
-      slip_(group_, "slip", {}),
-      shear_displacement_(group_, "shear_displacement", {}),
-      normal_force_(group_, "normal_force", {}),
-      shear_force_(group_, "shear_force", {}),
-      stage_(group_, "stage", {}),
-      step_(group_, "step", {}),
-      end_(group_, "end", {}),
-      contact_(group_, "contact", {}),
-      time_(group_, "time", {}) {}
-
-void ContactTable::append(const simulation::ContactFrame& frame) {
-  for (const simulation::ContactRecord& c : frame.contacts) {
-    contact_.append(static_cast<std::int64_t>(contact_.rows()));
-    block_a_.append(c.block_a);
-    block_b_.append(c.block_b);
-    state_.append(static_cast<std::uint8_t>(c.state));
-    edge_kind_.append(static_cast<std::uint8_t>(c.label.kind));
-    edge_index_.append(c.label.index);
-    position_.append(flat(&c.position.x, 2));
-    normal_.append(flat(&c.normal.x, 2));
-    length_.append(c.length);
-    gap_.append(c.gap);
-    slip_.append(c.slip());
-    shear_displacement_.append(c.shear_displacement);
-    normal_force_.append(c.normal_force);
-    shear_force_.append(c.shear_force);
-  }
-  stage_.append(frame.stage);
-  step_.append(frame.step);
-  end_.append(static_cast<std::int64_t>(gap_.rows()));
-  time_.append(frame.time);
-}
-
-void ContactTable::flush() {
-  for (auto* column : {&block_a_, &block_b_, &stage_}) column->flush();
-  for (auto* column : {&state_, &edge_kind_}) column->flush();
-  edge_index_.flush();
-  for (auto* column :
-       {&position_, &normal_, &length_, &gap_, &slip_, &shear_displacement_, &normal_force_, &shear_force_})
-    column->flush();
-  for (auto* column : {&step_, &end_, &contact_}) column->flush();
-  time_.flush();
-}
-
-std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
-  const hdf5::Handle group = hdf5::open_group(file, "contacts");
-  const auto time = read_column<double>(group, "time");
-  const auto stage = read_column<std::int32_t>(group, "stage");
-  const auto step = read_column<std::int64_t>(group, "step"), end = read_column<std::int64_t>(group, "end");
-  const auto block_a = read_column<std::int32_t>(group, "block_a"),
-             block_b = read_column<std::int32_t>(group, "block_b");
-  const auto state = read_column<std::uint8_t>(group, "state"),
-             edge_kind = read_column<std::uint8_t>(group, "edge_kind");
-  const auto edge_index = read_column<std::int16_t>(group, "edge_index");
-  const auto position = read_array<double>(group, "position"), normal = read_array<double>(group, "normal");
-  const auto length = read_column<double>(group, "length"), gap = read_column<double>(group, "gap");
-  // Earlier files have it under the name of its magnitude.
-  const char* const signed_slip =
-      H5Lexists(group, "shear_displacement", H5P_DEFAULT) > 0 ? "shear_displacement" : "slip";
-  const auto slip = read_column<double>(group, signed_slip),
-             normal_force = read_column<double>(group, "normal_force");
-  const auto shear_force = read_column<double>(group, "shear_force");
-  require(position.width() == 2, "contacts/position");
-  require(normal.width() == 2, "contacts/normal");
-  const std::size_t rows = std::min({block_a.rows(), block_b.rows(), state.rows(), edge_kind.rows(),
-                                     edge_index.rows(), position.rows(), normal.rows(), length.rows(),
-                                     gap.rows(), slip.rows(), normal_force.rows(), shear_force.rows()});
-  std::vector<simulation::ContactFrame> frames;
-  std::size_t k = 0;
-  for (std::size_t f = 0; f < common_rows(time, {stage.rows(), step.rows(), end.rows()}); ++f) {
-    const auto last = static_cast<std::size_t>(end.values[f]);
-    if (last > rows) break;
-    simulation::ContactFrame frame{time.values[f], stage.values[f], {}, step.values[f]};
-    for (; k < last; ++k) {
-      frame.contacts.push_back(
-          {block_a.values[k],
-           block_b.values[k],
-           enumerator(state.values[k], simulation::ContactState::locked, "contacts/state"),
-           {position.values[2 * k], position.values[2 * k + 1]},
-           {normal.values[2 * k], normal.values[2 * k + 1]},
-           length.values[k],
-           gap.values[k],
-           slip.values[k],
-           normal_force.values[k],
-           shear_force.values[k],
-           {enumerator(edge_kind.values[k], cutting::EdgeKind::domain, "contacts/edge_kind"),
-            edge_index.values[k]}});
-    }
-    frames.push_back(std::move(frame));
-  }
-  return frames;
-}
-
 StepTable::StepTable(hid_t file)
     : group_(hdf5::create_group(file, "steps")),
       stage_(group_, "stage", {}),
@@ -238,13 +126,13 @@ StepTable::StepTable(hid_t file)
       energy_(group_, "energy", {energy_terms}),
       time_(group_, "time", {}) {
   std::vector<std::string> names;
-  for (const auto& [name, member] : energy_fields) names.emplace_back(name);
+  for (const auto& [name, member] : simulation::energy_fields) names.emplace_back(name);
   hdf5::write_strings(group_, "energy_names", names);
 }
 
 void StepTable::append(const simulation::StepRow& row) {
   std::array<double, energy_terms> energy{};
-  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*energy_fields[k].second;
+  for (std::size_t k = 0; k < energy_terms; ++k) energy[k] = row.energy.*simulation::energy_fields[k].second;
   stage_.append(row.stage);
   iterations_.append(row.iterations);
   closed_contacts_.append(row.closed_contacts);
@@ -290,7 +178,7 @@ std::vector<simulation::StepRow> StepTable::read(hid_t file) {
                closed_contacts.values[k],
                {}};
     for (std::size_t i = 0; i < terms; ++i) {
-      rows[k].energy.*energy_fields[i].second = energy.values[terms * k + i];
+      rows[k].energy.*simulation::energy_fields[i].second = energy.values[terms * k + i];
     }
   }
   return rows;

@@ -2,6 +2,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "results/element_table.h"
 #include "results/hdf5_file.h"
@@ -54,8 +55,8 @@ class ContactTable {
   hdf5::Column<std::int32_t> block_a_, block_b_;
   hdf5::Column<std::uint8_t> state_, edge_kind_;
   hdf5::Column<std::int16_t> edge_index_;
-  hdf5::Column<double> position_, normal_, length_, gap_, slip_, shear_displacement_, normal_force_,
-      shear_force_;
+  hdf5::Column<double> position_, normal_;
+  std::vector<hdf5::Column<double>> numbers_;  ///< as in simulation::contact_fields
   hdf5::Column<std::int32_t> stage_;
   hdf5::Column<std::int64_t> step_, end_, contact_;
   hdf5::Column<double> time_;

@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::results {
 

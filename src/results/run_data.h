@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::results {
 

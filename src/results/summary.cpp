@@ -5,12 +5,12 @@
 
 #include "core/atomic_file.h"
 #include "core/checked_json.h"
+#include "cutting/cut_fields.h"
+#include "record/computation_errors.h"
+#include "record/energy_warnings.h"
 #include "results/elements_json.h"
 #include "results/json_parts.h"
-#include "results/record_json.h"
-#include "simulation/computation_errors.h"
-#include "simulation/energy_warnings.h"
-#include "simulation/verdict.h"
+#include "results/stage_json.h"
 
 namespace keyblock::results {
 namespace {
@@ -41,33 +41,19 @@ Count count(const simulation::ModelRecord& model) {
   return count;
 }
 
-ordered_json cutting(const cutting::CutStatistics& c) {
-  return {{"traces", c.traces},
-          {"trace_length_m", c.trace_length},
-          {"removed_length_m", c.removed_length},
-          {"removed_pieces", c.removed_pieces},
-          {"merged_vertices", c.merged_vertices},
-          {"sliver_area_m2", c.sliver_area},
-          {"merged_across_joints", c.merged_across_joints},
-          {"highest_tooth_m", c.highest_tooth},
-          {"slivers_left", c.slivers_left}};
-}
-
 // Equilibrium is a question only where the stage seeks it.
-ordered_json equilibrium(const simulation::StageRecord& r) {
+void judge(const simulation::StageRecord& r, ordered_json& equilibrium) {
   if (r.stage.kind != simulation::StageKind::settle) {
-    return {{"reached", nullptr},       {"verdict", nullptr},           {"worst_residual_ratio", nullptr},
-            {"largest_way_m", nullptr}, {"largest_way_share", nullptr}, {"moving_blocks", nullptr}};
+    equilibrium.erase("unstable_block");
+    equilibrium.erase("moving");
+    for (auto& value : equilibrium) value = nullptr;
+    equilibrium["verdict"] = equilibrium["moving_blocks"] = nullptr;
+    return;
   }
-  return {{"reached", r.equilibrium_reached},
-          {"verdict", verdict_text(r)},
-          {"worst_residual_ratio", r.worst_residual_ratio},
-          {"largest_way_m", r.way},
-          {"largest_way_share", r.way_share},
-          {"unstable_blocks", r.unstable_block < 0 ? 0 : 1},
-          {"unstable_block", r.unstable_block < 0 ? ordered_json() : ordered_json(r.unstable_block)},
-          {"moving_blocks", r.moving.size()},
-          {"moving", movements_json(r)}};
+  add_verdict(r, equilibrium);
+  equilibrium["moving_blocks"] = r.moving.size();
+  equilibrium["unstable_blocks"] = r.unstable_block < 0 ? 0 : 1;
+  if (r.unstable_block < 0) equilibrium["unstable_block"] = nullptr;
 }
 
 ordered_json blocks_by_order(const simulation::StageRecord& r) {
@@ -79,30 +65,11 @@ ordered_json blocks_by_order(const simulation::StageRecord& r) {
 }
 
 ordered_json stage(const simulation::StageRecord& r, const simulation::ModelRecord& model) {
-  return {{"name", r.stage.name},
-          {"kind", stage_kind_name(r.stage.kind)},
-          {"install", r.stage.install},
-          {"steps", r.steps},
-          {"start_time", r.start_time},
-          {"duration", r.duration},
-          {"scale", r.stage.scale},
-          {"k_h", r.stage.k_h},
-          {"k_v", r.stage.k_v},
-          {"pga_m_s2", r.pga},
-          {"pgv_m_s", r.pgv},
-          {"arias_m_s", r.arias},
-          {"wall_time_s", r.wall_time},
-          {"interrupted", r.interrupted},
-          {"still", r.still},
-          {"waits_for", wait_json(r.waits_for)},
-          {"equilibrium", equilibrium(r)},
-          {"standing", standing_json(r.standing)},
-          {"movers", movers_json(r.movers)},
-          {"largest_speed_m_s", r.largest_speed},
-          {"blocks_by_order", blocks_by_order(r)},
-          {"release", release_json(r.release, model.excavation_names)},
-          {"damage", damage_json(r.damage)},
-          {"fallen", fallen_json(r.fallen)}};
+  ordered_json json = stage_fields_json(r, simulation::StageFile::summary);
+  judge(r, json["equilibrium"]);
+  json["blocks_by_order"] = blocks_by_order(r);
+  json["release"] = release_json(r.release, model.excavation_names);
+  return json;
 }
 
 ordered_json damping(const simulation::ModelRecord& model) {
@@ -117,13 +84,13 @@ ordered_json damping(const simulation::ModelRecord& model) {
 }
 
 /// null where there is none.
-ordered_json rock_layers(const std::vector<dynamics::RockLayer>& layers, double origin) {
+ordered_json rock_layers(const std::vector<simulation::LayerRecord>& layers, double origin) {
   ordered_json rock = ordered_json::array();
-  for (const dynamics::RockLayer& layer : layers) {
+  for (const simulation::LayerRecord& layer : layers) {
     rock.push_back({{"top_m", nullptr},
                     {"density", layer.density},
-                    {"vs_m_s", layer.speeds().x},
-                    {"vp_m_s", layer.speeds().y}});
+                    {"vs_m_s", layer.speeds.x},
+                    {"vp_m_s", layer.speeds.y}});
     if (rock.size() > 1) rock.back()["top_m"] = layer.top + origin;
   }
   return rock;
@@ -131,7 +98,7 @@ ordered_json rock_layers(const std::vector<dynamics::RockLayer>& layers, double 
 
 ordered_json boundary(const simulation::ModelRecord& model, const simulation::RunRecord& run) {
   if (!model.boundary) return nullptr;
-  const simulation::Boundary& b = *model.boundary;
+  const simulation::BoundaryRecord& b = *model.boundary;
   ordered_json columns = ordered_json::array(), half_space = nullptr;
   for (const simulation::ColumnRecord& c : model.columns)
     columns.push_back({{"x", c.x + model.origin.x},
@@ -196,7 +163,7 @@ std::string summary_json(const simulation::ModelRecord& model, const simulation:
       {"joints", model.cutting.joints_used},
       {"area", {{"blocks", area.blocks}, {"excavated", area.excavated}, {"domain", area.domain}}},
       {"merged_slivers", model.cutting.merged_slivers},
-      {"cutting", cutting(model.cutting)},
+      {"cutting", cutting::cutting_json<ordered_json>(model.cutting, false)},
       {"steps", run.steps},
       {"step_size", model.step_size},
       {"wall_time_s", run.wall_time},

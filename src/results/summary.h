@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::results {
 

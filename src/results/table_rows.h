@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 
@@ -30,6 +31,14 @@ inline std::size_t common_rows(const hdf5::Array<double>& time, std::initializer
 
 inline void require(bool holds, const char* what) {
   if (!holds) throw RunError(fmt::format("{} does not fit the rest of the file", what));
+}
+
+// The value as one of an enumeration that ends with `last`.
+template <class Enum>
+Enum enumerator(std::uint8_t value, Enum last, const char* what) {
+  if (value > static_cast<std::uint8_t>(last))
+    throw RunError(fmt::format("{} holds the unknown value {}", what, value));
+  return static_cast<Enum>(value);
 }
 
 }  // namespace keyblock::results

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
+#include "record/contact_fields.h"
 #include "results/vtk_parts.h"
 
 namespace keyblock::results {
@@ -16,11 +18,8 @@ class ContactArrays {
  public:
   void add_contact(const simulation::ContactRecord& c) {
     state_.push_back(static_cast<std::uint8_t>(c.state));
-    slip_.push_back(c.slip());
-    shear_displacement_.push_back(c.shear_displacement);
-    gap_.push_back(c.gap);
-    normal_force_.push_back(c.normal_force);
-    shear_force_.push_back(c.shear_force);
+    for (std::size_t k = 0; k < numbers_.size(); ++k)
+      numbers_[k].push_back(simulation::contact_fields[k].of(c));
     add(normal_, c.normal);
     // On block_a.
     add(force_, c.normal_force * c.normal - c.shear_force * perpendicular(c.normal));
@@ -31,13 +30,10 @@ class ContactArrays {
   }
   void write(VtkFile& file) const {
     file.array("state", view(state_));
-    file.array("slip", view(slip_));
-    file.array("shear_displacement", view(shear_displacement_));
-    file.array("gap", view(gap_));
+    for (std::size_t k = 0; k < numbers_.size(); ++k)
+      file.array(simulation::contact_fields[k].name, view(numbers_[k]));
     file.array("force", view(force_), 3);
     file.array("normal", view(normal_), 3);
-    file.array("normal_force", view(normal_force_));
-    file.array("shear_force", view(shear_force_));
     file.array("block_a", view(block_a_));
     file.array("block_b", view(block_b_));
     file.array("edge_kind", view(edge_kind_));
@@ -45,7 +41,8 @@ class ContactArrays {
   }
 
  private:
-  std::vector<double> slip_, shear_displacement_, gap_, normal_force_, shear_force_, normal_, force_;
+  std::array<std::vector<double>, std::size(simulation::contact_fields)> numbers_;
+  std::vector<double> normal_, force_;
   std::vector<std::uint8_t> state_, edge_kind_;
   std::vector<std::int32_t> edge_index_, block_a_, block_b_;
 };

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/checked_json.h"
+#include "cutting/cut_fields.h"
 #include "cutting/edge_name.h"
 #include "rockmass/intensity.h"
 #include "rockmass/section.h"
@@ -41,18 +42,6 @@ ordered_json joint_sets(const Scenario& scenario, const BlockModel& model) {
                     {"p10_down_per_m", intensity.p10_down}});
   }
   return sets;
-}
-
-ordered_json cutting_json(const cutting::CutStatistics& cut) {
-  return {{"traces", cut.traces},
-          {"trace_length_m", cut.trace_length},
-          {"removed_length_m", cut.removed_length},
-          {"removed_pieces", cut.removed_pieces},
-          {"merged_vertices", cut.merged_vertices},
-          {"sliver_area_m2", cut.sliver_area},
-          {"merged_across_joints", cut.merged_across_joints},
-          {"highest_tooth_m", cut.highest_tooth},
-          {"slivers_left", cut.slivers_left}};
 }
 
 std::string joint_name(const Scenario& scenario, cutting::EdgeLabel label) {
@@ -159,7 +148,7 @@ std::string cut_summary(const Scenario& scenario, int realization, const BlockMo
                           {"joints", cut.joints_used},
                           {"area", {{"blocks", left}, {"excavated", excavated}, {"domain", cut.domain_area}}},
                           {"merged_slivers", cut.merged_slivers},
-                          {"cutting", cutting_json(cut)},
+                          {"cutting", cutting::cutting_json<ordered_json>(cut, false)},
                           {"teeth", teeth_json(scenario, model.system)},
                           {"joint_sets", joint_sets(scenario, model)}};
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <string>
 
+#include "record/damage_fields.h"
 #include "scenario/key_path.h"
 #include "scenario/sections.h"
-#include "simulation/damage_fields.h"
 
 namespace keyblock::scenario {
 namespace {

@@ -13,12 +13,12 @@
 #include "loading/load.h"
 #include "loading/projection.h"
 #include "model/options.h"
+#include "record/stage.h"
 #include "rockmass/joint_set.h"
 #include "scenario/study_spec.h"
 #include "scenario/usual.h"
 #include "simulation/boundary.h"
 #include "simulation/setup.h"
-#include "simulation/stage.h"
 
 /// What a scenario file says, typed and checked, before anything is generated, read or cut. Coordinates are real
 /// ones; SI units. The meaning of every key: docs/scenario.md.

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "loading/motion_measures.h"
+#include "record/stage.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
-#include "simulation/stage.h"
 
 namespace keyblock::scenario {
 namespace {

@@ -6,31 +6,9 @@
 
 #include "coupling/rock_column.h"
 #include "geometry/vec2.h"
+#include "record/boundary.h"
 
 namespace keyblock::simulation {
-
-/// What holds the sides of the rock, and what they let out.
-enum class Sides {
-  free_field,  ///< rock far away, which moves as it would without the model
-  viscous,     ///< rock at rest, which takes up waves
-  roller,      ///< nothing goes through them; what lies at them slides up and down
-  frame,       ///< fixed blocks, RunSetup::frame
-};
-
-/// As a scenario has it.
-constexpr const char* name_of(Sides sides) {
-  switch (sides) {
-    case Sides::free_field:
-      return "free-field";
-    case Sides::viscous:
-      return "viscous";
-    case Sides::roller:
-      return "roller";
-    case Sides::frame:
-      break;
-  }
-  return "frame";
-}
 
 /// Rock far away, on one side of the model.
 enum class ColumnSide { left, right };

@@ -5,7 +5,7 @@
 #include "coupling/seismic_boundary.h"
 #include "model/model.h"
 #include "model/state.h"
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -10,12 +10,13 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/index.h"
+#include "record/stage_fields.h"
 
 namespace keyblock::simulation {
 
 namespace {
 
-constexpr std::uint64_t format = 0x6b65'7962'6c6b'001b;
+constexpr std::uint64_t format = 0x6b65'7962'6c6b'001c;
 
 std::uint64_t fingerprint(const RunSetup& setup) {
   Hash hash;
@@ -32,52 +33,24 @@ std::uint64_t fingerprint(const RunSetup& setup) {
   return hash.value();
 }
 
-template <typename Archive, typename StageRecordOrConst>
-void transfer_stage(Archive& archive, StageRecordOrConst& s) {
-  archive(s.stage.name);
-  archive(s.stage.kind);
-  archive(s.stage.excavate);
-  archive(s.stage.install);
-  archive(s.stage.motion);
-  archive(s.stage.scale);
-  archive(s.stage.duration);
-  archive(s.stage.max_steps);
-  archive(s.stage.k_h);
-  archive(s.stage.k_v);
-  archive(s.stage.strength_factor);
-  archive(s.stage.strength_of);
-  archive(s.stage.tolerance);
-  archive(s.steps);
-  archive(s.start_time);
-  archive(s.duration);
-  archive(s.planned_duration);
-  archive(s.pga);
-  archive(s.pgv);
-  archive(s.arias);
-  archive(s.equilibrium_reached);
-  archive(s.worst_residual_ratio);
-  archive(s.way);
-  archive(s.way_share);
-  archive(s.moving);
-  archive(s.unstable_block);
-  archive(s.release);
-  archive(s.blocks_by_order);
-  archive(s.damage);
-  archive(s.fallen);
-  archive(s.largest_speed);
-  archive(s.standing);
-  archive(s.movers);
-  archive(s.wall_time);
-  archive(s.interrupted);
-  archive(s.still);
-  StageWait wait = s.waits_for.value_or(StageWait{});
+template <typename Archive, typename WaitOrConst>
+void transfer_wait(Archive& archive, WaitOrConst& s) {
+  StageWait wait = s.value_or(StageWait{});
   archive(wait.what);
   archive(wait.until);
-  if constexpr (!std::is_const_v<StageRecordOrConst>) {
-    if (!wait.what.empty()) s.waits_for = wait;
+  if constexpr (!std::is_const_v<WaitOrConst>) {
+    if (!wait.what.empty()) s = wait;
   }
-  archive(s.motion_time);
-  archive(s.motion);
+}
+
+template <typename Archive, typename StageRecordOrConst>
+void transfer_stage(Archive& archive, StageRecordOrConst& s) {
+  visit_stage(s, [&](const StageField&, auto& value) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::optional<StageWait>>)
+      transfer_wait(archive, value);
+    else
+      archive(value);
+  });
 }
 
 template <typename Archive, typename StateOrConst>

@@ -3,11 +3,11 @@
 #include <string>
 
 #include "model/state.h"
+#include "record/record.h"
 #include "simulation/control.h"
 #include "simulation/damage.h"
 #include "simulation/elements.h"
 #include "simulation/order_control.h"
-#include "simulation/record.h"
 #include "simulation/settle.h"
 #include "simulation/setup.h"
 #include "simulation/staged_opening.h"

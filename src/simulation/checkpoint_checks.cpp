@@ -11,6 +11,7 @@
 
 #include "core/index.h"
 #include "coupling/coupling.h"
+#include "record/stage_checks.h"
 #include "simulation/wall_faces.h"
 
 namespace keyblock::simulation {
@@ -205,16 +206,10 @@ bool is_settler(const Settler::Memory& s, std::size_t blocks) {
 }
 
 bool is_record(const StageRecord& record, const Stage& stage, const RunSetup& setup, std::size_t blocks) {
-  const auto is_block = [&](const auto& entry) { return is_place(entry.block, blocks); };
   const Stage& s = record.stage;
   return s.name == stage.name && s.kind == stage.kind && s.excavate == stage.excavate &&
          s.install == stage.install && s.motion == stage.motion && are_counts({record.steps}) &&
-         std::all_of(record.moving.begin(), record.moving.end(), is_block) &&
-         (record.unstable_block == -1 || is_place(record.unstable_block, blocks)) &&
-         (record.movers.heaviest == -1 || is_place(record.movers.heaviest, blocks)) &&
-         std::all_of(record.fallen.begin(), record.fallen.end(),
-                     [&](const FallenBlock& f) { return is_block(f) && f.part <= WallPart::invert; }) &&
-         (!record.standing || *record.standing <= Standing::unstable) && are_points(record.release, setup) &&
+         has_known_blocks(record, blocks) && are_points(record.release, setup) &&
          record.motion_time.size() == record.motion.size();
 }
 

@@ -5,7 +5,7 @@
 #include "geometry/polygon.h"
 #include "model/model.h"
 #include "model/state.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::simulation {
 

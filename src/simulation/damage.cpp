@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "core/index.h"
-#include "simulation/fallen.h"
-#include "simulation/standing.h"
+#include "record/fallen.h"
+#include "record/standing.h"
 
 namespace keyblock::simulation {
 

@@ -8,11 +8,11 @@
 #include "contact/detection.h"
 #include "model/model.h"
 #include "model/state.h"
+#include "record/record.h"
 #include "simulation/base.h"
 #include "simulation/closure.h"
 #include "simulation/joint_gauge.h"
 #include "simulation/openings.h"
-#include "simulation/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

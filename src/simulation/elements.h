@@ -4,10 +4,10 @@
 
 #include "model/model.h"
 #include "model/state.h"
-#include "simulation/element_record.h"
-#include "simulation/record.h"
+#include "record/element_record.h"
+#include "record/record.h"
+#include "record/stage.h"
 #include "simulation/setup.h"
-#include "simulation/stage.h"
 
 /// What the elements of a model carry, springs, supports, boundaries and walls under pressure, and have carried at the most (dynamics::Element).
 namespace keyblock::simulation {

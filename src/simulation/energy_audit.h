@@ -1,7 +1,7 @@
 #pragma once
 #include "model/model.h"
 #include "model/state.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::simulation {
 

@@ -5,7 +5,7 @@
 #include "contact/detection.h"
 #include "contact/vertex_edge_list.h"
 #include "model/model.h"
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -2,7 +2,7 @@
 #include <optional>
 #include <string>
 
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -1,8 +1,8 @@
 #pragma once
 #include <chrono>
 
+#include "record/record.h"
 #include "simulation/checkpoint.h"
-#include "simulation/record.h"
 #include "simulation/setup.h"
 #include "simulation/stage_outlook.h"
 

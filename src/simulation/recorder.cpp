@@ -43,6 +43,23 @@ std::vector<ColumnRecord> columns_of(const dynamics::Model& model) {
   return columns;
 }
 
+std::vector<LayerRecord> records_of(std::span<const dynamics::RockLayer> layers) {
+  std::vector<LayerRecord> records;
+  for (const dynamics::RockLayer& layer : layers)
+    records.push_back({layer.top, layer.density, layer.speeds()});
+  return records;
+}
+
+BoundaryRecord record_of(const Boundary& boundary) {
+  return {.compliant = boundary.compliant,
+          .sides = boundary.sides,
+          .overburden = boundary.overburden,
+          .dashpots = boundary.dashpots,
+          .layers = records_of(boundary.layers),
+          .right_layers = records_of(boundary.right_layers),
+          .source = boundary.source};
+}
+
 void put_forces(std::span<const dynamics::ContactForce> forces, std::span<ContactRecord> to) {
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const dynamics::ContactForce& force = forces[k];
@@ -165,7 +182,7 @@ ModelRecord Recorder::model() const {
   record.cutting = setup_.system.statistics;
   record.ground = setup_.ground;
   record.damping = damping_table(setup_);
-  record.boundary = setup_.boundary;
+  if (setup_.boundary) record.boundary = record_of(*setup_.boundary);
   record.columns = columns_of(model_);
   return record;
 }

@@ -6,8 +6,8 @@
 
 #include "coupling/rock_column.h"
 #include "dynamics/step.h"
+#include "record/record.h"
 #include "simulation/damage.h"
-#include "simulation/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

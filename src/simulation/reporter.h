@@ -3,9 +3,9 @@
 
 #include "core/profile.h"
 #include "dynamics/step.h"
+#include "record/record.h"
 #include "simulation/checkpoint.h"
 #include "simulation/damage.h"
-#include "simulation/record.h"
 #include "simulation/recorder.h"
 #include "simulation/setup.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/run_options.h"
 #include "simulation/setup.h"
 

@@ -1,6 +1,6 @@
 #pragma once
+#include "record/record.h"
 #include "simulation/checkpoint.h"
-#include "simulation/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -7,7 +7,7 @@
 
 #include "core/index.h"
 #include "coupling/coupling.h"
-#include "simulation/verdict.h"
+#include "record/verdict.h"
 
 namespace keyblock::simulation {
 

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "dynamics/step.h"
+#include "record/record.h"
 #include "simulation/moving_blocks.h"
-#include "simulation/record.h"
 
 namespace keyblock::simulation {
 

@@ -11,8 +11,8 @@
 #include "loading/ground_motion.h"
 #include "loading/load.h"
 #include "model/options.h"
+#include "record/stage.h"
 #include "simulation/boundary.h"
-#include "simulation/stage.h"
 
 namespace keyblock::simulation {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/settle.h"
 #include "simulation/stage_motion.h"
 #include "simulation/stillness.h"

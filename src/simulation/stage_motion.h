@@ -1,7 +1,7 @@
 #pragma once
 #include "dynamics/step.h"
 #include "loading/ground_motion.h"
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "dynamics/step.h"
+#include "record/record.h"
 #include "simulation/damage.h"
-#include "simulation/record.h"
 #include "simulation/setup.h"
 
 namespace keyblock::simulation {

@@ -3,7 +3,7 @@
 
 #include "contact/surface.h"
 #include "loading/ground_motion.h"
-#include "simulation/stage.h"
+#include "record/stage.h"
 
 namespace keyblock::simulation {
 

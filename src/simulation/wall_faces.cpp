@@ -10,7 +10,7 @@
 
 #include "contact/tolerances.h"
 #include "core/index.h"
-#include "simulation/fallen.h"
+#include "record/fallen.h"
 #include "simulation/openings.h"
 #include "simulation/refuse.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "simulation/energy_warnings.h"
+#include "record/energy_warnings.h"
 #include "study/fragility_words.h"
 
 namespace keyblock::study {

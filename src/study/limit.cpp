@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "record/damage_fields.h"
 #include "scenario/key_path.h"
-#include "simulation/damage_fields.h"
 #include "statistics/order_statistics.h"
 #include "statistics/proportion.h"
 #include "statistics/sample.h"

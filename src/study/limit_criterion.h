@@ -16,7 +16,7 @@ struct LimitCriterion {
   double above = 0.0;   ///< it holds when the measure is larger; in the unit of the measure
   std::optional<double> above_share = {};  ///< in the place of `above`: of the block size, of a measure in m
   bool by_measure = true;                  ///< it holds when the measure is larger
-  bool by_standing = false;                ///< it holds when the blocks do not stand (simulation/standing.h)
+  bool by_standing = false;                ///< it holds when the blocks do not stand (record/standing.h)
   std::string why = {};                    ///< it is the default for this model; empty: it was asked for
 
   /// `fallen area of more than 0.1 m²`.

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/checked_json.h"
+#include "record/standing.h"
 #include "results/json_parts.h"
-#include "simulation/standing.h"
 #include "study/limit_words.h"
 
 namespace keyblock::study {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "record/standing.h"
 #include "scenario/key_path.h"
-#include "simulation/standing.h"
 #include "study/measures.h"
 
 namespace keyblock::study {

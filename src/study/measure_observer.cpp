@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/index.h"
-#include "simulation/standing.h"
+#include "record/standing.h"
 
 namespace keyblock::study {
 namespace {

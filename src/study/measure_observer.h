@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 #include "study/outputs.h"
 #include "study/run_result.h"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/damage_fields.h"
-#include "simulation/fallen.h"
+#include "record/damage_fields.h"
+#include "record/fallen.h"
 
 namespace keyblock::study {
 

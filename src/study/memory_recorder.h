@@ -1,6 +1,6 @@
 #pragma once
+#include "record/record.h"
 #include "results/run_data.h"
-#include "simulation/record.h"
 
 namespace keyblock::study {
 

@@ -8,13 +8,13 @@
 
 #include "core/atomic_file.h"
 #include "core/hash.h"
+#include "record/before_shaking.h"
 #include "scenario/inputs.h"
 #include "scenario/key_path.h"
 #include "scenario/magnitudes.h"
 #include "scenario/override.h"
 #include "scenario/parse.h"
 #include "scenario/sections.h"
-#include "simulation/before_shaking.h"
 #include "study/variant.h"
 
 namespace keyblock::study {

@@ -55,7 +55,7 @@ struct Plan {
   std::vector<scenario::VarySpec> axes;
   std::string stage;  ///< at whose end measures are compared
   std::string since;  ///< at whose end they begin; empty: the first excavation
-  /// The last stage before the shaking (simulation/before_shaking.h); empty: there is none, or none before `stage`.
+  /// The last stage before the shaking (record/before_shaking.h); empty: there is none, or none before `stage`.
   std::string before_shaking;
   std::vector<DamageLevel> levels;
   std::optional<MarginalCheck> marginal;

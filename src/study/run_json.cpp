@@ -2,9 +2,10 @@
 
 #include "core/checked_json.h"
 #include "core/error.h"
+#include "record/fallen.h"
 #include "results/json_parts.h"
-#include "results/record_json.h"
-#include "simulation/fallen.h"
+#include "results/stage_json.h"
+#include "study/measures.h"
 #include "study/plan.h"
 #include "study/refusal.h"
 
@@ -22,15 +23,13 @@ const std::string expected_words = "the measures of a run as keyblock wrote them
 const std::string checksum_mark = ",\"checksum\":\"";
 
 ordered_json stage_json(const StageMeasures& stage) {
-  return {{"name", stage.name},
-          {"kind", results::stage_kind_name(stage.kind)},
-          {"pga_m_s2", stage.pga},
-          {"pgv_m_s", stage.pgv},
-          {"arias_m_s", stage.arias},
-          {"damage", results::damage_json(stage.damage)},
-          {"standing", results::standing_json(stage.standing)},
-          {"movers", results::movers_json(stage.movers)},
-          {"heaviest_name", stage.heaviest}};
+  ordered_json json{{"name", stage.name}, {"kind", results::stage_kind_name(stage.kind)}};
+  for (const Intensity& intensity : intensities()) json[intensity.name] = stage.*intensity.of;
+  json["damage"] = results::damage_json(stage.damage);
+  json["standing"] = results::standing_json(stage.standing);
+  json["movers"] = results::movers_json(stage.movers);
+  json["heaviest_name"] = stage.heaviest;
+  return json;
 }
 
 StageMeasures read_stage(const ordered_json& json) {
@@ -39,9 +38,7 @@ StageMeasures read_stage(const ordered_json& json) {
   for (const StageKind kind : {StageKind::settle, StageKind::shake, StageKind::rest}) {
     if (json.at("kind") == results::stage_kind_name(kind)) stage.kind = kind;
   }
-  stage.pga = number(json.at("pga_m_s2"));
-  stage.pgv = number(json.at("pgv_m_s"));
-  stage.arias = number(json.at("arias_m_s"));
+  for (const Intensity& intensity : intensities()) stage.*intensity.of = number(json.at(intensity.name));
   stage.damage = results::read_damage(json.at("damage"));
   stage.standing = results::read_standing(json.at("standing")).value_or(simulation::Standing::unsettled);
   stage.movers = results::read_movers(json.at("movers"));

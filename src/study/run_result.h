@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/vec2.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 /// What a study keeps of its runs: small enough that ten thousand of them are read in seconds.
 namespace keyblock::study {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 #include "simulation/run_options.h"
 #include "simulation/setup.h"
 #include "study/plan.h"

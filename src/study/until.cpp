@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "simulation/damage_fields.h"
+#include "record/damage_fields.h"
 #include "statistics/distributions.h"
 #include "study/measures.h"
 

@@ -9,15 +9,15 @@
 
 #include "core/checked_json.h"
 #include "core/error.h"
+#include "record/computation_errors.h"
+#include "record/energy_warnings.h"
+#include "record/record_fields.h"
 #include "results/csv.h"
-#include "results/record_fields.h"
 #include "results/summary.h"
 #include "scenario/build.h"
 #include "scenario/cut_summary.h"
 #include "scenario/key_path.h"
 #include "scenario/parse.h"
-#include "simulation/computation_errors.h"
-#include "simulation/energy_warnings.h"
 #include "simulation/run.h"
 
 namespace keyblock::verification {

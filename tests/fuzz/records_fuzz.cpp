@@ -1,6 +1,6 @@
 // The attributes of result.h5 that hold records as JSON. HDF5 itself is not tried.
+#include "record/record.h"
 #include "results/record_json.h"
-#include "simulation/record.h"
 #include "try.h"
 
 namespace keyblock::fuzz {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "../unit/report/synthetic_run.h"
+#include "record/damage_fields.h"
 #include "report/report.h"
-#include "simulation/damage_fields.h"
 
 namespace {
 

@@ -11,7 +11,7 @@ export interface Damage {
   [measure: string]: number | null;
 }
 
-/** A column of damage, described once in src/simulation/damage_fields.h. */
+/** A column of damage, described once in src/record/damage_fields.h. */
 export interface DamageMeasure {
   name: string;
   table: "rock" | "joints" | "elements";
@@ -25,15 +25,16 @@ export interface DamageMeasure {
   known_with: string;
 }
 
+/** The fields of record/stage_fields.h that a page has. Numbers that may be null are not known of a stage that was killed. */
 export interface Stage {
   name: string;
   kind: "settle" | "shake" | "rest";
   excavate: number[];
-  /** Names of the supports that come to life at its start; not in results of earlier versions. */
-  install?: string[];
+  /** Names of the supports that come to life at its start. */
+  install: string[];
   /** Seismic coefficients of a static stage, over the weight. */
-  k_h?: number;
-  k_v?: number;
+  k_h: number;
+  k_v: number;
   scale: number;
   tolerance: number;
   steps: number;
@@ -42,23 +43,46 @@ export interface Stage {
   /** What the duration is unless the stage is interrupted; null for static stages. */
   planned_duration: number | null;
   pga_m_s2: number | null;
-  equilibrium_reached: boolean;
-  /** What a static stage came to: "in equilibrium", "mechanism of 3 blocks"; null of dynamic ones. */
-  verdict: string | null;
-  worst_residual_ratio: number | null;
-  /** Of a block that is not moving, while it was out of balance: the largest. */
-  way_m: number | null;
-  /** Blocks that move without bound: what each does, and the share of its weight that contacts carry. */
-  moving: { block: number; carried: number | null; movement: "mechanism" | "falling" | "partly held" }[];
-  damage: Damage;
-  /** Blocks that have fallen by its end; `wall`: the part of the outline behind which the deepest corner lay. */
-  fallen: {
-    block: number;
-    area_m2: number;
-    weight_n_m: number;
-    depth_m: number | null;
-    wall: "crown" | "left" | "right" | "invert" | null;
-  }[];
+  pgv_m_s: number | null;
+  arias_m_s: number | null;
+  wall_time_s: number | null;
+  interrupted: boolean;
+  /** It ended before its duration, as nothing moved any more; what it waits for before that may be. */
+  still: boolean;
+  waits_for: { what: string; until_s: number } | null;
+  /** Of static stages. */
+  equilibrium: {
+    reached: boolean;
+    /** What it came to: "in equilibrium", "mechanism of 3 blocks"; null of dynamic ones. */
+    verdict: string | null;
+    worst_residual_ratio: number | null;
+    /** Of a block that is not moving, while it was out of balance: the largest. */
+    largest_way_m: number | null;
+    largest_way_share: number | null;
+    /** −1: none. */
+    unstable_block: number;
+    /** Blocks that move without bound: what each does, and the share of its weight that contacts carry. */
+    moving: {
+      block: number;
+      carried: number | null;
+      group: number;
+      movement: "mechanism" | "falling" | "partly held";
+    }[];
+  };
+  /** Of a run without excavations; null: with them, or not known. */
+  standing: "stands" | "moves" | "rocks" | "collapsed" | "fallen" | "unsettled" | "unstable" | null;
+  /** The blocks by which that is told. */
+  movers: {
+    blocks: number;
+    weight_n_m: number | null;
+    heaviest: number | null;
+    heaviest_weight_n_m: number | null;
+    way_m: number | null;
+  };
+  /** Of a block at its end. */
+  largest_speed_m_s: number | null;
+  /** By order. */
+  blocks_by_order: number[];
   /** Of excavations opened in parts, by number: how far the wall has come inwards, at each equilibrium. */
   release: {
     excavation: number;
@@ -68,12 +92,15 @@ export interface Stage {
     springline_m: number | null;
     mean_m: number | null;
   }[];
-  /** Of a run without excavations; null: with them, or not known. */
-  standing: "stands" | "moves" | "rocks" | "collapsed" | "fallen" | "unsettled" | "unstable" | null;
-  /** Of a block at its end. */
-  largest_speed_m_s: number | null;
-  wall_time_s: number | null;
-  interrupted: boolean;
+  damage: Damage;
+  /** Blocks that have fallen by its end; `wall`: the part of the outline behind which the deepest corner lay. */
+  fallen: {
+    block: number;
+    area_m2: number;
+    weight_n_m: number;
+    depth_m: number | null;
+    wall: "crown" | "left" | "right" | "invert" | null;
+  }[];
 }
 
 export interface Header {

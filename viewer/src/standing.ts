@@ -43,12 +43,12 @@ function verdict(run: Run, k: number): string {
     }
     case "moves":
       return stage.kind === "settle"
-        ? `It moves: ${stage.verdict} at the end of ${end} (${movingNames(run, stage)}).`
+        ? `It moves: ${stage.equilibrium.verdict} at the end of ${end} (${movingNames(run, stage)}).`
         : `It moves: at the end of ${end} blocks go at up to ${significant(stage.largest_speed_m_s, 2)}\u00a0m/s.`;
     case "rocks":
       return `It still rocks at the end of ${end}, at up to ${significant(stage.largest_speed_m_s, 2)}\u00a0m/s. A stage of kind "rest" tells what comes of it.`;
     case "unstable":
-      return `It does not stand: at the end of ${end} it is ${stage.verdict}.`;
+      return `It does not stand: at the end of ${end} it is ${stage.equilibrium.verdict}.`;
     case "unsettled":
       return `It is not known whether it stands: ${end} ended without equilibrium.`;
     default:
@@ -58,8 +58,8 @@ function verdict(run: Run, k: number): string {
 
 function movingNames(run: Run, stage: Stage): string {
   const most = 4;
-  const names = stage.moving.slice(0, most).map((m) => run.blockName(m.block));
-  const left = stage.moving.length - names.length;
+  const names = stage.equilibrium.moving.slice(0, most).map((m) => run.blockName(m.block));
+  const left = stage.equilibrium.moving.length - names.length;
   return list(left > 0 ? [...names, `${left} more`] : names);
 }
 

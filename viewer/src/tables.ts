@@ -45,7 +45,7 @@ const kinds = { settle: "static", shake: "shaking", rest: "dynamic, no shaking" 
 /** What a static stage came to, in the words of the program. */
 function equilibrium(stage: Stage): string {
   if (stage.kind !== "settle") return "–";
-  return stage.interrupted && !stage.equilibrium_reached ? "not yet" : (stage.verdict ?? "–");
+  return stage.interrupted && !stage.equilibrium.reached ? "not yet" : (stage.equilibrium.verdict ?? "–");
 }
 
 export function stageTable(run: Run): HTMLElement {
@@ -82,13 +82,13 @@ export function stageTable(run: Run): HTMLElement {
         : "–",
     ),
     h("td", { class: "text" }, equilibrium(s)),
-    h("td", {}, s.kind === "settle" ? significant(s.worst_residual_ratio, 2) : "–"),
-    h("td", {}, s.kind === "settle" ? length(s.way_m, 2) : "–"),
+    h("td", {}, s.kind === "settle" ? significant(s.equilibrium.worst_residual_ratio, 2) : "–"),
+    h("td", {}, s.kind === "settle" ? length(s.equilibrium.largest_way_m, 2) : "–"),
     h(
       "td",
       {},
       s.kind === "settle" && !(s.interrupted && run.header.run.cut_off)
-        ? count(s.moving.length, "block")
+        ? count(s.equilibrium.moving.length, "block")
         : "–",
     ),
     h("td", {}, duration(s.wall_time_s)),
@@ -136,11 +136,11 @@ export function elementTable(run: Run): HTMLElement | null {
 
 /** Blocks left moving by static stages, each with a button that shows it. */
 export function movingTable(run: Run, show: (block: number, stage: number) => void): HTMLElement | null {
-  const stages = marginalStages(run).filter(({ stage }) => stage.moving.length > 0);
+  const stages = marginalStages(run).filter(({ stage }) => stage.equilibrium.moving.length > 0);
   if (stages.length === 0) return null;
-  const blocks = new Set(stages.flatMap(({ stage }) => stage.moving.map((m) => m.block)));
+  const blocks = new Set(stages.flatMap(({ stage }) => stage.equilibrium.moving.map((m) => m.block)));
   const rows = stages.flatMap(({ stage, index }) =>
-    stage.moving.map((m) => [
+    stage.equilibrium.moving.map((m) => [
       h(
         "th",
         { scope: "row" },

@@ -22,7 +22,7 @@ export function marginalStages(run: Run): { index: number; stage: Stage }[] {
       ({ stage }) =>
         stage.kind === "settle" &&
         !stage.interrupted &&
-        (!stage.equilibrium_reached || stage.moving.length > 0),
+        (!stage.equilibrium.reached || stage.equilibrium.moving.length > 0),
     );
 }
 
@@ -322,9 +322,12 @@ export function checksFinding(all: readonly Check[], other = ""): Finding {
 
 /** What makes a static stage marginal: "“excavated”: mechanism of 3 blocks (1.2 m² in all)". */
 function leftOver(run: Run, stage: Stage): string {
-  const area = stage.moving.reduce((sum, m) => sum + run.area[m.block], 0);
+  const area = stage.equilibrium.moving.reduce((sum, m) => sum + run.area[m.block], 0);
   const size =
-    area > 0 ? ` (${significant(area, 3)}\u00a0m²${stage.moving.length > 1 ? " in all" : ""})` : "";
-  const verdict = stage.verdict === "not reached" ? "equilibrium not reached" : stage.verdict;
+    area > 0
+      ? ` (${significant(area, 3)}\u00a0m²${stage.equilibrium.moving.length > 1 ? " in all" : ""})`
+      : "";
+  const verdict =
+    stage.equilibrium.verdict === "not reached" ? "equilibrium not reached" : stage.equilibrium.verdict;
   return `${quoted(stage.name)}: ${verdict}${size}`;
 }

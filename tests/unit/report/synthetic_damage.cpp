@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "simulation/fallen.h"
+#include "record/fallen.h"
 
 namespace keyblock::made_up {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/vec2.h"
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::made_up {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulation/damage_fields.h"
+#include "record/damage_fields.h"
 
 namespace keyblock::results {
 namespace {

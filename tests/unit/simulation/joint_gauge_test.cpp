@@ -8,7 +8,7 @@
 #include "../fresh_folder.h"
 #include "../scene.h"
 #include "core/index.h"
-#include "simulation/damage_fields.h"
+#include "record/damage_fields.h"
 
 namespace keyblock::simulation {
 namespace {

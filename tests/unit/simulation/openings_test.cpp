@@ -6,7 +6,7 @@
 
 #include "../scene.h"
 #include "core/index.h"
-#include "simulation/fallen.h"
+#include "record/fallen.h"
 
 namespace keyblock::simulation {
 namespace {

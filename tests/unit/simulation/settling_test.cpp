@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "../scene.h"
+#include "record/standing.h"
+#include "record/verdict.h"
 #include "simulation/run.h"
-#include "simulation/standing.h"
-#include "simulation/verdict.h"
 
 namespace keyblock::simulation {
 namespace {

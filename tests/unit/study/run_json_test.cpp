@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "simulation/damage_fields.h"
+#include "record/damage_fields.h"
 #include "study/plan.h"
 
 namespace keyblock::study {

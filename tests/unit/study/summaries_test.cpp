@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "made_run.h"
-#include "simulation/damage_fields.h"
+#include "record/damage_fields.h"
 #include "statistics/proportion.h"
 #include "synthetic_study.h"
 

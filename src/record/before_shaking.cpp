@@ -1,4 +1,4 @@
-#include "simulation/before_shaking.h"
+#include "record/before_shaking.h"
 
 #include <algorithm>
 

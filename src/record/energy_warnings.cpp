@@ -1,4 +1,4 @@
-#include "simulation/energy_warnings.h"
+#include "record/energy_warnings.h"
 
 #include <fmt/format.h>
 

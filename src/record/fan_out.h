@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::simulation {
 

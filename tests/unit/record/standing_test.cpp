@@ -1,4 +1,4 @@
-#include "simulation/standing.h"
+#include "record/standing.h"
 
 #include <gtest/gtest.h>
 

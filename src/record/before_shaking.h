@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "simulation/stage.h"
+#include "record/stage.h"
 
 namespace keyblock::simulation {
 

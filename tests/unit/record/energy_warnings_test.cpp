@@ -1,4 +1,4 @@
-#include "simulation/energy_warnings.h"
+#include "record/energy_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "../resumed_run.h"
 #include "../scene.h"
 #include "core/error.h"
-#include "simulation/computation_errors.h"
+#include "record/computation_errors.h"
 #include "simulation/energy_audit.h"
 
 namespace keyblock::simulation {

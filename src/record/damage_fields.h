@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 /// The measures of damage, each described once: files, studies, limits and pages read these tables.
 namespace keyblock::simulation {

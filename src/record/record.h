@@ -12,9 +12,9 @@
 #include "core/profile.h"
 #include "cutting/block_system.h"
 #include "geometry/vec2.h"
-#include "simulation/boundary.h"
-#include "simulation/element_record.h"
-#include "simulation/stage.h"
+#include "record/boundary.h"
+#include "record/element_record.h"
+#include "record/stage.h"
 
 /// What a run tells the outside: plain data, written to the result file and drawn in the report.
 namespace keyblock::simulation {
@@ -80,8 +80,8 @@ struct ModelRecord {
   std::optional<double> opening_width;              ///< m
   std::optional<double> slip_limit, opening_limit;  ///< m, beyond which a joint counts as slipped, opened
   cutting::CutStatistics cutting;
-  std::vector<DampingRow> damping;   ///< at 1, 3, 10 and 30 Hz; empty without dynamic stages
-  std::optional<Boundary> boundary;  ///< the rock around the model
+  std::vector<DampingRow> damping;         ///< at 1, 3, 10 and 30 Hz; empty without dynamic stages
+  std::optional<BoundaryRecord> boundary;  ///< the rock around the model
   std::vector<ColumnRecord> columns;
   std::vector<std::pair<std::string, std::string>> ground;  ///< names and values: RunSetup::ground
 };

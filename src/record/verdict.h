@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::simulation {
 

@@ -1,4 +1,4 @@
-#include "simulation/fallen.h"
+#include "record/fallen.h"
 
 #include <fmt/format.h>
 

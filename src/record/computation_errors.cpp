@@ -1,11 +1,11 @@
-#include "simulation/computation_errors.h"
+#include "record/computation_errors.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
 #include "core/error.h"
-#include "simulation/energy_warnings.h"
+#include "record/energy_warnings.h"
 
 namespace keyblock::simulation {
 

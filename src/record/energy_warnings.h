@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/record.h"
+#include "record/record.h"
 
 namespace keyblock::simulation {
 

@@ -1,4 +1,4 @@
-#include "simulation/stage.h"
+#include "record/stage.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/verdict.h"
+#include "record/verdict.h"
 
 #include <fmt/format.h>
 

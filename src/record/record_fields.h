@@ -1,0 +1,47 @@
+#pragma once
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "record/record.h"
+
+/// The members of records that are written in several places, once, with their names.
+namespace keyblock::simulation {
+
+inline constexpr std::pair<const char*, double Energy::*> energy_fields[] = {
+    {"kinetic", &Energy::kinetic},
+    {"strain", &Energy::strain},
+    {"gravity", &Energy::gravity},
+    {"contact", &Energy::contact},
+    {"friction", &Energy::friction},
+    {"damping", &Energy::damping},
+    {"input", &Energy::input},
+    {"numerical", &Energy::numerical},
+    {"residual_ratio", &Energy::residual_ratio},
+    {"radiated", &Energy::radiated}};  // results of earlier versions do not have it
+static_assert(sizeof(Energy) == std::size(energy_fields) * sizeof(double), "a term of the energy is missing");
+
+/// Quantities of a history point with their units, in the order of every table.
+struct HistoryField {
+  const char* name;
+  const char* unit;
+  double HistoryRow::Point::*member;
+};
+inline constexpr HistoryField history_fields[] = {
+    {"ux", "m", &HistoryRow::Point::ux},    {"uy", "m", &HistoryRow::Point::uy},
+    {"vx", "m/s", &HistoryRow::Point::vx},  {"vy", "m/s", &HistoryRow::Point::vy},
+    {"sxx", "Pa", &HistoryRow::Point::sxx}, {"syy", "Pa", &HistoryRow::Point::syy},
+    {"sxy", "Pa", &HistoryRow::Point::sxy}, {"ax", "m/s2", &HistoryRow::Point::ax},
+    {"ay", "m/s2", &HistoryRow::Point::ay}};  // results of earlier versions have no ax, ay
+static_assert(sizeof(HistoryRow::Point) == std::size(history_fields) * sizeof(double),
+              "a quantity of histories is missing");
+
+/// Names of history_fields.
+inline std::vector<std::string> history_quantities() {
+  std::vector<std::string> names;
+  for (const HistoryField& field : history_fields) names.emplace_back(field.name);
+  return names;
+}
+
+}  // namespace keyblock::simulation

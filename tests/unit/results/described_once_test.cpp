@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "../fresh_folder.h"
+#include "core/atomic_file.h"
+#include "core/checked_json.h"
+#include "core/error.h"
+#include "debian_python.h"
+#include "record/contact_fields.h"
+#include "record/stage_fields.h"
+#include "results/record_json.h"
+#include "results/result_writer.h"
+#include "results/run_data.h"
+#include "sample_run.h"
+
+// What tables of fields describe is in the files, under these names, and pages and types that people write know all of it.
+
+namespace keyblock::results {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string source(const char* path) {
+  return read_file(std::filesystem::path(KEYBLOCK_SOURCE_DIR) / path);
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string last_part(const std::string& name) {
+  return name.substr(name.find('.') + 1);
+}
+
+TEST(DescribedOnce, FieldsOfStagesAreInTheGuideAndInTheTypesOfThePage) {
+  const std::string guide = source("docs/guide/results.md"), types = source("viewer/src/data.ts");
+  const simulation::StageRecord stage;
+  simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
+    EXPECT_STRNE(field.meaning, "") << field.name;
+    if (field.file == simulation::StageFile::summary) {
+      const std::string name = std::string("stages[].") + field.name;
+      const bool is_told = has(guide, "`" + name) || has(guide, "`." + last_part(field.name) + "`");
+      EXPECT_TRUE(is_told) << "docs/guide/results.md has no " << name;
+    }
+    const bool is_typed = has(types, " " + last_part(field.name) + ": ");
+    EXPECT_TRUE(is_typed || field.file == simulation::StageFile::result)
+        << "viewer/src/data.ts has no " << field.name;
+  });
+}
+
+// All bytes of a record are in the table but for what lies between members of different sizes, and what the scenario says of a stage.
+TEST(DescribedOnce, NoFieldOfStagesIsMissing) {
+  const simulation::StageRecord stage;
+  const auto place = [&](const auto& value) {
+    return static_cast<std::size_t>(reinterpret_cast<const char*>(&value) -
+                                    reinterpret_cast<const char*>(&stage));
+  };
+  std::map<std::size_t, std::size_t> ends{{place(stage.stage), place(stage.stage) + sizeof(stage.stage)}};
+  simulation::visit_stage(stage, [&](const simulation::StageField&, const auto& value) {
+    if (place(value) >= ends.begin()->second) ends[place(value)] = place(value) + sizeof(value);
+  });
+  ends[sizeof(stage)] = sizeof(stage);
+  std::size_t reached = 0;
+  for (const auto& [begin, end] : ends) {
+    EXPECT_LT(begin - reached, alignof(double)) << "bytes " << reached << " to " << begin;
+    reached = end;
+  }
+}
+
+TEST(DescribedOnce, NumbersOfContactsAreOnThePageOfTheResultFile) {
+  const std::string page = source("docs/result-file.md");
+  for (const simulation::ContactField& field : simulation::contact_fields) {
+    std::size_t count = 0;  // result.h5, contacts.csv, contacts_N.vtp
+    for (std::size_t at = page.find("`" + std::string(field.name) + "`"); at != std::string::npos;
+         at = page.find("`" + std::string(field.name) + "`", at + 1))
+      ++count;
+    const bool heads_a_row = has(page, "`contacts/" + std::string(field.name) + "`");
+    EXPECT_GE(count + (heads_a_row ? 1 : 0), 3U) << field.name;
+  }
+}
+
+// Development versions before the table, and version 0.1, had other names.
+TEST(DescribedOnce, StagesByTheNamesOfEarlierVersionsAreRead) {
+  SampleRun sample;
+  const simulation::StageRecord stage = sample.stage(0);
+  ordered_json json = ordered_json::parse(stage_json(0, stage, true));
+  int renamed = 0;
+  simulation::visit_stage(stage, [&](const simulation::StageField& field, const auto&) {
+    if (field.earlier == nullptr) return;
+    const std::string name = field.name;
+    ordered_json& group = has(name, ".") ? json[name.substr(0, name.find('.'))] : json;
+    json[field.earlier] = group.at(last_part(name));
+    group.erase(last_part(name));
+    ++renamed;
+  });
+  json.erase("equilibrium");
+  EXPECT_EQ(renamed, 11);
+  const StageLine line = read_stage_json(json.dump());
+  EXPECT_EQ(stage_json(0, line.stage, true), stage_json(0, stage, true));
+  json.erase("pgv");  // as in version 0.1
+  EXPECT_EQ(read_stage_json(json.dump()).stage.pgv, 0.0);
+  json.erase("pga");
+  EXPECT_THROW(read_stage_json(json.dump()), InputError);
+}
+
+TEST(DescribedOnce, ContactsWithTheSizeOfTheirSlipAloneAreRead) {
+  if (!python_has("h5py")) GTEST_SKIP() << "python3-h5py is not installed";
+  const FreshFolder folder;
+  SampleRun sample;
+  {
+    ResultWriter writer(folder);
+    sample.play(writer);
+  }
+  const RunData before = read_run(folder);
+  const PythonResult done = python(
+      folder,
+      "import sys, h5py\ndel h5py.File(sys.argv[1] + '/result.h5', 'r+')['contacts/shear_displacement']\n",
+      folder.string());
+  ASSERT_EQ(done.status, 0) << done.output;
+  const RunData after = read_run(folder);
+  ASSERT_EQ(after.contacts.size(), before.contacts.size());
+  for (std::size_t k = 0; k < after.contacts.size(); ++k) {
+    for (std::size_t c = 0; c < after.contacts[k].contacts.size(); ++c) {
+      EXPECT_EQ(after.contacts[k].contacts[c].shear_displacement, before.contacts[k].contacts[c].slip());
+      EXPECT_EQ(after.contacts[k].contacts[c].gap, before.contacts[k].contacts[c].gap);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace keyblock::results
