@@ -58,7 +58,7 @@ _LAZY = {
     "Study": "study",
     "Limit": "limit",
 }
-_MODULES = {"scenario", "simulation", "motion", "traces", "steering", "cut", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
+_MODULES = {"scenario", "simulation", "motion", "traces", "steering", "cut", "census", "results", "study", "limit", "plot", "animate", "convert", "blocks", "frames", "contacts"}
 
 __all__ = [
     "Controller",

@@ -17,6 +17,7 @@
 #include "scenario/magnitudes.h"
 #include "scenario/motion_places.h"
 #include "scenario/polygon_checks.h"
+#include "scenario/properties.h"
 #include "scenario/sections.h"
 #include "scenario/shaking_checks.h"
 #include "scenario/size_checks.h"
@@ -48,6 +49,8 @@ RockKeys layered(RockKeys rock, const RockKeys& over) {
   return rock;
 }
 
+}  // namespace
+
 std::vector<BlockProperties> properties_of(const Scenario& scenario, const cutting::BlockSystem& system) {
   const std::size_t cut = system.blocks.size() - scenario.blocks.size();
   std::vector<BlockProperties> all;
@@ -75,6 +78,8 @@ std::vector<BlockProperties> properties_of(const Scenario& scenario, const cutti
   }
   return all;
 }
+
+namespace {
 
 // A factor of 1 keeps every bit.
 void reduce_strength(JointProperties& joint, double factor) {
@@ -113,6 +118,8 @@ JointProperties joint_properties(const JointKeys& own, const JointKeys& standard
   return joint;
 }
 
+}  // namespace
+
 simulation::JointTable joint_table(const Scenario& scenario) {
   simulation::JointTable table;
   table.standard = joint_properties(scenario.joints, {});
@@ -128,6 +135,8 @@ simulation::JointTable joint_table(const Scenario& scenario) {
   table.frame.residual.reset();
   return table;
 }
+
+namespace {
 
 std::optional<InSituStress> in_situ_stress(const Scenario& scenario, double top) {
   if (!scenario.in_situ) return std::nullopt;
