@@ -15,13 +15,13 @@ namespace {
 
 using simulation::BlockStatus;
 
-constexpr double width = 640.0, line_height = 20.0;  // px
-constexpr int digits = 4;
+constexpr double drawing_width = 640.0, line_height = 20.0;  // px
+constexpr int legend_digits = 4;
 /// From what goes first to what goes last; the order is seen without colours, too.
 constexpr std::array<std::array<double, 3>, 4> ramp{
     {{103, 0, 13}, {203, 24, 29}, {251, 106, 74}, {254, 224, 210}}};
 
-std::string color(double share) {
+std::string ramp_color(double share) {
   const double place = std::clamp(share, 0.0, 1.0) * (ramp.size() - 1);
   const std::size_t k = std::min(static_cast<std::size_t>(place), ramp.size() - 2);
   const auto channel = [&](std::size_t c) {
@@ -57,22 +57,22 @@ class Picture {
     std::string svg = fmt::format(
         "<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Up to which value rock "
         "holds\">",
-        width, height + line_height * static_cast<double>(levels_.size() + 1) + 5.0);
-    svg += group(color(0.0), [&](std::size_t c) { return map_.lost[c]; });
+        drawing_width, height + line_height * static_cast<double>(levels_.size() + 1) + 5.0);
+    svg += group(ramp_color(0.0), [&](std::size_t c) { return map_.lost[c]; });
     for (const double level : levels_)
       svg += group(color_of(level), [&](std::size_t c) { return map_.holds[c] == level; });
     return svg + outlines() + legend(height) + "</svg>";
   }
 
  private:
-  [[nodiscard]] double scale() const { return width / (map_.grid.cell * map_.grid.columns); }
+  [[nodiscard]] double scale() const { return drawing_width / (map_.grid.cell * map_.grid.columns); }
   [[nodiscard]] Vec2 place(Vec2 p) const {
     const Vec2 from = p - map_.grid.corner;
     return {scale() * from.x, scale() * (map_.grid.cell * map_.grid.rows - from.y)};
   }
   [[nodiscard]] std::string color_of(double level) const {
     const auto k = std::ranges::find(levels_, level) - levels_.begin();
-    return color(static_cast<double>(k + 1) / static_cast<double>(levels_.size() + 1));
+    return ramp_color(static_cast<double>(k + 1) / static_cast<double>(levels_.size() + 1));
   }
 
   template <class Is>
@@ -111,9 +111,9 @@ class Picture {
       y += line_height;
     };
     if (std::ranges::find(map_.lost, true) != map_.lost.end())
-      line(color(0.0), "goes at " + quantity(result_.request.from, result_.unit, digits) + " already");
+      line(ramp_color(0.0), "goes at " + quantity(result_.request.from, result_.unit, legend_digits) + " already");
     for (const double level : levels_)
-      line(color_of(level), "holds to " + quantity(level, result_.unit, digits));
+      line(color_of(level), "holds to " + quantity(level, result_.unit, legend_digits));
     return svg;
   }
 
