@@ -150,6 +150,7 @@ Totals totals(const Census& census) {
     }
     ++sum.moving;
     sum.area += key.area;
+    if (key.layer == 1) sum.first_layer_area += key.area;
     sum.weight += key.weight;
     sum.deepest = std::max(sum.deepest, key.depth);
     if (key.area <= sum.largest_area) continue;

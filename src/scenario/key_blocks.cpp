@@ -83,6 +83,7 @@ ordered_json totals_json(const Census& census) {
   return {{"moving_blocks", sum.moving},
           {"moving_area_m2", sum.area},
           {"moving_weight_n_m", sum.weight},
+          {"first_layer_area_m2", sum.first_layer_area},
           {"blocks_per_m", sum.moving / census.wall},
           {"area_m2_per_m", sum.area / census.wall},
           {"largest_area_m2", sum.largest_area},

@@ -123,7 +123,7 @@ class KeyBlocks(Scenario):
         gathered = census["over_realizations"]
         self.assertEqual(gathered["realizations"], 12)
         self.assertEqual(gathered["failed"], [])
-        for name in ("moving_blocks", "moving_area_m2", "blocks_per_m", "area_m2_per_m", "largest_area_m2", "largest_depth_m"):
+        for name in ("moving_blocks", "moving_area_m2", "first_layer_area_m2", "blocks_per_m", "area_m2_per_m", "largest_area_m2", "largest_depth_m"):
             each = [one[name] for one in gathered["each"]]
             mean = gathered["measures"][name]["mean"]
             self.assertAlmostEqual(mean["value"], sum(each) / 12)

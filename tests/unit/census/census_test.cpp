@@ -94,6 +94,7 @@ TEST(Census, TakesAwayLayerByLayer) {
   const Totals sum = totals(census);
   EXPECT_EQ(sum.moving, 3);
   EXPECT_NEAR(sum.area, 6.0, 1e-9);
+  EXPECT_NEAR(sum.first_layer_area, 2.0, 1e-9);
   EXPECT_NEAR(sum.deepest, 3.0, 1e-9);
   EXPECT_NEAR(sum.force, sum.weight, 1e-6);
 }
