@@ -17,7 +17,7 @@ std::string row(const study::RealizationCensus& census, std::size_t k) {
   const KeyBlock& key = census.census.blocks[k];
   const std::string layer = key.moves() ? std::to_string(key.layer) : "stays",
                     name = census.names[k].empty() ? std::to_string(key.block) : census.names[k];
-  return fmt::format("{:>6} {:>7} {:>9.4g} {:>8.3g} {:>12.4g} {:>7.3g} {:>11.4g}  {}{}{}\n", layer, name,
+  return fmt::format("{:>6} {:>7} {:>9.4g} {:>8.3g} {:>12.4g} {:>7.4g} {:>11.4g}  {}{}{}\n", layer, name,
                      key.area, key.depth, key.weight / kilo, key.removal.factor(), key.force / kilo,
                      census::mode_name(key.removal.mode), census.joints[k].empty() ? "" : ": ",
                      fmt::join(census.joints[k], ", "));

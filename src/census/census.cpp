@@ -20,7 +20,8 @@ double distance_to(const Face& face, Vec2 p) {
 /// The rock at hand: what is still there, and how it holds.
 class Rock {
  public:
-  explicit Rock(const Input& input) : input_(input), faces_(find_faces(input.system)) {
+  explicit Rock(const Input& input)
+      : input_(input), faces_(find_faces(input.system)), accuracy_(touching_distance(input.system)) {
     for (const cutting::CutBlock& block : input.system.blocks) present_.push_back(block.excavations.empty());
     find_wall();
   }
@@ -52,7 +53,7 @@ class Rock {
           {face.out(), face.length, face.edge_length(), strength.friction_coefficient, strength.cohesion});
       labels.push_back(face.label);
     }
-    key.removal = find_removal(holding, resultant, input_.system.accuracy);
+    key.removal = find_removal(holding, resultant, accuracy_);
     key.force = key.removal.force_for(input_.wanted_factor);
     for (const std::size_t f : key.removal.sliding) {
       if (std::find(key.joints.begin(), key.joints.end(), labels[f]) == key.joints.end())
@@ -103,6 +104,7 @@ class Rock {
 
   const Input& input_;
   std::vector<std::vector<Face>> faces_;
+  double accuracy_;  ///< m, to which corners are known
   std::vector<std::uint8_t> present_;
   std::vector<Face> wall_;
 };
@@ -148,6 +150,7 @@ Totals totals(const Census& census) {
     }
     ++sum.moving;
     sum.area += key.area;
+    if (key.layer == 1) sum.first_layer_area += key.area;
     sum.weight += key.weight;
     sum.deepest = std::max(sum.deepest, key.depth);
     if (key.area <= sum.largest_area) continue;

@@ -66,6 +66,7 @@ Census take_census(const Input& input);
 struct Totals {
   int moving = 0;                   ///< blocks
   double area = 0.0, weight = 0.0;  ///< m², N per metre: of those that move
+  double first_layer_area = 0.0;    ///< m², of those that move before all others
   double largest_area = 0.0;        ///< m², of one of them
   double largest_depth = 0.0;       ///< m, of that block
   double deepest = 0.0;             ///< m, of any of them

@@ -13,9 +13,6 @@ using cutting::BlockSystem;
 using cutting::CutBlock;
 using cutting::EdgeKind;
 
-/// Of the block size: edges that are farther apart do not touch, and shorter stretches are no faces.
-constexpr double touching = 1e-4;
-
 struct Edge {
   int block = 0;
   Vec2 from, to;
@@ -38,12 +35,6 @@ std::vector<Edge> edges_of(const BlockSystem& system) {
     }
   }
   return edges;
-}
-
-double block_size(const BlockSystem& system) {
-  double sum = 0.0;
-  for (const CutBlock& block : system.blocks) sum += area(block.polygon);
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, system.blocks.size())));
 }
 
 /// What an edge has in common with one that runs the other way; empty where they do not lie against each other.
@@ -75,9 +66,16 @@ double uncovered(std::vector<Stretch>& stretches, double length) {
 
 }  // namespace
 
+double touching_distance(const BlockSystem& system) {
+  constexpr double share_of_size = 1e-4;
+  double sum = 0.0;
+  for (const CutBlock& block : system.blocks) sum += area(block.polygon);
+  return share_of_size * std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, system.blocks.size())));
+}
+
 std::vector<std::vector<Face>> find_faces(const BlockSystem& system) {
   const std::vector<Edge> edges = edges_of(system);
-  const double reach = touching * block_size(system);
+  const double reach = touching_distance(system);
   Box box;
   for (const Edge& edge : edges) box.add(edge.from);
   const auto columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(edges.size() + 1))));

@@ -21,9 +21,13 @@ struct Face {
   [[nodiscard]] Vec2 out() const { return -perpendicular(along()); }
 };
 
+/// m: 1e-4 of the block size, the root of the mean area. Corners that are nearer to each other, or to an edge, are not told apart: coordinates are
+/// typed with a few digits, and cutting drops corners that are nearly in line.
+double touching_distance(const cutting::BlockSystem& system);
+
 /// The faces of every block, edge by edge, ring by ring. Two edges lie against each other where they run in opposite directions and are no
-/// farther apart than 1e-4 of the block size (root of the mean area). What is left of an edge has `edge_of_domain` beyond it where it is
-/// labelled so, and else `nothing`.
+/// farther apart than the touching distance. What is left of an edge has `edge_of_domain` beyond it where it is labelled so, and else
+/// `nothing`.
 std::vector<std::vector<Face>> find_faces(const cutting::BlockSystem& system);
 
 }  // namespace keyblock::census

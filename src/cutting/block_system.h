@@ -75,7 +75,6 @@ struct BlockSystem {
   std::vector<JointTooth> teeth;         ///< in the order of cutting
   std::vector<SmallBlock> slivers_left;  ///< in the order of the blocks
   CutStatistics statistics;
-  double accuracy = 0.0;  ///< m, by which cleaning may have moved corners
   /// Real coordinates of the local origin: block coordinates are real ones minus this. Zero unless the domain lies
   /// so far from the origin that digits would be lost (a map in national coordinates).
   Vec2 origin;

@@ -230,7 +230,6 @@ BlockSystem cut(const CutInput& input) {
 
   // No default is larger than that of a domain without traces.
   const double straight = CutTolerances::for_domain(rough_area).collinear;
-  system.accuracy = tolerances.cluster;
   system.blocks = outlines_of(graph, tolerances.collinear, straight, shift, statistics);
   sort_blocks(system.blocks);
   return system;

@@ -20,10 +20,10 @@ using census::KeyBlock;
 using census::Mode;
 using nlohmann::ordered_json;
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double rad_per_degree = std::numbers::pi / 180.0;
 
 FaceStrength strength(const JointProperties& joint) {
-  return {std::tan(joint.friction * degree), joint.cohesion};
+  return {std::tan(joint.friction * rad_per_degree), joint.cohesion};
 }
 
 [[noreturn]] void refuse(const Scenario& scenario, const char* key, std::string found, std::string expected) {
@@ -59,7 +59,7 @@ ordered_json block_json(const Scenario& scenario, const BlockModel& model, const
   ordered_json name, layer, direction;
   if (std::string text = block_name(scenario, model, key.block); !text.empty()) name = std::move(text);
   if (key.moves()) layer = key.layer;
-  if (key.removal.driving > 0.0) direction = std::atan2(way.y, way.x) / degree;
+  if (key.removal.driving > 0.0) direction = std::atan2(way.y, way.x) / rad_per_degree;
   return {{"block", key.block},
           {"name", name},
           {"layer", layer},
@@ -83,6 +83,7 @@ ordered_json totals_json(const Census& census) {
   return {{"moving_blocks", sum.moving},
           {"moving_area_m2", sum.area},
           {"moving_weight_n_m", sum.weight},
+          {"first_layer_area_m2", sum.first_layer_area},
           {"blocks_per_m", sum.moving / census.wall},
           {"area_m2_per_m", sum.area / census.wall},
           {"largest_area_m2", sum.largest_area},

@@ -71,6 +71,8 @@ const std::vector<CensusMeasure>& census_measures() {
   static const std::vector<CensusMeasure> all{
       {"moving_blocks", "blocks that move", "", [](const Totals& t, double) { return 1.0 * t.moving; }},
       {"moving_area_m2", "their area", "m²", [](const Totals& t, double) { return t.area; }},
+      {"first_layer_area_m2", "area of the first layer", "m²",
+       [](const Totals& t, double) { return t.first_layer_area; }},
       {"blocks_per_m", "blocks per metre of wall", "1/m",
        [](const Totals& t, double wall) { return t.moving / wall; }},
       {"area_m2_per_m", "area per metre of wall", "m²/m",

@@ -229,7 +229,8 @@ void read_run(TableReader& t, RunSpec& run) {
   read_vary(t, run, simulated());
   read_points(t, run, simulated());
   const bool cut = run.command != RunCommand::run;
-  t.integer("realizations", run.realizations, only(!builtin && cut, "command = \"cut\" or \"census\"", {.at_least = 2.0}));
+  t.integer("realizations", run.realizations,
+            only(!builtin && cut, "command = \"cut\" or \"census\"", {.at_least = 2.0}));
   int steps = 0;
   t.integer("resume_after", steps, only(!builtin && !cut, "command = \"run\"", {.at_least = 1.0}));
   run.resume_after = steps;

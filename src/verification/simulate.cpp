@@ -159,7 +159,8 @@ void cut_realizations(const RunSpec& run, const scenario::Scenario& scenario, co
       const census::Census census = scenario::take_census(scenario, model, factor);
       flatten(scenario::census_json(scenario, realization, model, census, factor), "", numbers);
     } else {
-      flatten(nlohmann::json::parse(scenario::cut_summary(scenario, realization, model, version)), "", numbers);
+      flatten(nlohmann::json::parse(scenario::cut_summary(scenario, realization, model, version)), "",
+              numbers);
     }
     for (const auto& [path, number] : numbers) samples[path].push_back(number);
   }

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import math
 import re
 import unittest
 
@@ -122,7 +123,7 @@ class KeyBlocks(Scenario):
         gathered = census["over_realizations"]
         self.assertEqual(gathered["realizations"], 12)
         self.assertEqual(gathered["failed"], [])
-        for name in ("moving_blocks", "moving_area_m2", "blocks_per_m", "area_m2_per_m", "largest_area_m2", "largest_depth_m"):
+        for name in ("moving_blocks", "moving_area_m2", "first_layer_area_m2", "blocks_per_m", "area_m2_per_m", "largest_area_m2", "largest_depth_m"):
             each = [one[name] for one in gathered["each"]]
             mean = gathered["measures"][name]["mean"]
             self.assertAlmostEqual(mean["value"], sum(each) / 12)
@@ -155,6 +156,18 @@ class KeyBlocks(Scenario):
         census = self.census()
         self.assertAlmostEqual(census["wall_m"], 12.0)
         self.assertEqual(census["layers"], 0)
+
+    def test_a_slope_has_its_factor_of_safety(self):
+        (command,) = re.findall(r"^keyblock (cut .*--census.*)$", (ROOT / "docs/slopes.md").read_text(), re.MULTILINE)
+        self.keyblock("new", "slope")
+        alpha, phi = math.radians(30), math.radians(40)
+        for k_h in (0.0, 0.2):  # to the left: out of the slope
+            self.keyblock(*command.split(), "--set", f"stage.excavated.k_h={-k_h}")
+            census = json.loads((self.folder / "out/census/census.json").read_text())
+            (block,) = [block for block in census["blocks"] if block["joints"] == ["bedding"]]
+            normal, driving = math.cos(alpha) - k_h * math.sin(alpha), math.sin(alpha) + k_h * math.cos(alpha)
+            self.assertAlmostEqual(block["factor_of_safety"], normal / driving * math.tan(phi), places=6)
+            self.assertEqual(census["layers"], 0 if k_h == 0.0 else 1)
 
     def test_what_is_left_out_is_told(self):
         self.write("rock.toml", ROCK + TUNNEL + 'pressure = 1.0e4\n')

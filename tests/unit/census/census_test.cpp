@@ -12,7 +12,6 @@ namespace {
 
 using cutting::BlockSystem;
 using cutting::CutInput;
-using rockmass::Trace;
 using rockmass::TraceSource;
 
 constexpr double density = 2600.0;
@@ -94,6 +93,7 @@ TEST(Census, TakesAwayLayerByLayer) {
   const Totals sum = totals(census);
   EXPECT_EQ(sum.moving, 3);
   EXPECT_NEAR(sum.area, 6.0, 1e-9);
+  EXPECT_NEAR(sum.first_layer_area, 2.0, 1e-9);
   EXPECT_NEAR(sum.deepest, 3.0, 1e-9);
   EXPECT_NEAR(sum.force, sum.weight, 1e-6);
 }
@@ -133,9 +133,8 @@ TEST(Census, OfASlopeGoesByTheSeismicCoefficient) {
   const double normal = std::cos(0.5) - 0.4 * std::sin(0.5), driving = std::sin(0.5) + 0.4 * std::cos(0.5);
   EXPECT_NEAR(census.blocks[0].removal.factor(), 0.8 * normal / driving, 1e-9);
   EXPECT_EQ(census.blocks[0].joints.size(), 1U);
-  // Rock above, as in a tunnel: the block is caught.
-  input.rock_above = true;
-  EXPECT_EQ(take_census(input).layers, 1);  // it slides away from it, too
+  input.rock_above = true;  // it slides away from that
+  EXPECT_EQ(take_census(input).layers, 1);
 }
 
 TEST(Census, LeavesFixedBlocksAlone) {
