@@ -59,6 +59,7 @@ _MODEL = {
     "contacts/shear_force": "c",
     "contacts/slip": "c",
     "contacts/state": "c",
+    "contacts/water_pressure": "c",
     "contacts/time": "s",
     "contacts/stage": "s",
     "contacts/step": "s",

@@ -17,6 +17,8 @@ STATES = ["open", "sliding", "locked"]
 OPEN, SLIDING, LOCKED = 0, 1, 2
 
 _COLUMNS = ["block_a", "block_b", "state", "position", "normal", "length", "gap", "slip", "shear_displacement", "normal_force", "shear_force"]
+# Those that results of earlier versions do not have: zero there.
+_NEWER = ["water_pressure"]
 
 # Sine of the largest angle between an edge of one block and the edge of the other that it lies on.
 _ALONG = 0.3
@@ -48,6 +50,7 @@ class Contacts:
     shear_displacement: np.ndarray = field(repr=False)  #: (n,), m, of block_a against block_b along `tangent`: the slip with its sign
     normal_force: np.ndarray = field(repr=False)  #: (n,), N/m, compression positive
     shear_force: np.ndarray = field(repr=False)  #: (n,), N/m
+    water_pressure: np.ndarray = field(repr=False)  #: (n,), Pa, of the water in the joint: the forces are effective ones beside it
     edge_kind: np.ndarray = field(repr=False)  #: (n,), number in `keyblock.blocks.EDGE_KINDS`
     edge_index: np.ndarray = field(repr=False)  #: (n,), which joint set, trace map or excavation
     _blocks: Blocks = field(repr=False)
@@ -149,11 +152,12 @@ class Contacts:
                 "shear_displacement": self.shear_displacement,
                 "normal_force": self.normal_force,
                 "shear_force": self.shear_force,
+                "water_pressure": self.water_pressure,
                 "edge": self.edge_names,
             }
         )
         metres = dict.fromkeys(("x", "y", "length", "gap", "slip", "shear_displacement"), "m")
-        table.attrs["units"] = metres | {"normal_force": "N/m", "shear_force": "N/m"}
+        table.attrs["units"] = metres | {"normal_force": "N/m", "shear_force": "N/m", "water_pressure": "Pa"}
         return table
 
 
@@ -193,6 +197,9 @@ class ContactSnapshots:
         begin = int(self._end[row - 1]) if row > 0 else 0
         rows = slice(begin, int(self._end[row]))
         columns = {name: self._file.read(f"contacts/{self._in_file(name)}", rows) for name in (*_COLUMNS, "edge_kind", "edge_index")}
+        for name in _NEWER:
+            has = self._file.has(f"contacts/{name}")
+            columns[name] = self._file.read(f"contacts/{name}", rows) if has else np.zeros(len(columns["gap"]))
         columns["slip"] = np.abs(columns["slip"])
         columns["position"] = columns["position"] + self._blocks.origin
         m = self.moments

@@ -55,7 +55,7 @@ std::vector<Dimensions> dimensions(const simulation::ModelRecord& model) {
   for (const char* name :
        {"contacts/block_a", "contacts/block_b", "contacts/state", "contacts/length", "contacts/gap",
         "contacts/slip", "contacts/shear_displacement", "contacts/normal_force", "contacts/shear_force",
-        "contacts/edge_kind", "contacts/edge_index"})
+        "contacts/water_pressure", "contacts/edge_kind", "contacts/edge_index"})
     all.push_back({name, {contact}});
   for (const char* name :
        {"model/block_name", "model/block_order", "model/block_fixed", "model/block_area",
@@ -184,6 +184,7 @@ std::vector<Meaning> of_contacts() {
        "of block_a against block_b along (-normal_y, normal_x) since the excavation"},
       {"contacts/normal_force", "N/m", "per metre of thickness, compression positive"},
       {"contacts/shear_force", "N/m", "per metre of thickness; on block_a along (normal_y, -normal_x)"},
+      {"contacts/water_pressure", "Pa", "of the water in the joint, beside which the forces are effective"},
       {"contacts/edge_kind",
        "1",
        "what the edge is a piece of",

@@ -57,15 +57,16 @@ std::string edge_name(const simulation::ModelRecord& model, cutting::EdgeLabel l
 std::string contact_table(const RunData& data) {
   std::string text =
       "time,stage,step,block_a,block_b,state,x,y,nx,ny,length,gap,slip,shear_displacement,normal_force,shear_"
-      "force,edge,edge_name\n";
+      "force,water_pressure,edge,edge_name\n";
   auto out = std::back_inserter(text);
   for (const simulation::ContactFrame& frame : data.contacts) {
     for (const simulation::ContactRecord& c : frame.contacts) {
       const Vec2 p = data.model.origin + c.position;
-      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame.time, frame.stage,
-                     frame.step, c.block_a, c.block_b, contact_state_name(c.state), p.x, p.y, c.normal.x,
-                     c.normal.y, c.length, c.gap, c.slip(), c.shear_displacement, c.normal_force,
-                     c.shear_force, edge_kind_name(c.label.kind), csv_field(edge_name(data.model, c.label)));
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame.time,
+                     frame.stage, frame.step, c.block_a, c.block_b, contact_state_name(c.state), p.x, p.y,
+                     c.normal.x, c.normal.y, c.length, c.gap, c.slip(), c.shear_displacement, c.normal_force,
+                     c.shear_force, c.water_pressure, edge_kind_name(c.label.kind),
+                     csv_field(edge_name(data.model, c.label)));
     }
   }
   return text;

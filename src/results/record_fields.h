@@ -20,7 +20,9 @@ inline constexpr std::pair<const char*, double simulation::Energy::*> energy_fie
     {"input", &simulation::Energy::input},
     {"numerical", &simulation::Energy::numerical},
     {"residual_ratio", &simulation::Energy::residual_ratio},
-    {"radiated", &simulation::Energy::radiated}};  // results of earlier versions do not have it
+    // Results of earlier versions do not have these.
+    {"radiated", &simulation::Energy::radiated},
+    {"water", &simulation::Energy::water}};
 static_assert(sizeof(simulation::Energy) == std::size(energy_fields) * sizeof(double),
               "a term of the energy is missing");
 

@@ -137,6 +137,7 @@ ContactTable::ContactTable(hid_t file)
       shear_displacement_(group_, "shear_displacement", {}),
       normal_force_(group_, "normal_force", {}),
       shear_force_(group_, "shear_force", {}),
+      water_pressure_(group_, "water_pressure", {}),
       stage_(group_, "stage", {}),
       step_(group_, "step", {}),
       end_(group_, "end", {}),
@@ -159,6 +160,7 @@ void ContactTable::append(const simulation::ContactFrame& frame) {
     shear_displacement_.append(c.shear_displacement);
     normal_force_.append(c.normal_force);
     shear_force_.append(c.shear_force);
+    water_pressure_.append(c.water_pressure);
   }
   stage_.append(frame.stage);
   step_.append(frame.step);
@@ -170,8 +172,8 @@ void ContactTable::flush() {
   for (auto* column : {&block_a_, &block_b_, &stage_}) column->flush();
   for (auto* column : {&state_, &edge_kind_}) column->flush();
   edge_index_.flush();
-  for (auto* column :
-       {&position_, &normal_, &length_, &gap_, &slip_, &shear_displacement_, &normal_force_, &shear_force_})
+  for (auto* column : {&position_, &normal_, &length_, &gap_, &slip_, &shear_displacement_, &normal_force_,
+                       &shear_force_, &water_pressure_})
     column->flush();
   for (auto* column : {&step_, &end_, &contact_}) column->flush();
   time_.flush();
@@ -195,11 +197,17 @@ std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
   const auto slip = read_column<double>(group, signed_slip),
              normal_force = read_column<double>(group, "normal_force");
   const auto shear_force = read_column<double>(group, "shear_force");
+  // Results of earlier versions do not have it.
+  const bool has_water = H5Lexists(group, "water_pressure", H5P_DEFAULT) > 0;
+  const auto water_pressure = has_water
+                                  ? read_column<double>(group, "water_pressure")
+                                  : hdf5::Array<double>{gap.shape, std::vector<double>(gap.rows(), 0.0)};
   require(position.width() == 2, "contacts/position");
   require(normal.width() == 2, "contacts/normal");
-  const std::size_t rows = std::min({block_a.rows(), block_b.rows(), state.rows(), edge_kind.rows(),
-                                     edge_index.rows(), position.rows(), normal.rows(), length.rows(),
-                                     gap.rows(), slip.rows(), normal_force.rows(), shear_force.rows()});
+  const std::size_t rows =
+      std::min({block_a.rows(), block_b.rows(), state.rows(), edge_kind.rows(), edge_index.rows(),
+                position.rows(), normal.rows(), length.rows(), gap.rows(), slip.rows(), normal_force.rows(),
+                shear_force.rows(), water_pressure.rows()});
   std::vector<simulation::ContactFrame> frames;
   std::size_t k = 0;
   for (std::size_t f = 0; f < common_rows(time, {stage.rows(), step.rows(), end.rows()}); ++f) {
@@ -219,7 +227,8 @@ std::vector<simulation::ContactFrame> ContactTable::read(hid_t file) {
            normal_force.values[k],
            shear_force.values[k],
            {enumerator(edge_kind.values[k], cutting::EdgeKind::domain, "contacts/edge_kind"),
-            edge_index.values[k]}});
+            edge_index.values[k]},
+           water_pressure.values[k]});
     }
     frames.push_back(std::move(frame));
   }

@@ -55,7 +55,7 @@ class ContactTable {
   hdf5::Column<std::uint8_t> state_, edge_kind_;
   hdf5::Column<std::int16_t> edge_index_;
   hdf5::Column<double> position_, normal_, length_, gap_, slip_, shear_displacement_, normal_force_,
-      shear_force_;
+      shear_force_, water_pressure_;
   hdf5::Column<std::int32_t> stage_;
   hdf5::Column<std::int64_t> step_, end_, contact_;
   hdf5::Column<double> time_;

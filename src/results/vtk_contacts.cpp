@@ -21,6 +21,7 @@ class ContactArrays {
     gap_.push_back(c.gap);
     normal_force_.push_back(c.normal_force);
     shear_force_.push_back(c.shear_force);
+    water_pressure_.push_back(c.water_pressure);
     add(normal_, c.normal);
     // On block_a.
     add(force_, c.normal_force * c.normal - c.shear_force * perpendicular(c.normal));
@@ -38,6 +39,7 @@ class ContactArrays {
     file.array("normal", view(normal_), 3);
     file.array("normal_force", view(normal_force_));
     file.array("shear_force", view(shear_force_));
+    file.array("water_pressure", view(water_pressure_));
     file.array("block_a", view(block_a_));
     file.array("block_b", view(block_b_));
     file.array("edge_kind", view(edge_kind_));
@@ -45,7 +47,8 @@ class ContactArrays {
   }
 
  private:
-  std::vector<double> slip_, shear_displacement_, gap_, normal_force_, shear_force_, normal_, force_;
+  std::vector<double> slip_, shear_displacement_, gap_, normal_force_, shear_force_, water_pressure_, normal_,
+      force_;
   std::vector<std::uint8_t> state_, edge_kind_;
   std::vector<std::int32_t> edge_index_, block_a_, block_b_;
 };
