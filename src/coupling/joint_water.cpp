@@ -23,7 +23,7 @@ constexpr double is_joint = 1.0, has_opened = 2.0;
 constexpr double is_closed = -1.0;
 
 /// Sine of the largest angle between two faces of a joint. A block that stands on the foot of a wall has a corner there, and no joint in its wall.
-constexpr double along = 0.3;
+constexpr double most_sine = 0.3;
 
 /// Per edge: it lies along an edge that it has a contact with.
 std::vector<std::uint8_t> faced_edges(const contact::Surface& surface,
@@ -37,7 +37,7 @@ std::vector<std::uint8_t> faced_edges(const contact::Surface& surface,
     const Vec2 t = direction(c.edge);
     for (const int edge : {c.vertex, surface.previous[at(c.vertex)]}) {
       const Vec2 own = direction(edge);
-      if (std::abs(cross(t, own)) <= along && dot(t, own) < 0.0) faced[at(edge)] = faced[at(c.edge)] = 1;
+      if (std::abs(cross(t, own)) <= most_sine && dot(t, own) < 0.0) faced[at(edge)] = faced[at(c.edge)] = 1;
     }
   }
   return faced;
@@ -178,11 +178,12 @@ std::vector<double> JointWater::pressures(const Model& model, const State& state
     const Vec2 from = model.reference[at(edge)],
                along = model.reference[at(model.surface.next[at(edge)])] - from;
     const double s = std::clamp(dot(place - from, along) / dot(along, along), 0.0, 1.0);
-    const auto of_edge = std::ranges::equal_range(faces_, edge, {}, &WaterFace::vertex);
-    const auto face =
-        std::ranges::find_if(of_edge, [&](const WaterFace& f) { return s >= f.from && s <= f.to; });
-    if (face != of_edge.end())
+    for (auto face = std::ranges::lower_bound(faces_, edge, {}, &WaterFace::vertex);
+         face != faces_.end() && face->vertex == edge; ++face) {
+      if (s < face->from || s > face->to) continue;
       pressures[k] = share_wet(model, *face, wet) * water.weight * water.table.head(place);
+      break;
+    }
   }
   return pressures;
 }

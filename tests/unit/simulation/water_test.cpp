@@ -147,7 +147,8 @@ TEST(Water, LeavesJointsThatOpen) {
   RunObserver nobody;
   const RunRecord record = run(scene.setup, {}, nobody);
   EXPECT_GT(record.water->drained, 2.0 * std::sqrt(4.25));
-  EXPECT_NEAR(record.energy.kinetic / (0.5 * 2600.0 * 3.0 * std::pow(0.2 * g, 2)), 1.0, 1e-3);
+  EXPECT_NEAR(record.energy.kinetic / (0.5 * 2600.0 * 3.0 * std::pow(0.2 * g, 2)), 1.0,
+              0.05);  // wet, it would be 25
   EXPECT_LT(record.energy.residual_ratio, 1e-6);
 }
 
